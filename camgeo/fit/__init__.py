@@ -1,0 +1,1 @@
+"""Curves as polygons, arcs and splines, each with a proved error."""

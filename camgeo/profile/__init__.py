@@ -1,0 +1,1 @@
+"""From a recipe's cam to the exact curve of its profile."""

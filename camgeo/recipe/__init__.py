@@ -1,0 +1,1 @@
+"""The recipe: its schema, its reading from YAML, its errors."""
