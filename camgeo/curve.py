@@ -1,0 +1,272 @@
+"""Closed plane curves as moving frames: a point that runs along its tangent while the tangent turns.
+
+Every profile is described by the same few numbers at a parameter `t`: the point, the unit tangent, the speed
+``sigma`` with which the point moves along the tangent and the rate ``omega`` at which the tangent turns,
+
+    c'(t) = sigma(t) T(t),    T'(t) = omega(t) (left normal of T),    curvature = omega / sigma.
+
+For a support function p the parameter is the direction of the normal, ``omega = 1`` and ``sigma = rho = p + p''``
+(AS eqs. 2, 3, 6). The parallel curve at distance e inside has ``sigma - e omega`` for its speed and everything else
+unchanged, so offsets, cusps (sigma = 0), dwells and inflections (omega = 0) need no division and no special case.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+CELLS_PER_TURN = 96  # proved bounds are kept for about this many stretches; more cost time, fewer cost sharpness
+CELLS_PER_STRETCH = 6  # and for at least this many between two breaks
+SHARP_ENOUGH = 3.0  # a cell is halved while its bound is this many times what its own ends and middle show
+HALVINGS = 7
+
+
+class CurveError(ValueError):
+    """A curve for which no finite bound can be proved, with the parameter near which the proof fails."""
+
+    def __init__(self, message: str, parameter: float) -> None:
+        super().__init__(message)
+        self.parameter = parameter
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The moving frame at n parameters: point and tangent (n, 2); speed, turn and their derivatives (n,)."""
+
+    point: Array
+    tangent: Array
+    speed: Array
+    turn: Array
+    speed_slope: Array
+    turn_slope: Array
+
+    @property
+    def normal(self) -> Array:
+        """Outward unit normal (n, 2): the tangent turned clockwise, the curve running counter-clockwise."""
+        return np.column_stack([self.tangent[:, 1], -self.tangent[:, 0]])
+
+    @property
+    def curvature(self) -> Array:
+        """Signed curvature (n,), positive where the curve is convex; infinite at a cusp."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.turn / self.speed
+
+    @property
+    def curvature_slope(self) -> Array:
+        """Derivative of the curvature by arc length (n,)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return (self.turn_slope * self.speed - self.turn * self.speed_slope) / self.speed**3
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What is proved of a frame over n parameter intervals; all (n,).
+
+    `speed` and `turn` lie in [low, high]; the others are upper bounds of absolute values: `speed_slope` of sigma',
+    `speed_bend` of sigma'', and likewise for the turn.
+    """
+
+    speed_low: Array
+    speed_high: Array
+    turn_low: Array
+    turn_high: Array
+    speed_slope: Array
+    turn_slope: Array
+    speed_bend: Array
+    turn_bend: Array
+
+    def rows(self) -> Array:
+        """All eight as one (8, n) array, in the order of the fields."""
+        return np.stack(
+            [
+                self.speed_low,
+                self.speed_high,
+                self.turn_low,
+                self.turn_high,
+                self.speed_slope,
+                self.turn_slope,
+                self.speed_bend,
+                self.turn_bend,
+            ]
+        )
+
+
+class Shape(Protocol):
+    """What a family of profiles provides; `Curve` adds everything that follows from it."""
+
+    @property
+    def period(self) -> float:
+        """Length of the parameter's turn."""
+        ...
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters in [0, period) at which speed or turn, or their derivatives, jump."""
+        ...
+
+    @property
+    def steady(self) -> Array:
+        """For each stretch between breaks, (m, 2): speed and turn where both are exactly constant, else nan."""
+        ...
+
+    def sample(self, t: Array, side: int = 1) -> Frame:
+        """Frame at parameters t (n,); at a break the limit from above (side 1) or from below (side -1)."""
+        ...
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over the intervals [low, high] (n,), none of which spans a break."""
+        ...
+
+
+@dataclass(frozen=True)
+class Run:
+    """Part of a curve without corners: parameters from `low` to `high`, and the breaks of curvature inside.
+
+    A closed run is the whole curve, its end is its beginning.
+    """
+
+    low: float
+    high: float
+    breaks: tuple[float, ...]
+    closed: bool
+
+    @property
+    def stretches(self) -> Array:
+        """Smooth stretches (m, 2) in order."""
+        knots = np.array([self.low, *self.breaks, self.high])
+        return np.column_stack([knots[:-1], knots[1:]])
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A closed counter-clockwise curve: a shape, and the runs of it that are kept.
+
+    One closed run is the ordinary case. Several open runs are a contour trimmed where it would undercut: they meet in
+    corners, the end of each run in the beginning of the next.
+    """
+
+    shape: Shape
+    runs: tuple[Run, ...]
+
+    @staticmethod
+    def whole(shape: Shape) -> Curve:
+        """The curve of the whole turn, begun at its first break so that no stretch runs across the seam."""
+        breaks = np.asarray(shape.breaks, dtype=np.float64)
+        low = float(breaks[0]) if breaks.size else 0.0
+        return Curve(shape, (Run(low, low + shape.period, tuple(float(b) for b in breaks[1:]), closed=True),))
+
+    @property
+    def closed(self) -> bool:
+        """True where the curve is one run without a corner."""
+        return len(self.runs) == 1 and self.runs[0].closed
+
+    @cached_property
+    def cells(self) -> Cells:
+        """Proved bounds over the whole curve, computed when first asked for."""
+        return Cells.of(self)
+
+    def sample(self, t: Array, side: int = 1) -> Frame:
+        """Frame at parameters t (n,); see `Shape.sample`."""
+        return self.shape.sample(t, side)
+
+    def span(self, low: Array, high: Array) -> tuple[Frame, Frame]:
+        """Frames at the two ends of intervals that span no break, each taken from inside its interval."""
+        return self.shape.sample(low, 1), self.shape.sample(high, -1)
+
+    def steady(self, stretch: Sequence[float] | Array) -> tuple[float, float] | None:
+        """Speed and turn where both are exactly constant over a stretch (a dwell, a Reuleaux arc), else None."""
+        breaks = np.asarray(self.shape.breaks, dtype=np.float64)
+        table = self.shape.steady
+        if breaks.size == 0:
+            index = 0
+        else:
+            middle = (0.5 * (stretch[0] + stretch[1])) % self.shape.period
+            index = (int(np.searchsorted(breaks, middle, side="right")) - 1) % breaks.size
+        speed, turn = float(table[index, 0]), float(table[index, 1])
+        return None if np.isnan(speed) else (speed, turn)
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Proved bounds on a partition of the curve: `low`, `high` (m,) in order of the parameter, `rows` (8, m)."""
+
+    low: Array
+    high: Array
+    rows: Array
+
+    @staticmethod
+    def of(curve: Curve) -> Cells:
+        """Partition a curve, halving cells whose bounds are far from what the curve does in them.
+
+        Raises CurveError where no finite bound is found after `HALVINGS` halvings.
+        """
+        lows, highs = [], []
+        for run in curve.runs:
+            for low, high in run.stretches:
+                share = int(np.ceil(CELLS_PER_TURN * (high - low) / curve.shape.period))
+                count = 1 if curve.steady((low, high)) else max(CELLS_PER_STRETCH, share)
+                knots = np.linspace(low, high, count + 1)
+                lows.append(knots[:-1])
+                highs.append(knots[1:])
+        low, high = np.concatenate(lows), np.concatenate(highs)
+        rows = curve.shape.bounds(low, high).rows()
+        for _ in range(HALVINGS):
+            loose = _loose(curve, low, high, rows)
+            if not loose.any():
+                break
+            middle = 0.5 * (low[loose] + high[loose])
+            new_low = np.concatenate([low[loose], middle])
+            new_high = np.concatenate([middle, high[loose]])
+            new_rows = curve.shape.bounds(new_low, new_high).rows()
+            low = np.concatenate([low[~loose], new_low])
+            high = np.concatenate([high[~loose], new_high])
+            rows = np.concatenate([rows[:, ~loose], new_rows], axis=1)
+            order = np.argsort(low, kind="stable")
+            low, high, rows = low[order], high[order], rows[:, order]
+        bad = ~np.isfinite(rows).all(axis=0)
+        if bad.any():
+            where = float(low[bad][0])
+            raise CurveError(f"no finite bound on the curvature can be proved near parameter {where:.9g}", where)
+        return Cells(low, high, rows)
+
+    def over(self, low: Array, high: Array) -> Bounds:
+        """Bounds over intervals (n,) that lie between two breaks: the worst of the cells each one touches."""
+        first = np.clip(np.searchsorted(self.low, low, side="right") - 1, 0, self.low.size - 1)
+        last = np.clip(np.searchsorted(self.low, high, side="left") - 1, first, self.low.size - 1)
+        worst = self.rows[:, first]
+        for step in range(1, int(np.max(last - first, initial=0)) + 1):
+            other = self.rows[:, np.minimum(first + step, last)]
+            worst[0:4:2] = np.minimum(worst[0:4:2], other[0:4:2])
+            worst[1:4:2] = np.maximum(worst[1:4:2], other[1:4:2])
+            worst[4:] = np.maximum(worst[4:], other[4:])
+        return Bounds(*worst)
+
+
+def _loose(curve: Curve, low: Array, high: Array, rows: Array) -> NDArray[np.bool_]:
+    """Cells whose bounds on the second derivatives are not finite or far above what the ends show (n,)."""
+    at_low, at_high = curve.span(low, high)
+    width = high - low
+    bends = rows[6:8]
+    seen = np.stack(
+        [
+            np.abs(at_high.speed_slope - at_low.speed_slope) / width,
+            np.abs(at_high.turn_slope - at_low.turn_slope) / width,
+        ]
+    )
+    scale = np.stack([rows[1], np.maximum(np.abs(rows[2]), np.abs(rows[3]))])
+    with np.errstate(invalid="ignore"):
+        # A bound that moves nothing by more than a thousandth over the cell need not be sharp.
+        matters = bends * width**2 > 8e-3 * np.abs(scale)
+        around = np.maximum(seen, np.maximum(np.roll(seen, 1, axis=1), np.roll(seen, -1, axis=1)))
+        loose: NDArray[np.bool_] = (~np.isfinite(bends) | (matters & (bends > SHARP_ENOUGH * around))).any(axis=0)
+    return loose
