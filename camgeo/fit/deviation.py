@@ -82,6 +82,16 @@ def chain_deviation(curve: Curve, chain: Chain, tolerance: float, nodes: int = F
     return Deviation(inside, outside, seen_low, seen_high)
 
 
+def seen_deviation(curve: Curve, chain: Chain, nodes: int) -> Array:
+    """Greatest distance of each piece from the curve at `nodes` equal steps (n,): quick, from below, no proof.
+
+    Infinite where the curve runs backwards along the piece.
+    """
+    low, high, seen_low, seen_high = _ranges(curve, chain, nodes)
+    seen = np.maximum(seen_high, -seen_low)
+    return np.where(np.isfinite(low) & np.isfinite(high), seen, np.inf)
+
+
 def radial(start: Array, tangent: Array, curvature: Array, point: Array) -> tuple[Array, Array]:
     """Signed distance of points outside a circle or line, and the unit radial direction there: (n,), (n, 2).
 
