@@ -1,0 +1,265 @@
+"""A curve as a cubic B-spline with a continuous tangent, for CAD systems that want few, smooth pieces.
+
+Each span takes points and tangents from the curve; the length of its handles is the one freedom left and is set so
+that the span strays as far to one side as to the other. Handles are equal at both ends of a span and the knots are
+spaced like the handles, so the spline is C1 in its own parameter. The error falls as the fifth or sixth power of the
+span's length (the fourth for a spline in the curve's own parameter).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.deviation import Chain, chain_deviation
+from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared
+from camgeo.fit.pieces import Bound, BSpline
+
+if TYPE_CHECKING:
+    from camgeo.curve import Array, Curve, Frame
+
+USABLE = 0.995  # of the tolerance; the rest covers rounding of the written coordinates
+INSIDE = (0.3373, 0.6627)  # roots of the fourth-degree part that make the error's humps equal
+ORDER = 5.0  # power of the span's length with which the error falls, for sharing nodes
+TURN_ERROR = 4.9e-6  # error of an arc of unit radius and unit angle: a quarter circle has 2.7e-4 mm at 1 mm
+LOOKS = 12  # steps of a span at which its error is first seen
+MOST_LOOKS = 384
+SLACK = 0.01  # of the tolerance: how far the proof may exceed what is seen before it is sharpened
+NEWTON = 5  # steps that settle handles and feet of normals to rounding
+
+
+def fit_spline(curve: Curve, tolerance: float) -> BSpline:
+    """Cubic B-spline within `tolerance` mm of a curve; corners of a trimmed curve stay corners.
+
+    The bound is proved: against arcs that are themselves proved close to the curve, by the Bernstein coefficients of
+    each span's distance to them. Spans grow as tolerance^(-1/5) to tolerance^(-1/6). Raises ToleranceError where the
+    tolerance is below rounding, needs too many spans, or is not reached.
+    """
+    runs = [[(float(a), float(b)) for a, b in run.stretches] for run in curve.runs]
+    size = float(np.abs(curve.sample(np.array([run[0][0] for run in runs])).point).max())
+    check_precision(size, tolerance)
+    outward, inward = 0.0, 0.0
+    groups = []
+    for stretches in runs:
+        beziers = []
+        for stretch in stretches:
+            control, out, into = _fit_stretch(curve, stretch, USABLE * tolerance)
+            outward, inward = max(outward, out), max(inward, into)
+            beziers.append(control)
+        groups.append(np.concatenate(beziers))
+    return _assembled(groups, Bound(outward, inward).widened(4.0 * math.ulp(size)))
+
+
+def _assembled(groups: list[Array], bound: Bound) -> BSpline:
+    """One closed clamped B-spline from the Bezier spans of each run (n, 4, 2): C1 in a run, corners between runs."""
+    control, knots = [groups[0][0, :1]], [np.zeros(4)]
+    at = 0.0
+    for number, beziers in enumerate(groups):
+        length = np.hypot(*(beziers[:, 1] - beziers[:, 0]).T)
+        ends = at + np.cumsum(length)
+        at = float(ends[-1])
+        control.append(beziers[:, 1:3].reshape(-1, 2))
+        knots.append(np.repeat(ends[:-1], 2))
+        if number < len(groups) - 1:
+            control.append(beziers[-1, 3:])
+            knots.append(np.full(3, at))
+    control.append(groups[0][0, :1])
+    knots.append(np.full(4, at))
+    spans = sum(len(beziers) for beziers in groups)
+    return BSpline(3, np.concatenate(control), np.concatenate(knots), spans, bound)
+
+
+def _spline_density(frame: Frame) -> Array:
+    """Spans for each unit of parameter: from the turning, and from the change of curvature as arcs take it."""
+    slope = np.abs(frame.turn_slope * frame.speed - frame.turn * frame.speed_slope)
+    density: Array = np.abs(frame.turn) + 0.5 * np.cbrt(slope / np.maximum(slope.max(initial=0.0), 1e-300))
+    return density
+
+
+def _fit_stretch(curve: Curve, stretch: tuple[float, float], tolerance: float) -> tuple[Array, float, float]:
+    """Bezier spans (n, 4, 2) over one smooth stretch, with their outward and inward bound."""
+    density = Density(curve, *stretch, _spline_density)
+    middle = curve.sample(np.linspace(*stretch, 17)[1:-1])
+    radius = float(np.max(np.abs(middle.speed)))
+    first = density.total * (TURN_ERROR * max(radius, tolerance) / tolerance) ** (1.0 / 6.0)
+    check_count(first, "spline spans", tolerance)
+    nodes = density.nodes(max(1, math.ceil(first)))
+    best, shared = math.inf, 0
+    for _ in range(TRIES):
+        low, high = nodes[:-1], nodes[1:]
+        control = _handled(curve, low, high)
+        worst = _seen(curve, control, low, high)
+        if float(worst.max()) <= tolerance:
+            out, into = _spline_range(curve, control, low, high, tolerance)
+            worst = np.maximum(out, into)
+            if float(worst.max()) <= tolerance:
+                return control, max(float(out.max()), 0.0), max(float(into.max()), 0.0)
+        reached = float(worst.max())
+        best = min(best, reached)
+        check_count(2.0 * nodes.size, "spline spans", tolerance)
+        if not math.isfinite(reached):
+            nodes = np.unique(np.concatenate([nodes, 0.5 * (low + high)]))
+            continue
+        mean = float(np.mean(worst ** (1.0 / ORDER))) ** ORDER
+        if shared < 3 and mean < 0.9 * tolerance:
+            nodes, shared = reshared(nodes, worst, ORDER), shared + 1
+            continue
+        count = nodes.size - 1
+        more = max(count + 1, math.ceil(count * (max(mean, tolerance) / tolerance) ** (1.0 / ORDER)))
+        total = np.concatenate([[0.0], np.cumsum(np.maximum(worst, 1e-6 * reached) ** (1.0 / ORDER))])
+        nodes = np.interp(np.linspace(0.0, total[-1], more + 1), total, nodes)
+        nodes[0], nodes[-1] = stretch
+        shared = 0
+    raise ToleranceError(f"a spline within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
+
+
+def _handled(curve: Curve, low: Array, high: Array) -> Array:
+    """Cubic spans (n, 4, 2) between points of the curve, handles equal and set so that the error balances."""
+    a, b = curve.span(low, high)
+    chord = b.point - a.point
+    both = a.tangent + b.tangent
+    # the handle of a circular arc with these ends, which also serves a straight line: a third of the chord
+    half_cosine = np.sqrt(np.maximum(0.25 * np.sum(both * both, axis=1), 1e-12))
+    handle = np.hypot(chord[:, 0], chord[:, 1]) * 2.0 / (3.0 * (1.0 + half_cosine) * 1.0)
+    u = np.array(INSIDE)
+    t = low[:, None] + (high - low)[:, None] * u
+    inner0, inner1 = 3.0 * u * (1.0 - u) ** 2, 3.0 * u**2 * (1.0 - u)
+    for _ in range(NEWTON):
+        control = _control(a, b, handle)
+        on = _bezier(control[:, None], np.broadcast_to(u, t.shape))
+        at, t = _onto(curve, t, low, high, on)
+        normal = at.normal.reshape(*t.shape, 2)
+        error = np.sum((on - at.point.reshape(*t.shape, 2)) * normal, axis=2)
+        pull = inner0 * np.sum(a.tangent[:, None] * normal, axis=2) - inner1 * np.sum(b.tangent[:, None] * normal, axis=2)
+        gain = pull.sum(axis=1)
+        # where the curve is nearly straight the handles move nothing sideways: leave them
+        firm = np.abs(gain) > 1e-6
+        step = np.where(firm, error.sum(axis=1) / np.where(firm, gain, 1.0), 0.0)
+        handle = handle - np.clip(step, -0.3 * handle, 0.3 * handle)
+    return _control(a, b, handle)
+
+
+def _control(a: Frame, b: Frame, handle: Array) -> Array:
+    """Bezier points (n, 4, 2) from end frames and handle lengths (n,)."""
+    h = handle[:, None]
+    return np.stack([a.point, a.point + h * a.tangent, b.point - h * b.tangent, b.point], axis=1)
+
+
+def _bezier(control: Array, u: Array) -> Array:
+    """Points (..., 2) of cubic spans (..., 4, 2) at u (...)."""
+    return _blossom(control, u, u, u)
+
+
+def _blossom(control: Array, u: Array, v: Array, w: Array) -> Array:
+    """Polar form of cubic spans (..., 4, 2): the point at (u, u, u), sub-spans' control points otherwise."""
+    one = control[..., :-1, :] + u[..., None, None] * (control[..., 1:, :] - control[..., :-1, :])
+    two = one[..., :-1, :] + v[..., None, None] * (one[..., 1:, :] - one[..., :-1, :])
+    point: Array = two[..., 0, :] + w[..., None] * (two[..., 1, :] - two[..., 0, :])
+    return point
+
+
+def _onto(curve: Curve, t: Array, low: Array, high: Array, point: Array) -> tuple[Frame, Array]:
+    """One Newton step of parameters t (n, m) towards the feet of the normals through points (n, m, 2)."""
+    at = curve.sample(t.ravel())
+    gap = point.reshape(-1, 2) - at.point
+    along = np.sum(gap * at.tangent, axis=1)
+    across = np.sum(gap * at.normal, axis=1)
+    step = along / np.maximum(at.speed + at.turn * across, 1e-3 * np.abs(at.speed) + 1e-300)
+    t = np.clip(t + step.reshape(t.shape), low[:, None], high[:, None])
+    return curve.sample(t.ravel()), t
+
+
+def _seen(curve: Curve, control: Array, low: Array, high: Array) -> Array:
+    """Greatest distance of each span from the curve at a few places (n,): quick, from below, no proof."""
+    u = np.linspace(0.0, 1.0, LOOKS + 1)[1:-1]
+    t = low[:, None] + (high - low)[:, None] * u
+    on = _bezier(control[:, None], np.broadcast_to(u, t.shape))
+    for _ in range(2):
+        at, t = _onto(curve, t, low, high, on)
+    normal = at.normal.reshape(*t.shape, 2)
+    worst: Array = np.abs(np.sum((on - at.point.reshape(*t.shape, 2)) * normal, axis=2)).max(axis=1)
+    return worst
+
+
+def _spline_range(curve: Curve, control: Array, low: Array, high: Array, tolerance: float) -> tuple[Array, Array]:
+    """Proved greatest outward and inward distance of each span from the curve (n,), infinite where unproved."""
+    count = low.size
+    out, into = np.full(count, np.inf), np.full(count, np.inf)
+    todo, looks = np.arange(count), LOOKS
+    while todo.size and looks <= MOST_LOOKS:
+        top, bottom, seen_top, seen_bottom = _against_arcs(curve, control[todo], low[todo], high[todo], looks, tolerance)
+        out[todo], into[todo] = top, bottom
+        loose = np.maximum(top - seen_top, bottom - seen_bottom) > SLACK * tolerance
+        hopeless = np.maximum(seen_top, seen_bottom) > 1.02 * tolerance
+        settled = np.where(hopeless & np.isfinite(seen_top), np.maximum(seen_top, seen_bottom), np.inf)
+        out[todo] = np.where(hopeless, np.minimum(settled, out[todo]), out[todo])
+        todo = todo[loose & ~hopeless]
+        looks *= 2
+    return out, into
+
+
+def _against_arcs(
+    curve: Curve, control: Array, low: Array, high: Array, looks: int, tolerance: float
+) -> tuple[Array, Array, Array, Array]:
+    """Outward and inward range of each span, proved and as seen at the nodes (each (n,)), through `looks` arcs a span.
+
+    Both the curve and the span are compared with the arc that leaves a point of the curve along its tangent and
+    returns to the curve at the next; the span meets the normals at the two points.
+    """
+    count = low.size
+    share = np.linspace(0.0, 1.0, looks + 1)
+    t = low[:, None] + (high - low)[:, None] * share
+    t[:, -1] = high
+    at = curve.sample(t.ravel(), 1)
+    ends = curve.sample(high, -1)
+    point, tangent = at.point.reshape(count, -1, 2), at.tangent.reshape(count, -1, 2)
+    point[:, -1], tangent[:, -1] = ends.point, ends.tangent
+    u = np.broadcast_to(share, t.shape).copy()
+    for _ in range(NEWTON):
+        gap = np.sum((_bezier(control[:, None], u) - point) * tangent, axis=2)
+        one = control[:, None, 1:] - control[:, None, :-1]
+        two = one[..., :-1, :] + u[..., None, None] * (one[..., 1:, :] - one[..., :-1, :])
+        velocity = 3.0 * (two[..., 0, :] + u[..., None] * (two[..., 1, :] - two[..., 0, :]))
+        speed = np.sum(velocity * tangent, axis=2)
+        u = np.clip(u - gap / np.where(speed > 0.0, speed, np.inf), 0.0, 1.0)
+    u[:, 0], u[:, -1] = 0.0, 1.0
+    chord = point[:, 1:] - point[:, :-1]
+    start, along = point[:, :-1], tangent[:, :-1]
+    cross = along[..., 0] * chord[..., 1] - along[..., 1] * chord[..., 0]
+    k = 2.0 * cross / np.sum(chord * chord, axis=2)
+    chain = Chain(
+        start.reshape(-1, 2), along.reshape(-1, 2), k.ravel(), t[:, :-1].ravel(), t[:, 1:].ravel()
+    )
+    found = chain_deviation(curve, chain, tolerance, 2)
+    a, b = u[:, :-1], u[:, 1:]
+    whole = control[:, None]
+    pieces = np.stack(
+        [_blossom(whole, a, a, a), _blossom(whole, a, a, b), _blossom(whole, a, b, b), _blossom(whole, b, b, b)], axis=2
+    )
+    offset = pieces - start[:, :, None]
+    normal = np.stack([along[..., 1], -along[..., 0]], axis=-1)
+    linear = np.sum(offset * normal[:, :, None], axis=-1)
+    height = 2.0 * (linear @ _RAISE) + k[..., None] * np.einsum(
+        "nmia,nmja,ijk->nmk", offset, offset, _PRODUCT, optimize=False
+    )
+    with np.errstate(invalid="ignore"):
+        distance = height / (1.0 + np.sqrt(1.0 + k[..., None] * height))
+    sane = np.isfinite(distance).all(axis=2) & (b > a)
+    top = np.where(sane, distance.max(axis=2), np.inf) - found.inside.reshape(count, -1)
+    bottom = np.where(sane, -distance.min(axis=2), np.inf) + found.outside.reshape(count, -1)
+    node = distance[..., 0]
+    return top.max(axis=1), bottom.max(axis=1), node.max(axis=1), (-node).max(axis=1)
+
+
+def _bernstein_tables() -> tuple[Array, Array]:
+    """Degree elevation from 3 to 6 (4, 7) and the product of two cubics in Bernstein form (4, 4, 7)."""
+    product = np.zeros((4, 4, 7))
+    for i in range(4):
+        for j in range(4):
+            product[i, j, i + j] = math.comb(3, i) * math.comb(3, j) / math.comb(6, i + j)
+    return product.sum(axis=1), product
+
+
+_RAISE, _PRODUCT = _bernstein_tables()
