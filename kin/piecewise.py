@@ -1,0 +1,214 @@
+"""Piecewise functions: stretches written in jet arithmetic between knots, folded by a period, with a side at a knot.
+
+One function object serves points (`kin.jet.Jet`: exact derivatives) and intervals (`kin.jet.BallJet`: proved
+enclosures). A stretch is never evaluated beyond its own knots: a parameter within a few ulp of a knot is the knot, and
+belongs to the side asked for. So a jump of a derivative is given as its two limits and never smeared.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kin.ball import Ball, hull
+from kin.jet import BallJet, DomainError, Jet
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+Series = TypeVar("Series", Jet, BallJet)
+
+# Folding by the period, and the sums and products behind a knot, are each good to about an ulp; what lies closer to a
+# knot than this many ulps of the parameter is the knot.
+_SNAP_ULPS = 8.0
+# Stretches shorter than this, relative to the whole, would be lost in that.
+_LEAST_STRETCH = 1e-13
+
+
+class Stretch(Protocol):
+    """A function of one variable in jet arithmetic."""
+
+    def __call__(self, t: Series, /) -> Series:
+        """Apply the function to a jet or ball jet."""
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The same value everywhere."""
+
+    value: float
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give the value, constant over t."""
+        return t.constant(self.value)
+
+
+@dataclass(frozen=True)
+class Affine:
+    """offset + scale f((t - start)/width): a function moved and stretched along both axes."""
+
+    function: Stretch
+    offset: float = 0.0
+    scale: float = 1.0
+    start: float = 0.0
+    width: float = 1.0
+
+    def __call__(self, t: Series, /) -> Series:
+        """Apply the moved function."""
+        x = t - self.start if self.start else t
+        return self.function(x / self.width if self.width != 1 else x) * self.scale + self.offset
+
+
+@dataclass(frozen=True, eq=False)
+class Piecewise:
+    """m functions on the stretches between m + 1 rising knots; `period` is None where the function just ends.
+
+    With a period, knots[-1] = knots[0] + period, the parameter is any real number, and `smooth_seam` says that
+    knots[0] is where the description begins and no break. Raises ValueError for knots that do not rise, a count of
+    functions that does not fit, or a period that the knots do not span.
+    """
+
+    knots: Array
+    functions: tuple[Stretch, ...]
+    period: float | None = None
+    smooth_seam: bool = False
+
+    def __post_init__(self) -> None:
+        knots = np.array(self.knots, dtype=float)
+        knots.setflags(write=False)
+        object.__setattr__(self, "knots", knots)
+        if knots.ndim != 1 or len(knots) < 2 or len(self.functions) != len(knots) - 1:
+            raise ValueError(f"{len(self.functions)} functions cannot lie between knots of shape {knots.shape}")
+        least = _LEAST_STRETCH * max(abs(knots[0]), abs(knots[-1]))
+        if not (np.isfinite(knots).all() and (np.diff(knots) > least).all()):
+            raise ValueError("knots must be finite and rise")
+        if self.period is not None and abs(knots[-1] - knots[0] - self.period) > self._snap(knots[-1:])[0]:
+            raise ValueError(f"the knots span {knots[-1] - knots[0]!r}, the period is {self.period!r}")
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters where the function changes, rising: in [0, period), or inside the ends without a period."""
+        if self.period is None:
+            return self.knots[1:-1]
+        first = 1 if self.smooth_seam else 0
+        folded = np.mod(self.knots[first:-1], self.period)
+        folded[self.period - folded <= self._snap(folded)] = 0.0
+        return np.sort(folded)
+
+    def derivatives(self, t: float | Array, order: int, side: int = 1) -> Array:
+        """Give derivatives 0..order at t (n,) as (order + 1, n); at a knot the right-hand limit, or left (side -1).
+
+        Raises ValueError outside the knots where there is no period, DomainError where a function does not exist.
+        """
+        return self.on(Jet.variable(t, order), side).derivatives()
+
+    def enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
+        """Balls mid +- rad, each (order + 1, n), that hold every derivative 0..order over [lower, upper], each (n,).
+
+        At an end of the interval only the limit from within counts; a knot inside counts with both. An interval no
+        longer than the rounding of a knot in it holds both limits.
+        """
+        rows = self.on(BallJet.variable(lower, upper, order)).bounds()
+        enclosed = Ball.between(*rows)
+        return enclosed.mid, enclosed.rad
+
+    def jumps(self, order: int) -> tuple[Array, Array]:
+        """Break parameters (b,) and the jump of each derivative 0..order over them, right less left, (order + 1, b)."""
+        at = self.breaks
+        return at, self.derivatives(at, order, 1) - self.derivatives(at, order, -1)
+
+    def on(self, t: Series, side: int = 1) -> Series:
+        """Apply the function to any jet or ball jet; `side` decides for jets whose value is a knot."""
+        if isinstance(t, Jet):
+            return self._on_points(t, side)
+        return self._on_intervals(t)
+
+    def _snap(self, t: Array) -> Array:
+        scale = np.maximum(np.abs(t), max(abs(self.knots[0]), abs(self.knots[-1])))
+        ulps: Array = np.spacing(scale)
+        return _SNAP_ULPS * ulps
+
+    def locate(self, t: Array, side: int = 1) -> tuple[Indices, Array]:
+        """For each t (n,): the index of its stretch on the side asked for, and t folded into that stretch."""
+        index, x, _ = self._place(np.asarray(t, dtype=float), side)
+        return index, x
+
+    def _place(self, t: Array, side: int) -> tuple[Indices, Array, Array]:
+        """Stretch, folded parameter, and the whole periods taken off."""
+        knots, last = self.knots, len(self.functions) - 1
+        if not np.isfinite(t).all():
+            raise ValueError("a parameter is not finite")
+        turns = np.zeros_like(t) if self.period is None else np.floor((t - knots[0]) / self.period)
+        x = t if self.period is None else t - turns * self.period
+        snap = self._snap(t)
+        if self.period is None and ((x < knots[0] - snap) | (x > knots[-1] + snap)).any():
+            raise ValueError(f"a parameter lies outside {knots[0]} to {knots[-1]}")
+        near = np.clip(np.searchsorted(knots, x), 1, last + 1)
+        near = np.where(x - knots[near - 1] < knots[near] - x, near - 1, near)
+        on_knot = np.abs(x - knots[near]) <= snap
+        inside = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, last)
+        index = np.where(on_knot, near if side > 0 else near - 1, inside)
+        if self.period is not None:  # the seam belongs to either end
+            wrap = np.floor_divide(index, last + 1)
+            index = index - wrap * (last + 1)
+            turns = turns + wrap
+            near = np.where(on_knot, index + (0 if side > 0 else 1), near)
+        index = np.clip(index, 0, last)
+        return index, np.where(on_knot, knots[near], x), turns
+
+    def _on_points(self, t: Jet, side: int) -> Jet:
+        index, x = self.locate(t.c[0], side)
+        out = np.empty_like(t.c)
+        for i in np.unique(index):
+            here = np.flatnonzero(index == i)
+            c = t.c[:, here]
+            c[0] = x[here]
+            try:
+                out[:, here] = self.functions[i](Jet(c)).c
+            except DomainError as error:
+                raise DomainError(error.operation, here[error.indices]) from None
+        return Jet(out)
+
+    def _on_intervals(self, t: BallJet) -> BallJet:
+        lower, upper = t.rows[0].bounds()
+        span = math.inf if self.period is None else self.period
+        unbounded = ~(upper - lower < span)
+        lower = np.where(unbounded, self.knots[0], lower)
+        upper = np.where(unbounded, self.knots[-1], upper)
+        first, low, turn_low = self._place(lower, 1)
+        last, high, turn_high = self._place(upper, -1)
+        count = len(self.functions)
+        steps = (last + turn_high * count - first - turn_low * count).astype(int)
+        # An interval within the rounding of one knot: both of its sides.
+        tiny = steps < 0
+        first, low, last, high = (
+            np.where(tiny, last, first),
+            np.where(tiny, high, low),
+            np.where(tiny, first, last),
+            np.where(tiny, low, high),
+        )
+        steps = np.abs(steps)
+        mid, rad = np.zeros_like(t.mid), np.full_like(t.rad, math.inf)
+        for step in range(int(steps.max(initial=0)) + 1):
+            active = np.flatnonzero(steps >= step)
+            index = (first[active] + step) % count
+            for i in np.unique(index):
+                here = active[index == i]
+                begin = np.where(step == 0, low[here], self.knots[i])
+                end = np.where(steps[here] == step, high[here], self.knots[i + 1])
+                part = self._ball_on(i, begin, end, t, here)
+                if step:
+                    part = hull(Ball(mid[:, here], rad[:, here]), part)
+                mid[:, here], rad[:, here] = part.mid, part.rad
+        return BallJet(mid, rad)
+
+    def _ball_on(self, i: int, begin: Array, end: Array, t: BallJet, here: Indices) -> Ball:
+        # The fold t - turns * period is rounded; its ulp is covered, within the stretch.
+        room = np.where(np.abs(begin) > 0, np.spacing(np.maximum(np.abs(t.mid[0, here]), np.abs(begin))), 0.0)
+        interval = Ball.between(np.maximum(begin - room, self.knots[i]), np.minimum(end + room, self.knots[i + 1]))
+        rows_mid, rows_rad = t.mid[:, here], t.rad[:, here]
+        rows_mid[0], rows_rad[0] = interval.mid, interval.rad
+        return self.functions[i](BallJet(rows_mid, rows_rad)).rows
