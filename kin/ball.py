@@ -1,0 +1,311 @@
+"""Balls: arrays of real intervals kept as midpoint and radius, every rounding covered outwards.
+
+An operation on balls encloses the operation on every choice of numbers inside them; that is what makes a bound
+computed with them a proof. A ball that cannot be formed (the logarithm of an interval that reaches zero, an overflow)
+has radius infinity and midpoint 0: it says nothing, and is never wrong. Dependencies between operands are not seen, so
+`x - x` is an interval about 0 twice as wide as `x`.
+
+Rounding. IEEE double, to nearest: each sum or product is off by at most half an ulp, so `_ULP` (a whole ulp, relative)
+of the midpoint is added to the radius, and the few roundings of the radius itself are covered by the factor `_UP`.
+numpy's elementary functions are off by less than 4 ulp (its own accuracy tests ask for that); 8 are allowed. A plain
+number that is added, multiplied or divided by stands for the real number that it is the nearest double of: half an ulp
+of it is allowed for, so 0.1, 13/15 and pi mean what they say. `Ball.exact` takes a double as it is.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_ULP = 2.0**-52
+_UP = 1 + 16 * _ULP
+_LIBRARY = 8 * _ULP
+_TINY = 1e-300
+_TURN = 2 * math.pi
+# Maxima of sin, minima of sin, maxima of cos, minima of cos, in turns.
+_PEAKS = np.array([0.25, 0.75, 0.0, 0.5])[:, None, None]
+
+_quiet = np.errstate(all="ignore")  # decorator; an operation that fails shows in the radius, see `_ball`
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Ball:
+    """Intervals [mid - rad, mid + rad], elementwise; `mid` and `rad` of one shape."""
+
+    mid: Array
+    rad: Array
+
+    __array_ufunc__: ClassVar[None] = None  # numpy arrays leave mixed operators to this class
+
+    @staticmethod
+    def exact(value: float | Array, shape: tuple[int, ...] | None = None) -> Ball:
+        """Return the numbers themselves, radius 0."""
+        mid = np.array(value, dtype=float) if shape is None else np.full(shape, value, dtype=float)
+        return _ball(mid, np.where(np.isfinite(mid), 0.0, np.inf))
+
+    @staticmethod
+    @_quiet
+    def between(lower: Array, upper: Array) -> Ball:
+        """Return a ball of [lower, upper], as small as doubles allow; the ends are taken as exact."""
+        mid = 0.5 * lower + 0.5 * upper
+        return _ball(mid, np.maximum(upper - mid, mid - lower) * _UP)
+
+    def __getitem__(self, key: int | slice) -> Ball:
+        return Ball(self.mid[key], self.rad[key])
+
+    @_quiet
+    def bounds(self) -> tuple[Array, Array]:
+        """Lower and upper ends, rounded outwards; exact numbers keep their value."""
+        pad = np.where(self.rad > 0, _ULP * (np.abs(self.mid) + self.rad), 0.0)
+        return (self.mid - self.rad) - pad, (self.mid + self.rad) + pad
+
+    @property
+    def magnitude(self) -> Array:
+        """Upper bound of the absolute value; 0 exactly where the ball is the number 0."""
+        return (np.abs(self.mid) + self.rad) * _UP
+
+    def __neg__(self) -> Ball:
+        return Ball(-self.mid, self.rad)
+
+    @_quiet
+    def __add__(self, other: Ball | float | Array) -> Ball:
+        if not isinstance(other, Ball):
+            mid = self.mid + other
+            return _ball(mid, self.rad * _UP + _ULP * (np.abs(mid) + np.abs(other)))
+        mid = self.mid + other.mid
+        return _ball(mid, (self.rad + other.rad) * _UP + _ULP * np.abs(mid))
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Ball | float | Array) -> Ball:
+        return self + (-other)
+
+    def __rsub__(self, other: float | Array) -> Ball:
+        return -self + other
+
+    @_quiet
+    def __mul__(self, other: Ball | float | Array) -> Ball:
+        a, r = np.abs(self.mid), self.rad
+        if not isinstance(other, Ball):
+            mid = self.mid * other
+            rad = (r * np.abs(other) + 2 * _ULP * np.abs(mid)) * _UP
+            return _ball(mid, rad + _unless_zero(a + r, np.abs(np.asarray(other, dtype=float))))
+        b, s = np.abs(other.mid), other.rad
+        mid = self.mid * other.mid
+        rad = (a * s + r * (b + s) + _ULP * np.abs(mid)) * _UP
+        return _ball(mid, rad + _unless_zero(a + r, b + s))
+
+    __rmul__ = __mul__
+
+    @_quiet
+    def __truediv__(self, other: Ball | float | Array) -> Ball:
+        if isinstance(other, Ball):
+            return self * other**-1
+        mid = np.divide(self.mid, other)
+        rad = (np.divide(self.rad, np.abs(other)) + 2 * _ULP * np.abs(mid)) * _UP
+        return _ball(mid, rad + 4 * np.minimum(self.magnitude, _TINY))
+
+    def __rtruediv__(self, other: float | Array) -> Ball:
+        return self**-1 * other
+
+    @_quiet
+    def __pow__(self, exponent: float) -> Ball:
+        """Powers are monotone on each side of 0, so the ends decide; infinite where no real power exists."""
+        lower, upper = self.bounds()
+        if exponent == 0:
+            return Ball.exact(1.0, self.mid.shape)
+        low, high = np.power(lower, exponent), np.power(upper, exponent)
+        if not float(exponent).is_integer():
+            low, high = _only(lower >= 0, low), _only(lower >= 0, high)
+        elif exponent < 0:
+            low = _only((lower > 0) | (upper < 0), low)
+        least, greatest = np.minimum(low, high), np.maximum(low, high)
+        if exponent > 0 and exponent % 2 == 0:
+            least = np.where((lower < 0) & (upper > 0), 0.0, least)
+        return _outward(least, greatest, _LIBRARY, np.minimum(self.magnitude, _TINY))
+
+    def powers(self, count: int) -> Ball:
+        """x**0, x**1, ..., x**(count - 1), one a row: shape (count, *shape of x)."""
+        exponent = np.arange(count, dtype=float).reshape(count, *(1,) * self.mid.ndim)
+        with _fresh():
+            magnitude = self.magnitude
+            greatest = magnitude**exponent
+            rad = np.zeros_like(greatest)
+            rad[1:] = (exponent[1:] * self.rad * greatest[:-1] + _LIBRARY * greatest[1:]) * _UP
+            rad[1:] += 4 * np.minimum(magnitude, _TINY)
+            if count > 1:
+                rad[1] = self.rad
+            return _ball(self.mid**exponent, rad)
+
+    @property
+    def positive(self) -> Mask:
+        """Where every number in the ball is above 0."""
+        return self.mid > self.rad
+
+    @property
+    def negative(self) -> Mask:
+        """Where every number in the ball is below 0."""
+        return -self.mid > self.rad
+
+    @property
+    def zero(self) -> Mask:
+        """Where the ball is the number 0 itself."""
+        return np.logical_not(np.logical_or(self.mid, self.rad))
+
+
+def _fresh() -> np.errstate:
+    return np.errstate(all="ignore")
+
+
+def _ball(mid: Array, rad: Array) -> Ball:
+    """Return the ball, or the one that says nothing where the arithmetic has left the finite numbers."""
+    sound = np.isfinite(rad)
+    if not sound.all():
+        mid, rad = np.where(sound, mid, 0.0), np.where(sound, rad, np.inf)
+    return Ball(mid, rad)
+
+
+def _unless_zero(a: Array, b: Array) -> Array:
+    """Cover for the underflow of a product of magnitudes a and b: nothing where one factor is exactly 0."""
+    return 16 * np.minimum(np.minimum(a, b), _TINY)
+
+
+def _only(sound: Mask, value: Array) -> Array:
+    return np.where(sound, value, math.nan)
+
+
+def _outward(lower: Array, upper: Array, relative: float, absolute: float | Array = 0.0) -> Ball:
+    """Return the ball of [lower, upper] when each end is a computed value, off by the given errors."""
+    lower = lower - (relative * np.abs(lower) + absolute)
+    upper = upper + (relative * np.abs(upper) + absolute)
+    return Ball.between(lower, upper)
+
+
+def rising(
+    function: Callable[[Array], Array], x: Ball, least: float = -math.inf, greatest: float = math.inf, tiny: float = 0.0
+) -> Ball:
+    """Image of x under an increasing function that is defined on [least, greatest]; `tiny` covers its underflow."""
+    lower, upper = x.bounds()
+    with _fresh():
+        inside = (lower >= least) & (upper <= greatest)
+        return _outward(_only(inside, function(lower)), _only(inside, function(upper)), _LIBRARY, tiny)
+
+
+def sin_cos(x: Ball) -> tuple[Ball, Ball]:
+    """Images of x (n,) under sin and cos: true ranges, within [-1, 1] even where x says nothing."""
+    with _fresh():
+        ends = np.stack(x.bounds())
+        values = np.concatenate((np.sin(ends), np.cos(ends))).reshape(2, 2, -1)
+        least = np.fmax(values.min(axis=1) - _LIBRARY, -1.0)
+        greatest = np.fmin(values.max(axis=1) + _LIBRARY, 1.0)
+        # An extremum lies inside if a whole turn from it does; slack for the rounding of x/2pi.
+        turns = ends / _TURN
+        slack = 8 * _ULP * (1 + np.abs(turns))
+        turns[0] -= slack[0]
+        turns[1] += slack[1]
+        left, right = (turns - _PEAKS).transpose(1, 0, 2)
+        holds = ~(np.ceil(left) > np.floor(right))  # true also where nothing is known
+        greatest = np.where(holds[0::2], 1.0, greatest)
+        least = np.where(holds[1::2], -1.0, least)
+        both = Ball.between(least, greatest)
+    return both[0], both[1]
+
+
+def sin(x: Ball) -> Ball:
+    """Image under sin."""
+    return sin_cos(x)[0]
+
+
+def cos(x: Ball) -> Ball:
+    """Image under cos."""
+    return sin_cos(x)[1]
+
+
+def tan(x: Ball) -> Ball:
+    """Image under tan; says nothing where x may hold a pole."""
+    lower, upper = x.bounds()
+    with _fresh():
+        slack = 8 * _ULP * (1 + np.maximum(np.abs(lower), np.abs(upper)))
+        left, right = (lower - slack) / math.pi - 0.5, (upper + slack) / math.pi - 0.5
+        clear = np.ceil(left) > np.floor(right)
+        return _outward(_only(clear, np.tan(lower)), _only(clear, np.tan(upper)), _LIBRARY)
+
+
+def exp(x: Ball) -> Ball:
+    """Image under exp."""
+    return rising(np.exp, x, tiny=_TINY)
+
+
+def log(x: Ball) -> Ball:
+    """Image under log; says nothing where x is not wholly positive."""
+    return rising(np.log, x, least=math.ulp(0.0))
+
+
+def sqrt(x: Ball) -> Ball:
+    """Image under sqrt; says nothing where x reaches below 0."""
+    return rising(np.sqrt, x, least=0.0)
+
+
+def cbrt(x: Ball) -> Ball:
+    """Image under the cube root."""
+    return rising(np.cbrt, x)
+
+
+def asin(x: Ball) -> Ball:
+    """Image under asin; says nothing where x leaves [-1, 1]."""
+    return rising(np.arcsin, x, -1.0, 1.0)
+
+
+def acos(x: Ball) -> Ball:
+    """Image under acos; says nothing where x leaves [-1, 1]."""
+    return -rising(lambda a: -np.arccos(a), x, -1.0, 1.0)
+
+
+def atan(x: Ball) -> Ball:
+    """Image under atan."""
+    return rising(np.arctan, x)
+
+
+def sinh(x: Ball) -> Ball:
+    """Image under sinh."""
+    return rising(np.sinh, x)
+
+
+def cosh(x: Ball) -> Ball:
+    """Image under cosh; its least value 1 where x holds 0."""
+    lower, upper = x.bounds()
+    with _fresh():
+        least = np.where((lower < 0) & (upper > 0), 0.0, np.minimum(np.abs(lower), np.abs(upper)))
+        return _outward(np.cosh(least), np.cosh(np.maximum(np.abs(lower), np.abs(upper))), _LIBRARY)
+
+
+def tanh(x: Ball) -> Ball:
+    """Image under tanh."""
+    return rising(np.tanh, x)
+
+
+def atan2(y: Ball, x: Ball) -> Ball:
+    """Angles of the points of the boxes x by y; [-pi, pi] where a box meets the cut (x <= 0, y = 0)."""
+    (y0, y1), (x0, x1) = y.bounds(), x.bounds()
+    with _fresh():
+        corners = np.stack([np.arctan2(b, a) for b in (y0, y1) for a in (x0, x1)])
+        inside = (x0 > 0) | (y0 > 0) | (y1 < 0)
+        least = np.where(inside, corners.min(axis=0), -math.pi)
+        greatest = np.where(inside, corners.max(axis=0), math.pi)
+    return _outward(least, greatest, _LIBRARY)
+
+
+def hull(a: Ball, b: Ball) -> Ball:
+    """Return the least ball found that holds both."""
+    (a0, a1), (b0, b1) = a.bounds(), b.bounds()
+    return Ball.between(np.minimum(a0, b0), np.maximum(a1, b1))
