@@ -1,0 +1,56 @@
+"""Profiles of flat-faced followers: the envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve import Bounds, Frame
+
+if TYPE_CHECKING:
+    from camgeo.curve import Array
+    from kin.lift import Lift
+
+
+@dataclass(frozen=True)
+class SupportShape:
+    """The curve whose support function is a face's lift: ``c = p u + p' n``, ``sigma = p + p''``, ``omega = 1``.
+
+    The parameter is the direction of the outward normal, which is the shaft angle. SW's second half turn with the
+    sign of [d - L] put right is the same formula (THEORY section 9).
+    """
+
+    lift: Lift
+
+    @property
+    def period(self) -> float:
+        """A full turn."""
+        return 2.0 * np.pi
+
+    @property
+    def breaks(self) -> Array:
+        """Where the radius of curvature or its derivatives jump."""
+        return self.lift.breaks
+
+    @property
+    def steady(self) -> Array:
+        """Radius of curvature and turn, (m, 2), on stretches that are circular arcs; nan on the others."""
+        radius = np.where(self.lift.steady, self.lift.radius, np.nan)
+        return np.column_stack([radius, np.where(np.isnan(radius), np.nan, 1.0)])
+
+    def sample(self, t: Array, side: int = 1) -> Frame:
+        """Frame at normal directions t (n,)."""
+        p = self.lift.derivatives(t, 3, side)
+        cosine, sine = np.cos(t), np.sin(t)
+        tangent = np.column_stack([-sine, cosine])
+        point = np.column_stack([p[0] * cosine - p[1] * sine, p[0] * sine + p[1] * cosine])
+        return Frame(point, tangent, p[0] + p[2], np.ones_like(t), p[1] + p[3], np.zeros_like(t))
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds of the radius of curvature over intervals (n,)."""
+        mid, rad = self.lift.radius_enclosure(low, high, 2)
+        one, none = np.ones_like(low), np.zeros_like(low)
+        size = np.abs(mid) + rad
+        return Bounds(mid[0] - rad[0], mid[0] + rad[0], one, one, size[1], none, size[2], none)
