@@ -109,7 +109,7 @@ def _mirrored(function: Stretch) -> Stretch:
 def _symmetric(
     knots: Sequence[float], runs: Sequence[tuple[float, float, Literal["sin", "cos", "flat"]]], centre: bool
 ) -> Piecewise:
-    """Build a law from the accelerations (peak, rate, shape) of its first half, each run beginning as the last one ends.
+    """Build a law from the accelerations (peak, rate, shape) of its first half, each beginning as the last one ends.
 
     `knots` begin at 0; with `centre` the last run is its own image and reaches over the middle.
     """
