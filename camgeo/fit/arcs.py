@@ -70,7 +70,7 @@ def _fit_stretches(
         if steady is not None:
             done[i] = _steady_arcs(curve, stretch, steady[1])
             continue
-        density = Density(curve, *stretch, arc_density)
+        density = Density.of(curve, *stretch, arc_density)
         needed = density.total / math.cbrt(tolerance)
         check_count(needed, "arcs", tolerance)
         nodes[i] = density.nodes(max(1, math.ceil(0.5 * needed - 1e-6)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,10 +48,16 @@ def check_count(needed: float, form: str, tolerance: float) -> None:
         )
 
 
+@dataclass(frozen=True)
 class Density:
-    """Running integral of a density over parameter intervals that span no break, on a grid that follows the cells."""
+    """Running integral `sum` (m,) of a density at the parameters `t` (m,)."""
 
-    def __init__(self, curve: Curve, low: float, high: float, density: Callable[[Frame], Array]) -> None:
+    t: Array
+    sum: Array
+
+    @staticmethod
+    def of(curve: Curve, low: float, high: float, density: Callable[[Frame], Array]) -> Density:
+        """Integrate over a stretch that spans no break, on a grid that follows the curve's cells."""
         cells = curve.cells
         inside = (cells.high > low) & (cells.low < high)
         left = np.maximum(cells.low[inside], low)
@@ -60,24 +67,33 @@ class Density:
         interior = curve.sample(t[:, :-1].ravel(), 1)
         value = np.empty_like(t)
         value[:, :-1] = density(interior).reshape(-1, STEPS_PER_CELL)
-        value[:, -1] = density(curve.sample(t[:, -1], -1))
+        value[:-1, -1] = value[1:, 0]
+        value[-1:, -1] = density(curve.sample(t[-1:, -1], -1))
         step = (right - left) / STEPS_PER_CELL
         area = 0.5 * (value[:, :-1] + value[:, 1:]) * step[:, None]
-        self._t = np.append(t[:, :-1].ravel(), t[-1, -1])
-        self._sum = np.concatenate([[0.0], np.cumsum(area.ravel())])
-        self.total = float(self._sum[-1])
+        grid = np.append(t[:, :-1].ravel(), t[-1, -1])
+        return Density(grid, np.concatenate([[0.0], np.cumsum(area.ravel())]))
 
-    def grid(self) -> tuple[Array, Array]:
-        """The grid's parameters and the running integral there."""
-        return self._t, self._sum
+    @staticmethod
+    def joined(parts: list[Density]) -> Density:
+        """One density over consecutive stretches."""
+        t = np.concatenate([parts[0].t, *(part.t[1:] for part in parts[1:])])
+        base = np.cumsum([0.0, *(part.total for part in parts[:-1])])
+        total = np.concatenate([parts[0].sum, *(p.sum[1:] + b for p, b in zip(parts[1:], base[1:], strict=True))])
+        return Density(t, total)
+
+    @property
+    def total(self) -> float:
+        """The whole integral."""
+        return float(self.sum[-1])
 
     def nodes(self, count: int) -> Array:
         """Parameters of `count` equal shares, both ends included (count + 1,)."""
         if self.total <= 0.0:
-            return np.linspace(self._t[0], self._t[-1], count + 1)
-        t: Array = np.interp(np.linspace(0.0, self.total, count + 1), self._sum, self._t)
-        t[0], t[-1] = self._t[0], self._t[-1]
-        return t
+            return np.linspace(self.t[0], self.t[-1], count + 1)
+        nodes: Array = np.interp(np.linspace(0.0, self.total, count + 1), self.sum, self.t)
+        nodes[0], nodes[-1] = self.t[0], self.t[-1]
+        return nodes
 
 
 def reshared(nodes: Array, load: Array, order: float) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 USABLE = 0.9995  # of the tolerance; the rest covers rounding and the second order at the vertices
 BALANCED = 1e-3  # of the tolerance: how far the two sides may differ before the vertices are moved once more
-ROUNDS = 4  # of sharing the nodes anew; the imbalance falls by an order of magnitude in each
+ROUNDS = 3  # of sharing the nodes anew before there are more of them
+PARTS = (1.0, 0.996, 0.98, 0.9, 0.6, 0.3)  # of the tolerance to aim at, until what is proved keeps within all of it
+FULL = 0.93  # of the tolerance used is enough; below it fewer edges are looked for
 
 
 def polygon_density(frame: Frame) -> Array:
@@ -29,18 +31,27 @@ def polygon_density(frame: Frame) -> Array:
 def least_vertices(curve: Curve, tolerance: float) -> float:
     """Leading-order count of a straddling polygon: integral of ``sqrt(|kappa|/(16 e)) ds`` (THEORY section 3)."""
     stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
-    total = sum(Density(curve, a, b, polygon_density).total for a, b in stretches)
+    total = sum(Density.of(curve, a, b, polygon_density).total for a, b in stretches)
     return total / math.sqrt(tolerance)
 
 
 @dataclass(frozen=True)
 class _Edges:
-    """Edges of one run: nodes (n + 1,), vertices (n + 1, 2), how they lie, and the part of edges each break cuts."""
+    """Edges of one run: nodes (n + 1,), vertices (n + 1, 2), and how they lie.
+
+    `sine` bounds the sine of the angle between an edge and the curve at its ends, `load` is the greatest sagitta seen.
+    """
 
     nodes: Array
     vertices: Array
     sine: float
     deviation: Deviation
+    load: float = math.inf
+
+    @property
+    def extremes(self) -> tuple[float, float]:
+        """Farthest that the curve is proved to lie outside and inside the edges."""
+        return float(self.deviation.outside.max()), -float(self.deviation.inside.min())
 
 
 def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
@@ -62,63 +73,93 @@ def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
 
 
 def _fit_run(curve: Curve, run: Run, tolerance: float) -> tuple[Array, float, float]:
-    """Vertices of one run, its end included, and how far they lie outward and inward of the curve."""
-    densities = [Density(curve, float(a), float(b), polygon_density) for a, b in run.stretches]
+    """Vertices of one run, its end included, and how far they lie outward and inward of the curve.
+
+    First with a vertex at every break, which costs at most one edge a break more than the least. Where the stretches
+    take so few edges that rounding their numbers up wastes part of the tolerance, fewer edges that run across the
+    breaks are tried as well.
+    """
+    densities = [Density.of(curve, float(a), float(b), polygon_density) for a, b in run.stretches]
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
     check_count(needed, "straight edges", tolerance)
-    least = 3 if run.closed else 1
-    count = max(least, math.ceil(needed - 1e-6))
     best = math.inf
-    for _ in range(TRIES):
-        nodes = _joined(densities, count)
-        edges, load = _shared(curve, run, nodes, tolerance)
+    for part in PARTS:
+        edges = _shared(curve, run, densities, part * tolerance)
         if edges is None:
-            count *= 2
-            continue
+            break
         # the greatest sagitta, halved, is how far the vertices stand out
-        shift = min(0.5 * load, tolerance)
-        edges = _edges(curve, run, edges.nodes, shift, tolerance)
-        top, bottom = float(edges.deviation.outside.max()), -float(edges.deviation.inside.min())
+        shift = min(0.5 * edges.load, tolerance)
+        placed = _edges(curve, run, edges.nodes, shift, tolerance)
+        top, bottom = placed.extremes
         if run.closed and math.isfinite(top + bottom) and bottom > 0.0 and abs(top - bottom) > BALANCED * tolerance:
             shift = min(shift * (top + bottom) / (2.0 * bottom), tolerance)
-            edges = _edges(curve, run, edges.nodes, shift, tolerance)
-        lateral = shift * edges.sine
-        top = math.hypot(max(float(edges.deviation.outside.max()), 0.0), lateral)
-        bottom = math.hypot(max(-float(edges.deviation.inside.min()), 0.0), lateral)
-        reached = max(top, bottom)
-        best = min(best, reached)
-        if reached <= tolerance:
-            return edges.vertices, bottom, top
-        grown = math.ceil(count * math.sqrt(reached / tolerance)) if math.isfinite(reached) else 2 * count
-        count = max(count + 1, min(grown, count + max(2, count // 50)) if reached < 1.2 * tolerance else grown)
+            placed = _edges(curve, run, edges.nodes, shift, tolerance)
+        lateral = shift * placed.sine
+        top, bottom = (math.hypot(max(side, 0.0), lateral) for side in placed.extremes)
+        best = min(best, max(top, bottom))
+        if best <= tolerance:
+            return placed.vertices, bottom, top
     raise ToleranceError(f"a polygon within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
-def _joined(densities: list[Density], count: int) -> Array:
-    """`count` equal shares of all stretches together; breaks are not made nodes."""
-    fine = [density.grid() for density in densities]
-    t = np.concatenate([fine[0][0], *(g[0][1:] for g in fine[1:])])
-    base = np.cumsum([0.0, *(density.total for density in densities[:-1])])
-    total = np.concatenate([fine[0][1], *(g[1][1:] + b for g, b in zip(fine[1:], base[1:], strict=True))])
-    nodes: Array = np.interp(np.linspace(0.0, total[-1], count + 1), total, t)
-    nodes[0], nodes[-1] = t[0], t[-1]
-    return nodes
+def _shared(curve: Curve, run: Run, densities: list[Density], tolerance: float) -> _Edges | None:
+    """Fewest edges found whose sagittas stay within twice the tolerance."""
+    least = 3 if run.closed else 1
+    edges = _settled(curve, run, densities, tolerance, least, math.inf)
+    if edges is not None and len(densities) > 1 and edges.load < FULL * 2.0 * tolerance:
+        free = _settled(curve, run, [Density.joined(densities)], tolerance, least, edges.nodes.size - 2)
+        return free or edges
+    return edges
 
 
-def _shared(curve: Curve, run: Run, nodes: Array, tolerance: float) -> tuple[_Edges | None, float]:
-    """Nodes shared anew until the edges' sagittas are alike; the edges, and the greatest sagitta seen."""
-    best: tuple[_Edges | None, float] = (None, math.inf)
-    for turn in range(ROUNDS):
+def _settled(
+    curve: Curve, run: Run, groups: list[Density], tolerance: float, least: int, most: float
+) -> _Edges | None:
+    """Fewest nodes, shared within each group, that keep every sagitta seen within twice the tolerance.
+
+    None where more than `most` edges would be needed.
+    """
+    counts = [max(1, math.ceil(group.total / math.sqrt(tolerance) - 1e-6)) for group in groups]
+    while sum(counts) < least:
+        counts = [count + 1 for count in counts]
+    parts = [group.nodes(count) for group, count in zip(groups, counts, strict=True)]
+    shared = [0] * len(groups)
+    for _ in range(TRIES):
+        total = sum(part.size - 1 for part in parts)
+        if total > most:
+            return None
+        nodes = np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
         edges = _edges(curve, run, nodes, tolerance, math.inf)
         seen = edges.deviation
         load = np.maximum(seen.seen_high, -seen.seen_low - 2.0 * tolerance) + tolerance
+        load[~np.isfinite(seen.inside) | ~np.isfinite(seen.outside)] = np.inf
         top = float(load.max())
-        if top < best[1]:
-            best = (edges, top)
-        if turn == ROUNDS - 1 or not math.isfinite(top) or top <= 1.002 * float(np.mean(load)):
-            break
-        nodes = reshared(nodes, load, 2.0)
-    return best
+        if top <= 2.0 * tolerance:
+            return replace(edges, load=top)
+        first = 0
+        for i, part in enumerate(parts):
+            mine = load[first : first + part.size - 1]
+            first += part.size - 1
+            if float(mine.max()) <= 2.0 * tolerance:
+                continue
+            parts[i], shared[i] = _denser(part, mine, 2.0 * tolerance, shared[i])
+            check_count(parts[i].size, "straight edges", tolerance)
+    return None
+
+
+def _denser(nodes: Array, load: Array, allowed: float, shared: int) -> tuple[Array, int]:
+    """Nodes for the next try: shared anew while the mean load is within what is allowed, then more of them."""
+    if not np.isfinite(load).all():
+        return np.sort(np.append(nodes, 0.5 * (nodes[:-1] + nodes[1:]))), 0
+    mean = float(np.mean(np.sqrt(load))) ** 2
+    if mean <= allowed and shared < ROUNDS:
+        return reshared(nodes, load, 2.0), shared + 1
+    count = nodes.size - 1
+    more = max(count + 1, math.ceil(count * math.sqrt(mean / allowed)))
+    total = np.concatenate([[0.0], np.cumsum(np.sqrt(load))])
+    spread: Array = np.interp(np.linspace(0.0, total[-1], more + 1), total, nodes)
+    spread[0], spread[-1] = nodes[0], nodes[-1]
+    return spread, 0
 
 
 def _edges(curve: Curve, run: Run, nodes: Array, shift: float, tolerance: float) -> _Edges:

@@ -80,7 +80,7 @@ def _spline_density(frame: Frame) -> Array:
 
 def _fit_stretch(curve: Curve, stretch: tuple[float, float], tolerance: float) -> tuple[Array, float, float]:
     """Bezier spans (n, 4, 2) over one smooth stretch, with their outward and inward bound."""
-    density = Density(curve, *stretch, _spline_density)
+    density = Density.of(curve, *stretch, _spline_density)
     middle = curve.sample(np.linspace(*stretch, 17)[1:-1])
     radius = float(np.max(np.abs(middle.speed)))
     first = density.total * (TURN_ERROR * max(radius, tolerance) / tolerance) ** (1.0 / 6.0)
