@@ -1,0 +1,52 @@
+"""One check of a verdict: what was measured, what is allowed, and where."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+Sense = Literal["at_least", "at_most"]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A figure held against its limit.
+
+    `value` is None where there was nothing to measure (a file that cannot be read); such a check does not hold, and
+    `detail` says why. `at_deg` is the shaft angle of the worst place, in [0, 360), None where there is no such place.
+    """
+
+    name: str
+    ok: bool
+    value: float | None
+    limit: float | None
+    unit: str
+    at_deg: float | None = None
+    sense: Sense = "at_most"
+    file: str | None = None
+    detail: str = ""
+
+
+def at_most(name: str, value: float, limit: float, unit: str, *, at: float | None = None, detail: str = "") -> Check:
+    """Check that `value` does not exceed `limit`; `at` is a shaft angle in radians. A value that is nan fails."""
+    measured = None if math.isnan(value) else float(value)
+    return Check(name, value <= limit, measured, float(limit), unit, degrees(at), "at_most", None, detail)
+
+
+def failed(name: str, detail: str, *, unit: str = "", limit: float | None = None) -> Check:
+    """Build a check that fails for a reason, with no figure of its own."""
+    return Check(name, ok=False, value=None, limit=limit, unit=unit, detail=detail)
+
+
+def degrees(angle: float | None) -> float | None:
+    """Shaft angle in radians as degrees in [0, 360)."""
+    if angle is None or not math.isfinite(angle):
+        return None
+    turned = math.degrees(angle) % 360.0
+    return 0.0 if turned >= 360.0 else turned
+
+
+def about(check: Check, file: str) -> Check:
+    """Name the file that a check concerns."""
+    return replace(check, file=file)
