@@ -1,0 +1,81 @@
+"""The convex hull of a set of points, for sets of 1e5 and more: whole passes on arrays, then a short repair."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kin.arcs import Array, Indices, cross
+
+__all__ = ["convex_hull", "is_convex_polygon"]
+
+# A pass over the whole chain pays while it removes more than this share of the points that are left.
+WORTHWHILE_SHARE = 0.02
+
+
+def is_convex_polygon(points: Array) -> bool:
+    """Whether the closed polygon (n, 2) is strictly convex, counter-clockwise and goes round once."""
+    if points.shape[0] < 3:
+        return False
+    edge = np.roll(points, -1, axis=0) - points
+    turn = cross(edge, np.roll(edge, -1, axis=0))
+    if not bool((turn > 0.0).all()):
+        return False
+    # Turning left everywhere, it goes round as often as its edges pass the direction +x: count upward changes of dy's sign.
+    upward = (edge[:, 1] > 0.0) | ((edge[:, 1] == 0.0) & (edge[:, 0] > 0.0))
+    return int(np.count_nonzero(upward & ~np.roll(upward, 1))) == 1
+
+
+def convex_hull(points: Array) -> Indices:
+    """Indices of the hull's corners, counter-clockwise from the leftmost, of points (n, 2); no three in line.
+
+    Andrew's monotone chain. A point on or inside the chord of its neighbours in the sorted chain is no corner, so all
+    such points may go at once: whole passes as long as they pay, then point by point from where the last pass stopped.
+    """
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    same = np.concatenate([[False], (points[order[1:]] == points[order[:-1]]).all(axis=1)])
+    order = order[~same]
+    if order.size < 3:
+        return order
+    lower = chain(points, order)
+    upper = chain(points, order[::-1])
+    return np.concatenate([lower[:-1], upper[:-1]])
+
+
+def chain(points: Array, order: Indices) -> Indices:
+    """Reduce a sorted chain of indices until it turns left at each one."""
+    while order.size > 2:
+        p = points[order]
+        edge = np.diff(p, axis=0)
+        keep = np.ones(order.size, dtype=bool)
+        keep[1:-1] = cross(edge[:-1], edge[1:]) > 0.0
+        gone = order.size - int(np.count_nonzero(keep))
+        if gone == 0:
+            return order
+        order = order[keep]
+        if gone < WORTHWHILE_SHARE * order.size:
+            return repaired(points, order)
+    return order
+
+
+def repaired(points: Array, order: Indices) -> Indices:
+    """Finish what `chain` began: go from one right turn to the next, stepping back where a corner was removed."""
+    p = points[order]
+    edge = np.diff(p, axis=0)
+    wrong = np.flatnonzero(cross(edge[:-1], edge[1:]) <= 0.0) + 1
+    if not wrong.size:
+        return order
+    x, y = p[:, 0].tolist(), p[:, 1].tolist()
+    last = order.size - 1
+    before, after = list(range(-1, last)), list(range(1, last + 2))
+    alive = [True] * (last + 1)
+    stack = wrong[::-1].tolist()
+    while stack:
+        i = stack.pop()
+        if not alive[i] or i in (0, last):
+            continue
+        j, k = before[i], after[i]
+        if (x[i] - x[j]) * (y[k] - y[i]) - (y[i] - y[j]) * (x[k] - x[i]) <= 0.0:
+            alive[i] = False
+            after[j], before[k] = k, j
+            stack += (k, j)
+    return order[np.array(alive)]
