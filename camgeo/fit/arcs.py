@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 CONSTANT = 40.5  # error of a biarc of arcs of length s: |kappa'| s^3 / 40.5
 LOOKS = 8  # places on an arc at which its error is seen while the nodes are being shared
+ROUNDS = 5  # of sharing the nodes anew before there are more of them
+WIDEST = 2.0  # radians that a biarc may turn through
 USABLE = 0.995  # of the tolerance, left to the fit; the rest covers rounding of the written coordinates
 
 
@@ -73,7 +75,8 @@ def _fit_stretches(
         density = Density.of(curve, *stretch, arc_density)
         needed = density.total / math.cbrt(tolerance)
         check_count(needed, "arcs", tolerance)
-        nodes[i] = density.nodes(max(1, math.ceil(0.5 * needed - 1e-6)))
+        turning = (stretch[1] - stretch[0]) * float(np.abs(curve.sample(density.t[1:-1]).turn).max())
+        nodes[i] = density.nodes(max(1, math.ceil(0.5 * needed - 1e-6), math.ceil(turning / WIDEST)))
     settled = dict.fromkeys(nodes, 0)
     for _ in range(TRIES):
         todo = [i for i in nodes if i not in done]
@@ -113,7 +116,7 @@ def _denser(curve: Curve, nodes: Array, worst: Array, tolerance: float, tried: i
         halved[::2], halved[1::2] = nodes, 0.5 * (nodes[:-1] + nodes[1:])
         return halved, 0
     mean = float(np.mean(np.cbrt(worst))) ** 3
-    if tried < 2 and mean <= tolerance:
+    if tried < ROUNDS and mean <= tolerance:
         return reshared(nodes, worst, 3.0), tried + 1
     count = nodes.size - 1
     factor = math.cbrt(max(mean, tolerance) / tolerance)

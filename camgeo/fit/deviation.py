@@ -144,14 +144,16 @@ def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array
     m_bend = bounds.turn_bend + np.abs(k) * bounds.speed_bend
     m_slope = bounds.turn_slope + np.abs(k) * bounds.speed_slope
     m = np.maximum(np.abs(ma), np.abs(mb)) + square * m_bend
-    # beta and f inside the step, first from above with room to spare, then confirmed
-    room = 1.5
-    beta_room = angle + room * 0.5 * step * m + 1e-15
-    f_room = np.maximum(np.abs(fa), np.abs(fb)) + room * 0.5 * step * speed * beta_room
-    kf = np.abs(k) * f_room
+    # beta and f inside the step: assumed from above with room to spare, then confirmed
+    size = np.abs(k)
+    furthest = np.maximum(np.abs(fa), np.abs(fb))
+    first = angle + 0.5 * step * m
+    lag = size * speed * (0.5 * first**2 + size * (furthest + 0.5 * step * speed * first))
+    beta_room = angle + 0.5 * step * (m + 2.0 * lag) + 1e-15
+    kf = size * (furthest + 0.5 * step * speed * beta_room)
     with np.errstate(divide="ignore", invalid="ignore"):
-        extra = np.abs(k) * speed * (0.5 * beta_room**2 + kf) / np.maximum(1.0 - kf, 0.0)
-        confirmed = (kf < 0.5) & (angle + 0.5 * step * (m + extra) <= beta_room + 1e-15 + 1e-12 * beta_room)
+        extra = size * speed * (0.5 * beta_room**2 + kf) / (1.0 - kf)
+        confirmed = (kf < 0.5) & (extra <= 2.0 * lag + 1e-15)
     # f'' = -sigma m up to `correction`; sigma m itself by its end values and its second derivative
     product_bend = bounds.speed_bend * m + 2.0 * bounds.speed_slope * m_slope + speed * m_bend
     correction = bounds.speed_slope * beta_room + speed * (extra + 0.5 * m * beta_room**2) + square * product_bend

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame
 
 STEPS_PER_CELL = 8  # of the grid on which a density is integrated
-MOST_PIECES = 4_000_000  # beyond this a contour is no hand-off; a tolerance that needs more is refused
+MOST_PIECES = 1_000_000  # beyond this a contour is no hand-off; a tolerance that needs more is refused
 ROUNDING_STEPS = 64.0  # a tolerance below this many units in the last place of the size cannot be told from rounding
 TRIES = 40
 

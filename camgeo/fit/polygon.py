@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 USABLE = 0.9995  # of the tolerance; the rest covers rounding and the second order at the vertices
 BALANCED = 1e-3  # of the tolerance: how far the two sides may differ before the vertices are moved once more
 ROUNDS = 3  # of sharing the nodes anew before there are more of them
-PARTS = (1.0, 0.996, 0.98, 0.9, 0.6, 0.3)  # of the tolerance to aim at, until what is proved keeps within all of it
+# What part of the tolerance to aim at, and whether by proved or, quicker, by seen sagittas, until the proof holds it all.
+PARTS = ((1.0, False), (0.996, True), (0.98, True), (0.9, True), (0.6, True), (0.3, True))
 FULL = 0.93  # of the tolerance used is enough; below it fewer edges are looked for
 
 
@@ -39,19 +40,24 @@ def least_vertices(curve: Curve, tolerance: float) -> float:
 class _Edges:
     """Edges of one run: nodes (n + 1,), vertices (n + 1, 2), and how they lie.
 
-    `sine` bounds the sine of the angle between an edge and the curve at its ends, `load` is the greatest sagitta seen.
+    Vertices stand `outward` and `inward` of the curve at most; `overhang` is how far the curve can reach past the ends
+    of the edge that belongs to it; `load` is the greatest sagitta seen.
     """
 
     nodes: Array
     vertices: Array
-    sine: float
+    outward: float
+    inward: float
+    overhang: float
     deviation: Deviation
     load: float = math.inf
 
     @property
     def extremes(self) -> tuple[float, float]:
-        """Farthest that the curve is proved to lie outside and inside the edges."""
-        return float(self.deviation.outside.max()), -float(self.deviation.inside.min())
+        """Farthest that the edges are proved to lie outward and inward of the curve, and the curve of them."""
+        outward = max(self.outward, math.hypot(-min(float(self.deviation.inside.min()), 0.0), self.overhang))
+        inward = max(self.inward, math.hypot(max(float(self.deviation.outside.max()), 0.0), self.overhang))
+        return outward, inward
 
 
 def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
@@ -83,39 +89,41 @@ def _fit_run(curve: Curve, run: Run, tolerance: float) -> tuple[Array, float, fl
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
     check_count(needed, "straight edges", tolerance)
     best = math.inf
-    for part in PARTS:
-        edges = _shared(curve, run, densities, part * tolerance)
+    for part, proved in PARTS:
+        edges = _shared(curve, run, densities, part * tolerance, proved=proved)
         if edges is None:
             break
         # the greatest sagitta, halved, is how far the vertices stand out
         shift = min(0.5 * edges.load, tolerance)
         placed = _edges(curve, run, edges.nodes, shift, tolerance)
-        top, bottom = placed.extremes
-        if run.closed and math.isfinite(top + bottom) and bottom > 0.0 and abs(top - bottom) > BALANCED * tolerance:
-            shift = min(shift * (top + bottom) / (2.0 * bottom), tolerance)
+        outward, inward = placed.extremes
+        if run.closed and math.isfinite(outward + inward) and abs(outward - inward) > BALANCED * tolerance:
+            shift = min(shift * (outward + inward) / (2.0 * outward), tolerance)
             placed = _edges(curve, run, edges.nodes, shift, tolerance)
-        lateral = shift * placed.sine
-        top, bottom = (math.hypot(max(side, 0.0), lateral) for side in placed.extremes)
-        best = min(best, max(top, bottom))
+            outward, inward = placed.extremes
+        best = min(best, max(outward, inward))
         if best <= tolerance:
-            return placed.vertices, bottom, top
+            return placed.vertices, outward, inward
     raise ToleranceError(f"a polygon within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
-def _shared(curve: Curve, run: Run, densities: list[Density], tolerance: float) -> _Edges | None:
+def _shared(
+    curve: Curve, run: Run, densities: list[Density], tolerance: float, *, proved: bool
+) -> _Edges | None:
     """Fewest edges found whose sagittas stay within twice the tolerance."""
     least = 3 if run.closed else 1
-    edges = _settled(curve, run, densities, tolerance, least, math.inf)
+    edges = _settled(curve, run, densities, tolerance, least, math.inf, proved=proved)
     if edges is not None and len(densities) > 1 and edges.load < FULL * 2.0 * tolerance:
-        free = _settled(curve, run, [Density.joined(densities)], tolerance, least, edges.nodes.size - 2)
+        whole = [Density.joined(densities)]
+        free = _settled(curve, run, whole, tolerance, least, edges.nodes.size - 2, proved=proved)
         return free or edges
     return edges
 
 
 def _settled(
-    curve: Curve, run: Run, groups: list[Density], tolerance: float, least: int, most: float
+    curve: Curve, run: Run, groups: list[Density], tolerance: float, least: int, most: float, *, proved: bool
 ) -> _Edges | None:
-    """Fewest nodes, shared within each group, that keep every sagitta seen within twice the tolerance.
+    """Fewest nodes, shared within each group, that keep every sagitta within twice the tolerance.
 
     None where more than `most` edges would be needed.
     """
@@ -129,10 +137,11 @@ def _settled(
         if total > most:
             return None
         nodes = np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
-        edges = _edges(curve, run, nodes, tolerance, math.inf)
-        seen = edges.deviation
-        load = np.maximum(seen.seen_high, -seen.seen_low - 2.0 * tolerance) + tolerance
-        load[~np.isfinite(seen.inside) | ~np.isfinite(seen.outside)] = np.inf
+        edges = _edges(curve, run, nodes, tolerance, tolerance if proved else math.inf)
+        found = edges.deviation
+        high, low = (found.outside, found.inside) if proved else (found.seen_high, found.seen_low)
+        load = np.maximum(high, -low - 2.0 * tolerance) + tolerance
+        load[~np.isfinite(found.inside) | ~np.isfinite(found.outside)] = np.inf
         top = float(load.max())
         if top <= 2.0 * tolerance:
             return replace(edges, load=top)
@@ -167,30 +176,27 @@ def _edges(curve: Curve, run: Run, nodes: Array, shift: float, tolerance: float)
 
     An edge across a break of the curve is judged on both sides of it.
     """
-    at = curve.sample(nodes)
-    if run.closed:
-        at.point[-1] = at.point[0]
-    away = np.where(at.turn >= 0.0, shift, -shift)
-    if run.closed:
-        away[-1] = away[0]
-    else:
+    at = curve.sample(nodes[:-1])
+    last = at if run.closed else curve.sample(nodes[-1:], -1)
+    normal = np.append(at.normal, last.normal[:1], axis=0)
+    away = np.append(np.where(at.turn >= 0.0, shift, -shift), 0.0)
+    away[-1] = away[0]
+    if not run.closed:
         away[[0, -1]] = 0.0
-    normal = at.normal
-    if run.closed:
-        normal[-1] = normal[0]
-    vertices = at.point + away[:, None] * normal
+    vertices = np.append(at.point, last.point[:1], axis=0) + away[:, None] * normal
     chord = np.diff(vertices, axis=0)
     tangent = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
-    sine = max(
-        float(np.abs(np.sum(tangent * normal[:-1], axis=1)).max()),
-        float(np.abs(np.sum(tangent * normal[1:], axis=1)).max()),
-    )
+    # A vertex stands on the normal of its node. Where the curve bends the same way at both ends of an edge, the nodes'
+    # feet on the edge lie within it; elsewhere part of the curve is nearest to the vertex itself.
+    behind = -away[:-1] * np.sum(tangent * normal[:-1], axis=1)
+    beyond = away[1:] * np.sum(tangent * normal[1:], axis=1)
+    overhang = -min(0.0, float(behind.min()), float(beyond.min()))
     cuts = np.array([b for b in run.breaks if not np.any(nodes == b)])
     low = np.sort(np.concatenate([nodes[:-1], cuts]))
     high = np.append(low[1:], nodes[-1])
     edge = np.clip(np.searchsorted(nodes, low, side="right") - 1, 0, nodes.size - 2)
     chain = Chain(vertices[:-1][edge], tangent[edge], np.zeros(low.size), low, high)
-    found = chain_deviation(curve, chain, tolerance, nodes=2 if math.isinf(tolerance) else 4)
+    found = chain_deviation(curve, chain, tolerance, 4)
     if cuts.size:
         first = np.searchsorted(edge, np.arange(nodes.size - 1))
         found = Deviation(
@@ -199,4 +205,5 @@ def _edges(curve: Curve, run: Run, nodes: Array, shift: float, tolerance: float)
             np.minimum.reduceat(found.seen_low, first),
             np.maximum.reduceat(found.seen_high, first),
         )
-    return _Edges(nodes, vertices, sine, found)
+    outward, inward = max(0.0, float(away.max())), max(0.0, -float(away.min()))
+    return _Edges(nodes, vertices, outward, inward, overhang, found)
