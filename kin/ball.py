@@ -56,18 +56,21 @@ class Ball:
     @staticmethod
     @_quiet
     def between(lower: Array, upper: Array) -> Ball:
-        """Return a ball of [lower, upper], as small as doubles allow; the ends are taken as exact."""
+        """Return a ball of [lower, upper], lower <= upper, the ends taken as exact; an end at 0 stays at 0."""
         mid = 0.5 * lower + 0.5 * upper
-        return _ball(mid, np.maximum(upper - mid, mid - lower) * _UP)
+        rad = np.maximum(upper - mid, mid - lower) * _UP
+        mid = np.where(lower >= 0, np.maximum(mid, rad), np.where(upper <= 0, np.minimum(mid, -rad), mid))
+        return _ball(mid, rad)
 
     def __getitem__(self, key: int | slice) -> Ball:
         return Ball(self.mid[key], self.rad[key])
 
     @_quiet
     def bounds(self) -> tuple[Array, Array]:
-        """Lower and upper ends, rounded outwards; exact numbers keep their value."""
+        """Lower and upper ends, rounded outwards; exact numbers, and an end at 0, keep their value."""
+        lower, upper = self.mid - self.rad, self.mid + self.rad
         pad = np.where(self.rad > 0, _ULP * (np.abs(self.mid) + self.rad), 0.0)
-        return (self.mid - self.rad) - pad, (self.mid + self.rad) + pad
+        return np.where(lower == 0, lower, lower - pad), np.where(upper == 0, upper, upper + pad)
 
     @property
     def magnitude(self) -> Array:
@@ -132,7 +135,8 @@ class Ball:
         least, greatest = np.minimum(low, high), np.maximum(low, high)
         if exponent > 0 and exponent % 2 == 0:
             least = np.where((lower < 0) & (upper > 0), 0.0, least)
-        return _outward(least, greatest, _LIBRARY, np.minimum(self.magnitude, _TINY))
+        floor = np.where((lower >= 0) | (exponent % 2 == 0), 0.0, -math.inf)
+        return _outward(least, greatest, _LIBRARY, np.minimum(self.magnitude, _TINY), floor)
 
     def powers(self, count: int) -> Ball:
         """x**0, x**1, ..., x**(count - 1), one a row: shape (count, *shape of x)."""
@@ -184,21 +188,27 @@ def _only(sound: Mask, value: Array) -> Array:
     return np.where(sound, value, math.nan)
 
 
-def _outward(lower: Array, upper: Array, relative: float, absolute: float | Array = 0.0) -> Ball:
-    """Return the ball of [lower, upper] when each end is a computed value, off by the given errors."""
-    lower = lower - (relative * np.abs(lower) + absolute)
+def _outward(
+    lower: Array, upper: Array, relative: float, absolute: float | Array = 0.0, floor: float | Array = -math.inf
+) -> Ball:
+    """Return the ball of [lower, upper], each end computed and off by the given errors; nothing lies below floor."""
+    lower = np.maximum(lower - (relative * np.abs(lower) + absolute), floor)
     upper = upper + (relative * np.abs(upper) + absolute)
     return Ball.between(lower, upper)
 
 
 def rising(
-    function: Callable[[Array], Array], x: Ball, least: float = -math.inf, greatest: float = math.inf, tiny: float = 0.0
+    function: Callable[[Array], Array],
+    x: Ball,
+    domain: tuple[float, float] = (-math.inf, math.inf),
+    tiny: float = 0.0,
+    floor: float = -math.inf,
 ) -> Ball:
-    """Image of x under an increasing function that is defined on [least, greatest]; `tiny` covers its underflow."""
+    """Image of x under an increasing function, nowhere below floor; `tiny` covers its underflow."""
     lower, upper = x.bounds()
     with _fresh():
-        inside = (lower >= least) & (upper <= greatest)
-        return _outward(_only(inside, function(lower)), _only(inside, function(upper)), _LIBRARY, tiny)
+        inside = (lower >= domain[0]) & (upper <= domain[1])
+        return _outward(_only(inside, function(lower)), _only(inside, function(upper)), _LIBRARY, tiny, floor)
 
 
 def sin_cos(x: Ball) -> tuple[Ball, Ball]:
@@ -243,17 +253,17 @@ def tan(x: Ball) -> Ball:
 
 def exp(x: Ball) -> Ball:
     """Image under exp."""
-    return rising(np.exp, x, tiny=_TINY)
+    return rising(np.exp, x, tiny=_TINY, floor=0.0)
 
 
 def log(x: Ball) -> Ball:
     """Image under log; says nothing where x is not wholly positive."""
-    return rising(np.log, x, least=math.ulp(0.0))
+    return rising(np.log, x, (math.ulp(0.0), math.inf))
 
 
 def sqrt(x: Ball) -> Ball:
     """Image under sqrt; says nothing where x reaches below 0."""
-    return rising(np.sqrt, x, least=0.0)
+    return rising(np.sqrt, x, (0.0, math.inf), floor=0.0)
 
 
 def cbrt(x: Ball) -> Ball:
@@ -263,12 +273,12 @@ def cbrt(x: Ball) -> Ball:
 
 def asin(x: Ball) -> Ball:
     """Image under asin; says nothing where x leaves [-1, 1]."""
-    return rising(np.arcsin, x, -1.0, 1.0)
+    return rising(np.arcsin, x, (-1.0, 1.0))
 
 
 def acos(x: Ball) -> Ball:
     """Image under acos; says nothing where x leaves [-1, 1]."""
-    return -rising(lambda a: -np.arccos(a), x, -1.0, 1.0)
+    return -rising(lambda a: -np.arccos(a), x, (-1.0, 1.0))
 
 
 def atan(x: Ball) -> Ball:
@@ -303,6 +313,12 @@ def atan2(y: Ball, x: Ball) -> Ball:
         least = np.where(inside, corners.min(axis=0), -math.pi)
         greatest = np.where(inside, corners.max(axis=0), math.pi)
     return _outward(least, greatest, _LIBRARY)
+
+
+def absolute(x: Ball) -> Ball:
+    """Image under the absolute value."""
+    lower, upper = x.bounds()
+    return Ball.between(np.maximum(np.maximum(lower, -upper), 0.0), np.maximum(-lower, upper))
 
 
 def hull(a: Ball, b: Ball) -> Ball:

@@ -195,7 +195,10 @@ def abs_(x: Number) -> Number:
     if isinstance(x, Jet):
         return Jet(x.c * np.where(_side(x.c) < 0, -1.0, 1.0))
     if isinstance(x, BallJet):
-        return maximum(x, -x)
+        found = maximum(x, -x)
+        value = ball.absolute(x.rows[0])
+        found.mid[0], found.rad[0] = value.mid, value.rad
+        return found
     return _as_value(abs_(_as_jet(x)), x)
 
 

@@ -33,9 +33,11 @@ class DomainError(ArithmeticError):
     """
 
     def __init__(self, operation: str, indices: NDArray[np.intp]) -> None:
-        super().__init__(f"{operation} (at {len(indices)} of the points, first at index {indices[0]})")
         self.operation = operation
         self.indices = indices
+
+    def __str__(self) -> str:
+        return f"{self.operation} (at {len(self.indices)} of the points, first at index {self.indices[0]})"
 
 
 def demand(sound: NDArray[np.bool_] | np.bool_, operation: str) -> None:
@@ -167,9 +169,11 @@ class BallJet:
 
     @staticmethod
     def variable(lower: float | Array, upper: float | Array, order: int) -> BallJet:
-        """Return the variable over the intervals [lower, upper], each (n,)."""
-        ends = np.broadcast_arrays(np.atleast_1d(np.asarray(lower, dtype=float)), np.asarray(upper, dtype=float))
-        value = Ball.between(*ends)
+        """Return the variable over the intervals [lower, upper], each (n,); ValueError unless lower <= upper."""
+        low, high = np.broadcast_arrays(np.atleast_1d(np.asarray(lower, dtype=float)), np.asarray(upper, dtype=float))
+        if not (low <= high).all():
+            raise ValueError("an interval ends before it begins, or an end is not a number")
+        value = Ball.between(low, high)
         mid, rad = np.zeros((2, order + 1, len(value.mid)))
         mid[0], rad[0] = value.mid, value.rad
         if order > 0:
@@ -181,11 +185,12 @@ class BallJet:
         """Return the ball jet of these coefficients (order + 1, n)."""
         return BallJet(rows.mid, rows.rad)
 
-    def constant(self, value: float | Array) -> BallJet:
-        """Return an exact constant, of the order and over the intervals of this jet."""
-        mid = np.zeros_like(self.mid)
-        mid[0] = value
-        return BallJet.of(Ball.exact(mid))
+    def constant(self, value: float | Array | Ball) -> BallJet:
+        """Return a constant, of the order and over the intervals of this jet; numbers are taken as exact."""
+        ball_value = value if isinstance(value, Ball) else Ball.exact(value)
+        mid, rad = np.zeros_like(self.mid), np.zeros_like(self.rad)
+        mid[0], rad[0] = ball_value.mid, ball_value.rad
+        return BallJet(mid, rad)
 
     @property
     def order(self) -> int:
@@ -213,7 +218,7 @@ class BallJet:
     def __neg__(self) -> BallJet:
         return BallJet(-self.mid, self.rad)
 
-    def __add__(self, other: BallJet | float | Array) -> BallJet:
+    def __add__(self, other: BallJet | Ball | float | Array) -> BallJet:
         if isinstance(other, BallJet):
             return BallJet.of(self.rows + other.rows)
         first = self.rows[0] + other
@@ -223,23 +228,23 @@ class BallJet:
 
     __radd__ = __add__
 
-    def __sub__(self, other: BallJet | float | Array) -> BallJet:
+    def __sub__(self, other: BallJet | Ball | float | Array) -> BallJet:
         return self + (-other)
 
-    def __rsub__(self, other: float | Array) -> BallJet:
+    def __rsub__(self, other: Ball | float | Array) -> BallJet:
         return -self + other
 
-    def __mul__(self, other: BallJet | float | Array) -> BallJet:
+    def __mul__(self, other: BallJet | Ball | float | Array) -> BallJet:
         if isinstance(other, BallJet):
             return BallJet.of(ball_product(self.rows, other.rows))
         return BallJet.of(self.rows * other)
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: BallJet | float | Array) -> BallJet:
+    def __truediv__(self, other: BallJet | Ball | float | Array) -> BallJet:
         return self * other**-1 if isinstance(other, BallJet) else BallJet.of(self.rows / other)
 
-    def __rtruediv__(self, other: float | Array) -> BallJet:
+    def __rtruediv__(self, other: Ball | float | Array) -> BallJet:
         return self**-1 * other
 
     def __pow__(self, exponent: float | BallJet) -> BallJet:
@@ -250,5 +255,5 @@ class BallJet:
             return BallJet.of(compose_balls(stack(exp_rows(ball.exp(product_of_log[0]), self.order)), product_of_log))
         return BallJet.of(compose_balls(stack(power_rows(x, exponent, self.order)), self.rows))
 
-    def __rpow__(self, base: float) -> BallJet:
+    def __rpow__(self, base: Ball | float) -> BallJet:
         return self.constant(base) ** self

@@ -1,0 +1,97 @@
+"""A recipe's formula: exact derivatives, proved bounds, and the parameters at which it switches.
+
+abs, sign, min and max make cases, and atan2 jumps where it crosses its cut. `Formula.pieces` takes a formula apart at
+those switches into expressions without any, each of them smooth up to and beyond its own ends: that is the way to
+one-sided derivatives at a break, which rounding would smear in the formula itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kin.expression import Expression, FormulaDomainError, FormulaError
+from kin.switches import SWITCHES, settle
+from kin.syntax import parse
+
+if TYPE_CHECKING:
+    from kin.expression import Series
+    from kin.jet import BallJet, Jet
+
+__all__ = ["Expression", "Formula", "FormulaDomainError", "FormulaError"]
+
+Array = NDArray[np.float64]
+
+_MOST_PIECES = 1000
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A text in one variable or more, read by the grammar of `kin.syntax`.
+
+    Raises FormulaError for a text that is no formula. Evaluation raises FormulaDomainError where the formula has no
+    value (or no derivative, if one is asked for); the enclosure of a ball is unbounded there instead.
+    """
+
+    text: str
+    variables: tuple[str, ...] = ("t",)
+    expression: Expression = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "expression", parse(self.text, self.variables))
+
+    def __call__(self, *arguments: Any) -> Any:  # noqa: ANN401 -- the kind that came in, see `on`
+        """Return the value at numbers or arrays (any shape), or the series of a jet or ball jet."""
+        return self.expression(*arguments)
+
+    def jet(self, t: float | Array, order: int) -> Jet:
+        """Return the Taylor coefficients up to an order at t (n,)."""
+        return self.expression.jet(t, order)
+
+    def ball(self, lower: float | Array, upper: float | Array, order: int) -> BallJet:
+        """Return proved enclosures of the Taylor coefficients up to an order over the intervals [lower, upper] (n,)."""
+        return self.expression.ball(lower, upper, order)
+
+    def on(self, *series: Series) -> Series:
+        """Apply to jets or ball jets, one for each variable."""
+        return self.expression.on(*series)
+
+    def breaks(self, lower: float, upper: float) -> Array:
+        """Return the parameters in [lower, upper] at which abs, sign, min or max switch, or atan2 jumps, rising (k,).
+
+        They are isolated with balls, none is missed, and found to the last places. An end belongs to them if the
+        switch lies on it. Raises FormulaError where a switch cannot be told from a near miss, or there are too many.
+        """
+        knots, _, ends = self._take_apart(lower, upper)
+        return np.array([*([lower] if ends[0] else []), *knots[1:-1], *([upper] if ends[1] else [])])
+
+    def pieces(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...]]:
+        """Return knots (k + 1,) from lower to upper and k expressions without switches, one between each two knots."""
+        knots, expressions, _ = self._take_apart(lower, upper)
+        return knots, expressions
+
+    def _take_apart(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...], tuple[bool, bool]]:
+        """Settle the first switch over the whole interval, then the next over each part: arguments come first."""
+        if not lower < upper:
+            raise ValueError(f"no interval from {lower} to {upper}")
+        waiting, knots, done = [(lower, upper, self.expression)], [lower], []
+        at_lower = at_upper = False
+        while waiting:
+            a, b, expression = waiting.pop()
+            place = next((i for i, step in enumerate(expression.steps) if step.op in SWITCHES), None)
+            if place is None:
+                knots.append(b)
+                done.append(expression)
+                continue
+            found = settle(expression, place, a, b)
+            at_lower |= found.at_start and a == lower
+            at_upper |= found.at_end and b == upper
+            ends = [a, *found.inside, b]
+            waiting += list(zip(ends[:-1], ends[1:], found.expressions, strict=True))[::-1]
+            if len(waiting) + len(done) > _MOST_PIECES:
+                column = expression.steps[place].column
+                raise FormulaError(f"the formula switches more than {_MOST_PIECES} times", column)
+        return np.array(knots), tuple(done), (at_lower, at_upper)
