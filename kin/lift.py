@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kin.ball import Ball
 from kin.jet import BallJet, DomainError, cos, sin
 from kin.law import IntentError, Programme
-from kin.piecewise import Affine, Constant, Piecewise, Series, Stretch
+from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Series, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -63,25 +63,6 @@ class Circle:
         size = max(abs(self.radius), abs(self.x), abs(self.y))
         apart = max(abs(self.radius - other.radius), abs(self.x - other.x), abs(self.y - other.y))
         return apart <= _SAME_CIRCLE * size
-
-
-@dataclass(frozen=True)
-class _Fourier:
-    """mean + sum of a cos(k t) + b sin(k t) over the terms (k, a, b)."""
-
-    mean: float
-    terms: tuple[tuple[int, float, float], ...]
-
-    def __call__(self, t: Series, /) -> Series:
-        """Sum the series."""
-        total = t.constant(self.mean)
-        for k, a, b in self.terms:
-            angle = t * float(k) if k > 1 else t
-            if a:
-                total = total + cos(angle) * a
-            if b:
-                total = total + sin(angle) * b
-        return total
 
 
 @dataclass(frozen=True)
@@ -253,7 +234,7 @@ def lift_from_fourier(
                 raise IntentError(f"harmonics count from 1, not {k} (the constant term is mean)", f"fourier.{name}")
     terms = [(k, float(cos.get(k, 0.0)), float(sin.get(k, 0.0))) for k in sorted({*cos, *sin})]
     terms = [term for term in terms if term[1] or term[2]]
-    function: Stretch = _Fourier(float(mean), tuple(terms))
+    function: Stretch = Harmonics(float(mean), tuple(terms))
     if all(k == 1 for k, _, _ in terms):
         function = Circle(float(mean), *(terms[0][1:] if terms else ()))
     return _lift([0.0, _TURN], [_about(function, pivot)], "fourier", smooth_seam=True)
@@ -266,7 +247,7 @@ def lift_hypocycloid(cusps: int, size: float, breadth: float, pivot: tuple[float
     """
     if cusps < 3 or cusps % 2 == 0:
         raise IntentError(f"constant breadth needs an odd number of cusps, 3 or more, not {cusps}", "hypocycloid.cusps")
-    function = _about(_Fourier(breadth / 2, ((cusps, float(size), 0.0),)), pivot)
+    function = _about(Harmonics(breadth / 2, ((cusps, float(size), 0.0),)), pivot)
     return _lift([0.0, _TURN], [function], "hypocycloid", smooth_seam=True)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.ball import Ball, hull
-from kin.jet import BallJet, DomainError, Jet
+from kin.jet import BallJet, DomainError, Jet, cos, sin
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -60,6 +60,25 @@ class Affine:
         """Apply the moved function."""
         x = t - self.start if self.start else t
         return self.function(x / self.width if self.width != 1 else x) * self.scale + self.offset
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """mean + sum of a cos(k t) + b sin(k t) over the terms (k, a, b), k a whole number."""
+
+    mean: float
+    terms: tuple[tuple[int, float, float], ...]
+
+    def __call__(self, t: Series, /) -> Series:
+        """Sum the series."""
+        total = t.constant(self.mean)
+        for k, a, b in self.terms:
+            angle = t * float(k) if k > 1 else t
+            if a:
+                total = total + cos(angle) * a
+            if b:
+                total = total + sin(angle) * b
+        return total
 
 
 @dataclass(frozen=True, eq=False)

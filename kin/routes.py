@@ -1,0 +1,105 @@
+"""Psi over the polar angle t, by the routes of W's that prescribe the pitch curve: stretches for `kin.transmission`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin import ball
+from kin.jet import BallJet, Jet, acos, cos, sin, sqrt
+from kin.piecewise import Harmonics, Series
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+@dataclass(frozen=True)
+class FromDelta:
+    """psi = -asin(D/l^2) (W 5.10, 4.4), of which the slope is -D'/sqrt((l^2 - D)(l^2 + D)).
+
+    Near |D| = l^2 an arcsine keeps half the digits. For a series of cosines the two factors are formed without
+    cancellation, as rest + sum of 2 a sin^2(k t/2) and rest + sum of 2 a cos^2(k t/2), rest = l^2 - sum of a.
+    """
+
+    delta: Harmonics
+    square: float
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give psi over the polar angle t."""
+        value = self.delta(t)
+        near, far = self._factors(t, value)
+        if isinstance(t, Jet):
+            angle = -np.arctan2(value.c[0], np.sqrt(near.c[0] * far.c[0]))
+            if not t.order:
+                return Jet(angle[None])
+            near, far = Jet(near.c[:-1]), Jet(far.c[:-1])
+            return (-value.derivative() * near**-0.5 * far**-0.5).integral(angle)
+        start = -ball.asin(value.rows[0] / self.square)
+        if not t.order:
+            return BallJet(start.mid[None], start.rad[None])
+        near, far = BallJet.of(near.rows[:-1]), BallJet.of(far.rows[:-1])
+        return (-value.derivative() * near**-0.5 * far**-0.5).integral(start)
+
+    def _factors(self, t: Series, value: Series) -> tuple[Series, Series]:
+        """Give l^2 - D and l^2 + D, in either order."""
+        if any(b for _, _, b in self.delta.terms):
+            return self.square - value, self.square + value
+        rest, terms = self._apart()
+        near = far = t.constant(rest)
+        for k, a in terms:
+            near = near + sin(t * (k / 2)) ** 2 * (2 * a)
+            far = far + cos(t * (k / 2)) ** 2 * (2 * a)
+        return near, far
+
+    def _apart(self) -> tuple[float, list[tuple[int, float]]]:
+        """Rest and cosine terms of D or -D, whichever is positive at t = 0."""
+        sense = math.copysign(1.0, math.fsum(a for _, a, _ in self.delta.terms))
+        terms = [(k, sense * a) for k, a, _ in self.delta.terms]
+        return math.fsum([self.square, *(-a for _, a in terms)]), terms
+
+
+def steepness(terms: Sequence[tuple[int, float, float]]) -> Harmonics:
+    """Give 4 D^2 + D'^2 as a Fourier series, from the terms (k, a, b) of D in rising k."""
+    top = terms[-1][0]
+    wave = np.zeros(2 * top + 1, dtype=complex)
+    for k, a, b in terms:
+        wave[top + k], wave[top - k] = complex(a, -b) / 2, complex(a, b) / 2
+    slope = wave * 1j * np.arange(-top, top + 1)
+    total = 4 * np.convolve(wave, wave) + np.convolve(slope, slope)
+    upper = total[2 * top + 1 :]
+    found = [(k, 2 * float(c.real), -2 * float(c.imag)) for k, c in enumerate(upper, start=1)]
+    return Harmonics(float(total[2 * top].real), tuple(term for term in found if term[1] or term[2]))
+
+
+@dataclass(frozen=True)
+class FromArc:
+    """psi = 2 acos(r/2l) - alpha for the circular arc through (R, 0) and (R, delta), symmetric about its bisector.
+
+    With x = t - delta/2 and the centre at `centre` on the bisector, r = centre cos x +- sqrt(radius^2 - centre^2 sin^2
+    x), or `power` over the other root where those two would cancel.
+    """
+
+    arm: float
+    alpha: float
+    delta: float
+    centre: float
+    radius: float
+    power: float
+    convex: bool
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give psi over the polar angle t."""
+        return acos(self.distance(t) / (2 * self.arm)) * 2.0 - self.alpha
+
+    def distance(self, t: Series) -> Series:
+        """Give r over the polar angle t."""
+        x = t - self.delta / 2
+        along = cos(x) * self.centre
+        root = sqrt(self.radius**2 - sin(x) ** 2 * self.centre**2)
+        if self.convex and self.centre >= 0:
+            return along + root
+        other = root - along if self.convex else along + root
+        return self.power / other
