@@ -11,39 +11,93 @@ from numpy.typing import NDArray
 from kin.jet import BallJet
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from kin.piecewise import Piecewise, Stretch
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 _CELLS = 32  # a stretch is bounded in so many parts first
 _HALVINGS = 40
 _MOST_CELLS = 20000  # open at a time; more than a few mean that the answer is no
 
 
-def bounds_of(function: Stretch, lower: Array, upper: Array, k: int) -> tuple[Array, Array]:
-    """Prove bounds (n,) of the k-th derivative over [lower, upper]: Taylor's formula about the middle, or directly."""
+def undecided(
+    function: Stretch, begin: float, end: float, limits: Mapping[int, tuple[float, float]]
+) -> tuple[int, float] | None:
+    """Prove that each derivative k in `limits` stays between its two limits over [begin, end].
+
+    Returns None, or the k and a place where that is false or will not be proved. A cell is bounded directly, and where
+    that is not enough by Taylor's formula about its middle, of which the error falls with the cube of the width.
+    """
+    top = max(limits)
+
+    def settled(lower: Array, upper: Array) -> tuple[Mask, Mask]:
+        low, high = function(BallJet.variable(lower, upper, top + 2)).bounds()
+        yes, no = _within(low, high, limits)
+        open_ = np.flatnonzero(~(yes | no))
+        if len(open_):
+            sharper = _about_middle(function, lower[open_], upper[open_], low[:, open_], high[:, open_])
+            yes[open_], no[open_] = _within(*sharper, limits)
+        return yes, no
+
+    at = _halve(settled, begin, end)
+    if at is None:
+        return None
+    value = function(BallJet.variable(at, at, top))
+    (low, high), blame = value.bounds(), top
+    for k, (least, most) in limits.items():
+        if not (low[k, 0] > least and high[k, 0] < most):
+            blame = k
+            break
+    return blame, at
+
+
+def _within(low: Array, high: Array, limits: Mapping[int, tuple[float, float]]) -> tuple[Mask, Mask]:
+    """Where all derivatives keep the limits for certain, and where one breaks them for certain."""
+    yes, no = np.ones(low.shape[1], dtype=bool), np.zeros(low.shape[1], dtype=bool)
+    for k, (least, most) in limits.items():
+        yes &= (low[k] > least) & (high[k] < most)
+        no |= (high[k] <= least) | (low[k] >= most)
+    return yes, no
+
+
+def _about_middle(
+    function: Stretch, lower: Array, upper: Array, low: Array, high: Array
+) -> tuple[Array, Array]:
+    """Sharpen bounds `low`, `high` (m + 2, n) of derivatives over cells to (m, n), from values at the middles."""
     middle = 0.5 * (lower + upper)
     half = np.maximum(upper - middle, middle - lower) * (1 + 1e-12)
-    low, high = function(BallJet.variable(lower, upper, k + 2)).bounds()
-    near_low, near_high = function(BallJet.variable(middle, middle, k + 1)).bounds()
+    near_low, near_high = function(BallJet.variable(middle, middle, len(low) - 2)).bounds()
     with np.errstate(invalid="ignore"):  # inf - inf where nothing is known: the direct bound is taken
-        bend = np.maximum(np.abs(low[k + 2]), np.abs(high[k + 2])) * half**2 * (0.5 + 1e-12)
-        slope = np.maximum(np.abs(near_low[k + 1]), np.abs(near_high[k + 1])) * half * (1 + 1e-12)
-        return np.fmax(low[k], near_low[k] - slope - bend), np.fmin(high[k], near_high[k] + slope + bend)
+        bend = np.maximum(np.abs(low[2:]), np.abs(high[2:])) * half**2 * (0.5 + 1e-12)
+        reach = np.maximum(np.abs(near_low[1:]), np.abs(near_high[1:])) * half * (1 + 1e-12) + bend
+        return np.fmax(low[:-2], near_low[:-1] - reach), np.fmin(high[:-2], near_high[:-1] + reach)
 
 
-def undecided(function: Stretch, begin: float, end: float, k: int, below: float) -> float | None:
-    """Prove that the k-th derivative stays below a limit over [begin, end]; else a place where that fails."""
+def unbounded(function: Stretch, begin: float, end: float, order: int) -> float | None:
+    """Prove that derivatives 0..order are finite over [begin, end]; else give a place where that fails."""
+
+    def settled(lower: Array, upper: Array) -> tuple[Mask, Mask]:
+        finite = np.isfinite(function(BallJet.variable(lower, upper, order)).rad).all(axis=0)
+        return np.asarray(finite), np.zeros(len(lower), dtype=bool)
+
+    return _halve(settled, begin, end)
+
+
+def _halve(settled: Callable[[Array, Array], tuple[Mask, Mask]], begin: float, end: float) -> float | None:
+    """Halve cells until `settled` says yes of all (None), or no of one, or it will not end: the place of that."""
     ends = np.linspace(begin, end, _CELLS + 1)
     lower, upper = ends[:-1], ends[1:]
     for _ in range(_HALVINGS):
-        _, high = bounds_of(function, lower, upper, k)
-        open_ = ~(high < below)
-        if not open_.any():
+        yes, no = settled(lower, upper)
+        if yes.all():
             return None
-        lower, upper = lower[open_], upper[open_]
+        if no.any():
+            first = int(np.argmax(no))
+            return float(0.5 * (lower[first] + upper[first]))
+        lower, upper = lower[~yes], upper[~yes]
         if len(lower) > _MOST_CELLS:
             break
         middle = 0.5 * (lower + upper)

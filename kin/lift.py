@@ -9,18 +9,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kin.ball import Ball
-from kin.jet import BallJet, DomainError, cos, sin
+from kin.bounding import unbounded
+from kin.expression import Expression, FormulaDomainError, FormulaError
+from kin.jet import BallJet, cos, sin
 from kin.law import IntentError, Programme
 from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Series, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from kin.formula import Formula
 
 
 __all__ = [
@@ -28,6 +33,7 @@ __all__ = [
     "IntentError",
     "Lift",
     "lift_constant_breadth",
+    "lift_from_formula",
     "lift_from_fourier",
     "lift_hypocycloid",
     "lift_reuleaux",
@@ -40,6 +46,8 @@ _TURN = 2 * math.pi
 _JOIN = 1e-11
 # p(t + 2 pi) against p(t), relative likewise: the parameter itself is rounded to an ulp of 4 pi.
 _PERIOD = 1e-9
+_SLIVER = 1e-11  # rad: switches closer than this are one, found twice
+_CLEAR = 1e-6  # rad, likewise
 _SAME_CIRCLE = 16 * 2.0**-52
 
 
@@ -118,29 +126,33 @@ class Lift:
         return self.law.derivatives(theta, order, side)
 
     def enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
-        """Balls mid +- rad, (order + 1, n) each, of p and its derivatives over [lower, upper]; see `Piecewise`."""
+        """Enclose p and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each; see `Piecewise`."""
         return self.law.enclosure(lower, upper, order)
 
     def radius_enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
-        """Balls of rho = p + p'' and its derivatives over [lower, upper], (order + 1, n) each.
+        """Enclose rho = p + p'' and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each.
 
         The place of the shaft adds nothing to rho, and is left out before the balls could see it.
         """
-        functions = tuple(_centred(function) for function in self.law.functions)
-        still = Piecewise(self.law.knots, functions, self.law.period, self.law.smooth_seam)
-        p = still.on(BallJet.variable(lower, upper, order + 2))
-        bend = p.derivative().derivative()
-        rho = BallJet(p.mid[: order + 1], p.rad[: order + 1]) + bend
-        enclosed = Ball.between(*rho.bounds())
-        return enclosed.mid, enclosed.rad
+        low, high = self._centred.on(BallJet.variable(lower, upper, order + 2)).bounds()
+        p = Ball.between(low, high)
+        rho = p[:-2] + p[2:]
+        return rho.mid, rho.rad
+
+    @cached_property
+    def _centred(self) -> Piecewise:
+        """The lift less its first harmonic, as far as that is known."""
+        law = self.law
+        return Piecewise(law.knots, tuple(_less_first(f) for f in law.functions), law.period, law.smooth_seam)
 
 
-def _centred(function: Stretch) -> Stretch:
-    """The same arc about the most convenient shaft: p without its first harmonic, as far as that is known."""
+def _less_first(function: Stretch) -> Stretch:
     if isinstance(function, Circle):
         return Circle(function.radius)
+    if isinstance(function, Harmonics):
+        return Harmonics(function.mean, tuple(term for term in function.terms if term[0] > 1))
     if isinstance(function, _Moved):
-        return _Moved(function.function, function.scale, 0.0, 0.0)
+        return _Moved(_less_first(function.function), function.scale, 0.0, 0.0)
     return function
 
 
@@ -160,8 +172,8 @@ def _lift(
     elif _one_circle(functions[-1], functions[0]):
         del functions[-1], knots[-1]
         knots[0] = knots[-1] - _TURN
+        smooth_seam = False
     law = Piecewise(np.array(knots), tuple(functions), _TURN, smooth_seam)
-    _demand_finite(law, field)
     _demand_joined(law, field)
     return Lift(law, datum)
 
@@ -170,42 +182,15 @@ def _one_circle(first: Stretch, second: Stretch) -> bool:
     return isinstance(first, Circle) and isinstance(second, Circle) and first.matches(second)
 
 
-def _values(law: Piecewise, t: Array, order: int, side: int, field: str) -> Array:
-    try:
-        return law.derivatives(t, order, side)
-    except DomainError as error:
-        at = math.degrees(t[error.indices[0]])
-        raise IntentError(f"p does not exist at {at:.6g} degrees: {error.operation}", field, at) from error
-
-
-def _demand_finite(law: Piecewise, field: str) -> None:
-    """Prove that p, p' and p'' are finite all round, by halving what cannot be bounded yet."""
-    inner = [np.linspace(a, b, 33) for a, b in zip(law.knots[:-1], law.knots[1:], strict=True)]
-    _values(law, np.concatenate([points[1:-1] for points in inner]), 2, 1, field)
-    lower, upper = np.concatenate([x[:-1] for x in inner]), np.concatenate([x[1:] for x in inner])
-    for _ in range(48):
-        _, rad = law.enclosure(lower, upper, 2)
-        open_ = ~np.isfinite(rad).all(axis=0)
-        if not open_.any():
-            return
-        lower, upper = lower[open_], upper[open_]
-        if len(lower) > 20000:
-            break
-        middle = 0.5 * (lower + upper)
-        lower, upper = np.concatenate((lower, middle)), np.concatenate((middle, upper))
-    at = math.degrees(lower[0]) % 360
-    raise IntentError(f"p, p' or p'' has no finite value near {at:.6g} degrees", field, at)
-
-
 def _demand_joined(law: Piecewise, field: str) -> None:
     """Refuse a jump of p or p' at any knot, the seam included."""
     knots = law.knots[:-1]
-    right, left = (_values(law, knots, 2, side, field) for side in (1, -1))
+    right, left = (law.derivatives(knots, 2, side) for side in (1, -1))
     jump = np.abs(right - left)
     allowed = _JOIN * max(np.abs(right).max(), np.abs(left).max())
     for row, what, unit, harm in (
         (0, "p", "mm", "the cam would have a step"),
-        (1, "p'", "mm/rad", "the contour would tear open"),
+        (1, "p'", "mm/rad", "the contact would jump along the face, and the contour tear open"),
     ):
         worst = int(np.argmax(jump[row]))
         if jump[row, worst] > allowed:
@@ -219,6 +204,65 @@ def _about(function: Stretch, pivot: tuple[float, float], scale: float = 1.0) ->
     if isinstance(function, Circle):
         return Circle(function.radius * scale, function.x * scale - x, function.y * scale - y)
     return _Moved(function, scale, x, y) if scale != 1 or x or y else function
+
+
+def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0), scale: float = 1.0) -> Lift:
+    """Make p = scale times a formula in t (AS eq. 7 and Figure 2), mm, about the shaft at `pivot`, mm.
+
+    Raises IntentError, each with angle and figure, where the formula has no value or p, p', p'' no bound; where it does
+    not close, p(t + 2 pi) = p(t); and where abs, min, max or the like make p or p' jump. Jumps of p'' become breaks.
+    """
+    try:
+        places, pieces = formula.pieces(0.0, _TURN)
+        _demand_period(formula, places)
+        wide = np.flatnonzero(np.diff(places) > _SLIVER)
+        pieces = tuple(pieces[i] for i in wide)
+        knots = [0.0, *places[wide[1:]].tolist(), _TURN]
+        for piece, begin, end in zip(pieces, knots[:-1], knots[1:], strict=True):
+            _demand_finite(piece, begin, end)
+    except FormulaDomainError as error:
+        at = math.degrees(error.at) % 360
+        raise IntentError(f"p does not exist at {at:.6g} degrees: {error.operation}", "p", at) from error
+    except FormulaError as error:
+        raise IntentError(error.message, "p") from error
+    functions = [_about(_plain(piece), pivot, scale) for piece in pieces]
+    # With the same expression on both sides there is no switch at 0, or one that changes nothing.
+    return _lift(knots, functions, "p", smooth_seam=pieces[0] == pieces[-1])
+
+
+def _demand_period(formula: Formula, switches: Array) -> None:
+    """Refuse p(t + 2 pi) other than p(t), on a grid that no symmetry of the turn repeats and clear of the switches."""
+    t = np.mod(np.arange(1, 98) * (math.sqrt(5) - 1) * math.pi, _TURN)
+    t = t[np.abs(t[:, None] - switches).min(axis=1) > _CLEAR]
+    here = formula.jet(t, 2).derivatives()
+    miss = formula.jet(t + _TURN, 2).derivatives() - here
+    for row, what, unit in ((0, "p", "mm"), (1, "p'", "mm/rad"), (2, "p''", "mm/rad^2")):
+        worst = int(np.argmax(np.abs(miss[row])))
+        if abs(miss[row, worst]) > _PERIOD * np.abs(here).max():
+            at = math.degrees(t[worst])
+            raise IntentError(
+                f"p does not close: {what} is off by {miss[row, worst]:.9g} {unit} a full turn after {at:.6g} degrees",
+                "p",
+                at,
+            )
+
+
+def _demand_finite(piece: Expression, begin: float, end: float) -> None:
+    """Prove that p, p' and p'' are finite over a stretch, by halving what cannot be bounded yet."""
+    piece.jet(np.linspace(begin, end, 65), 2)  # raises where there is no value
+    at = unbounded(piece, begin, end, 2)
+    if at is not None:
+        degrees = math.degrees(at) % 360
+        raise IntentError(f"p, p' or p'' cannot be bounded near {degrees:.6g} degrees", "p", degrees)
+
+
+def _plain(piece: Expression) -> Stretch:
+    """Return the expression, or the circle that it is if it does not depend on t."""
+    enclosed = piece.ball(0.0, _TURN, 1)
+    if not enclosed.mid[1].any() and not enclosed.rad[1].any():
+        return Circle(float(enclosed.mid[0, 0]))
+    function: Stretch = piece
+    return function
 
 
 def lift_from_fourier(

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin import ball
-from kin.jet import BallJet, Jet, acos, cos, sin, sqrt
+from kin.jet import BallJet, Jet, acos, asin, cos, sin, sqrt
 from kin.piecewise import Harmonics, Series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from kin.expression import Expression
 
 
 @dataclass(frozen=True)
@@ -103,3 +105,18 @@ class FromArc:
             return along + root
         other = root - along if self.convex else along + root
         return self.power / other
+
+
+@dataclass(frozen=True)
+class FromLeaf:
+    """Psi = 2 asin(|OQ|/2l), with |OQ| given over x = (t - start)/delta (W section 5)."""
+
+    leaf: Expression
+    scale: float
+    start: float
+    delta: float
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give psi over the polar angle t; `scale` is the leaf's unit over 2 l."""
+        distance: Series = self.leaf.on((t - self.start) / self.delta)
+        return asin(distance * self.scale) * 2.0

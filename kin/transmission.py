@@ -22,16 +22,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.bounding import highest, undecided
+from kin.expression import FormulaError
 from kin.jet import Ball, BallJet, DomainError, Jet, cos
 from kin.law import IntentError, Programme
 from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Series, Stretch
-from kin.routes import FromArc, FromDelta, steepness
+from kin.routes import FromArc, FromDelta, FromLeaf, steepness
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kin.formula import Formula
 
-__all__ = ["IntentError", "Transmission", "from_arc", "from_delta", "from_law"]
+
+__all__ = ["IntentError", "Transmission", "from_arc", "from_delta", "from_law", "from_rosette"]
 
 Array = NDArray[np.float64]
 
@@ -181,15 +184,6 @@ class Transmission:
         return tau + turns * period
 
 
-def _demand_swing(law: Transmission, field: str) -> None:
-    """Refuse a swing for which an arm would reach the shaft, or stretch out: 0 < r < 2l."""
-    limit = min(law.alpha, math.pi - law.alpha)
-    for function, begin, end in zip(law.psi.functions, law.psi.knots[:-1], law.psi.knots[1:], strict=True):
-        if undecided(function, begin, end, 0, limit) is not None:
-            at, swing = highest(law.psi, [1.0] * len(law.lean), 0)
-            raise _too_wide(law, at, swing, field)
-
-
 def _too_wide(law: Transmission, at: float, swing: float, field: str) -> IntentError:
     limit = min(law.alpha, math.pi - law.alpha)
     end = "2l" if law.alpha < math.pi / 2 else "0"
@@ -205,18 +199,25 @@ def _shaft_deg(law: Transmission, tau: float) -> float:
     return math.degrees(float(law.at(tau, 0)[0][0, 0])) % 360
 
 
-def _demand_function_of_shaft(law: Transmission, field: str) -> None:
-    """Prove psi'(phi) < 1 over the whole period, or refuse with the angle and the figure.
+def _demand_possible(law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str) -> None:
+    """Prove 0 < r < 2l and psi'(phi) < 1 over the whole period, or refuse with the angle and the figure.
 
-    With W 4.9 that is one condition for the law and its image: (1 - w) psi' < 1 by tau, on every stretch. It also makes
-    phi rise with tau: 1 + w psi' at tau is 1 - w psi' at tau + delta.
+    With W 4.9 all of it shows in the stretches over delta. |psi| must stay below alpha and pi - alpha. psi'(phi) < 1 is
+    psi' < 1 by phi on the given stretch (w = 0; the image has -psi'/(1 - psi') there), and |psi'| < 2 by t on a polar
+    one (w = 1/2). It also makes phi rise with tau all round.
     """
-    weights = [1 - w for w in law.lean]
-    for function, weight, begin, end in zip(
-        law.psi.functions, weights, law.psi.knots[:-1], law.psi.knots[1:], strict=True
-    ):
-        if weight and undecided(function, begin, end, 1, 1 / weight) is not None:
+    limit = min(law.alpha, math.pi - law.alpha)
+    steep = (-2.0, 2.0) if law.lean[0] == 0.5 else (-math.inf, 1.0)
+    for function, begin, end in zip(functions, knots[:-1], knots[1:], strict=True):
+        if isinstance(function, Constant) and abs(function.value) < limit:
+            continue
+        found = undecided(function, begin, end, {0: (-limit, limit), 1: steep})
+        if found is None:
+            continue
+        if found[0] == 1:
             raise _too_steep(law, field)
+        at, swing = highest(law.psi, [1.0] * len(law.lean), 0)
+        raise _too_wide(law, at, swing, field)
 
 
 def _too_steep(law: Transmission, field: str) -> IntentError:
@@ -311,13 +312,15 @@ def from_delta(lam: int, mu: int, arm: float, cos: Mapping[int, float], sin: Map
     law = Transmission(
         lam, mu, arm, Piecewise(knots, (FromDelta(wave, square),), period, smooth_seam=True), (0.5,), offset
     )
-    if undecided(wave, 0.0, period, 0, square * math.sin(min(law.alpha, math.pi - law.alpha))) is not None:
-        at, most = highest(Piecewise(knots, (wave,), period), [1.0], 0)
-        if most < square:
-            raise _too_wide(law, at, math.asin(most / square), "delta")
+    most = square * math.sin(min(law.alpha, math.pi - law.alpha))
+    if undecided(wave, 0.0, period, {0: (-math.inf, most)}) is not None:
+        at, reached = highest(Piecewise(knots, (wave,), period), [1.0], 0)
+        if reached < square:
+            raise _too_wide(law, at, math.asin(reached / square), "delta")
         degrees = math.degrees(at + offset - math.pi / 4) % 360
-        raise IntentError(f"|D| must stay below l^2 = {square:.9g} mm^2; it reaches {most:.9g}", "delta", degrees)
-    if undecided(steepness(terms), 0.0, period, 0, 4 * square * square * (1 - 1e-14)) is not None:
+        raise IntentError(f"|D| must stay below l^2 = {square:.9g} mm^2; it reaches {reached:.9g}", "delta", degrees)
+    limit = 4 * square * square * (1 - 1e-14)  # the series' own rounding left out
+    if undecided(steepness(terms), 0.0, period, {0: (-math.inf, limit)}) is not None:
         raise _too_steep(law, "delta")
     return law
 
@@ -333,7 +336,7 @@ def from_law(
     """
     _demand_ratio(lam, mu, arm)
     delta = math.pi / lam
-    if programme.total != delta:
+    if abs(programme.total - delta) > 4 * math.ulp(delta):
         raise ValueError(f"the programme covers {programme.total!r} rad, not delta = {delta!r}")
     scale = 2.0 if swing_of == "pair" else 1.0
     end = scale * float(programme.at_end(0)[0])
@@ -341,8 +344,7 @@ def from_law(
         raise IntentError(f"psi must come back to 0 at the end of the law; it is {math.degrees(end):.9g} deg", "law")
     functions = [_scaled(f, scale) for f in programme.motion.functions]
     psi, lean = _over_period(delta, programme.motion.knots.tolist(), functions, (0.0, 1.0))
-    law = Transmission(lam, mu, arm, psi, lean, 0.0)
-    return _checked(law, "law")
+    return _checked(Transmission(lam, mu, arm, psi, lean, 0.0), programme.motion.knots.tolist(), functions, "law")
 
 
 def _scaled(function: Stretch, scale: float) -> Stretch:
@@ -352,18 +354,13 @@ def _scaled(function: Stretch, scale: float) -> Stretch:
     return Affine(function, scale=scale) if scale != 1 else function
 
 
-def _checked(law: Transmission, field: str) -> Transmission:
-    """Return the law if psi exists, leaves 0 < r < 2l, psi'(phi) < 1, and all joins; else raise IntentError."""
-    knots = law.psi.knots
-    spread = np.linspace(knots[:-1], knots[1:], 33)[1:-1].ravel()
+def _checked(law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str) -> Transmission:
+    """Return the law, given its stretches over delta, if psi exists and it is possible and joins; else IntentError."""
     try:
-        for tau, side in ((knots[:-1], 1), (knots[1:], -1), (spread, 1)):
-            law.at(tau, 1, side)
+        _demand_possible(law, knots, functions, field)
+        _demand_joined(law, field)
     except DomainError as error:
         raise IntentError(f"there is no such law: {error.operation}", field) from error
-    _demand_swing(law, field)
-    _demand_function_of_shaft(law, field)
-    _demand_joined(law, field)
     return law
 
 
@@ -394,8 +391,61 @@ def from_arc(
         centre, power = height + sagitta, height**2 - chord**2 + 2 * height * sagitta
     top = centre + radius if side == "convex" else centre - radius
     if not 0 < top < 2 * arm:
-        raise IntentError(f"the arc's middle is {top:.9g} mm from the shaft; 0 < r < 2l = {2 * arm:.9g} mm", "arc.radius")
+        where = f"the middle of the arc is {top:.9g} mm from the shaft"
+        raise IntentError(f"{where}; it must lie between 0 and 2 l = {2 * arm:.9g} mm", "arc.radius")
     arc = FromArc(arm, alpha, delta, centre, radius, power, side == "convex")
     psi, lean = _over_period(delta, [0.0, delta], [arc], (0.5, 0.5))
     place = (centre * math.cos(delta / 2), centre * math.sin(delta / 2), radius if side == "convex" else -radius)
-    return _checked(Transmission(lam, mu, arm, psi, lean, alpha / 2, place), "arc")
+    return _checked(Transmission(lam, mu, arm, psi, lean, alpha / 2, place), [0.0, delta], [arc], "arc")
+
+
+def from_rosette(lam: int, mu: int, arm: float, leaf: Formula, scale: float = 1.0) -> Transmission:
+    """Make the law from one leaf of the third arm's path: |OQ| as `scale` times a formula in x, mm, 0 <= x <= 1.
+
+    The third arm PQ, of length l, lies on the bisector and points to the shaft while psi = 0, so Q = 2 l sin(psi/2)
+    n(phi - psi/2). As phi - psi/2 = t + alpha/2, x is (t + alpha/2)/delta: the first leaf begins at phi = 0 and has psi
+    above 0 (W section 5). Raises IntentError if the leaf does not begin and end in the shaft with slopes that join
+    (leaf'(1) = -leaf'(0)), has no value somewhere, falls below 0 or makes no possible law.
+    """
+    _demand_ratio(lam, mu, arm)
+    alpha, delta, field = math.pi * mu / lam, math.pi / lam, "rosette.leaf"
+    start = -alpha / 2
+    try:
+        places, pieces = leaf.pieces(0.0, 1.0)
+        most = 2 * arm * math.sin(min(alpha, math.pi - alpha) / 2)
+        for begin, end, piece in zip(places[:-1], places[1:], pieces, strict=True):
+            x = np.linspace(begin, end, 257)
+            _demand_leaf(x, piece.jet(x, 1).c[0] * scale, arm, most)
+    except FormulaError as error:
+        raise IntentError(error.message, field) from error
+    knots = [start + float(x) * delta for x in places]
+    functions = [_leaf_stretch(FromLeaf(piece, scale / (2 * arm), start, delta)) for piece in pieces]
+    psi, lean = _over_period(delta, knots, functions, (0.5, 0.5))
+    return _checked(Transmission(lam, mu, arm, psi, lean, alpha / 2), knots, functions, field)
+
+
+def _leaf_stretch(stretch: FromLeaf) -> Stretch:
+    """Return the stretch, or the rest that it is if the leaf does not depend on x there."""
+    enclosed = stretch.leaf.ball(0.0, 1.0, 1)
+    if enclosed.mid[1].any() or enclosed.rad[1].any():
+        return stretch
+    psi = 2 * math.asin(float(enclosed.mid[0, 0]) * stretch.scale)
+    return Constant(0.0 if abs(psi) <= _JOIN else psi)
+
+
+def _demand_leaf(x: Array, distance: Array, arm: float, most: float) -> None:
+    """Refuse |OQ| below 0, not 0 where the leaf begins and ends, or so long that no swing leads there."""
+    field = "rosette.leaf"
+    ends = np.flatnonzero(((x == 0) | (x == 1)) & (np.abs(distance) > _JOIN * arm))
+    low, high = int(np.argmin(distance)), int(np.argmax(distance))
+    if len(ends):
+        at, found = x[ends[0]], distance[ends[0]]
+        raise IntentError(f"the leaf must begin and end in the shaft; |OQ| is {found:.9g} mm at x = {at:.6g}", field)
+    if distance[low] < -_JOIN * arm:
+        raise IntentError(f"|OQ| is a distance; it is {distance[low]:.9g} mm at x = {x[low]:.6g}", field)
+    if distance[high] >= most:
+        raise IntentError(
+            f"|OQ| must stay below {most:.9g} mm, where an arm would meet the shaft or stretch out; it is "
+            f"{distance[high]:.9g} mm at x = {x[high]:.6g}",
+            field,
+        )
