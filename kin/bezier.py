@@ -1,23 +1,26 @@
 """Rational Bezier pieces, thousands at a time, as arrays of control points and weights.
 
-A piece is X(t)/w(t) with X = sum w_i P_i B_i(t) and w = sum w_i B_i(t), t in [0, 1], all weights positive; equal weights
-make it a polynomial piece. Splines and ellipses become such pieces exactly (up to rounding).
+A piece is X(t)/w(t) with X = sum w_i P_i B_i(t) and w = sum w_i B_i(t), t in [0, 1], all weights positive; with equal
+weights it is polynomial. Splines and ellipses become such pieces exactly (up to rounding).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import comb, pi
-from typing import NamedTuple
+from math import pi
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-__all__ = ["Beziers", "Unrolled", "bernstein", "bernstein_product", "halves", "restrict"]
+from kin.bernstein import bernstein_product, restrict, rising_root, roots, values
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.arcs import Array, Indices
+
+__all__ = ["Beziers", "Unrolled"]
 
 # A hodograph vector below this part of the piece's longest one is rounding of a vanishing end derivative.
 VANISHING = 1e-12
@@ -25,67 +28,24 @@ VANISHING = 1e-12
 SIGNLESS = 1e-13
 # Halvings after which a piece that still turns too far is a cusp smaller than rounding.
 CUSP_HALVINGS = 48
-
-
-def bernstein(coefficients: Floats, t: Floats) -> Floats:
-    """Values of Bernstein polynomials by de Casteljau: coefficients (n, k+1, ...), t (n,) -> (n, ...)."""
-    s = t.reshape(t.shape + (1,) * (coefficients.ndim - 1))
-    b = coefficients
-    while b.shape[1] > 1:
-        b = b[:, :-1] * (1.0 - s) + b[:, 1:] * s
-    return b[:, 0]
-
-
-def bernstein_product(f: Floats, g: Floats) -> Floats:
-    """Bernstein coefficients of products, f (n, j+1) and g (n, k+1) -> (n, j+k+1)."""
-    j, k = f.shape[1] - 1, g.shape[1] - 1
-    out = np.zeros((f.shape[0], j + k + 1))
-    for i in range(j + 1):
-        weights = np.array([comb(j, i) * comb(k, m) / comb(j + k, i + m) for m in range(k + 1)])
-        out[:, i : i + k + 1] += f[:, i : i + 1] * (g * weights)
-    return out
-
-
-def halves(coefficients: Floats) -> tuple[Floats, Floats]:
-    """Coefficients (n, k+1, ...) over [0, 1/2] and over [1/2, 1]."""
-    k = coefficients.shape[1]
-    left, right = np.empty_like(coefficients), np.empty_like(coefficients)
-    b = coefficients
-    for level in range(k):
-        left[:, level] = b[:, 0]
-        right[:, k - 1 - level] = b[:, -1]
-        b = (b[:, :-1] + b[:, 1:]) / 2.0
-    return left, right
-
-
-def restrict(coefficients: Floats, a: Floats, b: Floats) -> Floats:
-    """Coefficients (n, k+1, ...) over the intervals [a, b] (n,) instead of [0, 1]."""
-    shape = (a.size,) + (1,) * (coefficients.ndim - 1)
-    right = coefficients.copy()
-    s = a.reshape(shape)
-    for level in range(1, coefficients.shape[1]):  # what lies right of a
-        right[:, :-level] = right[:, :-level] * (1.0 - s) + right[:, 1 : right.shape[1] - level + 1] * s
-    with np.errstate(invalid="ignore", divide="ignore"):
-        s = np.where(a < 1.0, (b - a) / (1.0 - a), 0.0).reshape(shape)
-    left = right.copy()
-    for level in range(1, coefficients.shape[1]):  # and of that, what lies left of b
-        left[:, level:] = left[:, level - 1 : -1] * (1.0 - s) + left[:, level:] * s
-    return left
+GAUSS_NODES = 16
+# Beyond so many halvings only the neighbourhood of a cusp is left, 2^-30 of the parameter.
+LENGTH_HALVINGS = 30
 
 
 class Unrolled(NamedTuple):
-    """Pieces cut where their tangent's sense of turning changes: `pieces`, and for each the row it was cut from (n,)."""
+    """Pieces cut where the sense of turning of their tangent changes, and for each the row it was cut from (n,)."""
 
     pieces: Beziers
-    row: Ints
+    row: Indices
 
 
 @dataclass(frozen=True, eq=False)
 class Beziers:
     """Bezier pieces of one degree d: control points (m, d+1, 2) in mm and positive weights (m, d+1)."""
 
-    control: Floats
-    weight: Floats
+    control: Array
+    weight: Array
 
     @staticmethod
     def empty() -> Beziers:
@@ -103,7 +63,7 @@ class Beziers:
         return Beziers(np.concatenate([p.control for p in raised]), np.concatenate([p.weight for p in raised]))
 
     @staticmethod
-    def from_ellipse(centre: Floats, major: Floats, minor: Floats, first: float, last: float) -> Beziers:
+    def from_ellipse(centre: Array, major: Array, minor: Array, first: float, last: float) -> Beziers:
         """Exact pieces of centre + major cos t + minor sin t for t from `first` to `last` (either sense), (2,) vectors.
 
         Each piece spans at most a quarter turn: quadratic, with the middle weight cos(half its span).
@@ -113,8 +73,9 @@ class Beziers:
         half = (last - first) / count / 2.0
         middle = (knots[:-1] + knots[1:]) / 2.0
 
-        def at(t: Floats, stretch: float) -> Floats:
-            return centre + (np.outer(np.cos(t), major) + np.outer(np.sin(t), minor)) * stretch
+        def at(t: Array, stretch: float) -> Array:
+            points: Array = centre + (np.outer(np.cos(t), major) + np.outer(np.sin(t), minor)) * stretch
+            return points
 
         control = np.stack([at(knots[:-1], 1.0), at(middle, 1.0 / np.cos(half)), at(knots[1:], 1.0)], axis=1)
         if abs(abs(last - first) - 2.0 * pi) < 1e-12:
@@ -123,8 +84,8 @@ class Beziers:
         return Beziers(control, weight)
 
     @staticmethod
-    def from_spline(degree: int, knots: Floats, control: Floats, weight: Floats) -> Beziers:
-        """The polynomial (or rational) spans of a B-spline over its domain knots[d] .. knots[-d-1].
+    def from_spline(degree: int, knots: Array, control: Array, weight: Array) -> Beziers:
+        """Return the polynomial or rational spans of a B-spline over its domain knots[d] .. knots[-d-1].
 
         knots (n+d+1,) not falling, control (n, 2), weight (n,) positive. Each span's control points are the blossom's
         values at its two ends, found by de Boor's scheme with an argument of its own at every level.
@@ -148,7 +109,7 @@ class Beziers:
         return Beziers.from_homogeneous(out)
 
     @staticmethod
-    def from_homogeneous(points: Floats) -> Beziers:
+    def from_homogeneous(points: Array) -> Beziers:
         """Pieces from (m, d+1, 3) arrays of (w x, w y, w)."""
         w = points[:, :, 2]
         if w.size and bool((w == w.flat[0]).all()) and w.flat[0] == 1.0:
@@ -158,15 +119,15 @@ class Beziers:
     @property
     def count(self) -> int:
         """Number of pieces."""
-        return self.control.shape[0]
+        return len(self.control)
 
     @property
     def degree(self) -> int:
         """Degree of every piece."""
-        return self.control.shape[1] - 1
+        return int(self.control.shape[1]) - 1
 
     @cached_property
-    def homogeneous(self) -> Floats:
+    def homogeneous(self) -> Array:
         """(w x, w y, w), (m, d+1, 3)."""
         return np.concatenate([self.control * self.weight[:, :, None], self.weight[:, :, None]], axis=2)
 
@@ -176,7 +137,7 @@ class Beziers:
         return bool((self.weight != self.weight[:, :1]).any())
 
     @cached_property
-    def velocity(self) -> Floats:
+    def velocity(self) -> Array:
         """Bernstein coefficients (m, k+1, 2) of a positive multiple of the derivative by t.
 
         The derivative itself (k = d-1) where all pieces are polynomials, else the numerator X' w - X w' (k = 2d-1).
@@ -194,7 +155,7 @@ class Beziers:
         )
 
     @cached_property
-    def directions(self) -> tuple[Floats, Floats]:
+    def directions(self) -> tuple[Array, Array]:
         """Directions of the tangent at both ends, 2 x (m,) radians; a vanishing end derivative takes its limit."""
         v = self.velocity
         size = np.hypot(v[:, :, 0], v[:, :, 1])
@@ -205,7 +166,7 @@ class Beziers:
         return np.arctan2(first[:, 1], first[:, 0]), np.arctan2(last[:, 1], last[:, 0])
 
     def elevated(self, degree: int) -> Beziers:
-        """The same curves with control points of a higher degree."""
+        """Return the same curves with control points of a higher degree."""
         h = self.homogeneous
         while h.shape[1] - 1 < degree:
             d = h.shape[1]
@@ -213,65 +174,51 @@ class Beziers:
             h = np.concatenate([h[:, :1], h[:, :-1] * share + h[:, 1:] * (1.0 - share), h[:, -1:]], axis=1)
         return self if degree <= self.degree else Beziers.from_homogeneous(h)
 
-    def take(self, rows: Ints | NDArray[np.bool_]) -> Beziers:
+    def take(self, rows: Indices | NDArray[np.bool_]) -> Beziers:
         """Return the pieces of these rows."""
         return Beziers(self.control[rows], self.weight[rows])
 
-    def turned_round(self) -> Beziers:
-        """The same curves run through backwards."""
-        return Beziers(self.control[:, ::-1].copy(), self.weight[:, ::-1].copy())
+    def turned_round(self, which: NDArray[np.bool_]) -> Beziers:
+        """Return the same curves, those of the mask (m,) run through backwards."""
+        w = which[:, None]
+        control = np.where(w[:, :, None], self.control[:, ::-1], self.control)
+        return Beziers(control, np.where(w, self.weight[:, ::-1], self.weight))
 
-    def part(self, a: Floats, b: Floats) -> Beziers:
-        """Return the stretches [a, b] of the pieces, a and b (m,); ends at 0 and 1 keep their control points to the bit."""
+    def part(self, a: Array, b: Array) -> Beziers:
+        """Return the stretches [a, b] of the pieces, a and b (m,); at 0 and 1 the control point is kept to the bit."""
         h = restrict(self.homogeneous, a, b)
         out = Beziers.from_homogeneous(h)
         out.control[a == 0.0, 0] = self.control[a == 0.0, 0]
         out.control[b == 1.0, -1] = self.control[b == 1.0, -1]
         return out
 
-    def point(self, rows: Ints, t: Floats) -> Floats:
+    def point(self, rows: Indices, t: Array) -> Array:
         """Return points (n, 2) of the pieces `rows` at t (n,); exact at both ends."""
         origin = self.control[rows, 0]
         relative = self.control[rows] - origin[:, None]
         w = self.weight[rows]
-        x = bernstein(relative * w[:, :, None], t) / bernstein(w, t)[:, None]
-        return np.where((t == 1.0)[:, None], self.control[rows, -1], origin + x)
+        x = values(relative * w[:, :, None], t) / values(w, t)[:, None]
+        out: Array = np.where((t == 1.0)[:, None], self.control[rows, -1], origin + x)
+        return out
 
-    def derivative(self, rows: Ints, t: Floats) -> Floats:
+    def derivative(self, rows: Indices, t: Array) -> Array:
         """Return derivatives (n, 2) by t of the pieces `rows` at t (n,)."""
-        v = bernstein(self.velocity[rows], t)
+        v = values(self.velocity[rows], t)
         if not self.rational:
             return v
-        return v / bernstein(self.weight[rows], t)[:, None] ** 2
+        return v / values(self.weight[rows], t)[:, None] ** 2
 
-    def farthest(self, rows: Ints, theta: Floats) -> Floats:
+    def farthest(self, rows: Indices, theta: Array) -> Array:
         """Parameters t (n,) where x(t).u(theta) is greatest, for pieces that turn one way by less than pi.
 
-        The slope x'.u falls through zero at most once on such a piece when theta lies in its normals' range: Newton's
-        steps, kept inside a shrinking bracket.
+        On such a piece the slope x'.u falls through zero at most once, when theta lies in its normals' range.
         """
         u = np.stack([np.cos(theta), np.sin(theta)], axis=1)
         slope = np.einsum("nkc,nc->nk", self.velocity[rows], u)
-        bend = (slope.shape[1] - 1) * np.diff(slope, axis=1) if slope.shape[1] > 1 else np.zeros((rows.size, 1))
-        low, high = np.zeros(rows.size), np.ones(rows.size)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            t = slope[:, 0] / (slope[:, 0] - slope[:, -1])
-        t = np.where((t > 0.0) & (t < 1.0), t, 0.5)
-        for _ in range(80):
-            g = bernstein(slope, t)
-            low, high = np.where(g > 0.0, t, low), np.where(g > 0.0, high, t)
-            with np.errstate(invalid="ignore", divide="ignore"):
-                following = t - g / bernstein(bend, t)
-            inside = (following > low) & (following < high)
-            following = np.where(inside, following, (low + high) / 2.0)
-            moved = np.abs(following - t)
-            t = following
-            if not bool((moved > 4e-16).any()):
-                break
-        return np.clip(t, 0.0, 1.0)
+        return rising_root(-slope)
 
     def area_over_chords(self) -> float:
-        """Area between the pieces and their chords, mm^2: Gauss's rule, exact for polynomials, to rounding for the others."""
+        """Area between the pieces and their chords, mm^2: Gauss's rule, exact for polynomials, else to rounding."""
         if not self.count:
             return 0.0
         # x . y' of degree 2d-1 needs d nodes; a rational piece of at most a half turn is smooth enough for 24 more.
@@ -283,6 +230,32 @@ class Beziers:
             y = self.point(rows, t) - self.control[:, 0]
             v = self.derivative(rows, t)
             total += float(w) * float(np.sum(y[:, 0] * v[:, 1] - y[:, 1] * v[:, 0])) / 2.0
+        return total
+
+    @cached_property
+    def lengths(self) -> Array:
+        """Arc length of each piece, mm (m,): Gauss's rule on finer and finer parts, until two agree to 1e-13 of it."""
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_NODES)
+        row, begin, step = np.arange(self.count), np.zeros(self.count), 1.0
+
+        def integrals(row: Indices, begin: Array, step: float) -> Array:
+            at = begin[:, None] + step * (nodes + 1.0) / 2.0
+            v = self.derivative(np.repeat(row, GAUSS_NODES), at.ravel())
+            speed: Array = np.hypot(v[:, 0], v[:, 1]).reshape(at.shape)
+            return speed @ weights * (step / 2.0)
+
+        total = np.zeros(self.count)
+        coarse = integrals(row, begin, step)
+        whole = coarse.copy()
+        for _ in range(LENGTH_HALVINGS):
+            step /= 2.0
+            row2, begin2 = np.repeat(row, 2), np.stack([begin, begin + step], axis=1).ravel()
+            fine = integrals(row2, begin2, step)
+            done = np.abs(fine.reshape(-1, 2).sum(axis=1) - coarse) <= 1e-13 * whole[row]
+            np.add.at(total, row[done], fine.reshape(-1, 2).sum(axis=1)[done])
+            open_ = np.repeat(~done, 2)
+            row, begin, coarse = row2[open_], begin2[open_], fine[open_]
+        np.add.at(total, row, coarse)
         return total
 
     def unrolled(self) -> Unrolled:
@@ -317,14 +290,14 @@ class Beziers:
         return Unrolled(cut, rows)
 
     def turns_little(self) -> NDArray[np.bool_]:
-        """True (m,) where every hodograph vector points forward along the chord: the tangent stays within pi/2 of it."""
+        """Where every hodograph vector points along the chord, so that the tangent stays within pi/2 of it (m,)."""
         chord = self.control[:, -1] - self.control[:, 0]
         forward = np.einsum("nkc,nc->nk", self.velocity, chord)
         size = np.abs(forward).max(axis=1, keepdims=True)
         return np.asarray((forward >= -SIGNLESS * size).all(axis=1) & (size[:, 0] > 0.0))
 
 
-def turning_numerator(velocity: Floats) -> Floats:
+def turning_numerator(velocity: Array) -> Array:
     """Bernstein coefficients (m, 2k) of v x v', whose sign is that of the curvature; rounding is set to zero."""
     k = velocity.shape[1] - 1
     x, y = velocity[:, :, 0], velocity[:, :, 1]
@@ -332,28 +305,3 @@ def turning_numerator(velocity: Floats) -> Floats:
     bend = bernstein_product(x, dy) - bernstein_product(y, dx)
     scale = np.hypot(x, y).max(axis=1) * np.hypot(dx, dy).max(axis=1)
     return np.where(np.abs(bend) <= SIGNLESS * scale[:, None], 0.0, bend)
-
-
-def roots(coefficients: Floats) -> list[float]:
-    """Where a Bernstein polynomial (k+1,) changes sign inside (0, 1), rising; a touching root may be listed too.
-
-    The number of sign changes of the coefficients bounds the number of roots (variation diminishing): none or one is
-    decided at once, more are halved.
-    """
-    found: list[float] = []
-    stack = [(coefficients, 0.0, 1.0)]
-    while stack:
-        c, a, b = stack.pop()
-        signs = np.sign(c[c != 0.0])
-        changes = int(np.count_nonzero(signs[1:] != signs[:-1]))
-        if changes == 0:
-            continue
-        if b - a < 2e-16 or (changes > 1 and b - a < 1e-9):
-            found.append((a + b) / 2.0)
-            continue
-        left, right = halves(c[None])
-        if left[0, -1] == 0.0:
-            found.append((a + b) / 2.0)
-        stack.append((right[0], (a + b) / 2.0, b))
-        stack.append((left[0], a, (a + b) / 2.0))
-    return sorted({t for t in found if 1e-12 < t < 1.0 - 1e-12})

@@ -1,31 +1,36 @@
-"""A closed contour of lines, circular arcs and Bezier pieces, as read from a file: support function, area, length.
+"""A closed contour of lines, circular arcs and Bezier pieces, as read from a file: support function and measures.
 
-Counter-clockwise, in mm, as structure of arrays. Nothing is assumed of its shape: the support function is the exact
-maximum over all points of the contour, also of a dented or spoilt one.
+Counter-clockwise, in mm. Nothing is assumed of its shape: the support function is the exact maximum over all points of
+the contour, also of a dented or spoilt one.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kin.arcs import Arcs, Array, Indices, cross, dot, unit
-from kin.bezier import Beziers
+from kin.arcs import Arcs, cross, dot, unit
+from kin.biarc import arcs_along
 from kin.hull import convex_hull, is_convex_polygon
+from kin.nearest import nearest
+from kin.pieces import ARC, BEZIER, LINE, TURN, NormalRanges, Pieces, wrapped
 
-__all__ = ["ARC", "BEZIER", "LINE", "Box", "Contour", "NormalRanges", "Support"]
+if TYPE_CHECKING:
+    from kin.arcs import Array, Indices
 
-LINE, ARC, BEZIER = 0, 1, 2
+__all__ = ["ARC", "BEZIER", "LINE", "Box", "Contour", "Support"]
 
-TURN = 2.0 * np.pi
-# A bulge below this bends its chord by less than the rounding of the chord's own length.
-STRAIGHT_BULGE = 1e-18
 # Pairs of piece and angle that are worked on at a time, which bounds the memory a hostile contour can ask for.
 PAIRS_AT_ONCE = 1_000_000
+# Greatest distance, mm, at which arcs stand in for a spline where only arcs will do.
+ARC_TOLERANCE = 1e-9
+# Rounding of a tangent's angle, in units of the machine's precision times extent over chord.
+ANGLE_ROUNDING = 16.0
+# Part of an interval between two breaks at which its ends are looked at, to see whether the contact moves in between.
+INSET = 1e-6
 
 
 class Support(NamedTuple):
@@ -45,80 +50,46 @@ class Box(NamedTuple):
     y_max: float
 
 
-class NormalRanges(NamedTuple):
-    """The curved pieces (their indices, (c,)) and where each one can be farthest: normals from `low` over `width`, (c,).
-
-    `low` in [0, 2 pi). Each normal in the range belongs to one point of the piece, the farthest of its own circle or bow.
-    """
-
-    piece: Indices
-    low: Array
-    width: Array
-
-
 @dataclass(frozen=True, eq=False)
-class Contour:
-    """n pieces end to end; piece i runs from start[i] to end[i], and end[i] is start[i+1] within the reader's gap.
+class Contour(Pieces):
+    """Pieces end to end, closed: end[i] is start[i+1], the last end the first start, within the reader's gap.
 
-    kind (n,)       LINE, ARC or BEZIER
-    start, end      (n, 2) mm
-    centre          (n, 2) mm, radius (n,) mm, angle (n,) polar angle of the start seen from the centre, sweep (n,)
-                    signed, |sweep| <= 2 pi: of the arcs; zero elsewhere
-    curve (n,)      row of a Bezier piece in `beziers`; -1 elsewhere
-    beziers         the Bezier pieces, each turning one way by less than pi
+    Counter-clockwise when it comes from a reader; every measure here takes either sense, only `area`, `turning` and
+    `is_convex` tell them apart.
     """
 
-    kind: NDArray[np.uint8]
-    start: Array
-    end: Array
-    centre: Array
-    radius: Array
-    angle: Array
-    sweep: Array
-    curve: Indices
-    beziers: Beziers
+    @staticmethod
+    def from_pieces(pieces: Pieces) -> Contour:
+        """Return the contour of `pieces`, which follow one another (checked where they are chained, not here)."""
+        return Contour(**{f.name: getattr(pieces, f.name) for f in fields(pieces)})
 
     @staticmethod
     def from_vertices(vertices: Array) -> Contour:
-        """The closed polygon through vertices (n, 2)."""
-        return Contour.from_bulges(vertices, np.zeros(vertices.shape[0]))
+        """Return the closed polygon through vertices (n, 2)."""
+        return Contour.from_bulges(vertices, np.zeros(len(vertices)))
 
     @staticmethod
     def from_bulges(vertices: Array, bulges: Array) -> Contour:
-        """Lines and arcs between vertices (n, 2) in turn and back to the first; bulge (n,) = tan(sweep/4) of what follows."""
+        """Lines and arcs from vertex to vertex (n, 2) and back; bulge (n,) = tan(sweep/4) of the piece that follows."""
         start = np.asarray(vertices, dtype=np.float64)
-        return Contour.from_chords(start, np.roll(start, -1, axis=0), np.asarray(bulges, dtype=np.float64))
+        end = np.roll(start, -1, axis=0)
+        return Contour.from_pieces(Pieces.from_chords(start, end, np.asarray(bulges, dtype=np.float64)))
 
-    @staticmethod
-    def from_chords(start: Array, end: Array, bulge: Array) -> Contour:
-        """Lines and arcs from start (n, 2) to end (n, 2) with bulges (n,)."""
-        n = start.shape[0]
-        arc = np.abs(bulge) > STRAIGHT_BULGE
-        b = np.where(arc, bulge, 1.0)
-        chord = end - start
-        length = np.hypot(chord[:, 0], chord[:, 1])
-        across = np.stack([-chord[:, 1], chord[:, 0]], axis=1)
-        centre = (start + end) / 2.0 + across * ((1.0 - b * b) / (4.0 * b))[:, None]
-        sweep = 4.0 * np.arctan(bulge)
-        angle = np.arctan2(chord[:, 1], chord[:, 0]) - sweep / 2.0 - np.copysign(np.pi / 2.0, bulge)
-        return Contour(
-            kind=np.where(arc, ARC, LINE).astype(np.uint8),
-            start=start,
-            end=end,
-            centre=np.where(arc[:, None], centre, 0.0),
-            radius=np.where(arc, length * (1.0 + b * b) / (4.0 * np.abs(b)), 0.0),
-            angle=np.where(arc, angle, 0.0),
-            sweep=np.where(arc, sweep, 0.0),
-            curve=np.full(n, -1, dtype=np.intp),
-            beziers=Beziers.empty(),
-        )
+    def reversed(self) -> Contour:
+        """Return the same contour run through the other way."""
+        return Contour.from_pieces(self.take(np.arange(len(self))[::-1]).turned_round())
 
-    def __len__(self) -> int:
-        return self.kind.shape[0]
+    def mirrored(self) -> Contour:
+        """Return the mirror image in the x axis, run through the other way so that its sense stays."""
+        return Contour.from_pieces(self.reflected()).reversed()
+
+    def scaled(self, factor: float) -> Contour:
+        """Return the contour enlarged about the origin by a positive factor."""
+        return Contour.from_pieces(self.enlarged(factor))
 
     @cached_property
     def vertices(self) -> Array:
-        """Ends of all pieces in order: the starts (n, 2), or starts and ends alternating (2n, 2) where ends do not meet."""
+        """Ends of all pieces in order: the starts (n, 2), or starts and ends by turns (2n, 2) if they do not meet."""
         if np.array_equal(self.end[:-1], self.start[1:]) and np.array_equal(self.end[-1:], self.start[:1]):
             return self.start
         return np.stack([self.start, self.end], axis=1).reshape(-1, 2)
@@ -127,7 +98,7 @@ class Contour:
     def hull(self) -> Indices:
         """Corners of the convex hull of the `vertices`, counter-clockwise: indices (h,) into them."""
         if is_convex_polygon(self.vertices):
-            return np.arange(self.vertices.shape[0])
+            return np.arange(len(self.vertices))
         return convex_hull(self.vertices)
 
     @cached_property
@@ -142,25 +113,8 @@ class Contour:
         order = np.argsort(normal, kind="stable")
         return normal[order], following[order]
 
-    @cached_property
-    def normal_ranges(self) -> NormalRanges:
-        """The normals at which each curved piece can be the farthest."""
-        arcs = np.flatnonzero(self.kind == ARC)
-        sweep = self.sweep[arcs]
-        low = self.angle[arcs] + np.minimum(sweep, 0.0)
-        piece, width = arcs, np.abs(sweep)
-        if self.beziers.count:
-            curved = np.flatnonzero(self.kind == BEZIER)
-            first, last = (a[self.curve[curved]] for a in self.beziers.directions)
-            turn = np.mod(last - first + np.pi, TURN) - np.pi
-            # Turning left the outward normal lies right of the tangent; turning right, the bow bulges to the left.
-            low = np.concatenate([low, np.where(turn >= 0.0, first - np.pi / 2.0, last + np.pi / 2.0)])
-            piece = np.concatenate([piece, curved])
-            width = np.concatenate([width, np.abs(turn)])
-        return NormalRanges(piece, np.mod(low, TURN), width)
-
     def support(self, theta: Array) -> Support:
-        """The support function at angles theta (k,): q, contact point and piece, exact over every point of the contour.
+        """Support function at angles theta (k,): q, contact point and piece, exact over every point of the contour.
 
         Among vertices the farthest is found on their convex hull by bisection; each curved piece is tried at the angles
         within its own range of normals. Cost grows as n + k log n for a contour that goes round once.
@@ -176,66 +130,167 @@ class Contour:
         best = reach.argmax(axis=1)
         rows = np.arange(theta.size)
         vertex = near[rows, best]
-        q, point = reach[rows, best], self.vertices[vertex]
-        piece = vertex if self.vertices.shape[0] == len(self) else vertex // 2
+        found = Support(reach[rows, best], self.vertices[vertex], vertex * len(self) // len(self.vertices))
         ranges = self.normal_ranges
         if ranges.piece.size and theta.size:
             order = np.argsort(reduced, kind="stable")
             for tried, at in paired(ranges, reduced[order]):
-                self.raise_support(q, point, piece, ranges.piece[tried], order[at], reduced, u)
-        return Support(q, point, piece)
+                self._raise(found, ranges.piece[tried], order[at], reduced, u)
+        return found
 
-    def raise_support(self, q: Array, point: Array, piece: Indices, tried: Indices, at: Indices, theta: Array, u: Array) -> None:
-        """Let pieces `tried` compete at angles number `at`, and write where they reach farther into q, point, piece."""
+    def _raise(self, found: Support, tried: Indices, at: Indices, theta: Array, u: Array) -> None:
+        """Let pieces `tried` compete at the angles number `at`; write into `found` where they reach farther."""
+        q, point, piece = found
         is_arc = self.kind[tried] == ARC
         arc, a = tried[is_arc], at[is_arc]
         half = (theta[a] - self.angle[arc]) / 2.0
         # From the start of the arc, not from its centre: nothing is lost where the centre is far away.
-        value = np.empty(tried.size)
+        value, share = np.empty(tried.size), np.zeros(tried.size)
         value[is_arc] = dot(self.start[arc], u[a]) + 2.0 * self.radius[arc] * np.sin(half) ** 2
-        t = np.zeros(tried.size)
         if not is_arc.all():
             bow, b = self.curve[tried[~is_arc]], at[~is_arc]
-            t[~is_arc] = self.beziers.farthest(bow, theta[b])
-            value[~is_arc] = dot(self.beziers.point(bow, t[~is_arc]), u[b])
-        ahead = value > q[at]
+            share[~is_arc] = self.beziers.farthest(bow, theta[b])
+            value[~is_arc] = dot(self.beziers.point(bow, share[~is_arc]), u[b])
+        ahead = np.flatnonzero(value > q[at])
         np.maximum.at(q, at[ahead], value[ahead])
-        won = np.flatnonzero(ahead)
-        won = won[value[won] == q[at[won]]]
+        won = ahead[value[ahead] == q[at[ahead]]]
         piece[at[won]] = tried[won]
-        arc, a = won[is_arc[won]], at[won[is_arc[won]]]
-        point[a] = self.arc_points(tried[arc], theta[a] - self.angle[tried[arc]])
-        bow = won[~is_arc[won]]
+        arc, bow = won[is_arc[won]], won[~is_arc[won]]
+        point[at[arc]] = self.arc_points(tried[arc], theta[at[arc]] - self.angle[tried[arc]])
         if bow.size:
-            point[at[bow]] = self.beziers.point(self.curve[tried[bow]], t[bow])
+            point[at[bow]] = self.beziers.point(self.curve[tried[bow]], share[bow])
 
-    def arc_points(self, pieces: Indices, turn: Array) -> Array:
-        """Points (k, 2) of arcs, `turn` (k,) radians on from their starts, counter-clockwise positive."""
-        half = turn / 2.0
-        middle = self.angle[pieces] + half
-        along = np.stack([-np.sin(middle), np.cos(middle)], axis=1)
-        return self.start[pieces] + (2.0 * self.radius[pieces] * np.sin(half))[:, None] * along
+    @cached_property
+    def normals(self) -> Array:
+        """Angles in [0, 2 pi) at which the support function changes its form, rising.
+
+        These are the normals of hull edges, the ends of each curved piece's range of normals where they are active, and
+        for a dented contour the normals of lines that touch it twice. Between two of them one corner, arc or Bezier
+        piece is the farthest throughout.
+        """
+        normals, corners = self.hull_edges
+        ranges = self.normal_ranges
+        theta = np.concatenate([normals, ranges.low, ranges.low + ranges.width])
+        if not ranges.piece.size:
+            return np.unique(theta)
+        # The ends of a range belong to the ends of its piece, in an order that depends on the sense of turning.
+        leftward = self.turns[ranges.piece] >= 0.0
+        first, last = self.start[ranges.piece], self.end[ranges.piece]
+        low_end = np.where(leftward[:, None], first, last)
+        high_end = np.where(leftward[:, None], last, first)
+        point = np.concatenate([self.vertices[corners], low_end, high_end])
+        own = dot(point, unit(theta))
+        if not self.is_convex:
+            extent = float(np.abs(self.vertices).max())
+            active = own >= self.support(theta).q - 64.0 * np.finfo(float).eps * extent
+            theta = theta[active]
+        theta = np.unique(np.mod(theta, TURN))
+        return theta if self.is_convex else np.unique(np.concatenate([theta, self._switches(theta)]))
+
+    def _switches(self, theta: Array) -> Array:
+        """Angles strictly between neighbours in theta (k,), rising, at which the farthest point leaps: by bisection."""
+        if not theta.size:
+            return theta
+        width = np.diff(theta, append=theta[0] + TURN)
+        wide = width > 4.0 * np.finfo(float).eps / INSET
+        low, high = (theta + INSET * width)[wide], (theta + (1.0 - INSET) * width)[wide]
+        piece = self.support(low).piece
+        leaps = piece != self.support(high).piece
+        low, high, piece = low[leaps], high[leaps], piece[leaps]
+        for _ in range(60):
+            middle = (low + high) / 2.0
+            same = self.support(middle).piece == piece
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        found: Array = np.mod(low, TURN)
+        return found
 
     @cached_property
     def area(self) -> float:
-        """Signed area, mm^2: Green's theorem, closed forms on lines, arcs and polynomial pieces (rational: quadrature)."""
-        origin = self.vertices.mean(axis=0)
-        v = self.vertices - origin
+        """Signed area, mm^2, positive if counter-clockwise: Green's theorem, closed forms but for rational pieces."""
+        v = self.vertices - self.vertices.mean(axis=0)
         polygon = float(np.sum(cross(v, np.roll(v, -1, axis=0)))) / 2.0
         arc = self.kind == ARC
         bows = float(np.sum(self.radius[arc] ** 2 * less_sine(self.sweep[arc]))) / 2.0
         return polygon + bows + self.beziers.area_over_chords()
 
+    @cached_property
+    def length(self) -> float:
+        """Perimeter, mm."""
+        return float(self.lengths.sum())
+
+    @cached_property
+    def box(self) -> Box:
+        """Bounding box, exact."""
+        point = self.support(np.array([0.0, 0.5, 1.0, 1.5]) * np.pi).point
+        return Box(float(point[2, 0]), float(point[3, 1]), float(point[0, 0]), float(point[1, 1]))
+
+    @cached_property
+    def joints(self) -> Array:
+        """Turn of the tangent at the start of each piece, from the piece before it, in [-pi, pi) (n,)."""
+        first, last = self.directions
+        return wrapped(first - np.roll(last, 1))
+
+    @cached_property
+    def turning(self) -> int:
+        """Number of turns of the tangent: 1 for a simple counter-clockwise contour, -1 for a clockwise one."""
+        return round(float(self.turns.sum() + self.joints.sum()) / TURN)
+
+    @cached_property
+    def is_convex(self) -> bool:
+        """Whether it turns left throughout, and once, up to the rounding of the tangents' angles."""
+        reach = np.abs(self.vertices - self.vertices.mean(axis=0)).max()
+        chord = np.hypot(*(self.end - self.start).T)
+        with np.errstate(divide="ignore"):
+            noise = ANGLE_ROUNDING * np.finfo(float).eps * (TURN + np.abs(self.vertices).max() / chord + reach / chord)
+        left_pieces = bool((self.turns >= -noise).all())
+        left_joints = bool((self.joints >= -noise - np.roll(noise, 1)).all())
+        return left_pieces and left_joints and self.turning == 1
+
+    def sample(self, per_piece: int) -> Array:
+        """Points (n * per_piece, 2) in order, the starts among them, evenly along each piece (a Bezier's parameter)."""
+        piece = np.repeat(np.arange(len(self)), per_piece)
+        share = np.tile(np.arange(per_piece) / per_piece, len(self))
+        return self.points(piece, share)
+
+    def as_arcs(self, tolerance: float = ARC_TOLERANCE) -> tuple[Arcs, Indices]:
+        """Lines and arcs in order, each turning by at most half a turn, and the piece each belongs to (k,).
+
+        Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved. Cost grows as tolerance^(-1/3).
+        """
+        first, _ = self.directions
+        size = np.where(self.kind == ARC, self.radius, 1.0)
+        curvature = np.where(self.kind == ARC, np.copysign(1.0, self.sweep) / size, 0.0)
+        plain = np.flatnonzero(self.kind != BEZIER)
+        lengths = np.hypot(*(self.end - self.start).T)
+        lengths = np.where(self.kind == ARC, self.radius * np.abs(self.sweep), lengths)
+        arcs = Arcs(self.start[plain], unit(first[plain]), curvature[plain], lengths[plain])
+        arcs, part = arcs.cut(1 + (np.abs(self.sweep[plain]) > np.pi).astype(np.intp))
+        owner = plain[part]
+        if self.beziers.count:
+            bows, row = arcs_along(self.beziers, tolerance)
+            piece_of_row = np.empty(self.beziers.count, dtype=np.intp)
+            bow = np.flatnonzero(self.kind == BEZIER)
+            piece_of_row[self.curve[bow]] = bow
+            owner = np.concatenate([owner, piece_of_row[row]])
+            order = np.argsort(owner, kind="stable")
+            arcs, owner = arcs.joined(bows).take(order), owner[order]
+        return arcs, owner
+
+    def distance(self, points: Array, tolerance: float = ARC_TOLERANCE) -> Array:
+        """Distance of points (k, 2) from the contour, mm (k,): exact from lines and arcs, else within `tolerance`."""
+        _, distance = nearest(self.as_arcs(tolerance)[0], np.asarray(points, dtype=np.float64))
+        return distance
+
 
 def less_sine(x: Array) -> Array:
-    """X - sin x, (n,), to full relative precision for small x too."""
+    """Return x - sin x (n,), to full relative precision for small x too."""
     x2 = x * x
     series = x * x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0))))
     return np.where(np.abs(x) < 0.25, series, x - np.sin(x))
 
 
 def paired(ranges: NormalRanges, theta: Array) -> list[tuple[Indices, Indices]]:
-    """All pairs of a range and an angle within it, theta (k,) rising in [0, 2 pi): batches of (range, angle) numbers."""
+    """All pairs of a range and an angle within it, theta (k,) rising in [0, 2 pi): batches of numbers of either."""
     ring = np.concatenate([theta, theta + TURN])
     first = np.searchsorted(ring, ranges.low, side="left")
     count = np.minimum(np.searchsorted(ring, ranges.low + ranges.width, side="right") - first, theta.size)

@@ -20,41 +20,40 @@ def is_convex_polygon(points: Array) -> bool:
     turn = cross(edge, np.roll(edge, -1, axis=0))
     if not bool((turn > 0.0).all()):
         return False
-    # Turning left everywhere, it goes round as often as its edges pass the direction +x: count upward changes of dy's sign.
+    # Turning left everywhere, it goes round as often as its edges begin to rise.
     upward = (edge[:, 1] > 0.0) | ((edge[:, 1] == 0.0) & (edge[:, 0] > 0.0))
-    return int(np.count_nonzero(upward & ~np.roll(upward, 1))) == 1
+    return bool(np.count_nonzero(upward & ~np.roll(upward, 1)) == 1)
 
 
 def convex_hull(points: Array) -> Indices:
-    """Indices of the hull's corners, counter-clockwise from the leftmost, of points (n, 2); no three in line.
+    """Indices of the corners of the hull of points (n, 2), counter-clockwise from the leftmost; no three in line.
 
     Andrew's monotone chain. A point on or inside the chord of its neighbours in the sorted chain is no corner, so all
     such points may go at once: whole passes as long as they pay, then point by point from where the last pass stopped.
     """
     order = np.lexsort((points[:, 1], points[:, 0]))
     same = np.concatenate([[False], (points[order[1:]] == points[order[:-1]]).all(axis=1)])
-    order = order[~same]
-    if order.size < 3:
-        return order
-    lower = chain(points, order)
-    upper = chain(points, order[::-1])
-    return np.concatenate([lower[:-1], upper[:-1]])
+    distinct: Indices = order[~same]
+    if distinct.size < 3:
+        return distinct
+    return np.concatenate([chain(points, distinct)[:-1], chain(points, distinct[::-1])[:-1]])
 
 
 def chain(points: Array, order: Indices) -> Indices:
     """Reduce a sorted chain of indices until it turns left at each one."""
-    while order.size > 2:
-        p = points[order]
+    rest: Indices = order
+    while rest.size > 2:
+        p = points[rest]
         edge = np.diff(p, axis=0)
-        keep = np.ones(order.size, dtype=bool)
+        keep = np.ones(rest.size, dtype=bool)
         keep[1:-1] = cross(edge[:-1], edge[1:]) > 0.0
-        gone = order.size - int(np.count_nonzero(keep))
+        gone = rest.size - int(np.count_nonzero(keep))
         if gone == 0:
-            return order
-        order = order[keep]
-        if gone < WORTHWHILE_SHARE * order.size:
-            return repaired(points, order)
-    return order
+            return rest
+        rest = rest[keep]
+        if gone < WORTHWHILE_SHARE * rest.size:
+            return repaired(points, rest)
+    return rest
 
 
 def repaired(points: Array, order: Indices) -> Indices:
@@ -78,4 +77,5 @@ def repaired(points: Array, order: Indices) -> Indices:
             alive[i] = False
             after[j], before[k] = k, j
             stack += (k, j)
-    return order[np.array(alive)]
+    rest: Indices = order[np.array(alive)]
+    return rest
