@@ -150,10 +150,11 @@ class ArcSpline:
                 cosine = sense * normal[:, axis]
                 sine = normal[:, 1 - axis]
                 versine = np.where(cosine > 0.0, sine * sine / (1.0 + np.abs(cosine)), 1.0 - cosine)
-                # value along d = middle + radius (1 - cos(half) cos(delta)), delta between d and the middle normal
-                reach = 0.5 * length * (b + (1.0 - b * b) / (2.0 * b) * versine)
                 within = versine <= 2.0 * b * b / (1.0 + b * b)
-                extreme = (middle + sense * reach)[within]
+                # value along d = middle + radius (1 - cos(half) cos(delta)), delta between d and the middle normal
+                bulge_in, beyond = b[within], versine[within]
+                reach = 0.5 * length[within] * (bulge_in + (1.0 - bulge_in * bulge_in) * (0.5 * beyond / bulge_in))
+                extreme = middle[within] + sense * reach
                 if extreme.size and sense > 0.0:
                     highest[axis] = max(highest[axis], extreme.max())
                 elif extreme.size:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,7 @@ BALANCED = 1e-3  # of the tolerance: how far the two sides may differ before the
 ROUNDS = 3  # of sharing the nodes anew before there are more of them
 # What part of the tolerance to aim at, and whether by proved or, quicker, by seen sagittas, until the proof holds it all.
 PARTS = ((1.0, False), (0.996, True), (0.98, True), (0.9, True), (0.6, True), (0.3, True))
+ACROSS = 0.8  # shares on each side of an inflection that one edge can cover; the limit is sqrt(24)/6
 FULL = 0.93  # of the tolerance used is enough; below it fewer edges are looked for
 
 
@@ -41,7 +43,8 @@ class _Edges:
     """Edges of one run: nodes (n + 1,), vertices (n + 1, 2), and how they lie.
 
     Vertices stand `outward` and `inward` of the curve at most; `overhang` is how far the curve can reach past the ends
-    of the edge that belongs to it; `load` is the greatest sagitta seen.
+    of the edge that belongs to it; `bend` (n,) is 1 for an edge of a convex stretch, -1 for a concave one, 0 across an
+    inflection; `load` is the greatest sagitta found.
     """
 
     nodes: Array
@@ -49,6 +52,7 @@ class _Edges:
     outward: float
     inward: float
     overhang: float
+    bend: Array
     deviation: Deviation
     load: float = math.inf
 
@@ -127,33 +131,92 @@ def _settled(
 
     None where more than `most` edges would be needed.
     """
-    counts = [max(1, math.ceil(group.total / math.sqrt(tolerance) - 1e-6)) for group in groups]
-    while sum(counts) < least:
-        counts = [count + 1 for count in counts]
-    parts = [group.nodes(count) for group, count in zip(groups, counts, strict=True)]
-    shared = [0] * len(groups)
+    allowed = 2.0 * tolerance * (1.0 + 1e-12)
+    parts, links = _first_nodes(curve, groups, math.sqrt(tolerance), least)
+    shared = [0] * len(parts)
     for _ in range(TRIES):
-        total = sum(part.size - 1 for part in parts)
-        if total > most:
+        nodes, owner = _chained(parts)
+        if nodes.size - 1 > most:
             return None
-        nodes = np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
         edges = _edges(curve, run, nodes, tolerance, tolerance if proved else math.inf)
         found = edges.deviation
         high, low = (found.outside, found.inside) if proved else (found.seen_high, found.seen_low)
-        load = np.maximum(high, -low - 2.0 * tolerance) + tolerance
+        # what lies beyond the vertices' own side; across an inflection both sides count
+        load = np.where(edges.bend > 0, high, np.where(edges.bend < 0, -low, np.maximum(high, -low))) + tolerance
         load[~np.isfinite(found.inside) | ~np.isfinite(found.outside)] = np.inf
         top = float(load.max())
-        if top <= 2.0 * tolerance:
+        if top <= allowed:
             return replace(edges, load=top)
-        first = 0
         for i, part in enumerate(parts):
-            mine = load[first : first + part.size - 1]
-            first += part.size - 1
-            if float(mine.max()) <= 2.0 * tolerance:
-                continue
-            parts[i], shared[i] = _denser(part, mine, 2.0 * tolerance, shared[i])
-            check_count(parts[i].size, "straight edges", tolerance)
+            mine = load[owner == i]
+            if mine.size and float(mine.max()) > allowed:
+                parts[i], shared[i] = _denser(part, mine, 2.0 * tolerance, shared[i])
+                check_count(parts[i].size, "straight edges", tolerance)
+        for i, at in links.items():
+            over = float(load[(owner == -1) & (nodes[:-1] == parts[i][-1])].max(initial=0.0))
+            if over > allowed:
+                # the error of an edge across an inflection grows as the cube of its length
+                share = 0.99 * (2.0 * tolerance / over) ** (1.0 / 3.0) if math.isfinite(over) else 0.5
+                parts[i][-1] = at + share * (parts[i][-1] - at)
+                parts[i + 1][0] = at + share * (parts[i + 1][0] - at)
     return None
+
+
+def _first_nodes(
+    curve: Curve, groups: list[Density], root: float, least: int
+) -> tuple[list[Array], dict[int, float]]:
+    """Nodes in equal shares of each group, cut at inflections; `links` holds the inflection after each part.
+
+    The edge that runs across an inflection covers `ACROSS` shares on each side of it: there the curve is a cubic, and
+    the line that best fits a cubic does so over k' a^3 = 24 e (Chebyshev's polynomial of degree 3).
+    """
+    parts: list[Array] = []
+    links: dict[int, float] = {}
+    total = sum(group.total for group in groups) / root
+    scale = min(1.0, total / least)
+    for group in groups:
+        cuts = _inflections(curve, group)
+        ends = [0.0, *(float(np.interp(cut, group.t, group.sum)) / root for cut in cuts), group.total / root]
+        for i, (begin, end) in enumerate(pairwise(ends)):
+            before, after = ACROSS if i > 0 else 0.0, ACROSS if i < len(cuts) else 0.0
+            count = max(1, math.ceil((end - begin) / scale - before - after - 1e-6))
+            share = (end - begin) / (count + before + after)
+            at = begin + share * (before + np.arange(count + 1))
+            part = np.interp(at * root, group.sum, group.t) if group.total > 0 else np.linspace(*group.t[[0, -1]], count + 1)
+            if before == 0.0:
+                part[0] = group.t[0]
+            if after == 0.0:
+                part[-1] = group.t[-1]
+            else:
+                links[len(parts)] = cuts[i]
+            parts.append(part)
+    return parts, links
+
+
+def _inflections(curve: Curve, group: Density) -> list[float]:
+    """Parameters inside a group at which the turn changes its sign, by bisection."""
+    inner = group.t[1:-1]
+    positive = curve.sample(inner).turn >= 0.0
+    found = np.flatnonzero(positive[1:] != positive[:-1])
+    low, high, sense = inner[found], inner[found + 1], positive[found]
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        same = (curve.sample(middle).turn >= 0.0) == sense
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return [float(x) for x in 0.5 * (low + high)]
+
+
+def _chained(parts: list[Array]) -> tuple[Array, Array]:
+    """All nodes in order, and for each edge the part it belongs to, -1 for one that links two parts."""
+    pieces, owner = [parts[0]], [np.zeros(parts[0].size - 1, dtype=np.int64)]
+    for i, part in enumerate(parts[1:], start=1):
+        if part[0] == parts[i - 1][-1]:
+            pieces.append(part[1:])
+        else:
+            pieces.append(part)
+            owner.append(np.array([-1]))
+        owner.append(np.full(part.size - 1, i))
+    return np.concatenate(pieces), np.concatenate(owner)
 
 
 def _denser(nodes: Array, load: Array, allowed: float, shared: int) -> tuple[Array, int]:
@@ -206,4 +269,7 @@ def _edges(curve: Curve, run: Run, nodes: Array, shift: float, tolerance: float)
             np.maximum.reduceat(found.seen_high, first),
         )
     outward, inward = max(0.0, float(away.max())), max(0.0, -float(away.min()))
-    return _Edges(nodes, vertices, outward, inward, overhang, found)
+    sense = np.where(at.turn >= 0.0, 1.0, -1.0)
+    sense = np.append(sense, sense[0] if run.closed else math.copysign(1.0, float(last.turn[0])))
+    bend = 0.5 * (sense[:-1] + sense[1:])
+    return _Edges(nodes, vertices, outward, inward, overhang, bend, found)

@@ -1,0 +1,118 @@
+"""From a recipe's cam to the motion it intends (in kin's words) and to the exact curve of its profile."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from camgeo.curve import Curve
+from camgeo.offset import Parallel
+from camgeo.recipe.model import (
+    ArcRoute,
+    ConstantBreadthCam,
+    DeltaRoute,
+    DoubleRollerCam,
+    FlatPairCam,
+    FormulaShape,
+    FourierShape,
+    LawRoute,
+    ReuleauxShape,
+    RosetteRoute,
+    SupportCam,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.curve import Shape
+    from camgeo.recipe.model import Cam, MotionSegment
+    from kin.law import Programme
+    from kin.lift import Lift
+    from kin.transmission import Transmission
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The exact curve of a cam.
+
+    `base` is what the intent describes, the pitch curve of a roller or the contour itself; `curve` is the contour,
+    `roller_radius` inside the base (0 for flat faces).
+    """
+
+    base: Curve
+    curve: Curve
+    roller_radius: float
+
+
+def intent_of(cam: Cam) -> Lift | Transmission:
+    """Motion that a recipe's cam intends: the lift of a flat face, or Wunderlich's transmission law.
+
+    Raises kin's IntentError where no such motion exists, with the field below `cam` that is at fault.
+    """
+    if isinstance(cam, SupportCam):
+        return _support(cam)
+    if isinstance(cam, ConstantBreadthCam):
+        from kin.lift import lift_constant_breadth
+
+        return lift_constant_breadth(cam.base_radius, _programme(cam.motion, math.pi, "motion"))
+    return _transmission(cam)
+
+
+def profile_of(cam: Cam, intent: Lift | Transmission) -> Profile:
+    """Exact curve of the cam that gives the intended motion."""
+    if isinstance(cam, DoubleRollerCam):
+        from camgeo.profile.wunderlich import PitchShape
+
+        pitch = PitchShape(intent)
+        return Profile(Curve.whole(pitch), Curve.whole(Parallel(pitch, cam.roller_radius)), cam.roller_radius)
+    shape: Shape
+    if isinstance(cam, FlatPairCam):
+        from camgeo.profile.wunderlich import FlatPairShape
+
+        shape = FlatPairShape(intent)
+    else:
+        from camgeo.profile.support import SupportShape
+
+        shape = SupportShape(intent)
+    whole = Curve.whole(shape)
+    return Profile(whole, whole, 0.0)
+
+
+def _support(cam: SupportCam) -> Lift:
+    from kin import lift
+
+    shape = cam.shape
+    if isinstance(shape, FormulaShape):
+        from kin.formula import Formula
+
+        return lift.lift_from_formula(Formula(shape.text), cam.pivot, shape.scale)
+    if isinstance(shape, FourierShape):
+        return lift.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), cam.pivot)
+    if isinstance(shape, ReuleauxShape):
+        return lift.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, cam.pivot)
+    return lift.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, cam.pivot)
+
+
+def _transmission(cam: DoubleRollerCam | FlatPairCam) -> Transmission:
+    from kin import transmission
+
+    route = cam.route
+    if isinstance(route, DeltaRoute):
+        return transmission.from_delta(cam.lam, cam.mu, cam.arm, dict(route.cos), dict(route.sin))
+    if isinstance(route, LawRoute):
+        swing_of = "pair" if isinstance(cam, FlatPairCam) else "arm"
+        motion = _programme(route.motion, math.pi / cam.lam, "law")
+        return transmission.from_law(cam.lam, cam.mu, cam.arm, motion, swing_of)
+    if isinstance(route, ArcRoute):
+        return transmission.from_arc(cam.lam, cam.mu, cam.arm, route.radius, route.side)
+    from kin.formula import Formula
+
+    leaf = Formula(route.text, ("x",))
+    return transmission.from_rosette(cam.lam, cam.mu, cam.arm, leaf, route.scale)
+
+
+def _programme(segments: Sequence[MotionSegment], total: float, field: str) -> Programme:
+    from kin.law import programme
+
+    return programme([segment.step() for segment in segments], total, field)
