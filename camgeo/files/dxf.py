@@ -1,0 +1,231 @@
+"""Contours as DXF drawings: one closed entity on CUT, the bore on BORE, everything else on REFERENCE.
+
+ezdxf provides the frame of the drawing, which CAD systems are particular about. Coordinates are written with as many
+digits as give back the same double. Nothing in the file depends on when, where or by whom it was written.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.pieces import BSpline, Outline, Polygon
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from ezdxf.document import Drawing
+    from ezdxf.entities.dxfgfx import DXFGraphic
+    from ezdxf.layouts.layout import Modelspace
+    from numpy.typing import NDArray
+
+    from camgeo.fit.pieces import Array, Box
+
+VERSIONS = {"R12": "AC1009", "R2000": "AC1015", "R2010": "AC1024", "R2013": "AC1027"}
+UNITS = {1.0: ("mm", 4, 1), 25.4: ("inch", 1, 0)}  # mm a unit: name, $INSUNITS, $MEASUREMENT
+APPLICATION = "CAMGEO"  # under this name each entity of the reference carries what it is, as extended data
+
+_CUT, _BORE, _REFERENCE = "CUT", "BORE", "REFERENCE"
+_COLOURS = {_CUT: 7, _BORE: 5, _REFERENCE: 8}
+_CENTRE_LINE = (22.0, 14.0, -3.0, 2.0, -3.0)  # mm: length of the pattern, then dash, gap, dash, gap
+_DATE = 2451544.5  # 2000-01-01 as a Julian date, in place of the times of writing
+_GUID = "{00000000-0000-0000-0000-000000000000}"
+_COMMENT = 250  # characters; R12 readers may stop at 255
+_SPLINE_DEGREE = 11  # the highest that AutoCAD accepts
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A circle of the reference, such as the prime circle: centre and radius in mm."""
+
+    name: str
+    centre: tuple[float, float]
+    radius: float
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of the reference, such as the shaft's centre, in mm."""
+
+    name: str
+    at: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A closed curve of the reference, such as the pitch curve."""
+
+    name: str
+    outline: Outline
+
+
+Reference = Circle | Point | Trace
+
+
+def write_dxf(
+    path: Path,
+    outline: Outline,
+    *,
+    bore: float | None = None,
+    reference: Sequence[Reference] = (),
+    mm: float = 1.0,
+    version: str = "R2010",
+    name: str = "",
+    about: str = "",
+) -> None:
+    """Write a contour, with its bore and reference geometry, as a DXF drawing with the shaft at the origin.
+
+    A polygon becomes one closed LWPOLYLINE, arcs one with bulges (in R12 a POLYLINE), a B-spline a SPLINE by its
+    control points and knots. `bore` is a diameter and all lengths are given in mm; the drawing's unit is `mm` mm long
+    (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment on top. `$EXTMIN` and
+    `$EXTMAX` are the exact extremes of all that is drawn. `name` and `about` go into comments.
+
+    Raises ValueError for a spline in R12, for a contour that comes twice through a point, and for anything drawn twice
+    on one layer or without extent; OSError as the file system does.
+    """
+    if version not in VERSIONS:
+        raise ValueError(f"DXF version must be one of {', '.join(VERSIONS)}, not {version!r}")
+    if mm not in UNITS:
+        raise ValueError(f"a drawing unit must be 1.0 or 25.4 mm, not {mm!r}")
+    unit, insunits, measurement = UNITS[mm]
+    _check_reference(reference)
+
+    from ezdxf.document import Drawing  # ezdxf.new() warns whenever it makes an R12 drawing
+    from ezdxf.enums import InsertUnits
+
+    drawing = Drawing.new(VERSIONS[version])
+    _set_layers(drawing, mm)
+    space = drawing.modelspace()
+    boxes = [_draw_outline(space, outline, mm, _CUT)[1]]
+    if bore is not None:
+        boxes.append(_draw_circle(space, Circle("bore", (0.0, 0.0), 0.5 * bore), mm, _BORE)[1])
+    for item in reference:
+        if isinstance(item, Circle):
+            entity, box = _draw_circle(space, item, mm, _REFERENCE)
+        elif isinstance(item, Point):
+            x, y = item.at[0] / mm, item.at[1] / mm
+            entity, box = space.add_point((x, y), {"layer": _REFERENCE}), (x, y, x, y)
+        else:
+            entity, box = _draw_outline(space, item.outline, mm, _REFERENCE)
+        entity.set_xdata(APPLICATION, [(1000, _comment(item.name))])
+        boxes.append(box)
+
+    corners = np.array(boxes)
+    low, high = corners[:, :2].min(axis=0).tolist(), corners[:, 2:].max(axis=0).tolist()
+    drawing.set_modelspace_vport(
+        1.1 * max(high[0] - low[0], high[1] - low[1]), (0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]))
+    )
+    header = {
+        "$EXTMIN": (*low, 0.0), "$EXTMAX": (*high, 0.0), "$LIMMIN": low, "$LIMMAX": high,
+        "$PDMODE": 2,  # points show as crosses
+        "$TDCREATE": _DATE, "$TDUPDATE": _DATE,
+    }  # fmt: skip
+    if version != "R12":
+        space.units = InsertUnits(insunits)
+        header |= {
+            "$INSUNITS": insunits, "$MEASUREMENT": measurement,
+            "$TDUCREATE": _DATE, "$TDUUPDATE": _DATE, "$FINGERPRINTGUID": _GUID, "$VERSIONGUID": _GUID,
+        }  # fmt: skip
+    comments = [f"camgeo units: {unit}", *(_comment(text) for text in (name, about) if text)]
+    _save(path, drawing, header, comments)
+
+
+def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: list[str]) -> None:
+    """Write as Drawing.saveas does, but with the header set after ezdxf has brought it up to date with the clock."""
+    from ezdxf.document import CREATED_BY_EZDXF, WRITTEN_BY_EZDXF
+    from ezdxf.lldxf.tagwriter import TagWriter
+
+    drawing.commit_pending_changes()
+    drawing.update_all()
+    drawing.header["$HANDSEED"] = str(drawing.entitydb.handles)
+    for key, value in header.items():
+        drawing.header[key] = value
+    about_ezdxf = drawing.ezdxf_metadata()
+    for key in (CREATED_BY_EZDXF, WRITTEN_BY_EZDXF):
+        about_ezdxf[key] = "ezdxf"
+    with path.open("w", encoding=drawing.output_encoding, errors="dxfreplace", newline="\n") as stream:
+        for comment in comments:
+            stream.write(f"999\n{comment}\n")
+        drawing.export_sections(TagWriter(stream, drawing.dxfversion, write_handles=True))
+
+
+def _set_layers(drawing: Drawing, mm: float) -> None:
+    drawing.appids.add(APPLICATION)
+    drawing.linetypes.add("CENTER", [length / mm for length in _CENTRE_LINE], description="Center ____ _ ____ _ ____")
+    for layer, colour in _COLOURS.items():
+        drawing.layers.add(layer, color=colour, linetype="CENTER" if layer == _REFERENCE else "Continuous")
+
+
+def _draw_outline(space: Modelspace, outline: Outline, mm: float, layer: str) -> tuple[DXFGraphic, Box]:
+    """Add a closed contour; returns the entity and its extremes in drawing units."""
+    x_min, y_min, x_max, y_max = outline.box()
+    box = (x_min / mm, y_min / mm, x_max / mm, y_max / mm)
+    if isinstance(outline, BSpline):
+        return _draw_spline(space, outline, mm, layer), box
+    if isinstance(outline, Polygon):
+        points, bulges = outline.vertices / mm, np.zeros(len(outline.vertices))
+    else:
+        points, bulges = outline.points / mm, outline.bulges
+    _check_points(points)
+    if space.dxfversion == VERSIONS["R12"]:
+        rows = np.column_stack((points, bulges)).tolist()
+        return space.add_polyline2d(rows, format="xyb", close=True, dxfattribs={"layer": layer}), box
+    entity = space.add_lwpolyline([], close=True, dxfattribs={"layer": layer})
+    # all vertices at once as x, y, start and end width, bulge: append() copies the array for every vertex
+    entity.lwpoints.values = np.column_stack((points, np.zeros((len(points), 2)), bulges))
+    return entity, box
+
+
+def _draw_spline(space: Modelspace, spline: BSpline, mm: float, layer: str) -> DXFGraphic:
+    if space.dxfversion == VERSIONS["R12"]:
+        raise ValueError("DXF R12 has no splines; export arcs or a polyline, or a later version")
+    if spline.degree > _SPLINE_DEGREE:
+        raise ValueError(f"DXF splines are of degree {_SPLINE_DEGREE} at most, not {spline.degree}")
+    short = np.flatnonzero(np.all(np.ptp(spline.beziers() / mm, axis=1) == 0.0, axis=1))
+    if short.size:
+        raise ValueError(f"span {short[0]} of the spline has no length")
+    entity = space.add_spline(degree=spline.degree, dxfattribs={"layer": layer})
+    entity.control_points = np.column_stack((spline.control / mm, np.zeros(len(spline.control))))
+    entity.knots = spline.knots.tolist()
+    entity.dxf.flags = entity.CLOSED | (0 if spline.clamped else entity.PERIODIC)
+    return entity
+
+
+def _draw_circle(space: Modelspace, circle: Circle, mm: float, layer: str) -> tuple[DXFGraphic, Box]:
+    x, y, r = circle.centre[0] / mm, circle.centre[1] / mm, circle.radius / mm
+    if not r > 0.0:
+        raise ValueError(f"{circle.name}: radius must be > 0, not {circle.radius!r}")
+    return space.add_circle((x, y), r, {"layer": layer}), (x - r, y - r, x + r, y + r)
+
+
+def _check_points(points: Array) -> None:
+    """Refuse a contour that comes twice through a point: two pieces drawn twice, or one of no length, show as that."""
+    place: NDArray[np.complex128] = np.ascontiguousarray(points).view(np.complex128)[:, 0]
+    order = np.sort(place)
+    twice = np.flatnonzero(order[1:] == order[:-1])
+    if twice.size:
+        where = complex(order[twice[0]])
+        raise ValueError(f"the contour comes twice through ({where.real!r}, {where.imag!r})")
+
+
+def _check_reference(reference: Sequence[Reference]) -> None:
+    seen: dict[tuple[float, ...] | int, str] = {}
+    for item in reference:
+        key: tuple[float, ...] | int
+        if isinstance(item, Circle):
+            key = (*item.centre, item.radius)
+        elif isinstance(item, Point):
+            key = item.at
+        else:
+            key = id(item.outline)
+        if key in seen:
+            raise ValueError(f"reference: {item.name} is the same as {seen[key]}")
+        seen[key] = item.name
+
+
+def _comment(text: str) -> str:
+    """Return the text as one line that any reader takes."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:_COMMENT]
