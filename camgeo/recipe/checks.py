@@ -1,0 +1,71 @@
+"""Faults between fields that show without any geometry.
+
+Each check looks at the values that were read; where one of them is missing or faulty the check has nothing to say, as
+that fault is noted already.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.build import requests
+
+if TYPE_CHECKING:
+    from camgeo.recipe.reader import Reader, Values
+
+_ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law)
+
+
+def check(values: Values, reader: Reader) -> None:
+    """Note the faults between fields."""
+    cam: Values = values.get("cam", {})
+    _corners(cam.get("reuleaux", {}), reader)
+    _harmonics(cam, reader)
+    if "motion" in cam:
+        _filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader)
+    if "law" in cam and "ratio" in cam:
+        lam, _ = cam["ratio"]
+        _filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader)
+    _files(values, reader)
+
+
+def _corners(reuleaux: Values, reader: Reader) -> None:
+    if {"breadth", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] >= reuleaux["breadth"] / 2:
+        remedy = f"give less than {reuleaux['breadth'] / 2 / reader.mm:g} {reader.units}"
+        value = f"{reuleaux['rounding'] / reader.mm:g}"
+        reader.fault_at("cam.reuleaux.rounding", "not below half the breadth", value, remedy)
+
+
+def _harmonics(cam: Values, reader: Reader) -> None:
+    delta = cam.get("delta")
+    faulty = any(error.path.startswith("cam.delta") for error in reader.errors)
+    if delta is not None and not faulty and not (delta.get("cos") or delta.get("sin")):
+        reader.fault_at("cam.delta", "no harmonics, so no motion", None, "give some, such as {cos: {1: 625}}")
+
+
+def _filled(segments: list[Values], path: str, angle: float, wanted: str, reader: Reader) -> None:
+    covered = math.fsum(segment["dwell"] if "dwell" in segment else segment["over"] for segment in segments)
+    if abs(covered - angle) > _ANGLE:
+        value = f"{math.degrees(covered):.10g} degrees"
+        remedy = f"let them cover {wanted}; an angle may be a fraction such as 180/7"
+        reader.fault_at(path, "the segments do not fill their angle", value, remedy)
+
+
+def _files(values: Values, reader: Reader) -> None:
+    files: list[Values] = values.get("export", {}).get("files", [])
+    listed = requests(files)
+    names = [request.filename("NAME", listed) for request in listed]
+    for i, (file, request) in enumerate(zip(files, listed, strict=True)):
+        path = file["path"]
+        if request.kind == "stl" and "part.thickness" not in reader.marks:
+            reader.fault_at(path, "stl needs a thickness", None, "give part.thickness, or leave stl out")
+        if request.as_ == "spline" and request.version == "R12":
+            remedy = "give arcs or polyline, or a later version"
+            reader.fault_at(f"{path}.dxf.as", "R12 has no splines", "'spline'", remedy)
+        if request in listed[:i]:
+            reader.fault_at(path, "the same file twice", None, "leave one out")
+        elif names[i] in names[:i]:
+            name = names[i].removeprefix("NAME")
+            remedy = "give each another `as` or `version`, or a recipe of its own"
+            reader.fault_at(path, "a second file of one name", f"<name>{name}", remedy)

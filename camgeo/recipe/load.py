@@ -1,0 +1,54 @@
+"""From a recipe's file to a `Recipe`, or to all of its faults."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from camgeo.recipe import scalars
+from camgeo.recipe.build import build
+from camgeo.recipe.checks import check
+from camgeo.recipe.errors import RecipeError, RecipeErrors
+from camgeo.recipe.reader import Reader
+from camgeo.recipe.source import MAX_BYTES, read_source
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from camgeo.recipe.model import Recipe
+
+
+def load(path: str | PathLike[str]) -> Recipe:
+    """Read a recipe from a file; raises RecipeErrors with all its faults, also where there is no such file."""
+    try:
+        with Path(path).open("rb") as stream:
+            data = stream.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise _whole(path, "there is no such file") from None
+    except OSError as error:
+        raise _whole(path, f"cannot be read: {error.strerror or error}") from None
+    except ValueError:  # a null character
+        raise _whole(path, "not the name of a file") from None
+    return read(data, path)
+
+
+def read(data: bytes, path: str | PathLike[str]) -> Recipe:
+    """Read a recipe from bytes; `path` names it in errors and gives its default name. Raises RecipeErrors."""
+    source = read_source(data, str(path))
+    reader = Reader(source)
+    values = reader.recipe()
+    check(values, reader)
+    if "name" not in reader.marks:
+        stem = Path(path).stem
+        try:
+            values["name"] = scalars.name(stem)
+        except scalars.Complaint as complaint:
+            remedy = f"give `name:` with {scalars.NAME_RULE}"
+            reader.fault(source.root.mark, "name", f"the file's stem is {complaint.problem}", repr(stem), remedy)
+    if reader.errors:
+        raise RecipeErrors(reader.errors)
+    return build(values, Path(path), reader.marks)
+
+
+def _whole(path: str | PathLike[str], problem: str) -> RecipeErrors:
+    return RecipeErrors([RecipeError(str(path), 0, 0, "", problem)])

@@ -1,0 +1,236 @@
+"""What a recipe says, checked and converted: lengths in mm, angles in radians.
+
+Plain values throughout, so that recipes compare, hash and travel between processes. Formulas stay text; their values
+are in the recipe's units, and `scale` (mm per unit) turns those into mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from camgeo.recipe.errors import RecipeError, RecipeErrors
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    import kin.law
+
+Undercut: TypeAlias = Literal["refuse", "trim"]
+Harmonics: TypeAlias = tuple[tuple[int, float], ...]  # (harmonic, coefficient), rising
+
+
+@dataclass(frozen=True)
+class FormulaShape:
+    """A support function p(t), t in radians, as text; `scale` times its value is in mm."""
+
+    text: str
+    scale: float
+
+
+@dataclass(frozen=True)
+class FourierShape:
+    """A support function mean + sum of cos[j] cos(j t) + sin[j] sin(j t), in mm."""
+
+    mean: float
+    cos: Harmonics
+    sin: Harmonics
+
+
+@dataclass(frozen=True)
+class ReuleauxShape:
+    """A regular Reuleaux polygon with an odd number of sides and rounded corners, in mm."""
+
+    sides: int
+    breadth: float
+    rounding: float
+
+
+@dataclass(frozen=True)
+class HypocycloidShape:
+    """The parallel curve of an odd hypocycloid, p = breadth/2 + size cos(cusps t), in mm."""
+
+    cusps: int
+    size: float
+    breadth: float
+
+
+Shape: TypeAlias = FormulaShape | FourierShape | ReuleauxShape | HypocycloidShape
+
+
+@dataclass(frozen=True)
+class MotionSegment:
+    """One segment of a motion programme.
+
+    `over` in rad; `stroke` in mm for a plate, in rad for a follower that swings, 0 for a dwell. `law` is a name, or
+    the coefficients c0, c1, ... of a polynomial in u, or None for a dwell.
+    """
+
+    kind: Literal["rise", "return", "dwell"]
+    over: float
+    stroke: float = 0.0
+    law: str | tuple[float, ...] | None = None
+
+    def step(self) -> kin.law.Segment:
+        """Give the segment with its law looked up, as `kin.law.programme` takes it."""
+        from kin.law import Segment, law, polynomial_law
+
+        if self.law is None:
+            return Segment(self.kind, self.over)
+        found = law(self.law) if isinstance(self.law, str) else polynomial_law(self.law)
+        return Segment(self.kind, self.over, self.stroke, found)
+
+
+@dataclass(frozen=True)
+class SupportCam:
+    """A cam given by its support function; `pivot` is the shaft in the axes of that function, mm."""
+
+    shape: Shape
+    pivot: tuple[float, float]
+    undercut: Undercut
+
+
+@dataclass(frozen=True)
+class ConstantBreadthCam:
+    """A cam between two parallel faces, from the motion over one half turn (Shu and Wu)."""
+
+    base_radius: float
+    motion: tuple[MotionSegment, ...]
+    undercut: Undercut
+
+
+@dataclass(frozen=True)
+class DeltaRoute:
+    """D(t) = sum over odd j of cos[j] cos(j lambda t) + sin[j] sin(j lambda t), in mm^2 (Wunderlich 6.5)."""
+
+    cos: Harmonics
+    sin: Harmonics
+
+
+@dataclass(frozen=True)
+class LawRoute:
+    """The follower's swing over delta = pi/lambda of shaft angle; of a flat pair the swing is psi/2."""
+
+    motion: tuple[MotionSegment, ...]
+
+
+@dataclass(frozen=True)
+class ArcRoute:
+    """A circular first arc of the pitch curve, radius in mm, symmetric about its bisector."""
+
+    radius: float
+    side: Literal["convex", "concave"]
+
+
+@dataclass(frozen=True)
+class RosetteRoute:
+    """One leaf of the path of the third arm's tip: |OQ| as text in x, 0 to 1; `scale` times its value is in mm."""
+
+    text: str
+    scale: float
+
+
+Route: TypeAlias = DeltaRoute | LawRoute | ArcRoute | RosetteRoute
+
+
+@dataclass(frozen=True)
+class DoubleRollerCam:
+    """A single disk that works two rollers on one arm (Wunderlich); pi/alpha = lam/mu in lowest terms, mu odd."""
+
+    lam: int
+    mu: int
+    arm: float
+    roller_radius: float
+    route: Route
+    undercut: Undercut
+
+
+@dataclass(frozen=True)
+class FlatPairCam:
+    """A single disk that works a rigid pair of flat faces, its pivot at 2 arm from the shaft (Wunderlich, 5)."""
+
+    lam: int
+    mu: int
+    arm: float
+    route: Route
+    undercut: Undercut
+
+
+Cam: TypeAlias = SupportCam | ConstantBreadthCam | DoubleRollerCam | FlatPairCam
+
+
+@dataclass(frozen=True)
+class Part:
+    """The plain part, mm: `thickness` along the shaft, `bore` a diameter."""
+
+    thickness: float | None = None
+    bore: float | None = None
+
+
+@dataclass(frozen=True)
+class FileRequest:
+    """One file to write. `as_` and `version` belong to DXF; `tolerance` (mm) stands in for the export's own."""
+
+    kind: Literal["dxf", "stl", "csv"]
+    as_: Literal["arcs", "polyline", "spline"] | None = None
+    version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
+    tolerance: float | None = None
+
+    def filename(self, name: str, requests: Sequence[FileRequest]) -> str:
+        """Name the file among all `requests` of recipe `name`.
+
+        `<name>.<kind>`; where a kind is asked for more than once `<name>-<as>.<kind>`, and where that still leaves two
+        alike `<name>-<as>-<version>.<kind>`.
+        """
+        kin = [request for request in requests if request.kind == self.kind]
+        parts = [name]
+        if len(kin) > 1 and self.as_:
+            parts.append(self.as_)
+            if sum(request.as_ == self.as_ for request in kin) > 1 and self.version:
+                parts.append(self.version)
+        return f"{'-'.join(parts)}.{self.kind}"
+
+
+@dataclass(frozen=True)
+class Export:
+    """The files, and the greatest distance (mm) between a file's contour and the exact one."""
+
+    tolerance: float
+    files: tuple[FileRequest, ...]
+
+
+@dataclass(frozen=True)
+class Verify:
+    """How each file is judged: shaft angles, and the greatest motion error (mm or rad) or None for the implied one."""
+
+    angles: int
+    motion_error: float | None = None
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A recipe, checked as far as no geometry is needed. `mm` is the length of its unit; `path` where it was read."""
+
+    name: str
+    about: str
+    units: Literal["mm", "inch"]
+    mm: float
+    rotation: Literal["cw", "ccw"]
+    cam: Cam
+    part: Part
+    export: Export
+    verify: Verify
+    path: Path
+    marks: Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
+
+    def locate(self, path: str) -> tuple[int, int]:
+        """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
+        while path and path not in self.marks:
+            path = path[: max(path.rfind("."), path.rfind("["), 0)]
+        return self.marks.get(path, (1, 1))
+
+    def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
+        """Make the error that a later stage raises about a field, with the field's place in the file."""
+        line, column = self.locate(path)
+        return RecipeErrors([RecipeError(str(self.path), line, column, path, problem, value, remedy)])

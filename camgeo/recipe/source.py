@@ -1,0 +1,281 @@
+"""YAML as a tree of texts with their places.
+
+Only PyYAML's events are used: no tag is resolved and nothing is constructed, so a scalar is the text that was written
+and the schema says how to read it. YAML 1.1's guesses (`on` a boolean, `1:30` ninety, `010` eight, `1e-3` a text)
+therefore never come about. Size, depth and the expansion of aliases are bounded while reading.
+"""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+import yaml
+
+from camgeo.recipe.errors import RecipeError, RecipeErrors, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MAX_BYTES = 1_000_000
+MAX_DEPTH = 50
+MAX_ALIASES = 100
+MAX_NODES = 10_000  # aliases counted as often as they stand for something
+
+# What YAML permits, less its three line ends that editors do not count (NEL, LS, PS) and the byte order mark.
+_FORBIDDEN = re.compile("[^\t\n\r\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]")
+_DIRECTIVE = re.compile(r"(?:[ \t]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))*%")
+_BARE = re.compile(r"[+-]?[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?")
+_PLAIN_KEY = re.compile(r"[A-Za-z0-9_-]{1,40}")
+
+Mark: TypeAlias = tuple[int, int]  # line and column, from 1, in characters
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A text; `plain` where it stands without quotes, `end` just behind it, `tag` where one was written."""
+
+    text: str
+    plain: bool
+    mark: Mark
+    end: Mark
+    tag: str | None = None
+    size: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Sequence:
+    """A list."""
+
+    items: tuple[Node, ...]
+    mark: Mark
+    tag: str | None
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """A mapping as written, keys that stand twice included."""
+
+    entries: tuple[tuple[Node, Node], ...]
+    mark: Mark
+    tag: str | None
+    size: int
+
+
+Node: TypeAlias = Scalar | Sequence | Mapping
+
+
+@dataclass(frozen=True)
+class Source:
+    """A recipe's file: its name for errors, its text, and the tree."""
+
+    file: str
+    lines: tuple[str, ...]
+    root: Node
+
+
+@dataclass(slots=True)
+class _Frame:
+    """A list or mapping that is still being read; a mapping's keys and values alternate in `children`.
+
+    `before` counts the nodes that came before it.
+    """
+
+    event: yaml.CollectionStartEvent
+    mark: Mark
+    before: int
+    children: list[Node] = field(default_factory=list)
+
+    def close(self, nodes: int) -> Node:
+        size, tag = nodes - self.before, self.event.tag
+        if isinstance(self.event, yaml.SequenceStartEvent):
+            return Sequence(tuple(self.children), self.mark, tag, size)
+        pairs = tuple(zip(self.children[::2], self.children[1::2], strict=True))
+        return Mapping(pairs, self.mark, tag, size)
+
+
+class _BadEscapeError(yaml.YAMLError):
+    """An escape beyond Unicode, behind `place`."""
+
+    def __init__(self, place: Mark) -> None:
+        super().__init__(place)
+        self.place = place
+
+
+def read_source(data: bytes, file: str) -> Source:
+    """Read YAML into a tree.
+
+    Raises RecipeErrors for bytes that are not UTF-8, characters that YAML forbids, faulty syntax, several documents,
+    directives, and anything above the bounds of this module.
+    """
+    if len(data) > MAX_BYTES:
+        raise _fault(file, (0, 0), f"the file is larger than {MAX_BYTES} bytes", remedy="a recipe takes a few hundred")
+    text = _decode(data, file)
+    if _DIRECTIVE.match(text):
+        place = _place(text, text.index("%"))
+        raise _fault(file, place, "a YAML directive", remedy="a recipe has none; leave the line out")
+    return Source(file, tuple(re.split(r"\r\n|\r|\n", text)), _parse(text, file))
+
+
+def join(path: str, key: str | int) -> str:
+    """Make the path of an entry: `cam.motion[1]`; unusual keys are quoted and shortened."""
+    if isinstance(key, int):
+        return f"{path}[{key}]"
+    name = key if _PLAIN_KEY.fullmatch(key) else shown(key)
+    return f"{path}.{name}" if path else name
+
+
+def is_empty(node: Node) -> bool:
+    """Tell whether nothing was given: YAML's null, however it is written."""
+    return isinstance(node, Scalar) and node.plain and node.text in ("", "~", "null", "Null", "NULL")
+
+
+def keys(node: Mapping) -> dict[str, Scalar]:
+    """Give each key that is a text, by that text; the first where it stands twice."""
+    first: dict[str, Scalar] = {}
+    for key, _ in node.entries:
+        if isinstance(key, Scalar):
+            first.setdefault(key.text, key)
+    return first
+
+
+def entries(node: Mapping) -> dict[str, Node]:
+    """Give the values by key; the first where a key stands twice."""
+    first: dict[str, Node] = {}
+    for key, value in node.entries:
+        if isinstance(key, Scalar):
+            first.setdefault(key.text, value)
+    return first
+
+
+def written(node: Scalar) -> str:
+    """Show a scalar in an error: a number bare, a text quoted."""
+    return node.text if _BARE.fullmatch(node.text) else shown(node.text)
+
+
+def described(node: Node) -> str:
+    """Show any node in an error."""
+    if isinstance(node, Scalar):
+        return "nothing" if is_empty(node) else written(node)
+    count = len(node.entries if isinstance(node, Mapping) else node.items)
+    return f"a {'mapping' if isinstance(node, Mapping) else 'list'} of {count}"
+
+
+def _decode(data: bytes, file: str) -> str:
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        place = _place(data[: error.start].decode("utf-8") + "?", None)
+        raise _fault(file, place, "not UTF-8", f"byte 0x{data[error.start]:02x}", "save the file as UTF-8") from None
+    text = text.removeprefix("\ufeff")
+    if found := _FORBIDDEN.search(text):
+        value = f"U+{ord(found[0]):04X}"
+        raise _fault(file, _place(text, found.start()), "a character that cannot stand in a recipe", value, "delete it")
+    return text
+
+
+def _place(text: str, index: int | None) -> Mark:
+    """Line and column of the character at `index`, or of the last one."""
+    before = text[:-1] if index is None else text[:index]
+    lines = re.split(r"\r\n|\r|\n", before)
+    return len(lines), len(lines[-1].removeprefix("\ufeff")) + 1
+
+
+def _mark(mark: object) -> Mark:
+    """Convert a mark of PyYAML's, of its C reader or its own; its absence stands for the first character."""
+    return getattr(mark, "line", 0) + 1, getattr(mark, "column", 0) + 1
+
+
+def _parse(text: str, file: str) -> Node:
+    fast = getattr(yaml, "CSafeLoader", None)
+    if fast is not None:
+        with suppress(yaml.YAMLError):  # PyYAML's own reader words the same fault better, and alike on every machine
+            return _build(_events(text, fast), file)
+    try:
+        return _build(_events(text, yaml.SafeLoader), file)
+    except yaml.MarkedYAMLError as error:
+        place = _mark(error.problem_mark or error.context_mark)
+        problem = ", ".join(filter(None, (error.context, error.problem)))
+        raise _fault(file, place, f"YAML cannot be read: {problem}", remedy=_syntax_remedy(problem)) from None
+    except _BadEscapeError as error:
+        raise _fault(file, error.place, "an escape that stands for no character", remedy="write it out") from None
+
+
+def _events(text: str, loader: type[yaml.SafeLoader]) -> Iterator[yaml.Event]:
+    """Give the events of a text one at a time: behind a bound that is passed, nothing more is read."""
+    end: Mark = (1, 1)
+    try:
+        for event in yaml.parse(text, Loader=loader):
+            yield event
+            end = _mark(event.end_mark)
+    except (ValueError, OverflowError) as error:  # from PyYAML's own reader
+        raise _BadEscapeError(end) from error
+
+
+def _syntax_remedy(problem: str) -> str:
+    if r"'\t'" in problem:
+        return "indent with spaces, not tabs"
+    if "mapping values are not allowed" in problem:
+        return "a text with a colon and a space in it needs quotes; keys of one mapping start in one column"
+    if "alias" in problem or "anchor" in problem:
+        return "quote a text that begins with * or &"
+    return "look at indentation, quotes, brackets and colons here and in the line above"
+
+
+def _build(events: Iterator[yaml.Event], file: str) -> Node:
+    """Build the tree of one document; unlike PyYAML's composer it neither recurses nor goes on behind a bound."""
+    frames: list[_Frame] = []
+    anchors: dict[str, Node] = {}
+    aliases = documents = nodes = 0
+    root: Node | None = None
+    for event in events:
+        mark = _mark(event.start_mark)
+        if isinstance(event, yaml.CollectionStartEvent):
+            if len(frames) == MAX_DEPTH:
+                raise _fault(file, mark, f"nested more than {MAX_DEPTH} deep", remedy="a recipe needs five levels")
+            frames.append(_Frame(event, mark, nodes))
+            nodes += 1
+            continue
+        node: Node
+        anchor: str | None = None
+        if isinstance(event, yaml.ScalarEvent):
+            node = Scalar(event.value, not event.style, mark, _mark(event.end_mark), event.tag)
+            anchor = event.anchor
+            nodes += 1
+        elif isinstance(event, yaml.CollectionEndEvent):
+            frame = frames.pop()
+            node = frame.close(nodes)
+            anchor = frame.event.anchor
+        elif isinstance(event, yaml.AliasEvent):
+            aliases += 1
+            if aliases > MAX_ALIASES:
+                raise _fault(file, mark, f"more than {MAX_ALIASES} aliases", remedy="write the values out")
+            if event.anchor not in anchors:
+                value = shown(f"*{event.anchor}")
+                raise _fault(file, mark, "an alias without its anchor", value, _syntax_remedy("alias"))
+            node = anchors[event.anchor]
+            nodes += node.size
+        else:
+            documents += isinstance(event, yaml.DocumentStartEvent)
+            if documents > 1:
+                raise _fault(file, mark, "a second YAML document", remedy="one recipe a file; leave out the line ---")
+            continue
+        if nodes > MAX_NODES:
+            problem = f"more than {MAX_NODES} entries, aliases expanded"
+            raise _fault(file, mark, problem, remedy="a recipe takes a few dozen")
+        if anchor is not None:
+            anchors[anchor] = node
+        if frames:
+            frames[-1].children.append(node)
+        else:
+            root = node
+    if root is None:
+        raise _fault(file, (1, 1), "the recipe is empty", remedy="`camgeo new` writes one to start from")
+    return root
+
+
+def _fault(file: str, mark: Mark, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
+    return RecipeErrors([RecipeError(file, *mark, "", problem, value, remedy)])
