@@ -58,7 +58,7 @@ class Ball:
     def between(lower: Array, upper: Array) -> Ball:
         """Return a ball of [lower, upper], lower <= upper, the ends taken as exact; an end at 0 stays at 0."""
         mid = 0.5 * lower + 0.5 * upper
-        rad = np.maximum(upper - mid, mid - lower) * _UP
+        rad = np.maximum(upper - mid, mid - lower) * (1 + 2 * _ULP)
         mid = np.where(lower >= 0, np.maximum(mid, rad), np.where(upper <= 0, np.minimum(mid, -rad), mid))
         return _ball(mid, rad)
 
@@ -192,9 +192,14 @@ def _outward(
     lower: Array, upper: Array, relative: float, absolute: float | Array = 0.0, floor: float | Array = -math.inf
 ) -> Ball:
     """Return the ball of [lower, upper], each end computed and off by the given errors; nothing lies below floor."""
-    lower = np.maximum(lower - (relative * np.abs(lower) + absolute), floor)
-    upper = upper + (relative * np.abs(upper) + absolute)
-    return Ball.between(lower, upper)
+    lower = np.maximum(lower - (_error(lower, relative) + absolute), floor)
+    return Ball.between(lower, upper + (_error(upper, relative) + absolute))
+
+
+def _error(value: Array, relative: float) -> Array:
+    """Error of a computed value; the least numbers are off by more than any part of themselves, 0 is exact."""
+    size = np.abs(value)
+    return relative * size + np.minimum(size, _TINY)
 
 
 def rising(
@@ -212,12 +217,13 @@ def rising(
 
 
 def sin_cos(x: Ball) -> tuple[Ball, Ball]:
-    """Images of x (n,) under sin and cos: true ranges, within [-1, 1] even where x says nothing."""
+    """Images of x (n,) under sin and cos: true ranges, [-1, 1] where x says nothing."""
     with _fresh():
         ends = np.stack(x.bounds())
         values = np.concatenate((np.sin(ends), np.cos(ends))).reshape(2, 2, -1)
-        least = np.fmax(values.min(axis=1) - _LIBRARY, -1.0)
-        greatest = np.fmin(values.max(axis=1) + _LIBRARY, 1.0)
+        least, greatest = values.min(axis=1), values.max(axis=1)
+        least = np.fmax(least - _error(least, _LIBRARY), -1.0)
+        greatest = np.fmin(greatest + _error(greatest, _LIBRARY), 1.0)
         # An extremum lies inside if a whole turn from it does; slack for the rounding of x/2pi.
         turns = ends / _TURN
         slack = 8 * _ULP * (1 + np.abs(turns))
@@ -312,7 +318,7 @@ def atan2(y: Ball, x: Ball) -> Ball:
         inside = (x0 > 0) | (y0 > 0) | (y1 < 0)
         least = np.where(inside, corners.min(axis=0), -math.pi)
         greatest = np.where(inside, corners.max(axis=0), math.pi)
-    return _outward(least, greatest, _LIBRARY)
+    return _outward(least, greatest, _LIBRARY, np.minimum(y.magnitude, _TINY))
 
 
 def absolute(x: Ball) -> Ball:

@@ -94,4 +94,4 @@ class Formula:
             if len(waiting) + len(done) > _MOST_PIECES:
                 column = expression.steps[place].column
                 raise FormulaError(f"the formula switches more than {_MOST_PIECES} times", column)
-        return np.array(knots), tuple(done), (at_lower, at_upper)
+        return np.array(knots, dtype=float), tuple(done), (at_lower, at_upper)

@@ -210,7 +210,7 @@ def sign(x: Number) -> Number:
         row = x.rows[0]
         found = x.constant(np.where(row.positive, 1.0, np.where(row.negative, -1.0, 0.0)))
         either = Ball(np.zeros_like(row.mid), np.ones_like(row.rad))
-        return _where(row.positive | row.negative | row.zero, found, _known_to(0, found, either))
+        return _where(row.positive | row.negative | x.rows.zero.all(axis=0), found, _known_to(0, found, either))
     return _as_value(sign(_as_jet(x)), x)
 
 
@@ -219,9 +219,9 @@ def maximum(x: Number, y: Number) -> Number:
     if isinstance(x, Jet) and isinstance(y, Jet):
         return Jet(np.where(_side(x.c - y.c) < 0, y.c, x.c))
     if isinstance(x, BallJet) and isinstance(y, BallJet):
-        apart = x.rows[0] - y.rows[0]
-        chosen = _where(apart.negative, y, x)
-        decided = apart.positive | apart.negative | apart.zero
+        apart = x.rows - y.rows
+        chosen = _where(apart[0].negative, y, x)
+        decided = apart[0].positive | apart[0].negative | apart.zero.all(axis=0)
         if decided.all():
             return chosen
         (a, b), (c, d) = x.rows[0].bounds(), y.rows[0].bounds()

@@ -70,7 +70,7 @@ def signs(g: Expression, lower: float, upper: float) -> Signs:
     if g.ball(lower, upper, 0).rows.zero.all():
         return Signs((), (0,), at_start=False, at_end=False)
     zeros = _merged(_zeros(g, lower, upper))
-    snap = _END_ULPS * math.ulp(max(abs(lower), abs(upper)))
+    snap = _snap(lower, upper)
     changes = tuple(zero for zero in zeros if lower + snap < zero < upper - snap)
     edges = np.array([lower, *changes, upper])
     found = []
@@ -89,6 +89,10 @@ def signs(g: Expression, lower: float, upper: float) -> Signs:
 def _sign(row: Ball) -> NDArray[np.int_]:
     """Sign of each ball, 0 where it is not certain."""
     return np.where(row.positive, 1, np.where(row.negative, -1, 0))
+
+
+def _snap(lower: float, upper: float) -> float:
+    return _END_ULPS * math.ulp(max(abs(lower), abs(upper)))
 
 
 def _zeros(g: Expression, lower: float, upper: float) -> list[_Zero]:
@@ -132,16 +136,24 @@ def _simple(g: Expression, low: Array, high: Array, lower: float, upper: float) 
         _Zero(float(z), float(a), float(b))
         for z, a, b in zip(_refine(g, 1, low[cross], high[cross]), low[cross], high[cross], strict=True)
     ]
-    found += [_Zero(lower, lower, float(b)) for b in high[(first == 0) & (low == lower)]]
-    found += [_Zero(upper, float(a), upper) for a in low[(last == 0) & (high == upper)]]
+    snap = _snap(lower, upper)
+    found += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, snap)]
+    found += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, snap)]
     return found
+
+
+def _on_end(g: Expression, m: int, end: float, snap: float) -> bool:
+    """Whether the (m - 1)-th derivative is 0 at an end to within rounding, of itself or of the end."""
+    at = np.array([end])
+    c = g.jet(at, m).c[m - 1 :, 0]
+    return not _sign(g.ball(at, at, m - 1).rows[m - 1]).any() or bool(abs(c[0]) <= snap * m * abs(c[1]))
 
 
 def _multiple(
     g: Expression, low: Array, high: Array, lower: float, upper: float
 ) -> tuple[list[_Zero], NDArray[np.bool_]]:
     """Multiple zeros in small cells, the odd ones of them, and the cells that are settled by it."""
-    settled, found = np.zeros(len(low), dtype=bool), []
+    settled, found, snap = np.zeros(len(low), dtype=bool), [], _snap(lower, upper)
     if not len(low):
         return [], settled
     certain = _sign(g.ball(low, high, _MOST_MULTIPLE).rows) != 0
@@ -152,11 +164,13 @@ def _multiple(
         ends = [_sign(g.ball(x, x, m - 1).rows[m - 1])[0] for x in (a, b)]
         if ends[0] * ends[1] < 0:
             zero = _refine(g, m, a, b)
-        elif (ends[0] == 0 and a[0] == lower) or (ends[1] == 0 and b[0] == upper):
-            zero = a if ends[0] == 0 and a[0] == lower else b
+        elif a[0] == lower and _on_end(g, m, lower, snap):
+            zero = a
+        elif b[0] == upper and _on_end(g, m, upper, snap):
+            zero = b
         else:
             continue
-        if not _sign(g.ball(zero, zero, m - 2).rows).any():
+        if not _sign(g.ball(zero - snap, zero + snap, m - 2).rows).any():
             settled[i] = True
             if m % 2:
                 found.append(_Zero(float(zero[0]), float(a[0]), float(b[0])))
