@@ -69,14 +69,17 @@ class Law:
 
 @dataclass(frozen=True)
 class _Polynomial:
-    """Sum of coefficient[k] u**k, by Horner's scheme."""
+    """Sum of coefficient[k] (u - centre)**k, by Horner's scheme."""
 
     coefficients: tuple[float, ...]
+    centre: float = 0.0
 
     def __call__(self, u: Series, /) -> Series:
+        """Give the displacement."""
+        x = u - self.centre if self.centre else u
         total = u.constant(self.coefficients[-1])
         for coefficient in self.coefficients[-2::-1]:
-            total = total * u + coefficient
+            total = total * x + coefficient
         return total
 
 
@@ -92,13 +95,13 @@ class _Run:
     shape: Literal["sin", "cos", "flat"]
 
     def __call__(self, u: Series, /) -> Series:
+        """Give the displacement."""
         x = u - self.start
         if self.shape == "flat":
             return (x * (self.peak / 2) + self.v) * x + self.s
-        k = self.peak / self.rate
-        if self.shape == "sin":
-            return x * (self.v + k) - sin(x * self.rate) * (k / self.rate) + self.s
-        return x * self.v - cos(x * self.rate) * (k / self.rate) + (self.s + k / self.rate)
+        angle, k = x * self.rate, self.peak / self.rate**2
+        rest = angle - sin(angle) if self.shape == "sin" else 1.0 - cos(angle)  # at rest at the start, to the last bit
+        return rest * k + x * self.v + self.s
 
 
 def _mirrored(function: Stretch) -> Stretch:
@@ -162,14 +165,21 @@ def _standard_laws() -> dict[str, Law]:
             [(constant, 8 * pi, "sin"), (constant, 8 * pi / 3, "cos"), (0.0, 0.0, "flat")],
             Peaks(constant / (2 * pi), constant, 8 * pi * constant, 8 * pi * constant),
         ),
-        _smooth("polynomial-345", (0, 0, 0, 10, -15, 6), Peaks(15 / 8, 10 / math.sqrt(3), 60.0, 60.0)),
-        _smooth("polynomial-4567", (0, 0, 0, 0, 35, -84, 70, -20), Peaks(35 / 16, 84 / math.sqrt(125), 52.5, 52.5)),
+        # 10 u^3 - 15 u^4 + 6 u^5 and 35 u^4 - 84 u^5 + 70 u^6 - 20 u^7, about the middle: no cancellation at u = 1.
+        _smooth("polynomial-345", (0.5, 15 / 8, 0, -5, 0, 6), 0.5, Peaks(15 / 8, 10 / math.sqrt(3), 60.0, 60.0)),
+        _smooth(
+            "polynomial-4567",
+            (0.5, 35 / 16, 0, -35 / 4, 0, 21, 0, -20),
+            0.5,
+            Peaks(35 / 16, 84 / math.sqrt(125), 52.5, 52.5),
+        ),
     ]
     return {law.name: law for law in laws}
 
 
-def _smooth(name: str, coefficients: Sequence[float], peaks: Peaks) -> Law:
-    return Law(name, Piecewise(np.array([0.0, 1.0]), (_Polynomial(tuple(map(float, coefficients))),)), peaks)
+def _smooth(name: str, coefficients: Sequence[float], centre: float, peaks: Peaks) -> Law:
+    polynomial = _Polynomial(tuple(map(float, coefficients)), centre)
+    return Law(name, Piecewise(np.array([0.0, 1.0]), (polynomial,)), peaks)
 
 
 def polynomial_law(coefficients: Sequence[float], field: str = "motion") -> Law:
@@ -187,7 +197,7 @@ def polynomial_law(coefficients: Sequence[float], field: str = "motion") -> Law:
             f"a polynomial law must lead from 0 to 1; this one leads from s(0) = {start:.12g} to s(1) = {end:.12g}",
             field,
         )
-    return _smooth(f"polynomial {list(values)}", values, _polynomial_peaks(values))
+    return _smooth(f"polynomial {list(values)}", values, 0.0, _polynomial_peaks(values))
 
 
 def _polynomial_peaks(coefficients: tuple[float, ...]) -> Peaks:
