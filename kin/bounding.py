@@ -63,9 +63,7 @@ def _within(low: Array, high: Array, limits: Mapping[int, tuple[float, float]]) 
     return yes, no
 
 
-def _about_middle(
-    function: Stretch, lower: Array, upper: Array, low: Array, high: Array
-) -> tuple[Array, Array]:
+def _about_middle(function: Stretch, lower: Array, upper: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """Sharpen bounds `low`, `high` (m + 2, n) of derivatives over cells to (m, n), from values at the middles."""
     middle = 0.5 * (lower + upper)
     half = np.maximum(upper - middle, middle - lower) * (1 + 1e-12)

@@ -184,7 +184,7 @@ def _one_circle(first: Stretch, second: Stretch) -> bool:
 
 def _demand_joined(law: Piecewise, field: str) -> None:
     """Refuse a jump of p or p' at any knot, the seam included."""
-    knots = law.knots[:-1]
+    knots = law.knots[np.argsort(np.mod(law.knots[:-1], _TURN))]
     right, left = (law.derivatives(knots, 2, side) for side in (1, -1))
     jump = np.abs(right - left)
     allowed = _JOIN * max(np.abs(right).max(), np.abs(left).max())
@@ -192,7 +192,7 @@ def _demand_joined(law: Piecewise, field: str) -> None:
         (0, "p", "mm", "the cam would have a step"),
         (1, "p'", "mm/rad", "the contact would jump along the face, and the contour tear open"),
     ):
-        worst = int(np.argmax(jump[row]))
+        worst = int(np.argmax(jump[row] > 0.999 * jump[row].max()))  # the first of equals
         if jump[row, worst] > allowed:
             at = math.degrees(knots[worst]) % 360
             message = f"{what} jumps from {left[row, worst]:.9g} to {right[row, worst]:.9g} {unit} at {at:.6g} degrees"
