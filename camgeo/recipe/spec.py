@@ -9,6 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 
+MOST = 1e5  # of lengths as written: a bound against slips, far above any cam
+_SLIPS = (MOST, MOST**2)
+MOST_HARMONIC = 199
+MOST_LAMBDA = 200
+MOST_SEGMENTS = 100
+MOST_COEFFICIENTS = 20
+MOST_COEFFICIENT = 1e6
+MOST_FILES = 20
+MOST_TEXT = 1000  # characters
+
 
 def either(words: tuple[str, ...], conjunction: str = "or") -> str:
     """Join words: `a, b or c`."""
@@ -79,19 +89,19 @@ class Field:
     def out_of_bounds(self, value: float) -> str:
         """Say which bound a number breaks, or nothing."""
         if self.above is not None and value <= self.above:
-            return f"not above {self.above:g}"
+            return f"not above {self.above:.10g}"
         if self.at_least is not None and value < self.at_least:
-            return f"below {self.at_least:g}"
+            return f"below {self.at_least:.10g}"
         if self.at_most is not None and value > self.at_most:
-            return f"above {self.at_most:g}"
+            return f"above {self.at_most:.10g}"
         return "an even number" if self.odd and value % 2 == 0 else ""
 
     def _bounds(self) -> str:
         """Say the bounds, but not those against slips alone."""
         if self.at_least is not None and self.at_most is not None:
-            return f" from {self.at_least:g} to {self.at_most:g}" if self.at_most < MOST else ""
-        low = f" above {self.above:g}" if self.above is not None else ""
-        high = f" up to {self.at_most:g}" if self.at_most is not None and self.at_most < MOST else ""
+            return f" from {self.at_least:.10g} to {self.at_most:.10g}" if self.at_most not in _SLIPS else ""
+        low = f" above {self.above:.10g}" if self.above is not None else ""
+        high = f" up to {self.at_most:.10g}" if self.at_most not in (None, *_SLIPS) else ""
         return low + high
 
 
@@ -115,16 +125,6 @@ class Table:
     def field(self, name: str) -> Field:
         """Find a field by its key, which must be one."""
         return next(item for item in self.fields if item.name == name)
-
-
-MOST = 1e6  # of lengths and angles as written: a bound against slips, far above any cam
-MOST_HARMONIC = 199
-MOST_LAMBDA = 200
-MOST_SEGMENTS = 100
-MOST_COEFFICIENTS = 20
-MOST_COEFFICIENT = 1e6
-MOST_FILES = 20
-MOST_TEXT = 1000  # characters
 
 
 def _length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
