@@ -229,6 +229,8 @@ class Builder:
         return self._known[key]
 
     def _reduce(self, step: Instruction) -> int:
+        if step.op == "div" and self._steps[step.args[1]].op == "constant" and self._steps[step.args[1]].value == 0:
+            raise FormulaError("division by zero", step.column)
         if step.op in {"min", "max"} and step.args[0] == step.args[1]:
             return step.args[0]
         if step.op == "sub" and step.args[0] == step.args[1]:  # exactly 0, but only where x has a value

@@ -195,8 +195,9 @@ class _Parser:
         if following.kind in {"number", "name"} or following.text == "(":
             left = ")" if self._tokens[self._next - 1].text == ")" else first.text
             right = following.text
-            product = f"{left}*{right}" if "(" not in left + right else f"{left}*{right}...)"
-            raise FormulaError(f"no operator between '{left}' and '{right}'; write {product}", following.column)
+            factors = "(...)" if left == ")" else left, right + "(...)" * (right in FUNCTIONS) + "...)" * (right == "(")
+            message = f"no operator between '{left}' and '{right}'; write {factors[0]}*{factors[1]}"
+            raise FormulaError(message, following.column)
 
     def _close(self, opening: _Token) -> None:
         token = self._take()
