@@ -1,0 +1,287 @@
+"""Where a curve is bent most and where it runs backwards: decided for the whole turn, from proved bounds.
+
+Both questions are about ``h = sigma - v omega``: the radius of curvature sigma/omega is at least v on convex stretches
+where h >= 0, and the curve runs backwards (it undercuts) where h < 0 for v = 0. Between two points a distance w apart
+h lies above the lower of its two values less ``B w^2/8``, B being the proved bound of its second derivative; intervals
+are divided until that decides.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.curve import CurveError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from camgeo.curve import Array, Cells, Curve, Frame
+
+    Mask = NDArray[np.bool_]
+
+ROUNDING = 64.0 * float(np.finfo(np.float64).eps)  # of the curve's size: what sampled speeds and points may be off
+SHARPNESS = 1e-12  # of the curve's size: how far a proved least radius may lie below the one found
+SPLITS = 8  # parts into which an undecided interval is divided
+NEAR = 100.0  # an end this many times `SHARPNESS` from the least counts as a minimum
+GROWTH = 1.6  # from part to part away from a minimum already found
+LEVELS = 30
+_ROOT_STEPS = 60
+
+
+@dataclass(frozen=True)
+class Reversal:
+    """Parameters `start` to `end` over which the curve stands still (`still`) or runs backwards."""
+
+    start: float
+    end: float
+    still: bool
+
+
+def least_radius(curve: Curve) -> tuple[float, float]:
+    """Least radius of curvature of the convex stretches, in mm, and its parameter; negative where it undercuts.
+
+    One-sided limits at breaks count. No radius lies below the result by more than `SHARPNESS` of the curve's size
+    (up to rounding of the samples). A curve without a convex stretch has (inf, its first parameter). Raises CurveError
+    where the proof does not end.
+    """
+    cells = curve.cells
+    possible = _may_hold_least(cells)
+    if not possible.any():
+        return math.inf, float(cells.low[0])
+    state = _Intervals.of(
+        curve, cells.low[possible], cells.high[possible], cells.rows[6, possible], cells.rows[7, possible]
+    )
+    tolerance = SHARPNESS * _extent(state.at_low)
+    best, at = _least_end(state)
+    for _ in range(LEVELS):
+        dips = state.part(state.dips & (state.floor(best - tolerance) < 0.0))
+        bottoms = _roots(lambda t: _radius_slope(curve.sample(t)), dips.low, dips.high, 1e-7)
+        if bottoms.size:
+            radius = _radius(curve.sample(bottoms))
+            if radius.min() < best:
+                best, at = float(radius.min()), float(bottoms[np.argmin(radius)])
+        state = state.part(state.floor(best - tolerance) < 0.0)
+        if state.low.size == 0:
+            return best, at
+        grade = 0.5 * math.sqrt(8.0 * tolerance / max(state.bend(best).max(), 1e-300))
+        state = state.divided(curve, np.concatenate([bottoms, state.ends_below(best + NEAR * tolerance)]), grade)
+        least, where = _least_end(state)
+        if least < best:
+            best, at = least, where
+    raise CurveError(f"the least radius of curvature near parameter {at:.9g}, {best:.9g} mm, cannot be proved", at)
+
+
+def reversals(curve: Curve) -> tuple[Reversal, ...]:
+    """Stretches over which the speed is negative, ends root-found, and those over which it is exactly zero.
+
+    In order of the parameter; one that runs across the seam of a closed run ends beyond it. None is missed whose speed
+    falls below zero by more than `ROUNDING` of the curve's size. Raises CurveError where the proof does not end.
+    """
+    cells = curve.cells
+    doubtful = cells.rows[0] <= 0.0
+    if not doubtful.any():
+        return ()
+    state = _Intervals.of(curve, cells.low, cells.high, cells.rows[6], cells.rows[7])
+    tolerance = ROUNDING * _extent(state.at_low)
+    state = state.part(doubtful)
+    found: list[tuple[float, float, bool]] = []
+    for _ in range(LEVELS):
+        a, b = state.at_low, state.at_high
+        room = 0.125 * state.speed_bend * (state.high - state.low) ** 2
+        least, most = np.minimum(a.speed, b.speed), np.maximum(a.speed, b.speed)
+        turning = state.speed_bend * (state.high - state.low)
+        monotone = (a.speed_slope * b.speed_slope > 0.0) & (
+            np.minimum(np.abs(a.speed_slope), np.abs(b.speed_slope)) > turning
+        )
+        decided = (least - room >= -tolerance) | (most + room < -tolerance) | monotone | (room <= 0.25 * tolerance)
+        found += _below_zero(curve, state.part(decided), tolerance)
+        state = state.part(~decided)
+        if state.low.size == 0:
+            return _joined(curve, found)
+        state = state.divided(curve, np.empty(0), 0.0)
+    where = float(state.low[0])
+    raise CurveError(f"whether the curve runs backwards near parameter {where:.9g} cannot be proved", where)
+
+
+def _may_hold_least(cells: Cells) -> Mask:
+    """Convex cells whose radii are not proved to be above those of another cell (n,)."""
+    speed_low, speed_high, turn_low, turn_high = cells.rows[:4]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lowest = speed_low / np.where(speed_low >= 0.0, turn_high, turn_low)
+        highest = speed_high / np.where(speed_high >= 0.0, turn_low, turn_high)
+    lowest = np.where((speed_low < 0.0) & (turn_low <= 0.0), -np.inf, lowest)
+    convex = turn_low > 0.0
+    most = float(highest[convex].min(initial=np.inf))
+    possible: Mask = (turn_high > 0.0) & (lowest <= most)
+    return possible
+
+
+@dataclass(frozen=True)
+class _Intervals:
+    """Parameter intervals (n,), the frames at both ends taken from inside, bounds of sigma'' and omega'' (n,)."""
+
+    low: Array
+    high: Array
+    speed_bend: Array
+    turn_bend: Array
+    at_low: Frame
+    at_high: Frame
+
+    @staticmethod
+    def of(curve: Curve, low: Array, high: Array, speed_bend: Array, turn_bend: Array) -> _Intervals:
+        return _Intervals(low, high, speed_bend, turn_bend, *curve.span(low, high))
+
+    @property
+    def dips(self) -> Mask:
+        """Whether the radius falls at the beginning and rises at the end (n,)."""
+        falls: Mask = (_radius_slope(self.at_low) < 0.0) & (_radius_slope(self.at_high) > 0.0)
+        return falls
+
+    def part(self, chosen: Mask) -> _Intervals:
+        """Give the chosen (n,) intervals."""
+        return _Intervals(
+            self.low[chosen],
+            self.high[chosen],
+            self.speed_bend[chosen],
+            self.turn_bend[chosen],
+            _chosen(self.at_low, chosen),
+            _chosen(self.at_high, chosen),
+        )
+
+    def bend(self, v: float) -> Array:
+        """Bound of the second derivative of ``sigma - v omega`` (n,)."""
+        return self.speed_bend + abs(v) * self.turn_bend
+
+    def floor(self, v: float) -> Array:
+        """Proved lower bound of ``sigma - v omega`` over each interval (n,)."""
+        a = self.at_low.speed - v * self.at_low.turn
+        b = self.at_high.speed - v * self.at_high.turn
+        return np.minimum(a, b) - 0.125 * self.bend(v) * (self.high - self.low) ** 2
+
+    def ends_below(self, v: float) -> Array:
+        """Find the ends of intervals at which the radius is at most v (m,)."""
+        ends = np.concatenate([self.low[_radius(self.at_low) <= v], self.high[_radius(self.at_high) <= v]])
+        return np.unique(ends)
+
+    def divided(self, curve: Curve, minima: Array, grade: float) -> _Intervals:
+        """Divide each interval evenly, or finely about a minimum (m,) found in it, from steps of `grade` upward."""
+        lows, highs, owner = [], [], []
+        for i, (low, high) in enumerate(zip(self.low.tolist(), self.high.tolist(), strict=True)):
+            inside = minima[(minima >= low) & (minima <= high)]
+            knots = np.linspace(low, high, SPLITS + 1)
+            if inside.size:
+                middle = float(inside[0])
+                count = max(1, math.ceil(math.log(max((high - low) / grade, 2.0)) / math.log(GROWTH)))
+                away = grade * GROWTH ** np.arange(count)
+                knots = np.concatenate([[low, middle, high], middle - away, middle + away])
+                knots = np.unique(knots[(knots >= low) & (knots <= high)])
+            lows.append(knots[:-1])
+            highs.append(knots[1:])
+            owner.append(np.full(knots.size - 1, i))
+        of = np.concatenate(owner)
+        return _Intervals.of(
+            curve, np.concatenate(lows), np.concatenate(highs), self.speed_bend[of], self.turn_bend[of]
+        )
+
+
+def _extent(frame: Frame) -> float:
+    """Greatest coordinate or speed, mm: the scale of rounding."""
+    return float(max(np.abs(frame.point).max(), np.abs(frame.speed).max()))
+
+
+def _chosen(frame: Frame, chosen: Mask) -> Frame:
+    return type(frame)(
+        frame.point[chosen],
+        frame.tangent[chosen],
+        frame.speed[chosen],
+        frame.turn[chosen],
+        frame.speed_slope[chosen],
+        frame.turn_slope[chosen],
+    )
+
+
+def _radius(frame: Frame) -> Array:
+    """Radius of curvature where the curve is convex, else infinite (n,)."""
+    radius: Array = np.full(frame.speed.shape, np.inf)
+    np.divide(frame.speed, frame.turn, out=radius, where=frame.turn > 0.0)
+    return radius
+
+
+def _radius_slope(frame: Frame) -> Array:
+    """Differentiate sigma/omega, times omega^2 (n,)."""
+    return frame.speed_slope * frame.turn - frame.speed * frame.turn_slope
+
+
+def _least_end(state: _Intervals) -> tuple[float, float]:
+    """Least radius at the ends of the intervals, and where."""
+    radius = np.concatenate([_radius(state.at_low), _radius(state.at_high)])
+    where = int(np.argmin(radius))
+    return float(radius[where]), float(np.concatenate([state.low, state.high])[where])
+
+
+def _roots(function: Callable[[Array], Array], low: Array, high: Array, precision: float) -> Array:
+    """Roots of a function that changes its sign in each interval (n,), to `precision` of the interval.
+
+    The Illinois form of the rule of false position, halving where it is slow.
+    """
+    if low.size == 0:
+        return low
+    a, b = low.copy(), high.copy()
+    fa, fb = function(np.concatenate([a, b])).reshape(2, -1)
+    close = precision * (high - low) + 2.0 * np.spacing(np.maximum(np.abs(low), np.abs(high)))
+    last = np.full_like(a, np.inf)
+    for step in range(_ROOT_STEPS):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            x = b - fb * (b - a) / (fb - fa)
+        halve = ~((x >= np.minimum(a, b)) & (x <= np.maximum(a, b))) | (step % 8 == 7)
+        x = np.where(halve, 0.5 * (a + b), x)
+        fx = function(x)
+        done = (np.abs(x - last) <= close) | (fx == 0.0)
+        last = x
+        if done.all():
+            break
+        crossed = np.sign(fx) != np.sign(fb)
+        # the end that stays has its weight halved, so that both ends move
+        fa = np.where(crossed, fb, 0.5 * fa)
+        a = np.where(crossed, b, a)
+        b, fb = x, fx
+    return last
+
+
+def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple[float, float, bool]]:
+    """Parts of intervals, each with at most one change of sign, over which the speed is below zero, or is zero."""
+    a, b = state.at_low.speed, state.at_high.speed
+    still = (np.abs(a) <= tolerance) & (np.abs(b) <= tolerance)
+    for i in np.flatnonzero(still):
+        still[i] = curve.steady((state.low[i], state.high[i])) is not None
+    first, last = (a < -tolerance) & ~still, (b < -tolerance) & ~still
+    begin, end = state.low.copy(), state.high.copy()
+    mixed = first != last
+    crossing = mixed & (a * b < 0.0)
+    roots = _roots(lambda t: curve.sample(t).speed, state.low[crossing], state.high[crossing], 0.0)
+    falling = first[crossing]
+    end[crossing] = np.where(falling, roots, state.high[crossing])
+    begin[crossing] = np.where(falling, state.low[crossing], roots)
+    kept = np.flatnonzero(first | last | still)
+    return [(float(begin[i]), float(end[i]), bool(still[i])) for i in kept if end[i] > begin[i]]
+
+
+def _joined(curve: Curve, found: list[tuple[float, float, bool]]) -> tuple[Reversal, ...]:
+    """Join pieces that touch, also across the seam of a closed run."""
+    merged: list[list[Any]] = []
+    for start, end, still in sorted(found):
+        if merged and start <= merged[-1][1] and merged[-1][2] == still:
+            merged[-1][1] = end
+        else:
+            merged.append([start, end, still])
+    if curve.closed and len(merged) > 1 and merged[0][2] == merged[-1][2]:
+        run = curve.runs[0]
+        if merged[0][0] == run.low and merged[-1][1] == run.high:
+            merged[-1][1] = merged.pop(0)[1] + curve.shape.period
+    return tuple(Reversal(start, end, still) for start, end, still in merged)
