@@ -160,10 +160,23 @@ class Curve:
 
     @staticmethod
     def whole(shape: Shape) -> Curve:
-        """The curve of the whole turn, begun at its first break so that no stretch runs across the seam."""
+        """The curve of the whole turn, begun at a break so that no stretch runs across the seam.
+
+        A break at which a convex stretch meets a concave one is no place to begin; where all are such, the curve begins
+        in the middle of a stretch.
+        """
         breaks = np.asarray(shape.breaks, dtype=np.float64)
-        low = float(breaks[0]) if breaks.size else 0.0
-        return Curve(shape, (Run(low, low + shape.period, tuple(float(b) for b in breaks[1:]), closed=True),))
+        if not breaks.size:
+            return Curve(shape, (Run(0.0, shape.period, (), closed=True),))
+        alike = shape.sample(breaks, 1).turn * shape.sample(breaks, -1).turn > 0.0
+        if alike.any():
+            first = int(np.argmax(alike))
+            low = float(breaks[first])
+            others = np.concatenate([breaks[first + 1 :], breaks[:first] + shape.period])
+        else:
+            low = 0.5 * float(breaks[-1] - shape.period + breaks[0])
+            others = breaks
+        return Curve(shape, (Run(low, low + shape.period, tuple(float(b) for b in others), closed=True),))
 
     @property
     def closed(self) -> bool:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.curve import CurveError
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -69,6 +71,9 @@ class Density:
         value[:, :-1] = density(interior).reshape(-1, STEPS_PER_CELL)
         value[:-1, -1] = value[1:, 0]
         value[-1:, -1] = density(curve.sample(t[-1:, -1], -1))
+        if float(interior.speed.min()) <= 0.0:
+            where = float(t[:, :-1].ravel()[int(np.argmin(interior.speed))])
+            raise CurveError(f"the curve runs backwards near parameter {where:.9g}: it undercuts", where)
         step = (right - left) / STEPS_PER_CELL
         area = 0.5 * (value[:, :-1] + value[:, 1:]) * step[:, None]
         grid = np.append(t[:, :-1].ravel(), t[-1, -1])
@@ -87,11 +92,16 @@ class Density:
         """The whole integral."""
         return float(self.sum[-1])
 
+    def at(self, share: Array) -> Array:
+        """Parameters at which the running integral reaches `share` (n,)."""
+        if self.total <= 0.0:
+            return np.linspace(self.t[0], self.t[-1], share.size)
+        nodes: Array = np.interp(share, self.sum, self.t)
+        return nodes
+
     def nodes(self, count: int) -> Array:
         """Parameters of `count` equal shares, both ends included (count + 1,)."""
-        if self.total <= 0.0:
-            return np.linspace(self.t[0], self.t[-1], count + 1)
-        nodes: Array = np.interp(np.linspace(0.0, self.total, count + 1), self.sum, self.t)
+        nodes = self.at(np.linspace(0.0, self.total, count + 1))
         nodes[0], nodes[-1] = self.t[0], self.t[-1]
         return nodes
 

@@ -142,7 +142,9 @@ def _settled(
         found = edges.deviation
         high, low = (found.outside, found.inside) if proved else (found.seen_high, found.seen_low)
         # what lies beyond the vertices' own side; across an inflection both sides count
-        load = np.where(edges.bend > 0, high, np.where(edges.bend < 0, -low, np.maximum(high, -low))) + tolerance
+        worst = np.maximum(high, -low)
+        load = np.where(edges.bend > 0, high, np.where(edges.bend < 0, -low, worst)) + tolerance
+        load = np.where(worst > tolerance * (1.0 + 1e-12), np.maximum(load, worst + tolerance), load)
         load[~np.isfinite(found.inside) | ~np.isfinite(found.outside)] = np.inf
         top = float(load.max())
         if top <= allowed:
@@ -174,23 +176,34 @@ def _first_nodes(
     links: dict[int, float] = {}
     total = sum(group.total for group in groups) / root
     scale = min(1.0, total / least)
-    for group in groups:
+    seams = _flips(curve, groups)
+    for number, group in enumerate(groups):
         cuts = _inflections(curve, group)
         ends = [0.0, *(float(np.interp(cut, group.t, group.sum)) / root for cut in cuts), group.total / root]
+        starts_across, ends_across = seams[number], seams[number + 1]
         for i, (begin, end) in enumerate(pairwise(ends)):
-            before, after = ACROSS if i > 0 else 0.0, ACROSS if i < len(cuts) else 0.0
+            before = ACROSS if i > 0 or starts_across else 0.0
+            after = ACROSS if i < len(cuts) or ends_across else 0.0
             count = max(1, math.ceil((end - begin) / scale - before - after - 1e-6))
             share = (end - begin) / (count + before + after)
-            at = begin + share * (before + np.arange(count + 1))
-            part = np.interp(at * root, group.sum, group.t) if group.total > 0 else np.linspace(*group.t[[0, -1]], count + 1)
-            if before == 0.0:
+            part = group.at((begin + share * (before + np.arange(count + 1))) * root)
+            if i == 0 and not starts_across:
                 part[0] = group.t[0]
-            if after == 0.0:
+            if i == len(cuts) and not ends_across:
                 part[-1] = group.t[-1]
-            else:
-                links[len(parts)] = cuts[i]
+            if after:
+                links[len(parts)] = cuts[i] if i < len(cuts) else float(group.t[-1])
             parts.append(part)
     return parts, links
+
+
+def _flips(curve: Curve, groups: list[Density]) -> list[bool]:
+    """Whether a convex and a concave stretch meet at the beginning of each group, and at the end of the last: never."""
+    at = np.array([group.t[0] for group in groups[1:]])
+    if not at.size:
+        return [False, False]
+    before, after = curve.sample(at, -1).turn, curve.sample(at, 1).turn
+    return [False, *(bool(flip) for flip in (before >= 0.0) != (after >= 0.0)), False]
 
 
 def _inflections(curve: Curve, group: Density) -> list[float]:
@@ -222,7 +235,8 @@ def _chained(parts: list[Array]) -> tuple[Array, Array]:
 def _denser(nodes: Array, load: Array, allowed: float, shared: int) -> tuple[Array, int]:
     """Nodes for the next try: shared anew while the mean load is within what is allowed, then more of them."""
     if not np.isfinite(load).all():
-        return np.sort(np.append(nodes, 0.5 * (nodes[:-1] + nodes[1:]))), 0
+        wild = ~np.isfinite(load)
+        return np.sort(np.append(nodes, 0.5 * (nodes[:-1] + nodes[1:])[wild])), 0
     mean = float(np.mean(np.sqrt(load))) ** 2
     if mean <= allowed and shared < ROUNDS:
         return reshared(nodes, load, 2.0), shared + 1
