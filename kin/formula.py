@@ -8,13 +8,14 @@ one-sided derivatives at a break, which rounding would smear in the formula itse
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kin.expression import Expression, FormulaDomainError, FormulaError
-from kin.switches import SWITCHES, settle
+from kin.switches import branches, innermost
 from kin.syntax import parse
 
 if TYPE_CHECKING:
@@ -25,7 +26,8 @@ __all__ = ["Expression", "Formula", "FormulaDomainError", "FormulaError"]
 
 Array = NDArray[np.float64]
 
-_MOST_PIECES = 1000
+# Stretches looked at while a formula is taken apart; some milliseconds each.
+_MOST_STRETCHES = 2000
 
 
 @dataclass(frozen=True)
@@ -74,24 +76,26 @@ class Formula:
         return knots, expressions
 
     def _take_apart(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...], tuple[bool, bool]]:
-        """Settle the first switch over the whole interval, then the next over each part: arguments come first."""
+        """Settle the innermost switches over the whole interval, then what is left over each part."""
         if not lower < upper:
             raise ValueError(f"no interval from {lower} to {upper}")
         waiting, knots, done = [(lower, upper, self.expression)], [lower], []
         at_lower = at_upper = False
+        seen = 0
         while waiting:
+            seen += 1
             a, b, expression = waiting.pop()
-            place = next((i for i, step in enumerate(expression.steps) if step.op in SWITCHES), None)
-            if place is None:
+            places = innermost(expression)
+            if not places:
                 knots.append(b)
                 done.append(expression)
                 continue
-            found = settle(expression, place, a, b)
+            found = branches(expression, places, a, b)
             at_lower |= found.at_start and a == lower
             at_upper |= found.at_end and b == upper
-            ends = [a, *found.inside, b]
-            waiting += list(zip(ends[:-1], ends[1:], found.expressions, strict=True))[::-1]
-            if len(waiting) + len(done) > _MOST_PIECES:
-                column = expression.steps[place].column
-                raise FormulaError(f"the formula switches more than {_MOST_PIECES} times", column)
+            ends = pairwise((a, *found.inside, b))
+            waiting += [(*end, part) for end, part in zip(ends, found.expressions, strict=True)][::-1]
+            if seen + len(waiting) > _MOST_STRETCHES:
+                message = f"the formula switches too often to be taken apart: more than {_MOST_STRETCHES} stretches"
+                raise FormulaError(message, expression.steps[places[0]].column)
         return np.array(knots, dtype=float), tuple(done), (at_lower, at_upper)

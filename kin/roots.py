@@ -67,11 +67,12 @@ class _Zero:
 
 def signs(g: Expression, lower: float, upper: float) -> Signs:
     """Return the signs of g over [lower, upper]; raises UnsettledError."""
-    if g.ball(lower, upper, 0).rows.zero.all():
-        return Signs((), (0,), at_start=False, at_end=False)
+    whole = g.ball(lower, upper, 0).rows[0]
+    if whole.zero[0] or _sign(whole)[0]:
+        return Signs((), (int(_sign(whole)[0]),), at_start=False, at_end=False)
     zeros = _merged(_zeros(g, lower, upper))
-    snap = _snap(lower, upper)
-    changes = tuple(zero for zero in zeros if lower + snap < zero < upper - snap)
+    room = snap(lower, upper)
+    changes = tuple(zero for zero in zeros if lower + room < zero < upper - room)
     edges = np.array([lower, *changes, upper])
     found = []
     for a, b in pairwise(edges.tolist()):
@@ -82,7 +83,7 @@ def signs(g: Expression, lower: float, upper: float) -> Signs:
     for place, (before, after) in enumerate(pairwise(found)):
         if before == after:
             raise UnsettledError("stays too close to zero", changes[place])
-    at_start, at_end = any(z <= lower + snap for z in zeros), any(z >= upper - snap for z in zeros)
+    at_start, at_end = any(z <= lower + room for z in zeros), any(z >= upper - room for z in zeros)
     return Signs(changes, tuple(found), at_start, at_end)
 
 
@@ -91,7 +92,8 @@ def _sign(row: Ball) -> NDArray[np.int_]:
     return np.where(row.positive, 1, np.where(row.negative, -1, 0))
 
 
-def _snap(lower: float, upper: float) -> float:
+def snap(lower: float, upper: float) -> float:
+    """Return the distance within which two parameters of an interval are one."""
     return _END_ULPS * math.ulp(max(abs(lower), abs(upper)))
 
 
@@ -136,24 +138,24 @@ def _simple(g: Expression, low: Array, high: Array, lower: float, upper: float) 
         _Zero(float(z), float(a), float(b))
         for z, a, b in zip(_refine(g, 1, low[cross], high[cross]), low[cross], high[cross], strict=True)
     ]
-    snap = _snap(lower, upper)
-    found += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, snap)]
-    found += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, snap)]
+    room = snap(lower, upper)
+    found += [_Zero(lower, lower, float(b)) for b in high[low == lower] if _on_end(g, 1, lower, room)]
+    found += [_Zero(upper, float(a), upper) for a in low[high == upper] if _on_end(g, 1, upper, room)]
     return found
 
 
-def _on_end(g: Expression, m: int, end: float, snap: float) -> bool:
+def _on_end(g: Expression, m: int, end: float, room: float) -> bool:
     """Whether the (m - 1)-th derivative is 0 at an end to within rounding, of itself or of the end."""
     at = np.array([end])
     c = g.jet(at, m).c[m - 1 :, 0]
-    return not _sign(g.ball(at, at, m - 1).rows[m - 1]).any() or bool(abs(c[0]) <= snap * m * abs(c[1]))
+    return not _sign(g.ball(at, at, m - 1).rows[m - 1]).any() or bool(abs(c[0]) <= room * m * abs(c[1]))
 
 
 def _multiple(
     g: Expression, low: Array, high: Array, lower: float, upper: float
 ) -> tuple[list[_Zero], NDArray[np.bool_]]:
     """Multiple zeros in small cells, the odd ones of them, and the cells that are settled by it."""
-    settled, found, snap = np.zeros(len(low), dtype=bool), [], _snap(lower, upper)
+    settled, found, room = np.zeros(len(low), dtype=bool), [], snap(lower, upper)
     if not len(low):
         return [], settled
     certain = _sign(g.ball(low, high, _MOST_MULTIPLE).rows) != 0
@@ -164,13 +166,13 @@ def _multiple(
         ends = [_sign(g.ball(x, x, m - 1).rows[m - 1])[0] for x in (a, b)]
         if ends[0] * ends[1] < 0:
             zero = _refine(g, m, a, b)
-        elif a[0] == lower and _on_end(g, m, lower, snap):
+        elif a[0] == lower and _on_end(g, m, lower, room):
             zero = a
-        elif b[0] == upper and _on_end(g, m, upper, snap):
+        elif b[0] == upper and _on_end(g, m, upper, room):
             zero = b
         else:
             continue
-        if not _sign(g.ball(zero - snap, zero + snap, m - 2).rows).any():
+        if not _sign(g.ball(zero - room, zero + room, m - 2).rows).any():
             settled[i] = True
             if m % 2:
                 found.append(_Zero(float(zero[0]), float(a[0]), float(b[0])))
