@@ -1,0 +1,107 @@
+"""Where a contour bears on flat faces all round: corner after corner, arc after arc, and the support function of each.
+
+Between two neighbouring breaks one corner, arc or Bezier piece is the farthest in every direction, so the support
+function q(theta) = x.u(theta) is smooth there: q' = x.n and q'' = R - q, with x the contact point and R the contour's
+radius of curvature at it, 0 for a corner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.arcs import cross, dot, unit
+from kin.bernstein import values
+from kin.contour import ARC, BEZIER, LINE
+
+if TYPE_CHECKING:
+    from kin.arcs import Array, Indices
+    from kin.contour import Contour
+
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Bearing:
+    """m stretches: stretch k reaches from breaks[k] to breaks[k+1], the last over 2 pi to the first; breaks in [0, 2 pi).
+
+    `point` (m, 2) is the corner that bears, `piece` (m,) the arc or Bezier piece that does instead, -1 for a corner.
+    """
+
+    contour: Contour
+    breaks: Array
+    point: Array
+    piece: Indices
+
+    def find(self, theta: Array) -> Indices:
+        """Stretch of each angle (n,); at a break the one that begins there."""
+        return (np.searchsorted(self.breaks, np.mod(theta, TURN), side="right") - 1) % len(self.breaks)
+
+    def derivatives(self, theta: Array, stretch: Indices) -> Array:
+        """q, q', q'' (3, n) at angles theta (n,) as the corner or piece of the given stretches has them."""
+        return self._rows(theta, stretch, unit(theta))
+
+    def _rows(self, theta: Array, stretch: Indices, u: Array) -> Array:
+        x, radius = self._contact(theta, stretch)
+        q = dot(x, u)
+        return np.stack([q, cross(u, x), radius - q])
+
+    def between(self, nodes: Array, turned: float = 0.0) -> tuple[Indices, Array, Array]:
+        """For intervals between neighbouring nodes (m + 1,), no break inside: stretch (m,), derivatives (3, m) of
+        q(theta + turned) at their low ends, and at their high ends, both as seen from within."""
+        low, high = nodes[:-1] + turned, nodes[1:] + turned
+        stretch = self.find(0.5 * (low + high))
+        u = unit(nodes + turned)
+        return stretch, self._rows(low, stretch, u[:-1]), self._rows(high, stretch, u[1:])
+
+    def _contact(self, theta: Array, stretch: Indices) -> tuple[Array, Array]:
+        x = self.point[stretch]
+        radius = np.zeros(len(x))
+        piece = self.piece[stretch]
+        curved = np.flatnonzero(piece >= 0)
+        if len(curved):
+            kind = self.contour.kind[piece[curved]]
+            arc, bow = curved[kind == ARC], curved[kind == BEZIER]
+            i = piece[arc]
+            x[arc] = self.contour.arc_points(i, theta[arc] - self.contour.angle[i])
+            radius[arc] = self.contour.radius[i]
+            if len(bow):
+                row = self.contour.curve[piece[bow]]
+                beziers = self.contour.beziers
+                t = beziers.farthest(row, theta[bow])
+                x[bow] = beziers.point(row, t)
+                velocity = beziers.velocity[row]
+                v = values(velocity, t)
+                change = values((velocity.shape[1] - 1) * np.diff(velocity, axis=1), t) if velocity.shape[1] > 1 else 0 * v
+                weight = values(beziers.weight[row], t) if beziers.rational else np.ones(len(t))
+                bend = np.abs(cross(v, change)) * weight**2
+                size = np.hypot(v[:, 0], v[:, 1]) ** 3
+                radius[bow] = size / np.maximum(bend, 1e-9 * size)  # flatter than 1e9 mm is flat
+        return x, radius
+
+    def nodes(self, low: float, high: float, breaks: Array) -> Array:
+        """low, high, and all breaks of the contour and of `breaks` (in [0, 2 pi)) between them, rising."""
+        all_breaks = np.concatenate([self.breaks, breaks])
+        first = int(np.floor(low / TURN))
+        turns = TURN * np.arange(first, int(np.ceil(high / TURN)) + 1)
+        spread = all_breaks if len(turns) == 1 else (all_breaks + turns[:, None]).ravel()
+        spread = spread[(spread > low) & (spread < high)]
+        return np.unique(np.concatenate([[low], spread, [high]]))
+
+
+def bearing_of(contour: Contour) -> Bearing:
+    """Find what bears in every direction. Cost: one support evaluation for each break of the contour's support."""
+    breaks = contour.normals
+    if (contour.kind == LINE).all():
+        normals, corners = contour.hull_edges
+        point = contour.vertices[corners[np.searchsorted(normals, breaks, side="right") - 1]]
+        return Bearing(contour, breaks, point, np.full(len(breaks), -1))
+    middle = breaks + 0.5 * np.diff(breaks, append=breaks[:1] + TURN)
+    found = contour.support(middle)
+    ranges = contour.normal_ranges
+    low, width = np.zeros(len(contour)), np.full(len(contour), -1.0)
+    low[ranges.piece], width[ranges.piece] = ranges.low, ranges.width
+    curved = np.mod(middle - low[found.piece], TURN) <= width[found.piece]
+    return Bearing(contour, breaks, found.point, np.where(curved, found.piece, -1))

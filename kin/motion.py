@@ -1,0 +1,95 @@
+"""How far a follower's measured motion is from the intended one, and how much play it has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from kin.arcs import Array
+
+Unit = Literal["mm", "deg"]
+TURN = 2.0 * np.pi
+STEP_DEG = 1.0  # the shaft turns by this much in an increment
+
+
+@dataclass(frozen=True)
+class MotionError:
+    """Error of a follower's position over one turn, measured less intended; mm, or degrees where the follower swings.
+
+    max             greatest absolute error
+    rms             root mean square over the given shaft angles
+    at_deg          shaft angle of the greatest, [0, 360)
+    increment       greatest change of the error while the shaft turns by `step_deg`, starting from each given angle
+    dwell_flatness  greatest range of the measured position over a dwell of the intended motion; None without a dwell
+    """
+
+    max: float
+    rms: float
+    unit: Unit
+    at_deg: float
+    increment: float
+    step_deg: float
+    dwell_flatness: float | None = None
+
+
+@dataclass(frozen=True)
+class Play:
+    """Clearance between contour and follower over one turn, negative where they interfere.
+
+    A yoke: the breadth of the frame less that of the contour, mm. A double roller: the gap at the second roller while
+    the first is held in contact, mm. A flat pair: the angle by which the faces stand wider than they need, degrees.
+    The angles are shaft angles, [0, 360).
+    """
+
+    least: float
+    least_at_deg: float
+    most: float
+    most_at_deg: float
+    unit: Unit
+
+
+class Judged(NamedTuple):
+    """Motion error, and play for the followers that are held from two sides."""
+
+    motion: MotionError
+    play: Play | None
+
+
+class ContactError(ValueError):
+    """The follower finds no contact; `at` is the shaft angle in radians where it was looked for."""
+
+    def __init__(self, message: str, at: float) -> None:
+        super().__init__(f"{message} at {degrees_of(at):.6g} degrees")
+        self.at = at
+
+
+def degrees_of(angle: float) -> float:
+    """Radians as degrees in [0, 360)."""
+    turned = float(np.degrees(angle)) % 360.0
+    return 0.0 if turned >= 360.0 else turned
+
+
+def with_steps(phi: Array) -> Array:
+    """The given shaft angles (n,), and each of them an increment on: (2n,), for `motion_error`."""
+    return np.concatenate([phi, phi + np.radians(STEP_DEG)])
+
+
+def motion_error(worst: tuple[float, float], errors: Array, flatness: float | None, unit: Unit) -> MotionError:
+    """Sum up: `worst` error and where, `errors` (..., 2n) at `with_steps` of the given angles, dwell flatness.
+
+    Radians become degrees if the unit says so.
+    """
+    scale = 180.0 / np.pi if unit == "deg" else 1.0
+    here, further = np.split(errors, 2, axis=-1)
+    return MotionError(
+        max=scale * worst[0],
+        rms=scale * float(np.sqrt(np.mean(here * here))),
+        unit=unit,
+        at_deg=degrees_of(worst[1]),
+        increment=scale * float(np.abs(further - here).max()),
+        step_deg=STEP_DEG,
+        dwell_flatness=None if flatness is None else scale * flatness,
+    )
