@@ -185,7 +185,7 @@ def _one_circle(first: Stretch, second: Stretch) -> bool:
 def _demand_joined(law: Piecewise, field: str) -> None:
     """Refuse a jump of p or p' at any knot, the seam included."""
     knots = law.knots[np.argsort(np.mod(law.knots[:-1], _TURN))]
-    right, left = (law.derivatives(knots, 2, side) for side in (1, -1))
+    right, left = (law.derivatives(knots, 2, side) + 0.0 for side in (1, -1))  # no -0 in a message
     jump = np.abs(right - left)
     allowed = _JOIN * max(np.abs(right).max(), np.abs(left).max())
     for row, what, unit, harm in (

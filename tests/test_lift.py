@@ -6,7 +6,7 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kin.formula import Formula
@@ -99,6 +99,7 @@ def test_peaks_of_the_worked_example_in_closed_form():
     assert np.abs(s).max(axis=1)[1:] == pytest.approx(true, rel=1e-9)
 
 
+@settings(deadline=None)
 @given(st.sampled_from(sorted(LAWS)), st.floats(1, 40), st.floats(30, 150), st.floats(0.05, 0.9), ANGLES)
 def test_opposite_faces_keep_their_distance(name, stroke, over, share, t):
     rest = 180 - over
@@ -274,6 +275,7 @@ def test_rabinowitz_curve():
         assert (rho(lift, GRID).min(), rho(lift, GRID).max()) == pytest.approx((1, 17), rel=1e-13)
 
 
+@settings(deadline=None)
 @given(st.dictionaries(st.integers(1, 9), st.floats(-2, 2), max_size=4), st.floats(-20, 20), st.floats(-20, 20), ANGLES)
 def test_fourier_series_are_their_formulas(cos, x, y, t):
     sin = {k: a / 2 for k, a in cos.items()}
@@ -300,6 +302,7 @@ def test_harmonics_count_from_one():
 # --- the shaft ---
 
 
+@settings(deadline=None)
 @given(st.sampled_from(sorted(AYGAHOGLU)), st.floats(-20, 20), st.floats(-20, 20), ANGLES)
 def test_moving_the_shaft_moves_the_contour_and_leaves_rho(figure, x, y, t):
     still = lift_from_formula(Formula(AYGAHOGLU[figure]))

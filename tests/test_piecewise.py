@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kin.jet import BallJet, DomainError, Jet, log, sin
@@ -65,6 +65,7 @@ def test_just_below_the_period_is_the_last_stretch_and_not_zero():
     assert f.locate(np.array([-1e-300]), -1)[1][0] == TURN
 
 
+@settings(deadline=None)
 @given(st.floats(-50, 50), st.sampled_from([1, -1]), st.sampled_from([0.0, -math.pi, 3 * math.pi]))
 def test_points_stay_inside_their_stretch(t, side, begin):
     value, slope = rectified(begin).derivatives(t, 1, side)[:, 0]
@@ -72,6 +73,7 @@ def test_points_stay_inside_their_stretch(t, side, begin):
     assert abs(slope) == pytest.approx(abs(math.cos(t)), abs=1e-13)
 
 
+@settings(deadline=None)
 @given(st.floats(-20, 20), st.floats(0, 15), st.floats(0, 1))
 def test_an_enclosure_holds_every_value_inside(lower, width, share):
     upper = lower + width
