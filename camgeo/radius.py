@@ -61,7 +61,7 @@ def least_radius(curve: Curve) -> tuple[float, float]:
     best, at = _least_end(state)
     for _ in range(LEVELS):
         dips = state.part(state.dips & (state.floor(best - tolerance) < 0.0))
-        bottoms = _roots(lambda t: _radius_slope(curve.sample(t)), dips.low, dips.high, 1e-7)
+        bottoms = roots(lambda t: _radius_slope(curve.sample(t)), dips.low, dips.high, 1e-7)
         if bottoms.size:
             radius = _radius(curve.sample(bottoms))
             if radius.min() < best:
@@ -225,7 +225,7 @@ def _least_end(state: _Intervals) -> tuple[float, float]:
     return float(radius[where]), float(np.concatenate([state.low, state.high])[where])
 
 
-def _roots(function: Callable[[Array], Array], low: Array, high: Array, precision: float) -> Array:
+def roots(function: Callable[[Array], Array], low: Array, high: Array, precision: float) -> Array:
     """Roots of a function that changes its sign in each interval (n,), to `precision` of the interval.
 
     The Illinois form of the rule of false position, halving where it is slow.
@@ -233,7 +233,7 @@ def _roots(function: Callable[[Array], Array], low: Array, high: Array, precisio
     if low.size == 0:
         return low
     a, b = low.copy(), high.copy()
-    fa, fb = function(np.concatenate([a, b])).reshape(2, -1)
+    fa, fb = function(a), function(b)
     close = precision * (high - low) + 2.0 * np.spacing(np.maximum(np.abs(low), np.abs(high)))
     last = np.full_like(a, np.inf)
     for step in range(_ROOT_STEPS):
@@ -264,10 +264,10 @@ def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple
     begin, end = state.low.copy(), state.high.copy()
     mixed = first != last
     crossing = mixed & (a * b < 0.0)
-    roots = _roots(lambda t: curve.sample(t).speed, state.low[crossing], state.high[crossing], 0.0)
+    change = roots(lambda t: curve.sample(t).speed, state.low[crossing], state.high[crossing], 0.0)
     falling = first[crossing]
-    end[crossing] = np.where(falling, roots, state.high[crossing])
-    begin[crossing] = np.where(falling, state.low[crossing], roots)
+    end[crossing] = np.where(falling, change, state.high[crossing])
+    begin[crossing] = np.where(falling, state.low[crossing], change)
     kept = np.flatnonzero(first | last | still)
     return [(float(begin[i]), float(end[i]), bool(still[i])) for i in kept if end[i] > begin[i]]
 

@@ -85,11 +85,10 @@ class Pitch:
         return _Bends(most, turn_low, turn_high, bend_low, bend_high)
 
     def _broken(self, low: Array, high: Array) -> NDArray[np.bool_]:
-        """Whether a break lies in the intervals (n,), ends included."""
-        run = self.contour.runs[0]
-        breaks = np.array([run.low, *run.breaks, run.high]) if self.contour.shape.breaks.size else np.empty(0)
-        touched: NDArray[np.bool_] = np.searchsorted(breaks, high, side="right") > np.searchsorted(breaks, low)
-        return touched
+        """Whether a break lies inside the intervals (n,)."""
+        breaks = np.array(self.contour.runs[0].breaks)
+        inside: NDArray[np.bool_] = np.searchsorted(breaks, high) > np.searchsorted(breaks, low, side="right")
+        return inside
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,107 @@
+"""Undercut: where the metal that a follower needs has been cut away by its own contact elsewhere (THEORY section 7).
+
+Local undercut comes from bending: a radius of curvature below 0 for a flat face, below the roller's radius for a pitch
+curve. Global undercut comes from a neck of the pitch curve narrower than the roller, however gently it is bent. Whether
+there is any is proved (`reversals`, `narrowest_necks`); the extent and depth are those of the contour that is left.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from camgeo.crossing import all_breaks
+from camgeo.curve import Curve, Run
+from camgeo.radius import least_radius
+from camgeo.reach import Neck, Pitch, neck_from, rolling_radius
+from camgeo.trim import Causes, Lost, UndercutError, causes, follower_radius, remains
+
+if TYPE_CHECKING:
+    from camgeo.radius import Reversal
+
+LOOKS = 240  # parameters at which a neck is looked for where it is known to exist
+
+
+@dataclass(frozen=True)
+class Undercut:
+    """One stretch of the contour that undercuts.
+
+    Contact is lost from parameter `start` to `end` (beyond `start`, perhaps beyond the period); `at` is where the
+    radius of curvature is least (local) or one end of the neck (global). `depth` is how far the follower hangs free at
+    the worst, in mm along its normal, infinite where nothing is left of the contour. `free_at`, in mm, is the value
+    at which this stretch would just be free: the largest roller radius, or for a flat face by how much the base radius
+    must grow.
+    """
+
+    kind: Literal["local", "global"]
+    start: float
+    end: float
+    at: float
+    depth: float
+    free_at: float
+
+
+def undercuts(curve: Curve) -> tuple[Undercut, ...]:
+    """Find all undercut of a whole curve, in order of the parameter; empty for a sound contour.
+
+    A `Parallel` is a roller's contour inside its pitch curve, any other shape that of a flat face. A stretch that is
+    lost for both reasons is reported for each. Raises CurveError where freedom from undercut can be neither proved nor
+    refuted, UndercutError where the extent cannot be told.
+    """
+    why = causes(curve)
+    if not why.necks and all(r.still for r in why.reversals):
+        return ()
+    found: list[Undercut] = []
+    for lost in remains(curve, why).lost:
+        inside = [r for r in why.reversals if not r.still and _within(curve, lost, 0.5 * (r.start + r.end))]
+        necks = [n for n in why.necks if _within(curve, lost, n.first) or _within(curve, lost, n.second)]
+        if inside:
+            found.append(_local(curve, lost, inside))
+        if necks:
+            found.append(_global(curve, lost, min(necks, key=lambda n: n.half)))
+        if not inside and not necks and not _still(curve, lost, why):
+            found.append(_global(curve, lost, _neck_of(curve, lost)))
+    return tuple(found)
+
+
+def _within(curve: Curve, lost: Lost, t: float) -> bool:
+    return (t - lost.start) % curve.shape.period <= lost.end - lost.start
+
+
+def _still(curve: Curve, lost: Lost, why: Causes) -> bool:
+    return any(r.still and _within(curve, lost, 0.5 * (r.start + r.end)) for r in why.reversals)
+
+
+def _local(curve: Curve, lost: Lost, inside: list[Reversal]) -> Undercut:
+    least, at = math.inf, lost.start
+    for r in inside:
+        breaks = tuple(all_breaks(curve, r.start, r.end).tolist())
+        radius, where = least_radius(Curve(curve.shape, (Run(r.start, r.end, breaks, closed=False),)))
+        if radius < least:
+            least, at = radius, where
+    roller = follower_radius(curve)
+    return Undercut("local", lost.start, lost.end, at, lost.depth, -least if math.isinf(roller) else roller + least)
+
+
+def _global(curve: Curve, lost: Lost, neck: Neck) -> Undercut:
+    at = neck.first if _within(curve, lost, neck.first) else neck.second
+    return Undercut("global", lost.start, lost.end, at, lost.depth, neck.half)
+
+
+def _neck_of(curve: Curve, lost: Lost) -> Neck:
+    """Neck for which a stretch is lost that is nowhere bent too much: the least rolling radius on it."""
+    radius = follower_radius(curve)
+    pitch = Pitch(curve, radius)
+    t = np.linspace(lost.start, lost.end, LOOKS)
+    s = curve.runs[0].low + curve.shape.period * np.arange(4 * LOOKS) / (4 * LOOKS)
+    seen = rolling_radius(pitch, t, s)
+    apart = np.abs((t[:, None] - s + 0.5 * curve.shape.period) % curve.shape.period - 0.5 * curve.shape.period)
+    seen[apart < 0.5 * (s[1] - s[0])] = np.inf  # next to each other on the curve: rounding, and no neck
+    first, second = np.unravel_index(int(np.argmin(seen)), seen.shape)
+    neck = neck_from(pitch, float(t[first]), float(s[second]))
+    if neck is None or not neck.half < radius:
+        raise UndercutError(f"no neck is found where contact is lost, near parameter {lost.start:.9g}", lost.start)
+    return neck
