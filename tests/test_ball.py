@@ -139,6 +139,21 @@ def test_functions_of_single_numbers_are_off_by_less_than_they_are_allowed(name:
         assert rad <= 40 * 2.0**-53 * abs(float(true)) + 1e-299
 
 
+@pytest.mark.parametrize("quarter", range(4))
+def test_extrema_are_not_missed_where_the_turns_of_a_large_angle_are_rounded(quarter: int) -> None:
+    """Intervals that only just reach over a maximum or minimum, near 1e15 where a turn is known to 0.1 at best."""
+    extremes = [(mpmath.mpf(quarter) / 4 + turn) * 2 * mpmath.pi for turn in range(10**14, 10**14 + 200)]
+    lower = np.array([float(x) - 0.25 for x in extremes])
+    upper = np.array([float(x) + 0.25 for x in extremes])
+    for edges in ((lower, np.array([float(x) for x in extremes])), (np.array([float(x) for x in extremes]), upper)):
+        x = Ball.between(*edges)
+        found = (ball.cos if quarter % 2 == 0 else ball.sin)(x)
+        sign = 1 if quarter < 2 else -1
+        for i, (true, a, b) in enumerate(zip(extremes, *edges, strict=True)):
+            if a <= true <= b:
+                assert holds(found[i : i + 1], mpmath.mpf(sign))
+
+
 @given(intervals, intervals)
 @example((-1.0, 1.0, 0.5), (-3.0, -2.0, -2.5))
 @example((0.0, 0.0, 0.0), (-3.0, -3.0, -3.0))
@@ -154,6 +169,7 @@ def test_angles_hold_every_value(y: Interval, x: Interval) -> None:
         (ball.sin(between(0.5, 2.0)), math.sin(0.5), 1.0),
         (ball.sin(between(-2.0, 4.0)), -1.0, 1.0),
         (ball.sin(between(4.0, 5.0)), -1.0, math.sin(4.0)),
+        (ball.sin(between(4.5, 4.9)), -1.0, math.sin(4.5)),
         (ball.cos(between(-0.25, 0.5)), math.cos(0.5), 1.0),
         (ball.cos(between(3.0, 3.5)), -1.0, math.cos(3.5)),
         (ball.cos(between(1.0, 2.0)), math.cos(2.0), math.cos(1.0)),

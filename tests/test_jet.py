@@ -67,6 +67,7 @@ FUNCTIONS = {
     "twentieth": (lambda t: t**20, lambda t: t**20, (-2, 2), 8),
     "reciprocal square": (lambda t: t**-2, lambda t: t**-2, (-5, -0.5), 8),
     "broken power": (lambda t: t**-2.5, lambda t: t ** mpmath.mpf(-2.5), (0.1, 5), 8),
+    "tenth root": (lambda t: t**0.1, lambda t: t ** mpmath.mpf(0.1), (0.1, 5), 8),
     "power of a constant": (lambda t: 2**t, lambda t: mpmath.mpf(2) ** t, (-3, 3), 20),
     "power of itself": (lambda t: t**t, lambda t: t**t, (0.5, 4), 60),
     "quotient": (lambda t: (t + 1) / (2 + t * t), lambda t: (t + 1) / (2 + t * t), (-3, 3), 40),
@@ -157,6 +158,15 @@ def test_over_a_line_sine_and_cosine_have_their_true_ranges_in_every_derivative(
         assert (low[:, 0] <= true.min(axis=1) + size * 1e-12).all()
         assert (high[:, 0] >= true.max(axis=1) - size * 1e-12).all()
         assert (high[:, 0] <= size * (1 + 1e-13)).all()
+
+
+def test_an_exponent_less_a_whole_number_is_not_rounded() -> None:
+    """0.1 - 1 is no double; so far from 1 its rounding is worth a hundred ulp."""
+    t = mpmath.mpf(1e-100)
+    found = BallJet.variable(1e-100, 1e-100, 3) ** 0.1
+    for k in range(4):
+        true = mpmath.binomial(mpmath.mpf(0.1), k) * t ** (mpmath.mpf(0.1) - k)
+        assert abs(true - mpmath.mpf(found.mid[k, 0])) <= found.rad[k, 0] <= 1e-13 * abs(true)
 
 
 jets = st.lists(st.floats(-3, 3), min_size=5, max_size=5).map(lambda c: Jet(np.array(c)[:, None]))
