@@ -88,12 +88,14 @@ def clip(outer: Array, inner: Array | None = None) -> Triangles:
     or the hole does not lie strictly inside.
     """
     if inner is None:
-        points, chain = outer, np.arange(len(outer))
+        points = outer
+        chain: NDArray[np.int64] | None = np.arange(len(outer))
     else:
         points, chain = np.concatenate((outer, inner)), _bridged(outer, inner)
-    triangles = _clip_ears(points, chain)
-    if not _all_positive(points, triangles):
-        raise RegionError("the contour touches or crosses itself")
+    triangles = None if chain is None else _clip_ears(points, chain)
+    if triangles is None or not _all_positive(points, triangles):
+        reached = "the bore reaches the contour, or " if inner is not None else ""
+        raise RegionError(f"{reached}the contour touches or crosses itself")
     return triangles
 
 
@@ -149,10 +151,10 @@ def _cut_rounds(loop: Array) -> tuple[list[Triangles], NDArray[np.int64]]:
     return cut, left
 
 
-def _bridged(outer: Array, inner: Array) -> NDArray[np.int64]:
+def _bridged(outer: Array, inner: Array) -> NDArray[np.int64] | None:
     """One chain of vertex indices round the outer loop and, over a bridge and back, clockwise round the inner one.
 
-    The bridge runs from the inner vertex farthest right to the nearest outer vertex that it sees.
+    The bridge runs from the inner vertex farthest right to the nearest outer vertex that it sees; None if it sees none.
     """
     n, m = len(outer), len(inner)
     q = int(np.argmax(inner[:, 0]))
@@ -172,11 +174,11 @@ def _bridged(outer: Array, inner: Array) -> NDArray[np.int64]:
             round_outer = (p + np.arange(n + 1)) % n
             round_inner = n + (q - np.arange(m + 1)) % m
             return np.concatenate((round_outer, round_inner))
-    raise RegionError("the bore reaches the contour")
+    return None
 
 
-def _clip_ears(points: Array, chain: NDArray[np.int64]) -> Triangles:
-    """Clip the ears of a chain of vertex indices, going round; the triangles (len(chain) - 2, 3)."""
+def _clip_ears(points: Array, chain: NDArray[np.int64]) -> Triangles | None:
+    """Clip the ears of a chain of vertex indices, going round: len(chain) - 2 triangles, None if there is no ear."""
     size = len(chain)
     before, after = (np.arange(size) - 1) % size, (np.arange(size) + 1) % size
     at = points[chain]
@@ -196,7 +198,7 @@ def _clip_ears(points: Array, chain: NDArray[np.int64]) -> Triangles:
             continue
         k, stuck = j, stuck + 1
         if stuck > size:
-            raise RegionError("the contour touches or crosses itself")
+            return None
     triangles.append((chain[before[k]], chain[k], chain[after[k]]))
     return np.array(triangles, dtype=np.int64)
 
