@@ -96,12 +96,15 @@ class _Run:
 
     def __call__(self, u: Series, /) -> Series:
         """Give the displacement."""
-        x = u - self.start
+        x = u - self.start if self.start else u
         if self.shape == "flat":
             return (x * (self.peak / 2) + self.v) * x + self.s
         angle, k = x * self.rate, self.peak / self.rate**2
         rest = angle - sin(angle) if self.shape == "sin" else 1.0 - cos(angle)  # at rest at the start, to the last bit
-        return rest * k + x * self.v + self.s
+        path = rest * k
+        if self.v:
+            path = path + x * self.v
+        return path + self.s if self.s else path
 
 
 def _mirrored(function: Stretch) -> Stretch:
@@ -292,7 +295,8 @@ def programme(segments: Sequence[Segment], total: float, field: str = "motion") 
         else:
             strokes.append(segment.stroke if segment.kind == "rise" else -segment.stroke)
             motion = segment.law.motion
-            functions += [Affine(f, level, strokes[-1], begin, end - begin) for f in motion.functions]
+            place = {"offset": level, "scale": strokes[-1], "start": begin, "width": end - begin}
+            functions += [Affine.of(f, **place) for f in motion.functions]
             knots += [begin + u * (end - begin) for u in motion.knots[1:-1].tolist()]
         knots.append(end)
     return Programme(Piecewise(np.array(knots), tuple(functions)), tuple(segments))

@@ -365,4 +365,4 @@ def _raised(function: Stretch, offset: float, sense: float, start: float) -> Str
     """Give offset + sense S(t - start); of a dwell, the circle about the shaft."""
     if isinstance(function, Constant):
         return Circle(offset + sense * function.value)
-    return Affine(function, offset, sense, start)
+    return Affine.of(function, offset=offset, scale=sense, start=start)

@@ -56,10 +56,30 @@ class Affine:
     start: float = 0.0
     width: float = 1.0
 
+    @staticmethod
+    def of(
+        function: Stretch, *, offset: float = 0.0, scale: float = 1.0, start: float = 0.0, width: float = 1.0
+    ) -> Affine:
+        """Move a function; one that is already moved is moved once, not twice."""
+        if not isinstance(function, Affine):
+            return Affine(function, offset, scale, start, width)
+        return Affine(
+            function.function,
+            offset + scale * function.offset,
+            scale * function.scale,
+            start + width * function.start,
+            width * function.width,
+        )
+
     def __call__(self, t: Series, /) -> Series:
         """Apply the moved function."""
         x = t - self.start if self.start else t
-        return self.function(x / self.width if self.width != 1 else x) * self.scale + self.offset
+        value = self.function(x * (1 / self.width) if self.width != 1 else x)
+        if self.scale == -1:
+            value = -value
+        elif self.scale != 1:
+            value = value * self.scale
+        return value + self.offset if self.offset else value
 
 
 @dataclass(frozen=True)

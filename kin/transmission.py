@@ -274,7 +274,9 @@ def _over_period(
 ) -> tuple[Piecewise, tuple[float, ...]]:
     """Complete psi over 2 delta, with w for each stretch, from delta; rests at psi = 0 run on over the joints."""
     begin = knots[0]
-    images = [Constant(-f.value) if isinstance(f, Constant) else Affine(f, scale=-1.0, start=delta) for f in functions]
+    images = [
+        Constant(-f.value) if isinstance(f, Constant) else Affine.of(f, scale=-1.0, start=delta) for f in functions
+    ]
     all_knots = [*knots[:-1], *(k + delta for k in knots)]
     all_knots[-1] = begin + 2 * delta
     stretches: list[Stretch] = [*functions, *images]
@@ -351,7 +353,7 @@ def _scaled(function: Stretch, scale: float) -> Stretch:
     if isinstance(function, Constant):
         value = function.value * scale
         return Constant(0.0 if abs(value) <= _JOIN else value)
-    return Affine(function, scale=scale) if scale != 1 else function
+    return Affine.of(function, scale=scale) if scale != 1 else function
 
 
 def _checked(law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str) -> Transmission:
