@@ -61,23 +61,23 @@ def ring(outer: Array, inner: Array) -> Triangles:
 def disc(outer: Array) -> Triangles:
     """Triangles (n - 2, 3), counter-clockwise, of the region inside a counter-clockwise loop (n, 2).
 
-    From a loop that runs once round the origin, ears are cut in rounds, as many at a time as are not neighbours: an ear
-    that leaves the origin inside leaves the rest star-shaped. What no round can cut goes to `clip`, and so do other
-    contours. Raises RegionError where the loop is not simple.
+    From a loop that runs once round the middle of its vertices, ears are cut in rounds, as many at a time as are not
+    neighbours: an ear that leaves the middle inside leaves the rest star-shaped. A convex loop takes O(log n) rounds,
+    a hollow takes one for each two of its vertices. What no round can cut goes to `clip`, and so do other contours. Raises RegionError where the loop is not simple.
     """
-    cut, left = _cut_rounds(outer) if star_shaped(outer) else ([], np.arange(len(outer)))
-    if left.size >= 3:
-        cut.append(left[clip(outer[left])])
-    return np.concatenate(cut)
+    centre: Array = outer.mean(axis=0).astype(np.float32).astype(np.float64)
+    cut, left = _cut_rounds(outer, centre) if star_shaped(outer, centre) else ([], np.arange(len(outer)))
+    return np.concatenate([*cut, left[clip(outer[left])]])
 
 
-def star_shaped(loop: Array) -> bool:
-    """Whether a loop (n, 2) runs exactly once counter-clockwise round the origin, never turning back."""
+def star_shaped(loop: Array, centre: Array | None = None) -> bool:
+    """Whether a loop (n, 2) runs exactly once counter-clockwise round a centre (the origin), never turning back."""
+    about = np.zeros(2) if centre is None else centre
     following = np.roll(loop, -1, axis=0)
-    if not bool(np.all(sides(np.zeros_like(loop), loop, following) > 0)):
+    if not bool(np.all(sides(np.broadcast_to(about, loop.shape), loop, following) > 0)):
         return False
-    # each edge turns by less than half a turn, so the turns made are counted where the angle passes the negative x axis
-    return int(np.count_nonzero((loop[:, 1] >= 0.0) & (following[:, 1] < 0.0))) == 1
+    # each edge turns by less than half a turn, so whole turns are counted where the angle passes the negative x axis
+    return int(np.count_nonzero((loop[:, 1] >= about[1]) & (following[:, 1] < about[1]))) == 1
 
 
 def clip(outer: Array, inner: Array | None = None) -> Triangles:
@@ -128,14 +128,14 @@ def _angles(points: Array) -> Array:
     return angle
 
 
-def _cut_rounds(loop: Array) -> tuple[list[Triangles], NDArray[np.int64]]:
+def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], NDArray[np.int64]]:
     """Cut ears off a star-shaped loop until three vertices are left or none can go; returns them and what is left."""
     left = np.arange(len(loop))
     cut: list[Triangles] = []
     while left.size > 3:
         before, after = np.roll(left, 1), np.roll(left, -1)
         a, b, c = loop[before], loop[left], loop[after]
-        ear = (sides(a, b, c) > 0) & (sides(np.zeros_like(a), a, c) > 0)
+        ear = (sides(a, b, c) > 0) & (sides(np.broadcast_to(centre, a.shape), a, c) > 0)
         # every other one of each run of ears; a run that closes on itself starts anywhere
         start = int(np.argmin(ear))
         turned = np.roll(ear, -start)
