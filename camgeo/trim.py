@@ -244,15 +244,13 @@ def _corners(curve: Curve, pairs: Array, why: Causes) -> list[Corner]:
     at, to = curve.sample(pairs[:, 0], -1), curve.sample(pairs[:, 1])
     left = at.tangent[:, 0] * to.tangent[:, 1] - at.tangent[:, 1] * to.tangent[:, 0] > 0.0
     kept: list[Corner] = []
-    seen: list[tuple[float, float]] = []
     period = curve.shape.period
     for i, (t, s) in enumerate(pairs.tolist()):
-        near = 1e-2 * (s - t)
-        if any(_around(t - a, period) < near and _around(s - b, period) < near for a, b in seen):
-            continue
-        seen.append((t, s))
         leave, enter = (t, s) if left[i] else (s, t)
-        kept.append(Corner(leave, enter, 0.5 * (at.point[i] + to.point[i])))
+        # for a swallowtail that is lost in rounding, guesses settle a little apart
+        near = 1e-2 * _around(s - t, period)
+        if not any(_around(leave - c.leave, period) < near and _around(enter - c.enter, period) < near for c in kept):
+            kept.append(Corner(leave, enter, 0.5 * (at.point[i] + to.point[i])))
     still = [r for r in why.reversals if r.still]
     return kept + [Corner(r.start, r.end, curve.sample(np.array([r.start])).point[0]) for r in still]
 
