@@ -63,7 +63,8 @@ def disc(outer: Array) -> Triangles:
 
     From a loop that runs once round the middle of its vertices, ears are cut in rounds, as many at a time as are not
     neighbours: an ear that leaves the middle inside leaves the rest star-shaped. A convex loop takes O(log n) rounds,
-    a hollow takes one for each two of its vertices. What no round can cut goes to `clip`, and so do other contours. Raises RegionError where the loop is not simple.
+    a hollow takes one for each two of its vertices. What no round can cut goes to `clip`, and so do
+    other contours. Raises RegionError where the loop is not simple.
     """
     centre: Array = outer.mean(axis=0).astype(np.float32).astype(np.float64)
     cut, left = _cut_rounds(outer, centre) if star_shaped(outer, centre) else ([], np.arange(len(outer)))
