@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from kin.jet import BallJet
+from kin.jet import BallJet, Jet
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -106,11 +106,11 @@ def _halve(settled: Callable[[Array, Array], tuple[Mask, Mask]], begin: float, e
 def highest(law: Piecewise, weights: Sequence[float], k: int) -> tuple[float, float]:
     """Find where the k-th derivative, times a weight a stretch, is largest, and that value; by sampling, no proof."""
     best = (float(law.knots[0]), -math.inf)
-    for weight, begin, end in zip(weights, law.knots[:-1], law.knots[1:], strict=True):
+    for weight, function, begin, end in zip(weights, law.functions, law.knots[:-1], law.knots[1:], strict=True):
         low, high = begin, end
         for _ in range(8):
             points = np.linspace(low, high, 257)
-            values = weight * np.append(law.derivatives(points[:-1], k, 1)[k], law.derivatives(points[-1:], k, -1)[k])
+            values = weight * function(Jet.variable(points, k)).derivatives()[k]
             top = int(np.argmax(values))
             if values[top] > best[1]:
                 best = (float(points[top]), float(values[top]))

@@ -214,7 +214,7 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
     """
     try:
         places, pieces = formula.pieces(0.0, _TURN)
-        _demand_period(formula, places)
+        _demand_period(formula, places, scale)
         wide = np.flatnonzero(np.diff(places) > _SLIVER)
         pieces = tuple(pieces[i] for i in wide)
         knots = [0.0, *places[wide[1:]].tolist(), _TURN]
@@ -230,7 +230,7 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
     return _lift(knots, functions, "p", smooth_seam=pieces[0] == pieces[-1])
 
 
-def _demand_period(formula: Formula, switches: Array) -> None:
+def _demand_period(formula: Formula, switches: Array, scale: float) -> None:
     """Refuse p(t + 2 pi) other than p(t), on a grid that no symmetry of the turn repeats and clear of the switches."""
     t = np.mod(np.arange(1, 98) * (math.sqrt(5) - 1) * math.pi, _TURN)
     t = t[np.abs(t[:, None] - switches).min(axis=1) > _CLEAR]
@@ -240,10 +240,9 @@ def _demand_period(formula: Formula, switches: Array) -> None:
         worst = int(np.argmax(np.abs(miss[row])))
         if abs(miss[row, worst]) > _PERIOD * np.abs(here).max():
             at = math.degrees(t[worst])
+            miss_mm = scale * miss[row, worst]
             raise IntentError(
-                f"p does not close: {what} is off by {miss[row, worst]:.9g} {unit} a full turn after {at:.6g} degrees",
-                "p",
-                at,
+                f"p does not close: {what} is off by {miss_mm:.9g} {unit} a full turn after {at:.6g} degrees", "p", at
             )
 
 

@@ -39,7 +39,8 @@ __all__ = ["IntentError", "Transmission", "from_arc", "from_delta", "from_law", 
 Array = NDArray[np.float64]
 
 _TURN = 2 * math.pi
-_JOIN = 1e-9  # jump in psi (rad) or psi'(phi) that is a formula's rounding
+_JOIN = 1e-11  # rad: a jump in psi that is a formula's rounding
+_SLOPE_JOIN = 1e-9  # a jump in psi'(phi), likewise
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,7 +246,7 @@ def _demand_joined(law: Transmission, field: str) -> None:
         if abs(psi[0, i] - psi_left[0, i]) > _JOIN:
             before, after = math.degrees(psi_left[0, i]), math.degrees(psi[0, i])
             raise IntentError(f"psi jumps from {before:.9g} to {after:.9g} degrees at {at:.6g} degrees", field, at)
-        if abs(slope[i] - slope_left[i]) > _JOIN * (1 + abs(slope[i])):
+        if abs(slope[i] - slope_left[i]) > _SLOPE_JOIN * (1 + abs(slope[i])):
             raise IntentError(
                 f"psi'(phi) jumps from {slope_left[i]:.9g} to {slope[i]:.9g} at a shaft angle of {at:.6g} degrees: the "
                 "pitch curve would have a corner",

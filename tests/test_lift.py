@@ -403,6 +403,11 @@ def test_formulas_that_make_no_cam(text, message):
     assert caught.value.at_deg is not None
 
 
+def test_figures_of_a_formula_in_inches_are_in_millimetres():
+    with pytest.raises(IntentError, match=r"p is off by 159\.592907 mm"):
+        lift_from_formula(Formula("1 + t"), scale=25.4)
+
+
 def test_a_kink_a_millionth_high_is_still_seen():
     with pytest.raises(IntentError, match="p' jumps"):
         lift_from_formula(Formula("25 + 1e-8*abs(sin(t - 1))"))
