@@ -46,6 +46,7 @@ _TURN = 2 * math.pi
 _JOIN = 1e-11
 # p(t + 2 pi) against p(t), relative likewise: the parameter itself is rounded to an ulp of 4 pi.
 _PERIOD = 1e-9
+_SEAM_ORDER = 6  # derivatives that must agree at 0 and 2 pi, else 0 is a break
 _SLIVER = 1e-11  # rad: switches closer than this are one, found twice
 _CLEAR = 1e-6  # rad, likewise
 _SAME_CIRCLE = 16 * 2.0**-52
@@ -226,8 +227,19 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
     except FormulaError as error:
         raise IntentError(error.message, "p") from error
     functions = [_about(_plain(piece), pivot, scale) for piece in pieces]
-    # With the same expression on both sides there is no switch at 0, or one that changes nothing.
-    return _lift(knots, functions, "p", smooth_seam=pieces[0] == pieces[-1])
+    return _lift(knots, functions, "p", smooth_seam=_runs_on(pieces[-1], pieces[0]))
+
+
+def _runs_on(last: Expression, first: Expression) -> bool:
+    """Tell whether the turn's end runs on in its beginning, by the derivatives there.
+
+    Expressions would not tell: abs(cos(t/2)) is another one at 2 pi but has no break at 0, abs(sin(t/2)) the same and has.
+    """
+    try:
+        end, begin = last.jet(_TURN, _SEAM_ORDER).derivatives(), first.jet(0.0, _SEAM_ORDER).derivatives()
+    except FormulaDomainError:  # a high derivative does not exist there: a break
+        return False
+    return bool((np.abs(end - begin) <= _PERIOD * (1 + np.abs(begin).max())).all())
 
 
 def _demand_period(formula: Formula, switches: Array, scale: float) -> None:
