@@ -1,0 +1,328 @@
+"""The command line: commands, exit status, progress. No mathematics."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from camgeo.recipe.model import Recipe
+
+OK, FAILED, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
+PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
+PATIENCE = 1.0  # seconds before progress is shown
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status (DESIGN: 0 holds, 1 a check fails, 2 wrong, 3 surroundings, 130)."""
+    arguments = _parser().parse_args(argv)
+    command: Callable[[argparse.Namespace], int] = arguments.run
+    try:
+        status = command(arguments)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        _complain("interrupted")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader of our output went away: nothing more can be said, and nothing is wrong with the recipe.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return SURROUNDINGS
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    from camgeo import __version__
+
+    parser = argparse.ArgumentParser(
+        prog="camgeo",
+        description="Disc cams from a short recipe to DXF and STL, with the motion proved from the files.",
+        epilog="Exit status: 0 all checks hold; 1 a check fails; 2 the recipe or the call is wrong; 3 the surroundings "
+        "(disk, missing extra); 130 interrupted.",
+    )
+    parser.add_argument("--version", action="version", version=f"camgeo {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(name: str, run: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
+        added = commands.add_parser(name, help=text, description=text)
+        added.set_defaults(run=run)
+        return added
+
+    def recipes(to: argparse.ArgumentParser) -> None:
+        to.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
+        to.add_argument("--tolerance", type=_length, metavar="E", help="in place of export.tolerance, in the recipe's unit")
+        output(to)
+
+    def output(to: argparse.ArgumentParser) -> None:
+        to.add_argument("-v", "--verbose", action="store_true", help="every check and file as a table")
+        to.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
+
+    export = command("export", _export, "Write a recipe's files and judge them from what lies on disk.")
+    recipes(export)
+    export.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    export.add_argument(
+        "--only", action="append", default=[], choices=("dxf", "stl", "csv"), help="only files of this kind; repeatable"
+    )
+    export.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: as many as pay)")
+    check = command("check", _check, "Every check of a recipe; nothing is written.")
+    recipes(check)
+    check.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: as many as pay)")
+    verify = command("verify", _verify, "Judge DXF and STL files against a recipe's motion.")
+    verify.add_argument("recipe", metavar="RECIPE")
+    verify.add_argument("files", nargs="+", metavar="FILE")
+    verify.add_argument("--tolerance", type=_length, metavar="E", help="in place of export.tolerance, in the recipe's unit")
+    output(verify)
+    new = command("new", _new, "A starter recipe, on the terminal or in a new file.")
+    new.add_argument("kind", metavar="KIND")
+    new.add_argument("file", nargs="?", metavar="FILE")
+    laws = command("laws", _laws, "The motion laws with their peak velocity, acceleration and jerk.")
+    laws.add_argument("--json", action="store_true", help="as JSON, for machines")
+    command("schema", _schema, "The recipe's JSON schema.")
+    return parser
+
+
+def _length(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"a tolerance is a length above 0, not {text}")
+    return value
+
+
+def _complain(text: str) -> None:
+    print(f"camgeo: {text}", file=sys.stderr)
+
+
+# --- export and check -------------------------------------------------------------------------------------------------
+
+
+def _export(arguments: argparse.Namespace) -> int:
+    return _several(arguments, "export")
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    return _several(arguments, "check")
+
+
+def _several(arguments: argparse.Namespace, command: str) -> int:
+    """Load every recipe, run those that are sound, print what came of each; the highest status."""
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.recipe.load import load
+
+    status = OK
+    recipes: list[Recipe] = []
+    for path in arguments.recipes:
+        try:
+            recipe = load(path)
+        except RecipeErrors as errors:
+            print(errors, file=sys.stderr)
+            status = WRONG
+            continue
+        if arguments.tolerance is not None:
+            recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
+        recipes.append(recipe)
+    if command == "export":
+        names = [recipe.name.casefold() for recipe in recipes]
+        twice = {recipe.name: recipe.path for recipe in recipes if names.count(recipe.name.casefold()) > 1}
+        if twice:
+            for name, path in twice.items():
+                _complain(f"{path}: the name {name} is used by several recipes of this call; give each its own `name:`")
+            return WRONG
+    options = {"out": getattr(arguments, "out", "out"), "only": tuple(getattr(arguments, "only", ()))}
+    reports: list[dict[str, Any]] = []
+    for report, message, code in _results(recipes, command, options, arguments.jobs):
+        status = max(status, code)
+        if report is not None:
+            reports.append(report)
+            if not arguments.json:
+                _show(report, verbose=arguments.verbose)
+        if message:
+            print(message, file=sys.stderr)
+    if arguments.json:
+        _print_json(reports)
+    return status
+
+
+Result = tuple["dict[str, Any] | None", str, int]
+
+
+def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs: int | None) -> Any:  # noqa: ANN401
+    """Result of each recipe in order, several processes at once where that pays."""
+    workers = jobs or (min(os.cpu_count() or 1, len(recipes)) if len(recipes) >= PARALLEL_FROM else 1)
+    if workers <= 1 or len(recipes) < 2:
+        for recipe in recipes:
+            yield _one(recipe, command, options, _Progress(recipe.name))
+        return
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    progress = _Progress(f"{len(recipes)} recipes")
+    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn" if sys.platform != "linux" else "fork")) as pool:
+        futures = [pool.submit(_one, recipe, command, options, None) for recipe in recipes]
+        try:
+            for number, future in enumerate(futures):
+                progress(f"{number} of {len(futures)} done")
+                result = future.result()
+                progress.clear()
+                yield result
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _one(recipe: Recipe, command: str, options: dict[str, Any], progress: _Progress | None) -> Result:
+    """Run one recipe; the report, a message for standard error, and the status."""
+    from pathlib import Path
+
+    from camgeo import pipeline
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.store import SurroundingsError
+
+    try:
+        if command == "check":
+            outcome = pipeline.check(recipe, told=progress)
+        else:
+            outcome = pipeline.export(recipe, Path(options["out"]), only=options["only"], told=progress)
+    except RecipeErrors as errors:
+        return None, str(errors), WRONG
+    except (SurroundingsError, OSError) as error:
+        return None, f"camgeo: {recipe.name}: {error}", SURROUNDINGS
+    except ModuleNotFoundError as error:
+        return None, f"camgeo: {recipe.name}: the package {error.name} is missing", SURROUNDINGS
+    finally:
+        if progress is not None:
+            progress.clear()
+    return outcome.report, "", OK if outcome.ok else FAILED
+
+
+class _Progress:
+    """What is being done, on a terminal's last line, once it takes more than a second."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._start = time.perf_counter()
+        self._shown = False
+
+    def __call__(self, stage: str) -> None:
+        if sys.stderr.isatty() and time.perf_counter() - self._start > PATIENCE:
+            sys.stderr.write(f"\r\x1b[K{self._name}: {stage} ...")
+            sys.stderr.flush()
+            self._shown = True
+
+    def clear(self) -> None:
+        """Take the line away again."""
+        if self._shown:
+            sys.stderr.write("\r\x1b[K")
+            sys.stderr.flush()
+            self._shown = False
+
+
+def _show(report: dict[str, Any], *, verbose: bool) -> None:
+    from camgeo.report.document import summary, table
+
+    print(summary(report))
+    if verbose:
+        print(table(report) + "\n")
+
+
+def _print_json(data: object) -> None:
+    import json
+
+    print(json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False))
+
+
+# --- the other commands -----------------------------------------------------------------------------------------------
+
+
+def _verify(arguments: argparse.Namespace) -> int:
+    """Judge files of any origin by a recipe's motion."""
+    from pathlib import Path
+
+    from camgeo import pipeline
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.recipe.load import load
+
+    try:
+        recipe = load(arguments.recipe)
+        if arguments.tolerance is not None:
+            recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
+        paths = [Path(name) for name in arguments.files]
+        missing = [path for path in paths if not path.is_file()]
+        if missing:
+            for path in missing:
+                _complain(f"{path}: there is no such file")
+            return WRONG
+        report = pipeline.judged(recipe, paths)
+    except RecipeErrors as errors:
+        print(errors, file=sys.stderr)
+        return WRONG
+    if arguments.json:
+        _print_json(report)
+    else:
+        _show(report, verbose=arguments.verbose)
+    return OK if report["ok"] else FAILED
+
+
+def _new(arguments: argparse.Namespace) -> int:
+    """Print a starter recipe, or write it where no file is yet."""
+    from camgeo.recipe.starter import KINDS, starter
+
+    if arguments.kind not in KINDS:
+        _complain(f"no recipe is called {arguments.kind}; there are: {', '.join(KINDS)}")
+        return WRONG
+    text = starter(arguments.kind)
+    if arguments.file is None:
+        print(text, end="")
+        return OK
+    try:
+        with open(arguments.file, "x", encoding="utf-8") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11
+            stream.write(text)
+    except FileExistsError:
+        _complain(f"{arguments.file} exists already and is left as it is")
+        return WRONG
+    except OSError as error:
+        _complain(f"{arguments.file}: {error.strerror}")
+        return SURROUNDINGS
+    return OK
+
+
+def _laws(arguments: argparse.Namespace) -> int:
+    """Print the laws' peaks for unit stroke over unit time."""
+    from kin.law import LAWS
+
+    if arguments.json:
+        from camgeo.report.document import finite
+
+        _print_json(
+            finite(
+                [
+                    {"law": law.name, "velocity": p.velocity, "acceleration": p.acceleration, "jerk": p.jerk}
+                    for law in LAWS.values()
+                    for p in (law.peaks,)
+                ]
+            )
+        )
+        return OK
+    width = max(map(len, LAWS))
+    print(f"{'law'.ljust(width)}  velocity  acceleration      jerk   (peaks for unit stroke over unit time)")
+    for law in LAWS.values():
+        p = law.peaks
+        print(f"{law.name.ljust(width)}  {p.velocity:8.6f}  {p.acceleration:12.6f}  {p.jerk:8.6g}")
+    print("\nalso: {polynomial: [c0, c1, ...]} in u, from 0 to 1")
+    return OK
+
+
+def _schema(_arguments: argparse.Namespace) -> int:
+    """Print the JSON schema."""
+    from camgeo.recipe.schema import json_schema
+
+    _print_json(json_schema())
+    return OK
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,97 @@
+"""Checks of the intent and of the exact curve, before any file: what would be wrong however well it were written."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.check import Check, degrees
+
+if TYPE_CHECKING:
+    from camgeo.curve import Array
+    from camgeo.profile.build import Profile
+    from kin.lift import Lift
+    from kin.transmission import Transmission
+
+LOOKS = 1440  # shaft angles at which smooth figures are looked at
+SAME_BREADTH = 1e-9  # of the size: a breadth that varies by less is constant
+EXACT = 1e-9  # of the arm: to this the closing equation must hold
+
+
+def breadth_of(lift: Lift) -> tuple[float, float, float]:
+    """Mean breadth p(t) + p(t + pi) in mm, the greatest deviation from it, and where in radians."""
+    t = _angles(lift.breaks, math.pi)
+    # both sides of a break: there the breadth may step as well
+    each = [lift.derivatives(t, 0, side)[0] + lift.derivatives(t + math.pi, 0, side)[0] for side in (1, -1)]
+    breadth = np.concatenate(each)
+    mean = 0.5 * float(breadth.max() + breadth.min())
+    worst = int(np.argmax(np.abs(breadth - mean)))
+    return mean, float(np.abs(breadth[worst] - mean)), float(np.tile(t, 2)[worst])
+
+
+def is_constant_breadth(lift: Lift) -> bool:
+    """Whether a yoke of two parallel faces fits the cam; else it works a single flat face."""
+    mean, deviation, _ = breadth_of(lift)
+    return deviation <= SAME_BREADTH * abs(mean)
+
+
+def flat_face_checks(lift: Lift, *, yoke: bool) -> list[Check]:
+    """Constancy of the breadth (AS eq. 4, for a yoke) and the face's length: how far the contact travels along it."""
+    checks = []
+    if yoke:
+        mean, deviation, at = breadth_of(lift)
+        checks.append(Check("constant-breadth", True, deviation, SAME_BREADTH * mean, "mm", degrees(at)))
+    t = _angles(lift.breaks, 2.0 * math.pi)
+    slope = np.concatenate([lift.derivatives(t, 1, side)[1] for side in (1, -1)])
+    worst = float(np.tile(t, 2)[int(np.argmax(np.abs(slope)))])
+    length = float(slope.max() - slope.min())
+    checks.append(Check("face-length", True, length, None, "mm", degrees(worst), "at_least"))
+    return checks
+
+
+def transmission_checks(law: Transmission) -> list[Check]:
+    """That the second arm's end runs on the same curve (W 4.6, 7.1), and how near the cam is to turning back."""
+    t = _angles(law.breaks, 2.0 * math.pi)
+    phi, psi = law.at(t, 1)
+    image = law.psi_of_shaft(phi[0] - psi[0] + law.alpha, 0)[0]
+    gap = law.arm * np.abs(image + psi[0])
+    worst = int(np.argmax(gap))
+    closing = Check(
+        "closing-equation",
+        bool(gap[worst] <= EXACT * law.arm),
+        float(gap[worst]),
+        EXACT * law.arm,
+        "mm",
+        degrees(float(phi[0, worst])),
+    )
+    ratio = psi[1] / phi[1]
+    steepest = int(np.argmax(ratio))
+    value = float(ratio[steepest])
+    return [closing, Check("transmission", value < 1.0, value, 1.0, "", degrees(float(phi[0, steepest])))]
+
+
+def pressure_angle(profile: Profile, law: Transmission) -> Check:
+    """Greatest angle between the contact normal and the direction in which a roller's arm lets it move, degrees.
+
+    The same at both rollers, each of which runs once round the whole pitch curve. At 90 degrees the cam cannot drive.
+    """
+    t = _angles(law.breaks, 2.0 * math.pi)
+    at = profile.base.sample(t)
+    phi = law.at(t, 0)[0][0]
+    arm = at.point - law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
+    arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
+    normal = at.normal
+    across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
+    along = np.abs(np.sum(arm * normal, axis=1))
+    angle = np.degrees(np.arctan2(along, across))
+    worst = int(np.argmax(angle))
+    value = float(angle[worst])
+    return Check("pressure-angle", value < 90.0, value, 90.0, "deg", degrees(float(phi[worst])))
+
+
+def _angles(breaks: Array, end: float) -> Array:
+    """Evenly spread parameters in [0, end) with the breaks among them."""
+    inside = breaks[(breaks >= 0.0) & (breaks < end)]
+    return np.unique(np.concatenate([np.linspace(0.0, end, LOOKS, endpoint=False), inside]))

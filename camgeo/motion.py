@@ -1,0 +1,38 @@
+"""The motion table: the intended motion over the shaft angle, for a person or a controller to read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.recipe.model import FlatPairCam
+
+if TYPE_CHECKING:
+    from camgeo.curve import Array
+    from camgeo.recipe.model import Recipe
+    from kin.lift import Lift
+    from kin.transmission import Transmission
+
+ORDER = 3
+
+
+def motion_table(recipe: Recipe, intent: Lift | Transmission) -> tuple[tuple[str, ...], Array]:
+    """Column names, and rows (angles + 1, 5): shaft angle, position and its derivatives by radian of shaft.
+
+    A plate's lift is in the recipe's unit, the distance from the shaft less its datum; a follower that swings is in
+    degrees, a flat pair by its own swing psi/2. At a break the derivatives are those that follow, at the end of the
+    turn those that precede.
+    """
+    count = recipe.verify.angles
+    phi = np.linspace(0.0, 2.0 * np.pi, count + 1)
+    if hasattr(intent, "datum"):
+        unit = "in" if recipe.units == "inch" else "mm"
+        rows = np.concatenate([intent.derivatives(phi[:-1], ORDER), intent.derivatives(phi[-1:], ORDER, -1)], axis=1)
+        rows[0] -= intent.datum
+        name, scale = f"lift_{unit}", 1.0 / recipe.mm
+    else:
+        rows = np.concatenate([intent.psi_of_shaft(phi[:-1], ORDER), intent.psi_of_shaft(phi[-1:], ORDER, -1)], axis=1)
+        name, scale = "follower_deg", np.degrees(0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0)
+    table = np.column_stack([np.linspace(0.0, 360.0, count + 1), *(rows * scale)])
+    return ("shaft_deg", name, "velocity", "acceleration", "jerk"), table

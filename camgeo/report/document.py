@@ -1,0 +1,249 @@
+"""The report as a document: checks, files, errors, times, what was left out and why. In the recipe's units."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from camgeo import __version__
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.fit.pieces import Bound
+    from camgeo.recipe.model import FileRequest, Recipe
+    from kin.check import Check
+    from kin.motion import MotionError
+
+UNIT_NAMES = {"mm": "mm", "inch": "in"}
+
+
+@dataclass(frozen=True)
+class FileResult:
+    """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees)."""
+
+    path: Path
+    request: FileRequest
+    tolerance: float | None
+    pieces: int | None
+    bound: Bound | None
+    measured_error: float | None
+    motion: MotionError | None
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Everything a run found, before it is put in the recipe's units."""
+
+    checks: tuple[Check, ...]
+    files: tuple[FileResult, ...]
+    stages: tuple[tuple[str, float], ...]
+    skipped: tuple[tuple[str, str], ...]
+    follower: str
+    kept: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """True where every check holds."""
+        return all(check.ok for check in self.checks)
+
+
+def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
+    """The report as plain data, keys and units as the report contract fixes them."""
+    return {
+        "recipe": recipe.name,
+        "about": recipe.about,
+        "camgeo": __version__,
+        "units": recipe.units,
+        "rotation": recipe.rotation,
+        "follower": found.follower,
+        "ok": found.ok,
+        "tolerance": recipe.export.tolerance / recipe.mm,
+        "checks": [_check(recipe, check) for check in found.checks],
+        "files": [_file(recipe, file) for file in found.files]
+        + [{"path": name, "stale": True} for name in found.kept],
+        "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in found.stages],
+        "skipped": [{"what": what, "why": why} for what, why in found.skipped],
+    }
+
+
+def encoded(report: dict[str, Any]) -> str:
+    """The report as JSON text; strict JSON, so an infinite figure is null."""
+    return json.dumps(finite(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | None, str]:
+    """A figure in mm, mm^2 or mm^3 in the recipe's unit, with that unit's name; other units stay."""
+    name = UNIT_NAMES[recipe.units]
+    power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit)
+    if power is None:
+        return value, unit
+    return (None if value is None else value / recipe.mm**power), name + unit[2:]
+
+
+def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
+    value, unit = in_units(recipe, check.value, check.unit)
+    limit, _ = in_units(recipe, check.limit, check.unit)
+    entry: dict[str, Any] = {
+        "name": check.name,
+        "ok": check.ok,
+        "value": value,
+        "limit": limit,
+        "unit": unit,
+        "sense": check.sense,
+        "at_deg": check.at_deg,
+    }
+    if check.file is not None:
+        entry["file"] = check.file
+    if check.detail:
+        entry["detail"] = check.detail
+    return entry
+
+
+def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
+    data = file.path.read_bytes()
+    entry: dict[str, Any] = {
+        "path": file.path.name,
+        "kind": file.request.kind,
+        "bytes": len(data),
+        "sha256": hashlib.sha256(data).hexdigest(),
+    }
+    if file.request.kind == "csv":
+        return entry
+    mm = recipe.mm
+    if file.request.kind == "dxf":
+        entry |= {"as": file.request.as_, "version": file.request.version}
+    entry |= {
+        "pieces": file.pieces,
+        "tolerance": None if file.tolerance is None else file.tolerance / mm,
+        "geometry_error": None if file.bound is None else file.bound.worst / mm,
+        "geometry_outward": None if file.bound is None else file.bound.outward / mm,
+        "geometry_inward": None if file.bound is None else file.bound.inward / mm,
+        "measured_error": None if file.measured_error is None else file.measured_error / mm,
+        "motion": None if file.motion is None else _motion(recipe, file.motion),
+    }
+    return entry
+
+
+def _motion(recipe: Recipe, motion: MotionError) -> dict[str, Any]:
+    entry: dict[str, Any] = {}
+    for key, value in (
+        ("max", motion.max),
+        ("rms", motion.rms),
+        ("increment", motion.increment),
+        ("dwell_flatness", motion.dwell_flatness),
+    ):
+        entry[key], unit = in_units(recipe, value, motion.unit)
+    return {**entry, "unit": unit, "at_deg": motion.at_deg, "increment_deg": motion.step_deg}
+
+
+def finite(value: Any) -> Any:  # noqa: ANN401 - plain JSON data of any shape
+    """Plain data with nan and infinities as None."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(item) for item in value]
+    if hasattr(value, "item"):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def summary(report: dict[str, Any]) -> str:
+    """One line for a terminal: name, verdict, files with pieces and worst motion error, and what failed."""
+    parts = []
+    for file in report["files"]:
+        if file.get("stale"):
+            continue
+        text = file["path"].removeprefix(report["recipe"]).lstrip(".-")
+        if file.get("pieces"):
+            text += f" {file['pieces']} {pieces_word(file)}"
+        motion = file.get("motion")
+        if motion and motion["max"] is not None:
+            text += f", motion {motion['max']:.3g} {motion['unit']}"
+        parts.append(text)
+    failed = [_told(check) for check in report["checks"] if not check["ok"]]
+    verdict = "ok" if report["ok"] else "FAILED"
+    line = f"{report['recipe']}: {verdict}"
+    if parts:
+        line += "  " + "; ".join(parts)
+    if failed:
+        line += "\n" + "\n".join(f"  {text}" for text in failed)
+    return line
+
+
+def pieces_word(file: dict[str, Any]) -> str:
+    """What the pieces of a file's contour are called."""
+    return {"arcs": "arcs", "polyline": "edges", "spline": "spans"}.get(file.get("as") or "", "edges")
+
+
+def table(report: dict[str, Any]) -> str:
+    """Every check and file of a report as aligned text."""
+    rows: list[Sequence[str]] = [("check", "", "value", "limit", "unit", "at", "file")]
+    for check in report["checks"]:
+        sign = ">=" if check["sense"] == "at_least" else "<="
+        rows.append(
+            (
+                check["name"],
+                "ok" if check["ok"] else "FAILED",
+                _number(check["value"]),
+                "" if check["limit"] is None else f"{sign} {_number(check['limit'])}",
+                check["unit"],
+                "" if check["at_deg"] is None else f"{check['at_deg']:.2f} deg",
+                check.get("file", ""),
+            )
+        )
+    text = _aligned(rows)
+    rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
+    for file in report["files"]:
+        motion = file.get("motion") or {}
+        rows.append(
+            (
+                file["path"],
+                str(file.get("bytes", "stale")),
+                str(file.get("pieces") or ""),
+                _number(file.get("tolerance")),
+                _number(file.get("geometry_error")),
+                _number(file.get("measured_error")),
+                " ".join(filter(None, (_number(motion.get("max")), motion.get("unit", "")))),
+                _number(motion.get("rms")),
+                "" if motion.get("at_deg") is None else f"{motion['at_deg']:.2f} deg",
+            )
+        )
+    text += "\n\n" + _aligned(rows)
+    if report["skipped"]:
+        text += "\n\n" + "\n".join(f"skipped {item['what']}: {item['why']}" for item in report["skipped"])
+    seconds = sum(stage["seconds"] for stage in report["stages"])
+    stages = ", ".join(f"{stage['name']} {1e3 * stage['seconds']:.1f}" for stage in report["stages"])
+    return f"{text}\n\n{1e3 * seconds:.1f} ms: {stages}"
+
+
+def _told(check: dict[str, Any]) -> str:
+    """A failed check as a sentence."""
+    text = f"{check['name']}"
+    if check.get("file"):
+        text += f" ({check['file']})"
+    if check["value"] is not None:
+        text += f": {_number(check['value'])} {check['unit']}".rstrip()
+        if check["limit"] is not None:
+            least = "at least" if check["sense"] == "at_least" else "at most"
+            text += f", {least} {_number(check['limit'])} allowed"
+        if check["at_deg"] is not None:
+            text += f", at {check['at_deg']:.2f} deg"
+    if check.get("detail"):
+        text += f": {check['detail']}"
+    return text
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.6g}"
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> str:
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows)
