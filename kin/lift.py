@@ -227,13 +227,15 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
     except FormulaError as error:
         raise IntentError(error.message, "p") from error
     functions = [_about(_plain(piece), pivot, scale) for piece in pieces]
-    return _lift(knots, functions, "p", smooth_seam=_runs_on(pieces[-1], pieces[0]))
+    one_kind = isinstance(functions[0], Circle) == isinstance(functions[-1], Circle)  # an arc ends where it ends
+    return _lift(knots, functions, "p", smooth_seam=one_kind and _runs_on(pieces[-1], pieces[0]))
 
 
 def _runs_on(last: Expression, first: Expression) -> bool:
     """Tell whether the turn's end runs on in its beginning, by the derivatives there.
 
-    Expressions would not tell: abs(cos(t/2)) is another one at 2 pi but has no break at 0, abs(sin(t/2)) the same and has.
+    Expressions would not tell: abs(cos(t/2)) is another one at 2 pi and has no break at 0, abs(sin(t/2)) is the same
+    and has one.
     """
     try:
         end, begin = last.jet(_TURN, _SEAM_ORDER).derivatives(), first.jet(0.0, _SEAM_ORDER).derivatives()

@@ -354,6 +354,7 @@ def test_a_scale_is_the_unit_of_the_formula_and_not_of_the_pivot():
         ("25 + max(0, cos(t))**3", [90, 270], [25, math.nan]),
         ("25 + sin(t)*abs(sin(t))", [0, 180], [math.nan, math.nan]),
         ("min(30, 25 + cos(3*t))", [], [math.nan]),
+        ("25 + max(0, sin(t))**9", [0, 180], [math.nan, 25]),
         ("25 + abs(1 - cos(t))", [], [math.nan]),
         ("25 + abs(sin(t/2))**3", [0], [math.nan]),
         ("25 + abs(cos(t/2))**3", [180], [math.nan]),
