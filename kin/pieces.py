@@ -102,7 +102,11 @@ class Pieces:
     @staticmethod
     def from_beziers(beziers: Beziers) -> Pieces:
         """Bezier pieces, cut where needed so that each turns one way by less than pi."""
-        pieces = beziers.unrolled().pieces
+        return Pieces.from_unrolled(beziers.unrolled().pieces)
+
+    @staticmethod
+    def from_unrolled(pieces: Beziers) -> Pieces:
+        """Bezier pieces that each turn one way by less than pi already."""
         n = pieces.count
         return Pieces(
             kind=np.full(n, BEZIER, dtype=np.uint8),
@@ -256,7 +260,7 @@ class Pieces:
         return points
 
     def points(self, pieces: Indices, share: Array) -> Array:
-        """Points (k, 2) at shares (k,) in [0, 1] of the way along pieces (k,): of the length or a Bezier's parameter."""
+        """Points (k, 2) at shares (k,) in [0, 1] of the length of pieces (k,), of a Bezier's parameter."""
         start, end = self.start[pieces], self.end[pieces]
         x = start + share[:, None] * (end - start)
         kind = self.kind[pieces]

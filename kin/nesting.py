@@ -1,0 +1,44 @@
+"""Which of several closed contours is the outer one, and whether the others are holes in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.nearest import signed_distance
+from kin.read_error import ReadError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kin.contour import Contour
+
+__all__ = ["counter_clockwise", "nested"]
+
+
+def counter_clockwise(contour: Contour) -> Contour:
+    """Return the contour, turned round if its area is negative."""
+    return contour if contour.area >= 0.0 else contour.reversed()
+
+
+def nested(contours: list[Contour], path: Path) -> list[int]:
+    """Numbers of the contours by falling area, the first of which holds all others.
+
+    Raises ReadError "several" for one that lies outside the first, "island" for one inside another hole.
+    """
+    order = sorted(range(len(contours)), key=lambda k: -abs(contours[k].area))
+    places = np.array([contours[k].start[0] for k in order])
+    for rank, k in enumerate(order[:-1]):
+        chain, _ = counter_clockwise(contours[k]).as_arcs()
+        others = places[rank + 1 :]
+        inside = signed_distance(chain, others) < 0.0
+        wrong = others[inside if rank else ~inside]
+        if not len(wrong):
+            continue
+        x, y = wrong[0].tolist()
+        if rank:
+            raise ReadError("island", f"the closed contour at ({x:.9g}, {y:.9g}) lies inside a hole", path, (x, y))
+        message = f"the closed contour at ({x:.9g}, {y:.9g}) does not lie inside the largest one"
+        raise ReadError("several", message, path, (x, y))
+    return order

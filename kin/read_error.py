@@ -1,0 +1,53 @@
+"""The one error that a reader of contours raises, with what an engineer needs to find the place in the file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["REASONS", "ReadError"]
+
+REASONS = {
+    "syntax": "the file is damaged or not of this format",
+    "truncated": "the file ends too early",
+    "empty": "the file holds nothing to cut",
+    "layer": "there is no such layer",
+    "unsupported": "the file holds something that is no contour of lines, arcs and splines in one plane",
+    "range": "a number is not finite or beyond all measure",
+    "open": "the contour does not close: a segment is missing",
+    "gap": "two ends are farther apart than the permitted gap",
+    "branch": "more than two ends meet",
+    "several": "there is more than one outer contour",
+    "island": "a contour lies inside a hole",
+}
+
+
+class ReadError(ValueError):
+    """A file from which no contour can be read.
+
+    reason      a short code, a key of REASONS
+    message     what is wrong, where, and by how much
+    path        the file
+    place       (x, y) in mm (drawing units if the file states none), or None if the error has no place
+    width       size of a gap, in the same unit, or None
+    """
+
+    def __init__(
+        self,
+        reason: str,
+        message: str,
+        path: Path,
+        place: tuple[float, float] | None = None,
+        width: float | None = None,
+    ) -> None:
+        super().__init__(reason, message, path, place, width)
+        self.reason = reason
+        self.message = message
+        self.path = path
+        self.place = place
+        self.width = width
+
+    def __str__(self) -> str:
+        return f"{self.path}: {self.message}"

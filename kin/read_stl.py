@@ -1,0 +1,245 @@
+"""Plain parts from STL files, binary or text: the mesh checked, the contour and the holes of its section."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from kin.contour import Contour
+from kin.nesting import counter_clockwise, nested
+from kin.read_error import ReadError
+from kin.triangles import EdgeFaults, Mesh, plan_welded, welded
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.arcs import Array, Indices
+
+    Corners = NDArray[np.float32] | NDArray[np.float64]
+
+__all__ = ["Solid", "read_stl"]
+
+HEADER = 84
+RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+# What stands in the 21 words of a facet in text form, where it is not a number.
+FACET = {0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex"}
+FACET |= {19: b"endloop", 20: b"endfacet"}
+WORDS = 21
+NUMBERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
+# Beyond this, mm, products of three coordinates have no digits left for a part.
+LARGEST = 1e7
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A part as an STL file holds it, mm.
+
+    contour, holes      polygons of the section at `height`, counter-clockwise all of them
+    z_min, z_max        least and greatest height
+    height              at which the section was taken
+    prism               all corners lie at z_min or z_max, and every section is the same, to the bit
+    volume              mm^3, negative if the triangles face inward
+    triangles           number of them
+    edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
+    degenerate          triangles without area
+    duplicate           triangles that another one covers
+    form                "binary" or "text"
+    """
+
+    contour: Contour
+    holes: tuple[Contour, ...]
+    z_min: float
+    z_max: float
+    height: float
+    prism: bool
+    volume: float
+    triangles: int
+    edges: EdgeFaults
+    degenerate: int
+    duplicate: int
+    form: Literal["binary", "text"]
+
+    @property
+    def closed(self) -> bool:
+        """Whether every edge belongs to exactly two triangles."""
+        return self.edges.open == 0 and self.edges.crowded == 0
+
+    @property
+    def oriented(self) -> bool:
+        """Whether the mesh is closed and its triangles all face the same side."""
+        return self.closed and self.edges.misdirected == 0
+
+    @property
+    def thickness(self) -> float:
+        """Height of the part, mm."""
+        return self.z_max - self.z_min
+
+
+def read_stl(path: Path | str) -> Solid:
+    """Read a part. Costs about one sort of the corners.
+
+    Raises OSError as the file system does; ReadError where the file is cut short or damaged, and where the section
+    does not close or is not one contour with holes. All other faults are in the Solid's fields.
+    """
+    path = Path(path)
+    corners, form = triangles_of(path.read_bytes(), path)
+    if not bool((np.abs(corners) <= LARGEST).all()):
+        raise ReadError("range", "a coordinate is not finite or beyond all measure", path)
+    z = corners[:, :, 2]
+    z_min, z_max = float(z.min()), float(z.max())
+    if z_min == z_max:
+        raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
+    two_levels = bool(((z == z_min) | (z == z_max)).all())
+    mesh = plan_welded(corners, z_min, z_max) if two_levels else welded(corners)
+    outline = prism_outline(mesh) if two_levels else None
+    height = (z_min + z_max) / 2.0
+    prism = outline is not None
+    if outline is None:
+        height, outline = section(mesh, height)
+    contours = [Contour.from_vertices(outline.points[ring]) for ring in rings(outline, path)]
+    first, *others = nested(contours, path)
+    return Solid(
+        contour=counter_clockwise(contours[first]),
+        holes=tuple(counter_clockwise(contours[k]) for k in others),
+        z_min=z_min,
+        z_max=z_max,
+        height=height,
+        prism=prism,
+        volume=mesh.volume,
+        triangles=len(mesh.corners),
+        edges=mesh.edge_faults,
+        degenerate=mesh.degenerate,
+        duplicate=mesh.duplicate,
+        form=form,
+    )
+
+
+def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:
+    """Corners (t, 3, 3) in file order. The length tells the two forms apart: a binary header may begin with "solid"."""
+    count = int.from_bytes(raw[HEADER - 4 : HEADER], "little") if len(raw) >= HEADER else 0
+    expected = HEADER + RECORD.itemsize * count
+    if len(raw) >= HEADER and len(raw) == expected:
+        if not count:
+            raise ReadError("empty", "the file holds no triangles", path)
+        return np.frombuffer(raw, RECORD, offset=HEADER)["corners"].copy(), "binary"
+    if raw.lstrip()[:5] == b"solid" and (b"facet" in raw[:2000] or b"endsolid" in raw[:2000]):
+        return facets(raw, path), "text"
+    if len(raw) < HEADER:
+        raise ReadError("truncated", f"{len(raw)} bytes are no STL file, whose header alone has {HEADER}", path)
+    reason = "truncated" if len(raw) < expected else "syntax"
+    raise ReadError(reason, f"{count} triangles make a file of {expected} bytes, not {len(raw)}", path)
+
+
+def facets(raw: bytes, path: Path) -> Array:
+    """Corners of the facets of the text form."""
+    text = raw.strip()
+    body, mark, _ = text.rpartition(b"endsolid")
+    if not mark:
+        raise ReadError("truncated", "the end mark endsolid is missing", path)
+    words = body.partition(b"\n")[2].split()
+    if not words:
+        raise ReadError("empty", "the file holds no triangles", path)
+    if b"endsolid" in words:
+        raise ReadError("unsupported", "the file holds more than one solid", path)
+    if len(words) % WORDS:
+        raise ReadError("syntax", f"its facets have {len(words)} words, which is no multiple of {WORDS}", path)
+    table = np.array(words).reshape(-1, WORDS)
+    for column, word in FACET.items():
+        wrong = np.flatnonzero(table[:, column] != word)
+        if wrong.size:
+            message = f"facet {wrong[0] + 1} has {table[wrong[0], column]!r} where {word!r} belongs"
+            raise ReadError("syntax", message, path)
+    try:
+        return table[:, NUMBERS].astype(np.float64).reshape(-1, 3, 3)
+    except ValueError as error:
+        raise ReadError("syntax", f"a coordinate is no number: {error}", path) from error
+
+
+class Outline(NamedTuple):
+    """Directed edges (k,), (k,) by point number, the solid on their left, and the points (n, 2)."""
+
+    points: Array
+    start: Indices
+    end: Indices
+
+
+def prism_outline(mesh: Mesh) -> Outline | None:
+    """Return the outline of the bottom if a mesh between two levels, of `plan_welded`, is a prism; None if it is not.
+
+    Each triangle between the levels stands upright, with but two corners as seen from above; and their edges at the
+    bottom are the same as those at the top, the other way round.
+    """
+    high, plan = (mesh.corners & 1).astype(bool), mesh.corners >> 1
+    above = np.count_nonzero(high, axis=1)
+    wall = plan[(above == 1) | (above == 2)]
+    a, b, c = wall.T
+    if not bool(((a == b) ^ (b == c) ^ (c == a)).all()):
+        return None
+    edges = []
+    for many, lone in ((1, True), (2, False)):
+        rows = np.flatnonzero(above == many)
+        apex = (high[rows] == lone).argmax(axis=1)
+        edges.append((plan[rows, (apex + 1) % 3], plan[rows, (apex + 2) % 3]))
+    (start, end), (top_start, top_end) = edges
+    if not np.array_equal(np.sort(mesh.code(start, end)), np.sort(mesh.code(top_end, top_start))):
+        return None
+    return Outline(mesh.points[::2, :2], start, end)
+
+
+def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
+    """Cut at `height`, or halfway to the next corners above should there be some at that very height.
+
+    Each triangle gives an edge from where its boundary comes down through the plane to where it goes up; neighbours
+    agree on that point since it belongs to an edge of the mesh.
+    """
+    levels = np.unique(mesh.points[:, 2])
+    if bool((levels == height).any()):
+        height = (height + float(levels[np.searchsorted(levels, height) + 1])) / 2.0
+    above = mesh.points[:, 2] > height
+    high = above[mesh.corners]
+    cut = mesh.corners[high.any(axis=1) & ~high.all(axis=1)]
+    after = np.roll(cut, -1, axis=1)
+    rises, falls = ~above[cut] & above[after], above[cut] & ~above[after]
+    up = np.stack([cut[rises], after[rises]])
+    down = np.stack([after[falls], cut[falls]])
+    codes, number = np.unique(mesh.code(*np.concatenate([down, up], axis=1)), return_inverse=True)
+    low, top = mesh.points[codes // len(mesh.points)], mesh.points[codes % len(mesh.points)]
+    share = (height - low[:, 2]) / (top[:, 2] - low[:, 2])
+    points = low[:, :2] + share[:, None] * (top - low)[:, :2]
+    start, end = number.reshape(2, -1)
+    return height, Outline(points, start, end)
+
+
+def rings(outline: Outline, path: Path) -> list[Indices]:
+    """Point numbers of the closed rings that the edges form. Raises ReadError "open" or "branch" with the place."""
+    points, start, end = outline
+    start, end = start[start != end], end[start != end]  # triangles without area leave these
+    leaving, arriving = (np.bincount(ends, minlength=len(points)) for ends in (start, end))
+    for reason, wrong, what in (
+        ("open", leaving != arriving, "the section is open"),
+        ("branch", leaving > 1, "the section touches itself"),
+    ):
+        if wrong.any():
+            x, y = points[np.flatnonzero(wrong)[0]].tolist()
+            places = np.count_nonzero(wrong)
+            raise ReadError(reason, f"{what} at ({x:.9g}, {y:.9g}); {places} such points", path, (x, y))
+    following = np.full(len(points), -1, dtype=np.intp)
+    following[start] = end
+    step = following.tolist()
+    seen = bytearray(len(points))
+    marks = np.frombuffer(seen, dtype=np.uint8)
+    found = []
+    for first in start.tolist():
+        if seen[first]:
+            continue
+        ring = [first]
+        at = step[first]
+        while at != first:
+            ring.append(at)
+            at = step[at]
+        found.append(np.array(ring, dtype=np.intp))
+        marks[found[-1]] = 1
+    return found
