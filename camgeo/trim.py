@@ -101,10 +101,16 @@ def follower_radius(curve: Curve) -> float:
 
 
 def causes(curve: Curve) -> Causes:
-    """Find reversals and the narrowest necks a roller does not pass; what is proved: `reversals`, `narrowest_necks`."""
-    found = reversals(curve)
+    """Find reversals and the narrowest necks a roller does not pass; what is proved: `reversals`, `narrowest_necks`.
+
+    Raises ValueError for a curve that a flat face cannot work, as its tangent turns back.
+    """
     radius = follower_radius(curve)
-    if math.isinf(radius) or bool((curve.cells.rows[2] >= 0.0).all()):
+    found = reversals(curve)
+    if math.isinf(radius):
+        hollow = curve.cells.rows[3] < 0.0
+        if hollow.any():
+            raise ValueError(f"a flat face cannot touch the hollow near parameter {curve.cells.low[hollow][0]:.9g}")
         return Causes(found, ())
     below = radius if not found else min(radius, radius + least_radius(curve)[0])
     return Causes(found, narrowest_necks(Pitch(curve, radius), below))
@@ -133,7 +139,13 @@ def trimmed(curve: Curve) -> Curve:
 
 
 def remains(curve: Curve, why: Causes) -> Remains:
-    """Find what is left of a curve that undercuts. Raises UndercutError where crossings cannot be told apart."""
+    """Find what is left of a curve that undercuts. Raises UndercutError where crossings cannot be told apart.
+
+    Every corner is checked against all contact positions. Where the pitch curve is convex, and for a flat face, that
+    settles the whole contour: kept stretches run forward and turn once round, so they bound the body of the half planes
+    beyond them, and no face between two of them cuts into it. A hollow pitch curve is checked at the nodes as well,
+    a fine grid, without proof for what lies between; a missed cut shows when the file is judged.
+    """
     contact = _Contact.of(curve)
     for turn in range(ROUNDS):
         nodes = _nodes(curve, why, NODES << turn)

@@ -1,0 +1,153 @@
+"""The least radius and the reversals, against closed forms and a multiprecision oracle."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapes import booth
+
+from camgeo.curve import Curve
+from camgeo.offset import Parallel
+from camgeo.profile.support import SupportShape
+from camgeo.radius import Reversal, least_radius, reversals
+from kin.formula import Formula
+from kin.law import Segment, law, programme
+from kin.lift import lift_constant_breadth, lift_from_formula, lift_from_fourier, lift_reuleaux
+
+
+def flat(mean, cos, sin=None):
+    return Curve.whole(SupportShape(lift_from_fourier(mean, cos, sin or {})))
+
+
+def breadth(base, name):
+    """SW section 5 on another base radius: 20 mm in 120 degrees, dwell 60."""
+    motion = [Segment("rise", math.radians(120), 20.0, law(name)), Segment("dwell", math.radians(60))]
+    return Curve.whole(SupportShape(lift_constant_breadth(base, programme(motion, math.pi))))
+
+
+@given(st.floats(1.0, 100.0), st.floats(1e-9, 1.0), st.integers(2, 40))
+@settings(deadline=None, max_examples=40)
+def test_one_harmonic_has_its_least_radius_at_the_crest(mean, share, k):
+    b = share * mean / (k * k - 1)
+    value, at = least_radius(flat(mean, {k: b}))
+    assert value == pytest.approx(mean - b * (k * k - 1), abs=1e-13 * mean)
+    if share > 1e-3:
+        assert math.cos(k * at) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("k", range(3))
+def test_several_harmonics_agree_with_mpmath(k):
+    cos, sin = [({3: 2.0, 7: 0.05}, {5: 0.1}), ({2: 1.0}, {3: 1.0, 11: 0.02}), ({5: 0.3, 6: 0.3, 7: 0.3}, {})][k]
+    mpmath.mp.dps = 40
+
+    def radius(t, order=0):
+        turn = mpmath.pi / 2 * order
+        terms = [(n, a, 0) for n, a in cos.items()] + [(n, a, -mpmath.pi / 2) for n, a in sin.items()]
+        series = sum(a * (1 - n * n) * mpmath.mpf(n) ** order * mpmath.cos(n * t + b + turn) for n, a, b in terms)
+        return series + (25 if order == 0 else 0)
+
+    grid = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    slopes = [float(radius(mpmath.mpf(t), 1)) for t in grid]
+    starts = [i for i in range(400) if slopes[i - 1] < 0 <= slopes[i]]
+    exact = min(
+        radius(mpmath.findroot(lambda t: radius(t, 1), (grid[i] - 2 * np.pi / 400, grid[i]), solver="anderson"))
+        for i in starts
+    )
+    value, _ = least_radius(flat(25.0, cos, sin))
+    assert value == pytest.approx(float(exact), rel=1e-13)
+
+
+@pytest.mark.parametrize("m2", [300.0, 1200.0, 1800.0, 2880.0])
+def test_booths_lemniscate_is_bent_most_at_its_ends(m2):
+    # at t = 0: r r'' = -4 m^2, kappa = (r^2 + 4 m^2)/r^3
+    r2 = 2.0 * (3600.0 + m2)
+    value, at = least_radius(Curve.whole(booth(60.0, math.sqrt(m2))))
+    assert value == pytest.approx(r2**1.5 / (r2 + 4.0 * m2), rel=1e-13)
+    assert math.sin(at) == pytest.approx(0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("e", [8.0, 45.0, 70.0])
+def test_a_parallel_curve_has_so_much_less(e):
+    shape = booth(60.0, 40.0)
+    value, _ = least_radius(Curve.whole(shape))
+    inside, _ = least_radius(Curve.whole(Parallel(shape, e)))
+    assert inside == pytest.approx(value - e, abs=1e-12)
+
+
+def test_concave_stretches_do_not_count():
+    # at the waist the curve is hollow with the radius -r^3/(4 m^2 - r^2), far below 0
+    value, _ = least_radius(Curve.whole(booth(60.0, math.sqrt(2880.0))))
+    assert value > 59.0
+
+
+def test_one_sided_limits_at_a_jump_count():
+    # parabolic, rb + S + S'' with S = h/2 and S'' = -4 h/beta^2 just after mid-stroke
+    value, at = least_radius(breadth(5.0, "parabolic"))
+    assert value == pytest.approx(5.0 + 10.0 - 80.0 / math.radians(120) ** 2, abs=1e-13)
+    assert at == pytest.approx(math.radians(60), abs=1e-12)
+
+
+@pytest.mark.parametrize("rounding", [5.0, 0.01])
+def test_a_rounded_corner_is_the_least_radius(rounding):
+    value, _ = least_radius(Curve.whole(SupportShape(lift_reuleaux(5, 50.0, rounding))))
+    assert value == pytest.approx(rounding, abs=1e-14)
+
+
+@pytest.mark.parametrize("place", [0.1, 2.345, 5.0])
+def test_a_narrow_dip_is_not_missed(place):
+    # rho falls from 20 by 22 within a few thousandths of a radian, the curve's other 6.28 are a circle
+    bell = f"20 + 2.2e-4*exp(1e5*(cos(t - {place}) - 1))"
+    curve = Curve.whole(SupportShape(lift_from_formula(Formula(bell))))
+    value, at = least_radius(curve)
+    assert value == pytest.approx(20.0 + 2.2e-4 - 22.0, abs=1e-9)
+    assert at == pytest.approx(place, abs=1e-7)
+    (found,) = reversals(curve)
+    assert found.start < place < found.end < found.start + 0.01
+
+
+@given(st.floats(-12.0, -1.0), st.sampled_from([2, 3, 5, 8]), st.floats(0.1, 50.0))
+@settings(deadline=None, max_examples=40)
+def test_margins_are_decided_on_both_sides(exponent, k, b):
+    size = b * (k * k - 1)
+    margin = 10.0**exponent * size
+    sound, backwards = flat(size + margin, {k: b}), flat(size - margin, {k: b})
+    assert least_radius(sound)[0] > 0.0
+    assert reversals(sound) == ()
+    assert least_radius(backwards)[0] < 0.0
+    found = reversals(backwards)
+    assert len(found) == k
+    half = math.asin(math.sqrt(margin / size / 2.0)) * 2.0 / k  # cos k t = 1 - margin/size
+    for i, r in enumerate(found):
+        assert not r.still
+        assert r.end - r.start == pytest.approx(2.0 * half, rel=1e-2 if exponent < -11 else 2e-3)
+        crest = 2.0 * math.pi / k * (i + 1)
+        assert 0.5 * (r.start + r.end) == pytest.approx(crest, abs=1e-4 * half)
+
+
+def test_ends_of_a_reversal_are_roots_to_the_last_digits():
+    for found, crest in zip(reversals(flat(7.0, {3: 1.0})), (1, 2, 3), strict=True):
+        half = math.acos(7.0 / 8.0) / 3.0
+        assert found.start == pytest.approx(crest * 2 * math.pi / 3 - half, abs=4e-15)
+        assert found.end == pytest.approx(crest * 2 * math.pi / 3 + half, abs=4e-15)
+
+
+def test_a_reversal_may_begin_at_a_jump():
+    first, _ = reversals(breadth(5.0, "parabolic"))
+    assert first.start == math.radians(60)
+    assert not first.still
+
+
+def test_a_corner_stands_still_and_does_not_run_backwards():
+    found = reversals(Curve.whole(SupportShape(lift_reuleaux(3, 50.0, 0.0))))
+    assert [r.still for r in found] == [True] * 3
+    assert [r.end - r.start for r in found] == pytest.approx([math.pi / 3] * 3)
+
+
+def test_all_backwards_is_one_reversal():
+    shape = SupportShape(lift_from_fourier(-3.0, {3: 0.1}, {}))
+    assert reversals(Curve.whole(shape)) == (Reversal(0.0, 2.0 * math.pi, still=False),)
