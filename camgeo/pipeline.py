@@ -176,7 +176,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     with clock.stage("figures"):
         breadth, follower, more = _figures(recipe, intent, profile)
     if contour is not None:
-        more += _wall(recipe, contour)
+        more += _wall(recipe, contour, intent)
     trimmed = contour is not None and not contour.closed
     return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed)
 
@@ -252,14 +252,15 @@ def _figures(
     return breadth, "yoke" if yoke else "flat face", flat_face_checks(intent, yoke=yoke)
 
 
-def _wall(recipe: Recipe, contour: Curve) -> list[Check]:
+def _wall(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> list[Check]:
     """Least wall between bore and contour, where there is a bore."""
     if recipe.part.bore is None:
         return []
     from camgeo.part import least_wall
 
     wall, at = least_wall(contour, recipe.part.bore)
-    return [Check("wall", wall > 0.0, wall, 0.0, "mm", degrees(at), "at_least")]
+    at_deg = _shaft_deg(intent, at)
+    return [Check("wall", wall > 0.0, wall, 0.0, "mm", at_deg, "at_least")]
 
 
 def _drawn(
