@@ -65,17 +65,17 @@ class Arcs:
         return len(self.length)
 
     def take(self, index: Indices | NDArray[np.bool_]) -> Arcs:
-        """The pieces chosen by index or mask."""
+        """Return the pieces chosen by index or mask."""
         return Arcs(self.start[index], self.tangent[index], self.curvature[index], self.length[index])
 
     def points(self, s: Array) -> Array:
-        """Points at arc lengths s (n,), one on each piece: (n, 2)."""
+        """Return points at arc lengths s (n,), one on each piece: (n, 2)."""
         half = 0.5 * self.curvature * s
         chord = s * np.sinc(half / np.pi)
         return self.start + chord[:, None] * turned(self.tangent, half)
 
     def tangents(self, s: Array) -> Array:
-        """Unit tangents at arc lengths s (n,), one on each piece: (n, 2)."""
+        """Return unit tangents at arc lengths s (n,), one on each piece: (n, 2)."""
         return turned(self.tangent, self.curvature * s)
 
     @property

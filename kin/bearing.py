@@ -18,14 +18,16 @@ from kin.contour import ARC, BEZIER, LINE
 
 if TYPE_CHECKING:
     from kin.arcs import Array, Indices
+    from kin.bezier import Beziers
     from kin.contour import Contour
 
 TURN = 2.0 * np.pi
+FLATTEST = 1e9  # mm; larger radii of curvature are all alike
 
 
 @dataclass(frozen=True, eq=False)
 class Bearing:
-    """m stretches: stretch k reaches from breaks[k] to breaks[k+1], the last over 2 pi to the first; breaks in [0, 2 pi).
+    """m stretches: stretch k from breaks[k] to breaks[k+1], the last over 2 pi to the first; breaks rise in [0, 2 pi).
 
     `point` (m, 2) is the corner that bears, `piece` (m,) the arc or Bezier piece that does instead, -1 for a corner.
     """
@@ -49,8 +51,11 @@ class Bearing:
         return np.stack([q, cross(u, x), radius - q])
 
     def between(self, nodes: Array, turned: float = 0.0) -> tuple[Indices, Array, Array]:
-        """For intervals between neighbouring nodes (m + 1,), no break inside: stretch (m,), derivatives (3, m) of
-        q(theta + turned) at their low ends, and at their high ends, both as seen from within."""
+        """Give q(theta + turned) at both ends of intervals without a break, as seen from within.
+
+        `nodes` (m + 1,) bound the m intervals. Returns the stretch of each (m,) and q, q', q'' (3, m) at the low and
+        at the high ends.
+        """
         low, high = nodes[:-1] + turned, nodes[1:] + turned
         stretch = self.find(0.5 * (low + high))
         u = unit(nodes + turned)
@@ -72,13 +77,7 @@ class Bearing:
                 beziers = self.contour.beziers
                 t = beziers.farthest(row, theta[bow])
                 x[bow] = beziers.point(row, t)
-                velocity = beziers.velocity[row]
-                v = values(velocity, t)
-                change = values((velocity.shape[1] - 1) * np.diff(velocity, axis=1), t) if velocity.shape[1] > 1 else 0 * v
-                weight = values(beziers.weight[row], t) if beziers.rational else np.ones(len(t))
-                bend = np.abs(cross(v, change)) * weight**2
-                size = np.hypot(v[:, 0], v[:, 1]) ** 3
-                radius[bow] = size / np.maximum(bend, 1e-9 * size)  # flatter than 1e9 mm is flat
+                radius[bow] = _radius(beziers, row, t)
         return x, radius
 
     def nodes(self, low: float, high: float, breaks: Array) -> Array:
@@ -89,6 +88,20 @@ class Bearing:
         spread = all_breaks if len(turns) == 1 else (all_breaks + turns[:, None]).ravel()
         spread = spread[(spread > low) & (spread < high)]
         return np.unique(np.concatenate([[low], spread, [high]]))
+
+
+def _radius(beziers: Beziers, row: Indices, t: Array) -> Array:
+    """Radius of curvature of Bezier pieces `row` (n,) at parameters t (n,), mm (n,), no more than FLATTEST."""
+    velocity = beziers.velocity[row]
+    v = values(velocity, t)
+    degree = velocity.shape[1] - 1
+    change = values(degree * np.diff(velocity, axis=1), t) if degree else np.zeros_like(v)
+    # v is w^2 times the derivative where the pieces are rational, and then v x v' is w^4 times its numerator
+    weight = values(beziers.weight[row], t) if beziers.rational else np.ones(len(t))
+    bend = np.abs(cross(v, change)) * weight**2
+    size = np.hypot(v[:, 0], v[:, 1]) ** 3
+    radius: Array = size / np.maximum(bend, size / FLATTEST)
+    return radius
 
 
 def bearing_of(contour: Contour) -> Bearing:

@@ -28,10 +28,23 @@ class Check:
     detail: str = ""
 
 
-def at_most(name: str, value: float, limit: float, unit: str, *, at: float | None = None, detail: str = "") -> Check:
-    """Check that `value` does not exceed `limit`; `at` is a shaft angle in radians. A value that is nan fails."""
+def at_most(
+    name: str,
+    value: float,
+    limit: float,
+    unit: str,
+    *,
+    at: float | None = None,
+    detail: str = "",
+    slack: float = 0.0,
+) -> Check:
+    """Check that `value` does not exceed `limit`; `at` is a shaft angle in radians. A value that is nan fails.
+
+    `slack` is the rounding of the measurement itself, by which it may exceed.
+    """
     measured = None if math.isnan(value) else float(value)
-    return Check(name, value <= limit, measured, float(limit), unit, degrees(at), "at_most", None, detail)
+    at_deg = None if at is None or not math.isfinite(at) else degrees(at)
+    return Check(name, bool(value <= limit + slack), measured, float(limit), unit, at_deg, detail=detail)
 
 
 def failed(name: str, detail: str, *, unit: str = "", limit: float | None = None) -> Check:
@@ -39,10 +52,8 @@ def failed(name: str, detail: str, *, unit: str = "", limit: float | None = None
     return Check(name, ok=False, value=None, limit=limit, unit=unit, detail=detail)
 
 
-def degrees(angle: float | None) -> float | None:
-    """Shaft angle in radians as degrees in [0, 360)."""
-    if angle is None or not math.isfinite(angle):
-        return None
+def degrees(angle: float) -> float:
+    """Return an angle in radians as degrees in [0, 360)."""
     turned = math.degrees(angle) % 360.0
     return 0.0 if turned >= 360.0 else turned
 

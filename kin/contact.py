@@ -8,7 +8,7 @@ from exactly one shaft angle,
     phi = t + acos((r^2 + L^2 - l^2)/(2 r L))   roller A, which trails the pivot;   minus for roller B, which leads it
 
 (L from shaft to pivot, l arm). So each piece covers an interval of shaft angles, found by sorting, and each pair of
-piece and angle is one intersection of two circles in closed form. The first contact from outside is the one of largest r.
+piece and angle is one intersection of two circles in closed form. The first contact from outside is that of largest r.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ import numpy as np
 from kin.arcs import Arcs, circle, cross, dot, left, right, unit
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from kin.arcs import Array, Indices
 
 Side = Literal[-1, 1]
@@ -30,12 +32,13 @@ LEADING: Side = 1  # roller B
 STRAIGHT_ON = 1e-12  # corners that turn less, in radians, get no arc of their own
 MOST_TURN = np.pi / 8.0  # pieces are cut until each turns less
 MOST_SHARE = 0.1  # and is shorter than this share of the arm
+PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask for
 SLACK = 1e-10  # mm by which neighbouring pieces are allowed to overlap, against rounding at their joints
 
 
 @dataclass(frozen=True)
 class Arm:
-    """A roller's arm: `length` l, `pivot` L its distance from the shaft, mm, and the `side` on which the roller lies."""
+    """A roller's arm: `length` l, `pivot` its distance L from the shaft, mm; `side` on which the roller lies."""
 
     length: float
     pivot: float
@@ -64,7 +67,7 @@ class Arm:
 
 
 def dilated(chain: Arcs, radius: float) -> Arcs:
-    """The pieces, in no order, that bound what a disc's centre cannot enter; closed counter-clockwise `chain`."""
+    """Return the pieces, in no order, that bound what a disc's centre cannot enter, from a closed chain."""
     growth = 1.0 + chain.curvature * radius
     fits = growth > 0.0
     moved = chain.start + radius * right(chain.tangent)
@@ -82,16 +85,18 @@ def dilated(chain: Arcs, radius: float) -> Arcs:
 
 
 def first_contact(obstacle: Arcs, arm: Arm, phi: Array) -> tuple[Array, Indices]:
-    """Distance from the shaft of the arm's end when it meets the obstacle first, coming from outside; and the piece met.
+    """Find where the arm's end, coming from outside, meets the obstacle first: distance from the shaft, and piece met.
 
-    `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,), nan where nothing is met, and the index of
-    the piece (n,), -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle that can meet.
+    `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,) in mm and the index of the piece (n,):
+    nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle that can meet.
     """
     parts = np.maximum(
         np.ceil(np.abs(obstacle.curvature) * obstacle.length / MOST_TURN),
         np.ceil(obstacle.length / (MOST_SHARE * arm.length)),
     )
     pieces, owner = obstacle.cut(np.maximum(parts, 1.0).astype(np.intp))
+    within = _within_reach(pieces, arm)
+    pieces, owner = pieces.take(within), owner[within]
     middle, reach = _interval(pieces, arm)
     turn = 2.0 * np.pi
     order = np.argsort(np.mod(phi, turn), kind="stable")
@@ -100,19 +105,34 @@ def first_contact(obstacle: Arcs, arm: Arm, phi: Array) -> tuple[Array, Indices]
     ring = np.concatenate([angle, angle + turn])
     first = np.searchsorted(ring, low, side="left")
     count = np.minimum(np.searchsorted(ring, low + 2.0 * reach, side="right") - first, len(angle))
-    piece = np.repeat(np.arange(len(pieces)), count)
-    number = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)
-    index = (first[piece] + number) % max(len(angle), 1)
-    r = _meet(pieces.take(piece), arm, angle[index])
     best = np.full(len(angle), -np.inf)
-    np.maximum.at(best, index, r)
     met = np.full(len(angle), -1)
-    won = r == best[index]
-    met[index[won & (r > 0)]] = piece[won & (r > 0)]
+    total = np.cumsum(count)
+    begin = 0
+    while begin < len(pieces):
+        end = max(begin + 1, int(np.searchsorted(total, total[begin] - count[begin] + PAIRS_AT_ONCE, side="right")))
+        chosen = np.arange(begin, end)
+        piece = np.repeat(chosen, count[chosen])
+        number = np.arange(len(piece)) - np.repeat(np.cumsum(count[chosen]) - count[chosen], count[chosen])
+        index = (first[piece] + number) % len(angle)
+        r = _meet(pieces.take(piece), arm, angle[index])
+        np.maximum.at(best, index, r)
+        won = (r == best[index]) & (r > 0.0)
+        met[index[won]] = piece[won]
+        begin = end
     radius, piece_met = np.empty(len(angle)), np.empty(len(angle), dtype=np.intp)
     radius[order] = np.where(met < 0, np.nan, best)
     piece_met[order] = np.where(met < 0, -1, owner[met])
     return radius, piece_met
+
+
+def _within_reach(pieces: Arcs, arm: Arm) -> NDArray[np.bool_]:
+    """Whether some point of each short piece may lie as far from the shaft as the arm's end can."""
+    middle = pieces.points(0.5 * pieces.length)
+    r = np.hypot(middle[:, 0], middle[:, 1])
+    half = 0.5 * pieces.length + SLACK
+    within: NDArray[np.bool_] = (r + half >= abs(arm.pivot - arm.length)) & (r - half <= arm.pivot + arm.length)
+    return within
 
 
 def _interval(pieces: Arcs, arm: Arm) -> tuple[Array, Array]:
@@ -135,12 +155,11 @@ def _interval(pieces: Arcs, arm: Arm) -> tuple[Array, Array]:
         reach = half * np.hypot(1.0 / least, slope / sine)
     w_middle = np.clip(w(r), -1.0, 1.0)
     angle = np.arctan2(middle[:, 1], middle[:, 0]) - arm.side * np.arccos(w_middle)
-    out = (np.minimum(w(least), w(most)) > 1.0) & (least >= turning)
-    return angle, np.where(out, -1.0, np.minimum(reach, np.pi))
+    return angle, np.minimum(reach, np.pi)
 
 
 def _meet(pieces: Arcs, arm: Arm, phi: Array) -> Array:
-    """Greatest distance from the shaft at which each piece meets the arm's circle at its angle (n,), -inf if it does not.
+    """Greatest distance from the shaft at which each piece meets the arm's circle at its angle (n,), -inf if nowhere.
 
     From the start of the piece, its circle is 2 y.m + k y^2 = 0 and the arm's |y - q| = l; their difference is the line
     both intersections lie on, y.(m + k q) = k (q^2 - l^2)/2, also for k = 0.

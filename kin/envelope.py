@@ -32,8 +32,13 @@ CHUNK = 4_000_000  # entries of a matrix of points against samples held at a tim
 
 @dataclass(frozen=True, eq=False)
 class Feet:
-    """For n points: parameter of the foot (n,), excess (n,) in mm, its gradient `normal` (n, 2), and the `curvature` (n,)
-    of the line of equal excess through the point."""
+    """The feet of n points on an exact contour.
+
+    parameter (n,)      of the foot
+    excess (n,)         of the point, mm
+    normal (n, 2)       gradient of the excess
+    curvature (n,)      of the line of equal excess through the point, 1/mm
+    """
 
     parameter: Array
     excess: Array
@@ -66,7 +71,7 @@ class SupportLaw(Protocol):
         """Angles in [0, 2 pi) where the second derivative may jump."""
 
     def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """p and its derivatives, (order + 1, n)."""
+        """Return p and its derivatives, (order + 1, n)."""
 
 
 class Inverse:
@@ -82,7 +87,7 @@ class Inverse:
         self._middle = float(y[0]) + 0.5 * TURN
 
     def __call__(self, y: Array) -> tuple[Array, Array]:
-        """x near the solutions, and the remaining steps to them, |step| below FINE_STEP: each (n,)."""
+        """Return x near the solutions, and the remaining steps to them, |step| below FINE_STEP: each (n,)."""
         base = TURN * np.round((y - self._middle) / TURN)
         x = np.interp(y - base, self._y, self._x)
         step = np.zeros_like(x)
@@ -123,7 +128,7 @@ class PairSupport:
         return Inverse(lambda tau: self.transmission.pitch(tau, 2)[1], self.transmission.breaks)
 
     def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """r and its derivatives by t, (order + 1, n), order at most 2."""
+        """Return r and its derivatives by t, (order + 1, n), order at most 2."""
         tau, step = self._parameter(np.asarray(theta, dtype=float))
         tau = np.where(np.abs(step) < 1e-14, tau, tau + step)  # a break stays a break
         r, t = self.transmission.pitch(tau, 2, side)
@@ -162,7 +167,8 @@ class FlatEnvelope:
         inside = point.mean(axis=0)
         away = np.unwrap(np.arctan2(point[:, 1] - inside[1], point[:, 0] - inside[0]))
         away = np.maximum.accumulate(away)
-        return inside, np.concatenate([away - TURN, away, away + TURN]), np.concatenate([theta - TURN, theta, theta + TURN])
+        turns = np.array([-TURN, 0.0, TURN])[:, None]
+        return inside, (away + turns).ravel(), (theta + turns).ravel()
 
     def feet(self, points: Array) -> Feet:
         """Feet of points (n, 2): where X.u - p is greatest."""
@@ -192,7 +198,8 @@ class FlatEnvelope:
         theta = grid(self.support.breaks, count)
         p, slope = self.support.derivatives(theta, 1)
         u = unit(theta)
-        return p[:, None] * u + slope[:, None] * left(u)
+        points: Array = p[:, None] * u + slope[:, None] * left(u)
+        return points
 
     def area_and_perimeter(self) -> tuple[float, float]:
         """1/2 integral of (p^2 - p'^2), and integral of p (Cauchy)."""
@@ -209,7 +216,7 @@ class Pitch(Protocol):
         """Parameters in [0, 2 pi) where the second derivative may jump."""
 
     def points(self, tau: Array) -> tuple[Array, Array, Array]:
-        """The roller's centre and its two derivatives by the parameter, each (n, 2)."""
+        """Give the roller's centre and its two derivatives by the parameter, each (n, 2)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,7 +242,7 @@ class TransmissionPitch:
 
 @dataclass(frozen=True, eq=False)
 class RollerEnvelope:
-    """The contour at the roller's `radius` inside a counter-clockwise pitch curve; its parameter is the pitch curve's."""
+    """The contour at the roller's `radius`, mm, inside a counter-clockwise pitch curve, over that curve's parameter."""
 
     pitch: Pitch
     radius: float

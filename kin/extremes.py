@@ -23,12 +23,14 @@ MOST_HALVINGS = 48
 
 @dataclass(frozen=True)
 class Extremes:
-    """Greatest and least value, and where; nan where there was nothing to look at."""
+    """Greatest and least value, where, and in which of the intervals; nan and -1 where there was nothing to look at."""
 
     greatest: float
     greatest_at: float
+    greatest_index: int
     least: float
     least_at: float
+    least_index: int
 
     @property
     def worst(self) -> tuple[float, float]:
@@ -44,7 +46,13 @@ class Extremes:
 
 
 def extremes(
-    low: Array, high: Array, at_low: Array, at_high: Array, evaluate: Callable[[Array, Indices], Array], resolution: float
+    low: Array,
+    high: Array,
+    at_low: Array,
+    at_high: Array,
+    evaluate: Callable[[Array, Indices], Array],
+    *,
+    resolution: float,
 ) -> Extremes:
     """Extremes of f over m intervals [low, high], each (m,), f smooth inside each.
 
@@ -53,18 +61,18 @@ def extremes(
     `resolution`, as far as f'''' does not swing within an interval; halving costs grow as resolution ** -1/4.
     """
     owner = np.arange(len(low))
-    best = (-np.inf, np.nan)
-    worst = (np.inf, np.nan)
+    best = (-np.inf, np.nan, -1)
+    worst = (np.inf, np.nan, -1)
     for halving in range(MOST_HALVINGS):
         if not len(low):
             break
         top, top_at, bottom, bottom_at, doubt = _cubic(low, high, at_low, at_high)
         # An extreme between the ends counts once the cubic is trusted; before, only the ends do.
         trusted = (doubt <= resolution) | (halving == MOST_HALVINGS - 1)
-        for f, x in ((at_low[0], low), (at_high[0], high), (top[trusted], top_at[trusted])):
-            best = _better(best, f, x, 1.0)
-        for f, x in ((at_low[0], low), (at_high[0], high), (bottom[trusted], bottom_at[trusted])):
-            worst = _better(worst, f, x, -1.0)
+        for f, x in ((at_low[0], low), (at_high[0], high), (np.where(trusted, top, -np.inf), top_at)):
+            best = _better(best, f, x, owner, 1.0)
+        for f, x in ((at_low[0], low), (at_high[0], high), (np.where(trusted, bottom, np.inf), bottom_at)):
+            worst = _better(worst, f, x, owner, -1.0)
         # Sixteen times the estimate covers an f'''' that swings, or a break of f'' nobody declared.
         open_ = ~trusted & ((top + 16.0 * doubt > best[0]) | (bottom - 16.0 * doubt < worst[0]))
         low, high, at_low, at_high, owner = low[open_], high[open_], at_low[:, open_], at_high[:, open_], owner[open_]
@@ -73,14 +81,14 @@ def extremes(
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
         at_low, at_high = np.concatenate([at_low, at_middle], axis=1), np.concatenate([at_middle, at_high], axis=1)
         owner = np.concatenate([owner, owner])
-    return Extremes(best[0], best[1], worst[0], worst[1])
+    return Extremes(*best, *worst)
 
 
-def _better(best: tuple[float, float], f: Array, x: Array, sign: float) -> tuple[float, float]:
-    if not len(f):
-        return best
+def _better(
+    best: tuple[float, float, int], f: Array, x: Array, owner: Indices, sign: float
+) -> tuple[float, float, int]:
     i = int(np.argmax(sign * f))
-    return (float(f[i]), float(x[i])) if not sign * f[i] <= sign * best[0] else best
+    return (float(f[i]), float(x[i]), int(owner[i])) if sign * f[i] > sign * best[0] else best
 
 
 def _cubic(low: Array, high: Array, at_low: Array, at_high: Array) -> tuple[Array, Array, Array, Array, Array]:

@@ -6,17 +6,17 @@ angles, found stretch by stretch between the breaks of the contour's support fun
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from kin.arcs import unit
 from kin.bearing import Bearing, bearing_of
+from kin.check import degrees
 from kin.envelope import FINE_STEP, FlatEnvelope, PairSupport, SupportLaw, grid
 from kin.extremes import Extremes, extremes
-from kin.motion import TURN, ContactError, Judged, Play, Unit, degrees_of, motion_error, with_steps
+from kin.motion import TURN, ContactError, Judged, MotionError, Play, Unit, motion_error, with_steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,11 +37,12 @@ class FlatFace:
     """A flat face moving along its own normal; its position is its distance p(theta) from the shaft, mm."""
 
     lift: Lift
-    unit: Unit = "mm"
+    unit: ClassVar[Unit] = "mm"
 
     def intended(self, theta: Array) -> Array:
         """Intended distance of the face from the shaft at shaft angles theta (n,), mm (n,)."""
-        return self.lift.derivatives(theta, 0)[0]
+        p: Array = self.lift.derivatives(theta, 0)[0]
+        return p
 
     def contact(self, contour: Contour, theta: Array) -> Array:
         """Distance from the shaft at which the face rests on the contour, mm (n,)."""
@@ -57,15 +58,8 @@ class FlatFace:
         return parameter
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
-        """Motion error, its extremes over the whole turn, rms and increments from the given shaft angles theta (n,)."""
-        return self._judge(bearing_of(contour), theta)
-
-    def _judge(self, bearing: Bearing, theta: Array) -> Judged:
-        angle = with_steps(theta)
-        errors = bearing.derivatives(angle, bearing.find(angle))[0] - self.intended(angle)
-        worst = error_extremes(bearing, self.lift).worst
-        ranges = [lift_range(bearing, begin, end) for begin, end in dwells(self.lift)]
-        return Judged(motion_error(worst, errors, max(ranges, default=None), "mm"), None)
+        """Motion error: its extremes over the whole turn, rms and increments from the shaft angles theta (n,)."""
+        return Judged(_face_error(bearing_of(contour), self.lift, theta), None)
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
@@ -73,23 +67,47 @@ class FlatFace:
 
 
 @dataclass(frozen=True, eq=False)
-class Yoke(FlatFace):
-    """Two parallel faces at a fixed `breadth` w: a frame; face 1 stands at p(theta), face 2 at w - p on the other side.
+class Yoke:
+    """Two parallel faces at a fixed `breadth` w, mm: a frame, which face 1 holds at p(theta) from the shaft.
 
-    The intended p has p(theta) + p(theta + pi) = w, so face 2 at theta makes the error that face 1 makes half a turn on.
+    The intended p has p(theta) + p(theta + pi) = w, so face 2 makes the error that face 1 makes half a turn on.
     """
 
-    breadth: float = 0.0
+    lift: Lift
+    breadth: float
+    unit: ClassVar[Unit] = "mm"
+
+    def intended(self, theta: Array) -> Array:
+        """Intended distance of face 1 from the shaft at shaft angles theta (n,), mm (n,)."""
+        p: Array = self.lift.derivatives(theta, 0)[0]
+        return p
 
     def contact(self, contour: Contour, theta: Array) -> Array:
-        """Position of the frame, mm (2, n), as distance of face 1 from the shaft: by face 1, and by face 2."""
+        """Distance of face 1 from the shaft, mm (2, n): with face 1 resting on the contour, and with face 2."""
         near, far = contour.support(theta).q, contour.support(theta + np.pi).q
         return np.stack([near, self.breadth - far])
+
+    @cached_property
+    def envelope(self) -> FlatEnvelope:
+        """The exact contour; its parameter is the shaft angle."""
+        return FlatEnvelope(self.lift)
+
+    def shaft_angle(self, parameter: Array) -> Array:
+        """Shaft angle at which face 1 touches the envelope's point of that parameter (n,)."""
+        return parameter
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error of either face, and the play of the contour in the frame; extremes over the whole turn."""
         bearing = bearing_of(contour)
-        return Judged(self._judge(bearing, theta).motion, self._play(bearing))
+        return Judged(_face_error(bearing, self.lift, theta), self._play(bearing))
+
+    def motion_limit(self, tolerance: float) -> float:
+        """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
+        return tolerance
+
+    def play_limit(self, tolerance: float) -> float:
+        """Greatest play or interference of a contour within `tolerance` of the exact one, mm: both sides may be off."""
+        return 2.0 * tolerance
 
     def _play(self, bearing: Bearing) -> Play:
         nodes = bearing.nodes(0.0, np.pi, np.mod(bearing.breaks - np.pi, TURN))
@@ -99,18 +117,22 @@ class Yoke(FlatFace):
         def breadth(theta: Array, of: Indices) -> Array:
             return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
 
-        found = extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, breadth, RESOLUTION)
+        at_low, at_high = near_low + far_low, near_high + far_high
+        found = extremes(nodes[:-1], nodes[1:], at_low, at_high, breadth, resolution=RESOLUTION)
         return Play(
             self.breadth - found.greatest,
-            degrees_of(found.greatest_at),
+            degrees(found.greatest_at),
             self.breadth - found.least,
-            degrees_of(found.least_at),
+            degrees(found.least_at),
             "mm",
         )
 
-    def play_limit(self, tolerance: float) -> float:
-        """Greatest play or interference of a contour within `tolerance` of the exact one, mm: both sides may be off."""
-        return 2.0 * tolerance
+
+def _face_error(bearing: Bearing, lift: Lift, theta: Array) -> MotionError:
+    angle = with_steps(theta)
+    errors = bearing.derivatives(angle, bearing.find(angle))[0] - lift.derivatives(angle, 0)[0]
+    ranges = [lift_range(bearing, begin, end) for begin, end in dwells(lift)]
+    return motion_error(error_extremes(bearing, lift).worst, errors, max(ranges, default=None), "mm")
 
 
 def error_extremes(bearing: Bearing, law: SupportLaw) -> Extremes:
@@ -128,17 +150,18 @@ def error_extremes(bearing: Bearing, law: SupportLaw) -> Extremes:
     def error(theta: Array, of: Indices) -> Array:
         return bearing.derivatives(theta, stretch[of]) - law.derivatives(theta, 2)
 
-    return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, RESOLUTION)
+    return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=RESOLUTION)
 
 
 def lift_range(bearing: Bearing, begin: float, end: float) -> float:
     """Range of q over [begin, end]."""
     nodes = bearing.nodes(begin, end, np.empty(0))
     stretch, at_low, at_high = bearing.between(nodes)
-    found = extremes(
-        nodes[:-1], nodes[1:], at_low, at_high, lambda theta, of: bearing.derivatives(theta, stretch[of]), RESOLUTION
-    )
-    return found.span
+
+    def lift(theta: Array, of: Indices) -> Array:
+        return bearing.derivatives(theta, stretch[of])
+
+    return extremes(nodes[:-1], nodes[1:], at_low, at_high, lift, resolution=RESOLUTION).span
 
 
 def dwells(lift: Lift) -> Iterator[tuple[float, float]]:
@@ -160,7 +183,7 @@ class FlatPair:
     """
 
     transmission: Transmission
-    unit: Unit = "deg"
+    unit: ClassVar[Unit] = "deg"
 
     def intended(self, phi: Array) -> Array:
         """Intended swing psi/2 at shaft angles phi (n,), radians (n,)."""
@@ -179,10 +202,14 @@ class FlatPair:
 
     def shaft_angle(self, parameter: Array) -> Array:
         """Shaft angle at which face A touches the envelope's point of that parameter (n,)."""
-        return _shaft(parameter, self.support.derivatives(parameter, 0), self._pivot, 1.0)[0]
+        phi: Array = _shaft(parameter, self.support.derivatives(parameter, 0), self._pivot, 1.0)[0]
+        return phi
 
     def contact(self, contour: Contour, phi: Array) -> Array:
-        """Swing, radians (2, n): with face A resting on the contour, and with face B. ContactError if the pivot is inside."""
+        """Swing, radians (2, n): with face A resting on the contour, and with face B.
+
+        ContactError if the contour reaches the pivot.
+        """
         return self._swings(self._held(contour), phi)
 
     def _swings(self, bearing: Bearing, phi: Array) -> Array:
@@ -200,8 +227,10 @@ class FlatPair:
         return Judged(motion_error(worst, errors, max(flatness, default=None), "deg"), self._play(bearing))
 
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest swing, degrees, by which a shift of `tolerance` of the contour turns a face: e over its distance from
-        the pivot, and the term of second order."""
+        """Greatest swing, degrees, that a shift of the contour by `tolerance` gives a face.
+
+        That is e over the distance from pivot to contact, the largest over the turn, and the term of second order.
+        """
         return float(np.degrees(self._leeway(tolerance, 1.0)[1].max()))
 
     def play_limit(self, tolerance: float) -> float:
@@ -236,7 +265,9 @@ class FlatPair:
 
         phi = theta + side acos(q/2l) rises with theta as long as the contour stays within the pivot's circle.
         """
-        return _shaft(bearing.breaks, bearing.derivatives(bearing.breaks, np.arange(len(bearing.breaks))), self._pivot, side)[0]
+        q = bearing.derivatives(bearing.breaks, np.arange(len(bearing.breaks)))
+        start: Array = _shaft(bearing.breaks, q, self._pivot, side)[0]
+        return start
 
     def _touch(self, bearing: Bearing, phi: Array, side: int, middle: Array | None = None) -> Array:
         """Face normal theta and its two derivatives by phi (3, n), for the face of that side held in contact.
@@ -297,13 +328,13 @@ class FlatPair:
 
         there, low, high = intended(nodes), nodes[:-1], nodes[1:]
         at_low, at_high = error(low, q_low, there[:, :-1]), error(high, q_high, there[:, 1:])
-        found = extremes(low, high, at_low, at_high, inside, RESOLUTION_ANGLE)
+        found = extremes(low, high, at_low, at_high, inside, resolution=RESOLUTION_ANGLE)
 
         def shaft(theta: float) -> float:
             at = np.array([theta])
-            return float(_shaft(at, bearing.derivatives(at, bearing.find(at)), self._pivot, side)[0, 0])
+            return float(_shaft(at, bearing.derivatives(at, bearing.find(at))[:1], self._pivot, side)[0, 0])
 
-        return Extremes(found.greatest, shaft(found.greatest_at), found.least, shaft(found.least_at))
+        return replace(found, greatest_at=shaft(found.greatest_at), least_at=shaft(found.least_at))
 
     def _play(self, bearing: Bearing) -> Play:
         ends = np.concatenate([self._starts(bearing, side) for side in (1, -1)])
@@ -317,12 +348,12 @@ class FlatPair:
             return wide
 
         every = np.arange(len(low))
-        found = extremes(low, high, play(low, every), play(high, every), play, RESOLUTION_ANGLE)
+        found = extremes(low, high, play(low, every), play(high, every), play, resolution=RESOLUTION_ANGLE)
         return Play(
             float(np.degrees(found.least)),
-            degrees_of(found.least_at),
+            degrees(found.least_at),
             float(np.degrees(found.greatest)),
-            degrees_of(found.greatest_at),
+            degrees(found.greatest_at),
             "deg",
         )
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from kin.check import degrees
+
 if TYPE_CHECKING:
     from kin.arcs import Array
 
@@ -62,18 +64,12 @@ class ContactError(ValueError):
     """The follower finds no contact; `at` is the shaft angle in radians where it was looked for."""
 
     def __init__(self, message: str, at: float) -> None:
-        super().__init__(f"{message} at {degrees_of(at):.6g} degrees")
+        super().__init__(f"{message} at {degrees(at):.6g} degrees")
         self.at = at
 
 
-def degrees_of(angle: float) -> float:
-    """Radians as degrees in [0, 360)."""
-    turned = float(np.degrees(angle)) % 360.0
-    return 0.0 if turned >= 360.0 else turned
-
-
 def with_steps(phi: Array) -> Array:
-    """The given shaft angles (n,), and each of them an increment on: (2n,), for `motion_error`."""
+    """Return the given shaft angles (n,), and each of them an increment on: (2n,), for `motion_error`."""
     return np.concatenate([phi, phi + np.radians(STEP_DEG)])
 
 
@@ -88,7 +84,7 @@ def motion_error(worst: tuple[float, float], errors: Array, flatness: float | No
         max=scale * worst[0],
         rms=scale * float(np.sqrt(np.mean(here * here))),
         unit=unit,
-        at_deg=degrees_of(worst[1]),
+        at_deg=degrees(worst[1]),
         increment=scale * float(np.abs(further - here).max()),
         step_deg=STEP_DEG,
         dwell_flatness=None if flatness is None else scale * flatness,

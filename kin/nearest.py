@@ -15,7 +15,7 @@ RUN = 8  # pieces under one disc, discs under the next
 
 
 def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:
-    """The piece nearest to each of the points (m, 2) and the distance, (m,) each; exact.
+    """Return the piece nearest to each of the points (m, 2), and the distance, (m,) each; exact.
 
     `arcs` is best in the order of a chain, where neighbours lie together. Cost grows as m log n.
     """

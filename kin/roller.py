@@ -8,15 +8,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from kin.arcs import Arcs, cross, dot, left, right, unit
+from kin.check import degrees
 from kin.contact import LEADING, TRAILING, Arm, dilated, first_contact
 from kin.envelope import RollerEnvelope, TransmissionPitch, grid
 from kin.flat import dwell_angles
-from kin.motion import TURN, ContactError, Judged, Play, Unit, degrees_of, motion_error, with_steps
+from kin.motion import TURN, ContactError, Judged, Play, Unit, motion_error, with_steps
 from kin.nearest import signed_distance
 
 if TYPE_CHECKING:
@@ -31,28 +32,26 @@ MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neig
 
 @dataclass(frozen=True, eq=False)
 class Roller:
-    """A roller of `radius` on an arm whose pivot stands at polar angle phi of the cam frame and distance `pivot_distance`.
+    """A roller of `radius` on an arm whose pivot stands at polar angle phi of the cam frame, `pivot_distance` away, mm.
 
-    Its position is the arm's lean, the angle at the pivot between shaft and roller, which grows as the roller is lifted:
-    `law` gives it in radians over the shaft angle. The roller trails the pivot. All lengths in mm.
+    Its position is the arm's lean, the angle at the pivot between shaft and roller, which grows as the roller is
+    lifted: `law` gives it in radians over the shaft angle. The roller trails the pivot.
     """
 
     arm: float
     pivot_distance: float
     radius: float
     law: Piecewise
-    unit: Unit = "deg"
+    unit: ClassVar[Unit] = "deg"
 
     def intended(self, phi: Array) -> Array:
         """Intended lean at shaft angles phi (n,), radians (n,)."""
-        return self.law.derivatives(phi, 0)[0]
+        lean: Array = self.law.derivatives(phi, 0)[0]
+        return lean
 
     def contact(self, contour: Contour, phi: Array) -> Array:
         """Lean with the roller in contact, radians (n,). ContactError where it meets nothing."""
-        return self._contact(dilated(contour.as_arcs()[0], self.radius), phi)
-
-    def _contact(self, obstacle: Arcs, phi: Array) -> Array:
-        return held_lean(obstacle, self._arm, phi)
+        return held_lean(dilated(contour.as_arcs()[0], self.radius), self._arm, phi)
 
     @property
     def _arm(self) -> Arm:
@@ -71,12 +70,14 @@ class Roller:
         """Motion error; rms and increments from the given shaft angles phi (n,). ContactError where nothing is met."""
         obstacle = dilated(contour.as_arcs()[0], self.radius)
         every = np.concatenate([with_steps(phi), passing_angles(obstacle, self._arm)])
-        error = self._contact(obstacle, every) - self.intended(every)
+        error = held_lean(obstacle, self._arm, every) - self.intended(every)
         return Judged(motion_error(greatest(error, every), error[: 2 * len(phi)], None, "deg"), None)
 
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest error, degrees, of a contour within `tolerance` of the exact one: e/cos(pressure angle) over the arm,
-        the largest over the turn, and the term of second order."""
+        """Greatest error, degrees, of a contour within `tolerance` of the exact one.
+
+        That is e/cos(pressure angle) over the arm, the largest over the turn, and the term of second order.
+        """
         pitch = self.envelope.pitch
         tau = grid(pitch.breaks)
         return float(np.degrees(leeway(*pitch.points(tau), self.pivot_distance * unit(tau), tolerance)[0].max()))
@@ -84,18 +85,19 @@ class Roller:
 
 @dataclass(frozen=True, eq=False)
 class DoubleRoller:
-    """W's two rollers of `radius` on rigid arms of length l that include 2 alpha, the pivot at distance l from the shaft.
+    """W's two rollers of `radius` on rigid arms of length l that include 2 alpha, the pivot at l from the shaft.
 
     The position is psi, clockwise positive; roller A trails the pivot, roller B leads it (W 4.4).
     """
 
     transmission: Transmission
     radius: float
-    unit: Unit = "deg"
+    unit: ClassVar[Unit] = "deg"
 
     def intended(self, phi: Array) -> Array:
         """Intended psi at shaft angles phi (n,), radians (n,)."""
-        return self.transmission.psi_of_shaft(phi, 0)[0]
+        psi: Array = self.transmission.psi_of_shaft(phi, 0)[0]
+        return psi
 
     def contact(self, contour: Contour, phi: Array) -> Array:
         """psi, radians (2, n): with roller A held in contact, and with roller B. ContactError where nothing is met."""
@@ -116,10 +118,14 @@ class DoubleRoller:
 
     def shaft_angle(self, parameter: Array) -> Array:
         """Shaft angle at which roller A touches the envelope's point of that parameter (n,)."""
-        return self.transmission.at(parameter, 0)[0][0]
+        phi: Array = self.transmission.at(parameter, 0)[0][0]
+        return phi
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion error with either roller in contact, and the gap at B while A is held. ContactError if nothing is met."""
+        """Motion error with either roller in contact, and the gap at B while A is held.
+
+        Rms and increments are from the given shaft angles phi (n,). ContactError where a roller meets nothing.
+        """
         chain, _ = contour.as_arcs()
         obstacle = dilated(chain, self.radius)
         passing = [passing_angles(obstacle, self._arm(side)) for side in (TRAILING, LEADING)]
@@ -127,26 +133,32 @@ class DoubleRoller:
         psi = self._contact(obstacle, every)
         error = psi - self.intended(every)
         worst = greatest(np.abs(error).max(axis=0), every)
-        flatness = [float(np.ptp(self._contact(obstacle, x), axis=1).max()) for x in dwell_angles(self.transmission, phi)]
+        dwells = dwell_angles(self.transmission, phi)
+        flatness = [float(np.ptp(self._contact(obstacle, angle), axis=1).max()) for angle in dwells]
         motion = motion_error(worst, error[:, : 2 * len(phi)], max(flatness, default=None), "deg")
-        second = self._arm(LEADING).centre(every, np.pi - self.transmission.alpha + psi[0])
+        chosen = np.r_[: len(phi), 2 * len(phi) : len(every)]  # the increments tell nothing new of the gap
+        angle = every[chosen]
+        second = self._arm(LEADING).centre(angle, np.pi - self.transmission.alpha + psi[0, chosen])
         gap = signed_distance(chain, second) - self.radius
         least, most = int(np.argmin(gap)), int(np.argmax(gap))
-        play = Play(float(gap[least]), degrees_of(every[least]), float(gap[most]), degrees_of(every[most]), "mm")
+        play = Play(float(gap[least]), degrees(angle[least]), float(gap[most]), degrees(angle[most]), "mm")
         return Judged(motion, play)
 
     def motion_limit(self, tolerance: float) -> float:
-        """Greatest error, degrees, of a contour within `tolerance` of the exact one: e/cos(pressure angle) over the arm,
-        the largest over the turn and of both rollers, and the term of second order."""
+        """Greatest error, degrees, of a contour within `tolerance` of the exact one.
+
+        That is e/cos(pressure angle) over the arm, the largest over the turn and of both rollers, and the term of
+        second order.
+        """
         return float(np.degrees(max(swing.max() for swing, _, _ in self._leeway(tolerance))))
 
     def play_limit(self, tolerance: float) -> float:
-        """Greatest gap or interference, mm, at roller B: e there, and what the swing from e at A moves B towards the cam."""
+        """Greatest gap or interference at B, mm: e there, and how far the swing from e at A moves B on the cam."""
         (swing, _, _), (_, slope, bend) = self._leeway(tolerance)
         return float((tolerance + slope * swing + 0.5 * bend * swing**2).max())
 
     def _leeway(self, tolerance: float) -> list[tuple[Array, Array, Array]]:
-        """For rollers A and B, over the turn: swing that `tolerance` allows, and how fast a swing moves the roller off."""
+        """For rollers A and B, over the turn: the swing `tolerance` allows, and how fast a swing moves them off."""
         tau = grid(self.transmission.breaks)
         phi, psi = self.transmission.at(tau, 2)
         pivot = self.transmission.arm * unit(phi[0])
@@ -183,7 +195,7 @@ class LeanPitch:
 
 
 def polar_rows(angle: Array, length: float) -> tuple[Array, Array, Array]:
-    """length u(angle) and two derivatives, each (n, 2), from the angle's own, (3, n)."""
+    """Give length u(angle) and two derivatives, each (n, 2), from the angle's own, (3, n)."""
     u = length * unit(angle[0])
     n = left(u)
     return u, angle[1][:, None] * n, angle[2][:, None] * n - (angle[1] ** 2)[:, None] * u

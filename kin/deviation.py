@@ -1,0 +1,115 @@
+"""How far a contour from a file lies from the exact one, both ways: what contact cannot feel is measured as well.
+
+From the file to the exact contour: the excess of every point, its extremes found piece by piece (`kin.extremes`). From
+the exact contour to the file: a closed contour within a tube about the exact one, whose feet go round it once, meets
+every normal of it inside the tube, so no point of the exact contour is farther from the file than the tube is wide. The
+feet also tell a contour that turns back on itself within the tube.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.arcs import Arcs, dot, left
+from kin.extremes import extremes
+
+if TYPE_CHECKING:
+    from kin.arcs import Array, Indices
+    from kin.envelope import Envelope, Feet
+
+RESOLUTION = 1e-11  # mm
+LEAST_PARTS = 1024  # a contour of fewer pieces is cut into about so many
+MOST_TURN = 0.05  # rad; greatest turn of a part
+JOINED = 1e-12  # ends closer than this share of the contour's extent are one point
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """How far a contour lies from the exact one.
+
+    outside, inside     greatest excess, and greatest want, of metal, mm; one is below 0 if the contour lies wholly on
+                        the other side
+    outside_at, ...     the envelope's parameters of those places
+    rounds              how often the feet go round
+    backwards           greatest length, mm, of a run in which they go back
+    """
+
+    outside: float
+    outside_at: float
+    inside: float
+    inside_at: float
+    rounds: int
+    backwards: float
+
+    @property
+    def worst(self) -> tuple[float, float]:
+        """Two-sided deviation, mm, and where: the envelope's parameter."""
+        if self.outside >= self.inside:
+            return self.outside, self.outside_at
+        return self.inside, self.inside_at
+
+
+def deviation(chain: Arcs, envelope: Envelope) -> Deviation:
+    """Deviation of a closed chain of lines and arcs from an exact contour."""
+    coarse = chain.length.sum() / LEAST_PARTS
+    parts = np.ceil(np.maximum(chain.length / coarse, np.abs(chain.curvature) * chain.length / MOST_TURN))
+    pieces, _ = chain.cut(np.maximum(parts, 1.0).astype(np.intp))
+    feet = envelope.feet(pieces.start)
+    zero, end_tangents = np.zeros(len(pieces)), pieces.end_tangents
+    ends, nexts = pieces.ends, np.roll(pieces.start, -1, axis=0)
+    apart = np.abs(ends - nexts).max() > JOINED * np.abs(pieces.start).max()
+    end_feet = envelope.feet(ends) if apart else _rolled(feet)
+
+    def inside(s: Array, piece: Indices) -> Array:
+        here = pieces.take(piece)
+        return _along(envelope.feet(here.points(s)), here.tangents(s), here.curvature)
+
+    at_start = _along(feet, pieces.tangent, pieces.curvature)
+    at_end = _along(end_feet, end_tangents, pieces.curvature)
+    found = extremes(zero, pieces.length, at_start, at_end, inside, resolution=RESOLUTION)
+    advance = np.mod(end_feet.parameter - feet.parameter + np.pi, 2.0 * np.pi) - np.pi
+    return Deviation(
+        outside=found.greatest,
+        outside_at=_parameter(pieces, envelope, found.greatest_index, found.greatest_at),
+        inside=-found.least,
+        inside_at=_parameter(pieces, envelope, found.least_index, found.least_at),
+        rounds=round(float(advance.sum()) / (2.0 * np.pi)),
+        backwards=_longest_run(np.where(advance < 0.0, np.abs(dot(ends - pieces.start, left(feet.normal))), 0.0)),
+    )
+
+
+def _along(feet: Feet, tangent: Array, curvature: Array) -> Array:
+    """Excess and its two derivatives along pieces (3, n), from the feet of points on them.
+
+    With the pieces' tangents T (n, 2) and curvature k (n,) there, M the quarter turn to the left, N and K the gradient
+    of the excess and the curvature of its line: f' = N.T, f'' = k N.MT + K (T.MN)^2.
+    """
+    side = left(feet.normal)
+    rise = dot(feet.normal, tangent)
+    bend = curvature * dot(feet.normal, left(tangent)) + feet.curvature * dot(side, tangent) ** 2
+    return np.stack([feet.excess, rise, bend])
+
+
+def _rolled(feet: Feet) -> Feet:
+    return type(feet)(
+        np.roll(feet.parameter, -1),
+        np.roll(feet.excess, -1),
+        np.roll(feet.normal, -1, axis=0),
+        np.roll(feet.curvature, -1),
+    )
+
+
+def _parameter(pieces: Arcs, envelope: Envelope, piece: int, s: float) -> float:
+    point = pieces.take(np.array([piece])).points(np.array([s]))
+    return float(envelope.feet(point).parameter[0])
+
+
+def _longest_run(length: Array) -> float:
+    """Greatest sum of consecutive positive entries."""
+    if not length.any():
+        return 0.0
+    total = np.cumsum(length)
+    return float((total - np.maximum.accumulate(np.where(length == 0.0, total, 0.0))).max())

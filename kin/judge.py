@@ -1,0 +1,181 @@
+"""The checks on a contour, its holes and its solid, in mm and no longer mirrored, against what was intended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.arcs import dot, left
+from kin.check import Check, at_most, failed
+from kin.deviation import Deviation, deviation
+from kin.extremes import extremes
+from kin.follower import ContactError, DoubleRoller, FlatPair, Follower, Judged, Yoke
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kin.arcs import Array, Indices
+    from kin.contour import Contour
+
+# The judge's own rounding, as a share of the contour's extent; a value this far above its limit still holds.
+ROUNDING = 1e-12
+# Splines are judged as arcs within this share of the tolerance, and never coarser than SPLINE_ERROR, mm.
+SPLINE_SHARE, SPLINE_ERROR = 1e-3, 1e-9
+RESOLUTION = 1e-11  # mm
+
+
+@dataclass(frozen=True)
+class Intent:
+    """What a file is meant to be.
+
+    follower    with its motion law, in mm and radians
+    mirrored    the file is drawn mirrored about the x axis (the shaft turns counter-clockwise)
+    mm          mm in one drawing unit of a DXF file (STL is always in mm)
+    bore        diameter, mm; None for no hole at all
+    thickness   of a solid, mm, z from 0; None where only contours are judged
+    trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
+    """
+
+    follower: Follower
+    mirrored: bool = False
+    mm: float = 1.0
+    bore: float | None = None
+    thickness: float | None = None
+    trimmed: bool = False
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What is permitted: `tolerance` of the contour, mm; greatest motion error, and greatest play or interference.
+
+    Motion and play are in mm or degrees as the follower has them; None is what the tolerance implies, see
+    `motion_limit` and `play_limit` of the followers.
+    """
+
+    tolerance: float
+    motion: float | None = None
+    play: float | None = None
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What was found on a contour; motion is None where the follower finds no contact."""
+
+    judged: Judged | None
+    deviation: Deviation
+    checks: tuple[Check, ...]
+
+
+def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) -> Findings:
+    """Judge a contour at shaft angles phi (n,): checks contour, motion, and constant-breadth or form-closure."""
+    spline = min(SPLINE_ERROR, SPLINE_SHARE * limits.tolerance) if contour.beziers.count else 0.0
+    slack = spline + ROUNDING * float(np.abs(contour.vertices).max())
+    found = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], intent.follower.envelope)
+    checks = [_contour_check(found, intent.follower, limits.tolerance, slack)]
+    judged = None
+    try:
+        judged = intent.follower.judge(contour, phi)
+        checks += _motion_checks(judged, intent, limits, slack)
+    except ContactError as error:
+        checks.append(failed("motion", str(error), unit=intent.follower.unit))
+    return Findings(judged, found, tuple(checks))
+
+
+def _contour_check(found: Deviation, follower: Follower, tolerance: float, slack: float) -> Check:
+    worst, parameter = found.worst
+    detail = f"{found.outside:.3g} mm outside, {found.inside:.3g} mm inside the exact contour"
+    if found.rounds != 1:
+        detail = f"the contour goes {found.rounds} times round the exact one; {detail}"
+        return failed("contour", detail, unit="mm", limit=tolerance)
+    if found.backwards > tolerance + slack:
+        detail = f"the contour turns back on itself by {found.backwards:.3g} mm; {detail}"
+        worst = max(worst, found.backwards)
+    at = float(follower.shaft_angle(np.array([parameter]))[0])
+    return at_most("contour", worst, tolerance, "mm", at=at, detail=detail, slack=slack)
+
+
+def _motion_checks(judged: Judged, intent: Intent, limits: Limits, slack: float) -> list[Check]:
+    follower, motion, play = intent.follower, judged.motion, judged.play
+    checks = []
+    if limits.motion is not None or not intent.trimmed:
+        limit, room = _limit(follower.motion_limit, limits.motion, limits.tolerance, slack)
+        checks.append(at_most("motion", motion.max, limit, motion.unit, at=np.radians(motion.at_deg), slack=room))
+    if play is None or not isinstance(follower, Yoke | FlatPair | DoubleRoller):
+        return checks
+    if limits.play is None and intent.trimmed:
+        return checks
+    limit, room = _limit(follower.play_limit, limits.play, limits.tolerance, slack)
+    tight, loose = (-play.least, np.radians(play.least_at_deg)), (play.most, np.radians(play.most_at_deg))
+    worst, at = max(tight, loose)
+    if isinstance(follower, Yoke):
+        detail = f"breadth {follower.breadth - play.most:.9g} to {follower.breadth - play.least:.9g} mm"
+        checks.append(at_most("constant-breadth", worst, limit, "mm", at=at, detail=detail, slack=room))
+        checks.append(at_most("breadth-max", tight[0], limit, "mm", at=tight[1], slack=room))
+    else:
+        detail = f"play from {play.least:.3g} to {play.most:.3g} {play.unit}"
+        checks.append(at_most("form-closure", worst, limit, play.unit, at=at, detail=detail, slack=room))
+    return checks
+
+
+def _limit(
+    implied: Callable[[float], float], given: float | None, tolerance: float, slack: float
+) -> tuple[float, float]:
+    """Return the limit, given or implied by the tolerance, and by how much the judge's own rounding may exceed it."""
+    by_tolerance = implied(tolerance)
+    room = implied(tolerance + slack) - by_tolerance
+    return (by_tolerance if given is None else given), room
+
+
+def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float) -> Check | None:
+    """Check that there is one hole, round and about the shaft, in number, place and diameter; None if none is due."""
+    if bore is None:
+        if not holes:
+            return None
+        return failed("bore", f"{len(holes)} hole(s), where none is meant to be", unit="mm", limit=tolerance)
+    if len(holes) != 1:
+        detail = f"{len(holes)} holes, where one of diameter {bore:.9g} mm is meant to be"
+        return failed("bore", detail, unit="mm", limit=tolerance)
+    hole = holes[0]
+    least, most = _distance_range(hole)
+    across, box = 2.0 * float(np.sqrt(abs(hole.area) / np.pi)), hole.box
+    worst = max(most - 0.5 * bore, 0.5 * bore - least, 0.5 * abs(across - bore))
+    place = f"({0.5 * (box.x_min + box.x_max):.6g}, {0.5 * (box.y_min + box.y_max):.6g})"
+    detail = f"diameter {across:.9g} mm about {place}"
+    return at_most("bore", worst, tolerance, "mm", detail=detail, slack=ROUNDING * bore)
+
+
+def _distance_range(contour: Contour) -> tuple[float, float]:
+    """Least and greatest distance of a contour from the origin."""
+    arcs, _ = contour.as_arcs()
+    pieces, _ = arcs.cut(np.ceil(np.maximum(np.abs(arcs.curvature) * arcs.length / 0.1, 1.0)).astype(np.intp))
+
+    def distance(s: Array, piece: Indices) -> Array:
+        here = pieces.take(piece)
+        x, tangent = here.points(s), here.tangents(s)
+        r = np.maximum(np.hypot(x[:, 0], x[:, 1]), RESOLUTION)
+        slope = dot(x, tangent) / r
+        return np.stack([r, slope, (1.0 + here.curvature * dot(x, left(tangent)) - slope**2) / r])
+
+    every = np.arange(len(pieces))
+    low, high = np.zeros(len(pieces)), pieces.length
+    found = extremes(low, high, distance(low, every), distance(high, every), distance, resolution=RESOLUTION)
+    return found.least, found.greatest
+
+
+def volume_check(volume: float, height: float, contour: Contour, intent: Intent, tolerance: float) -> Check:
+    """Check a solid's volume against the exact area times its height, within the tolerance times the area of the walls.
+
+    The exact area comes from the intent; that of a trimmed contour, which has no closed form, from the file's contour.
+    """
+    envelope = intent.follower.envelope
+    if envelope.regular:
+        (area, perimeter), source = envelope.area_and_perimeter(), "intent"
+    else:
+        (area, perimeter), source = (contour.area, contour.length), "contour"
+    bore = intent.bore or 0.0
+    expected = (area - 0.25 * np.pi * bore**2) * height
+    limit = tolerance * (perimeter + np.pi * bore + 2.0 * np.pi * tolerance) * height  # to second order
+    detail = f"{volume:.9g} mm^3, by the {source} {expected:.9g}"
+    return at_most("volume", abs(volume - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)

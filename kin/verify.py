@@ -1,0 +1,165 @@
+"""The verdict on a file: whether it is the cam that was asked for, and its follower moves as intended.
+
+The file is taken as it lies on disk. Nothing of the way it was made is known here: the exact contour comes from the
+intended motion alone (`kin.envelope`), the motion from contact with the file's own contour (`kin.follower`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.check import Check, about, at_most, failed
+from kin.flaws import crossings
+from kin.judge import ROUNDING, Intent, Limits, bore_check, judge_contour, volume_check
+from kin.motion import TURN, MotionError, Play
+from kin.read_error import ReadError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kin.contour import Contour
+    from kin.read_dxf import Drawing
+    from kin.read_stl import Solid
+
+__all__ = ["Intent", "Limits", "Verdict", "verify"]
+
+UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
+NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
+MOST_NAMED = 5  # faults named in a message
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What was found of a file.
+
+    kind            dxf or stl
+    checks          units, closed, contour, motion, bore, ... ; or the one that says why the file cannot be read
+    motion, play    as the contour gives them by contact; None without contact, play also for one-sided followers
+    measured_error  two-sided distance from the exact contour, mm
+    pieces          of the outer contour, as the file counts them
+    """
+
+    kind: str
+    checks: tuple[Check, ...]
+    motion: MotionError | None = None
+    play: Play | None = None
+    measured_error: float | None = None
+    pieces: int | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Whether every check holds."""
+        return all(check.ok for check in self.checks)
+
+
+def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
+    """Judge a DXF or STL file, told apart by the suffix, at `angles` equal steps of the shaft.
+
+    A file from which no contour can be read gets a verdict that says why. Raises OSError as the file system does, and
+    ValueError for another suffix or no angles.
+    """
+    kind = path.suffix.lower().lstrip(".")
+    if kind not in ("dxf", "stl"):
+        raise ValueError(f"{path.name}: neither a .dxf nor a .stl file")
+    if angles < 1:
+        raise ValueError(f"a file is judged at one shaft angle at least, not {angles}")
+    phi = TURN / angles * np.arange(angles, dtype=np.float64)
+    try:
+        read = _of_drawing if kind == "dxf" else _of_solid
+        checks, contour, pieces = read(path, intent, limits)
+    except ReadError as error:
+        unread = "watertight" if kind == "stl" else "closed" if error.reason in NOT_CLOSED else "readable"
+        return Verdict(kind, (about(failed(unread, error.message), path.name),))
+    found = judge_contour(contour, intent, phi, limits)
+    return Verdict(
+        kind=kind,
+        checks=tuple(about(check, path.name) for check in (*checks, *found.checks)),
+        motion=found.judged and found.judged.motion,
+        play=found.judged and found.judged.play,
+        measured_error=found.deviation.worst[0],
+        pieces=pieces,
+    )
+
+
+def _of_drawing(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
+    """Read a DXF file: the checks on what is drawn, the contour in mm as if not mirrored, the number of its pieces."""
+    from kin.read_dxf import read_dxf
+
+    drawing = read_dxf(path)
+    scale = intent.mm if drawing.units_mm is None else 1.0
+    contour, *holes = (_placed(c, scale, intent.mirrored) for c in (drawing.contour, *drawing.holes))
+    checks = [_units_check(drawing.units_mm, intent.mm), _closed_check(drawing, contour)]
+    bore = bore_check(holes, intent.bore, limits.tolerance)
+    return [*checks, bore] if bore else checks, contour, drawing.pieces
+
+
+def _placed(contour: Contour, scale: float, mirrored: bool) -> Contour:
+    contour = contour.scaled(scale) if scale != 1.0 else contour
+    return contour.mirrored() if mirrored else contour
+
+
+def _units_check(stated: float | None, expected: float) -> Check:
+    if stated is None:
+        return failed("units", f"the drawing states no unit; {expected:.9g} mm is meant", unit="mm", limit=expected)
+    off = abs(stated / expected - 1.0)
+    detail = f"a drawing unit is {stated:.9g} mm, {expected:.9g} mm is meant"
+    return Check("units", off <= UNITS_SHARE, stated, expected, "mm", detail=detail)
+
+
+def _closed_check(drawing: Drawing, contour: Contour) -> Check:
+    """Check that the contour does not cross itself, and that nothing is drawn twice or without length."""
+    faults = [f"{fault.kind} {fault.entity} at ({fault.x:.6g}, {fault.y:.6g})" for fault in drawing.faults]
+    faults += _crossing_places(contour)
+    return _count_check("closed", faults)
+
+
+def _crossing_places(contour: Contour) -> list[str]:
+    return [f"the contour crosses or touches itself at ({x:.6g}, {y:.6g}) mm" for x, y in crossings(contour).point]
+
+
+def _count_check(name: str, faults: list[str]) -> Check:
+    more = f"; and {len(faults) - MOST_NAMED} more" if len(faults) > MOST_NAMED else ""
+    return at_most(name, len(faults), 0, "faults", detail="; ".join(faults[:MOST_NAMED]) + more)
+
+
+def _of_solid(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
+    """Read an STL file: the checks on the solid, its contour in mm as if not mirrored, and the number of its edges."""
+    from kin.read_stl import read_stl
+
+    solid = read_stl(path)
+    contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (solid.contour, *solid.holes))
+    checks = [_watertight_check(solid, contour)]
+    bore = bore_check(holes, intent.bore, limits.tolerance)
+    if bore:
+        checks.append(bore)
+    if intent.thickness is not None:
+        checks.append(_thickness_check(solid, intent.thickness, limits.tolerance))
+        checks.append(volume_check(solid.volume, solid.thickness, contour, intent, limits.tolerance))
+    return checks, contour, len(contour)
+
+
+def _watertight_check(solid: Solid, contour: Contour) -> Check:
+    """Check that each edge has two triangles that run along it either way, facing outward, and none is there twice."""
+    counts = {
+        "edges with one triangle": solid.edges.open,
+        "edges with more than two triangles": solid.edges.crowded,
+        "edges between triangles that face opposite sides": solid.edges.misdirected,
+        "triangles without area": solid.degenerate,
+        "triangles drawn twice": solid.duplicate,
+    }
+    faults = [f"{number} {what}" for what, number in counts.items() if number]
+    if solid.volume <= 0.0:
+        faults.append("the triangles face inward")
+    return _count_check("watertight", faults + _crossing_places(contour))
+
+
+def _thickness_check(solid: Solid, thickness: float, tolerance: float) -> Check:
+    """Check that the part reaches from z = 0 to its thickness, with walls that stand upright all the way."""
+    off = max(abs(solid.z_min), abs(solid.z_max - thickness))
+    detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, 0 to {thickness:.9g} mm is meant"
+    if not solid.prism:
+        return failed("thickness", f"the sections at different heights differ; {detail}", unit="mm", limit=tolerance)
+    return at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING * thickness)
