@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -60,6 +59,8 @@ def shown(text: str) -> str:
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """Name the nearest of the known words, if one is near."""
+    from difflib import get_close_matches  # for the message alone
+
     if len(word) > _LONGEST_WORD:
         return ""
     near = get_close_matches(word.lower(), list(known), n=1)

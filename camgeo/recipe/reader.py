@@ -192,11 +192,11 @@ class Reader:
     def _refuse_alternatives(self, table: Table, given: dict[str, Node], node: Mapping, path: str) -> None:
         names = [name for name, _ in table.alternatives]
         chosen = [name for name, _ in table.alternatives if name in given]
-        if table.alternatives and not chosen:
-            self.fault(node.mark, path, f"needs one of {either(tuple(names), 'and')}", None, "give exactly one of them")
+        if names and not chosen and not any(name in given for name in table.later):
+            self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
         for name in chosen[1:]:
             problem = f"cannot stand beside {chosen[0]}"
-            self.fault_at(join(path, name), problem, None, f"give exactly one of {either(tuple(names), 'and')}")
+            self.fault_at(join(path, name), problem, None, f"give exactly one of {either(tuple(names))}")
         if len(chosen) != 1:
             return
         companions = dict(table.alternatives)
@@ -270,7 +270,7 @@ class Reader:
             Formula(text, (field.variable,))
         except FormulaError as error:
             remedy = self.wanted(field)
-            if node.plain and text.count("(") > text.count(")"):
+            if self._behind(node) == "," and text.count("(") > text.count(")"):
                 remedy = "a formula with a comma in it needs quotes inside braces"
             mark = self._inside(node, error.column)
             self.fault(mark, path, error.message, shown(text), remedy)
@@ -285,6 +285,10 @@ class Reader:
             if raw and raw[lead : len(raw) - lead] == node.text:
                 return line, start + lead + column
         return node.mark
+
+    def _behind(self, node: Scalar) -> str:
+        line, column = node.end
+        return "".join(self.source.lines[line - 1 : line])[column - 1 : column]
 
     # --- lists and mappings ------------------------------------------------------------------------------------------
 
@@ -326,11 +330,12 @@ class Reader:
         harmonic = Field("", Kind.INTEGER, "", at_least=1, at_most=MOST_HARMONIC, odd=field.odd)
         bound = MOST**2 if field.unit is Kind.AREA else MOST
         coefficient = Field("", field.unit or Kind.NUMBER, "", at_least=-bound, at_most=bound)
+        values = entries(node)
         read: dict[int, float] = {}
         for name, key in keys(node).items():
             below = join(path, name)
             j = self._number(harmonic, key, below)
-            value = self._field(coefficient, entries(node)[name], below)
+            value = self._field(coefficient, values[name], below)
             if j in read:
                 self.fault(key.mark, below, "the harmonic stands twice", None, "give each harmonic once")
             elif isinstance(j, int) and value is not None:
@@ -390,15 +395,11 @@ class Reader:
     def _refuse_format(self, kind: Scalar, path: str) -> None:
         later = kind.text.lower() in LATER_FILES
         problem = "not available in this version" if later else "no such file format"
-        remedy = f"give {either(tuple(FILES))}"
-        if not later:
-            remedy = suggestion(kind.text, FILES) or remedy
-        self.fault(kind.mark, path, problem, shown(kind.text), remedy)
+        self.fault(kind.mark, path, problem, shown(kind.text), f"give {either(tuple(FILES))}")
 
     def _cam(self, field: Field, node: Node, path: str) -> Values | None:
         if not isinstance(node, Mapping):
-            remedy = f"{self.wanted(field)}: a mapping with its `kind:`"
-            self.fault(node.mark, path, "not a mapping", described(node), remedy)
+            self.fault(node.mark, path, "not a mapping", described(node), self.wanted(field))
             return None
         kind = Field("kind", Kind.CHOICE, "the kind of cam", required=True, choices=tuple(CAMS))
         if self.cam_kind:

@@ -88,11 +88,8 @@ def _kind(field: Field) -> Schema:
         case Kind.SEGMENTS:
             return {"type": "array", "items": _table(_below(field)), "minItems": 1, "maxItems": MOST_SEGMENTS}
         case Kind.FILES:
-            formats = [
-                _table(Table((Field(kind, Kind.TABLE, "", required=True, table=table),)))
-                for kind, table in FILES.items()
-            ]
-            items = {"anyOf": [{"enum": list(FILES)}, *formats]}
+            formats = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in FILES.items()]
+            items = {"anyOf": [{"enum": list(FILES)}, *(_table(Table((item,))) for item in formats)]}
             return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}
         case Kind.CAM:
             return {"oneOf": [_cam(kind, table) for kind, table in CAMS.items()]}

@@ -26,8 +26,11 @@ MAX_NODES = 10_000  # aliases counted as often as they stand for something
 
 # What YAML permits, less its three line ends that editors do not count (NEL, LS, PS) and the byte order mark.
 _FORBIDDEN = re.compile("[^\t\n\r\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]")
+_DISPUTED = re.compile(
+    r"[\t?]|[|>][0-9+-]*#"
+)  # libyaml takes some that PyYAML's own reader refuses: the latter decides
 _DIRECTIVE = re.compile(r"(?:[ \t]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))*%")
-_BARE = re.compile(r"[+-]?[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?")
+_BARE = re.compile(r"[+-]?(?=\.?[0-9])[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?")
 _PLAIN_KEY = re.compile(r"[A-Za-z0-9_-]{1,40}")
 
 Mark: TypeAlias = tuple[int, int]  # line and column, from 1, in characters
@@ -117,7 +120,8 @@ def read_source(data: bytes, file: str) -> Source:
     if _DIRECTIVE.match(text):
         place = _place(text, text.index("%"))
         raise _fault(file, place, "a YAML directive", remedy="a recipe has none; leave the line out")
-    return Source(file, tuple(re.split(r"\r\n|\r|\n", text)), _parse(text, file))
+    lines = tuple(re.split(r"\r\n|\r|\n", text))
+    return Source(file, lines, _parse(text, lines, file))
 
 
 def join(path: str, key: str | int) -> str:
@@ -189,13 +193,19 @@ def _mark(mark: object) -> Mark:
     return getattr(mark, "line", 0) + 1, getattr(mark, "column", 0) + 1
 
 
-def _parse(text: str, file: str) -> Node:
+def _behind(mark: Mark, lines: tuple[str, ...]) -> Mark:
+    """Place of a value that is not there: behind the last sign before it, whichever blank or line the reader names."""
+    line, column = min(mark, (len(lines), len(lines[-1]) + 1))
+    return line, len(lines[line - 1][: column - 1].rstrip()) + 1
+
+
+def _parse(text: str, lines: tuple[str, ...], file: str) -> Node:
     fast = getattr(yaml, "CSafeLoader", None)
-    if fast is not None:
+    if fast is not None and not _DISPUTED.search(text):
         with suppress(yaml.YAMLError):  # PyYAML's own reader words the same fault better, and alike on every machine
-            return _build(_events(text, fast), file)
+            return _build(_events(text, fast), lines, file)
     try:
-        return _build(_events(text, yaml.SafeLoader), file)
+        return _build(_events(text, yaml.SafeLoader), lines, file)
     except yaml.MarkedYAMLError as error:
         place = _mark(error.problem_mark or error.context_mark)
         problem = ", ".join(filter(None, (error.context, error.problem)))
@@ -225,7 +235,7 @@ def _syntax_remedy(problem: str) -> str:
     return "look at indentation, quotes, brackets and colons here and in the line above"
 
 
-def _build(events: Iterator[yaml.Event], file: str) -> Node:
+def _build(events: Iterator[yaml.Event], lines: tuple[str, ...], file: str) -> Node:
     """Build the tree of one document; unlike PyYAML's composer it neither recurses nor goes on behind a bound."""
     frames: list[_Frame] = []
     anchors: dict[str, Node] = {}
@@ -242,6 +252,8 @@ def _build(events: Iterator[yaml.Event], file: str) -> Node:
         node: Node
         anchor: str | None = None
         if isinstance(event, yaml.ScalarEvent):
+            if not event.value and not event.style:
+                mark = _behind(mark, lines)
             node = Scalar(event.value, not event.style, mark, _mark(event.end_mark), event.tag)
             anchor = event.anchor
             nodes += 1

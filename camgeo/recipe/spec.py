@@ -80,6 +80,12 @@ class Field:
                 return "a list of two lengths [x, y]"
             case Kind.HARMONICS:
                 return f"a mapping from {'odd ' if self.odd else ''}harmonics to coefficients, such as {{3: 0.5}}"
+            case Kind.CAM:
+                return "a mapping with the kind of cam and its fields"
+            case Kind.SEGMENTS:
+                return "a list of segments such as [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]"
+            case Kind.FILES:
+                return "a list of files such as [dxf, stl]"
             case Kind.TABLE:
                 return f"a mapping with {either(self.table.keys if self.table else (), 'and')}"
             case _:
@@ -167,7 +173,7 @@ def _table(name: str, about: str, *fields: Field, later: tuple[str, ...] = ()) -
 _UNDERCUT = Field(
     "undercut",
     Kind.CHOICE,
-    "what to do about undercut: refuse the cam, or trim the contour and report the lost motion",
+    "what to do about undercut (trim reports the motion that is lost)",
     default="refuse",
     choices=("refuse", "trim"),
 )
@@ -337,7 +343,7 @@ RECIPE = Table(
             Field(
                 "motion_error",
                 Kind.ERROR,
-                "greatest motion error permitted, a length, or degrees where the follower swings",
+                "greatest motion error permitted: a length, or degrees where the follower swings",
                 default="what the tolerance implies",
                 above=0,
                 at_most=MOST,
@@ -353,5 +359,8 @@ def elsewhere(name: str, known: tuple[str, ...]) -> str:
     if name in RECIPE.keys:
         return "it belongs at the top level"
     places = [item.name for item in RECIPE.fields if item.table and name in item.table.keys]
+    places += [f"the file {kind}" for kind, table in FILES.items() if name in table.keys]
     places += [f"cam of kind {kind}" for kind, table in CAMS.items() if name in table.keys]
-    return f"it belongs under {either(tuple(places))}" if places else f"the keys here are {either(known, 'and')}"
+    if places:
+        return f"it belongs under {either(tuple(places))}"
+    return f"the keys here are {either(known, 'and')}" if known else "there are no keys here"

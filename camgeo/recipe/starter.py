@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.recipe.errors import suggestion
-from camgeo.recipe.spec import CAMS, FILES, RECIPE, SWINGING, Field, Kind, Table, either
+from camgeo.recipe.spec import CAMS, FILES, RECIPE, Field, Kind, Table, either
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -106,31 +106,31 @@ def starter(kind: str) -> str:
     cam = Table((Field("kind", Kind.CHOICE, f"the kind of cam: {either(tuple(CAMS))}"), *CAMS[chosen.kind].fields))
     cam = replace(cam, alternatives=CAMS[chosen.kind].alternatives)
     recipe = Table(tuple(replace(field, table=cam) if field.name == "cam" else field for field in RECIPE.fields))
-    lines = _lines(recipe, {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}}, chosen.kind, "")
+    lines = _lines(recipe, {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}}, "")
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
 
 
-def _lines(table: Table, given: Given, cam: str, indent: str) -> Iterator[str]:
+def _lines(table: Table, given: Given, indent: str) -> Iterator[str]:
     """Write the fields of a table: those given, the others as comments, rival alternatives in one line."""
     rivals = tuple(name for name, _ in table.alternatives if name not in given)
     chosen = tuple(name for name, _ in table.alternatives if name in given)
     for field in table.fields:
-        about, value = field.about + _unit(field, cam), given.get(field.name)
+        about, value = field.about + _note(field), given.get(field.name)
         if isinstance(value, str):
             yield _line(f"{indent}{field.name}", value, about)
         elif value is not None and field.table is not None:
             yield _line(f"{indent}{field.name}", "", about)
-            yield from _lines(field.table, value, cam, f"{indent}  ")
+            yield from _lines(field.table, value, f"{indent}  ")
         elif field.name not in rivals:
             yield _line(f"{indent}# {field.name}", "", f"{about}; default: {field.default or 'none'}")
     if rivals:
         yield f"{indent}# instead of {either(chosen)}: {either(rivals)}"
 
 
-def _unit(field: Field, cam: str) -> str:
-    if field.kind in {Kind.LENGTH, Kind.POINT}:
-        return ", mm"
-    return ", degrees" if field.kind is Kind.ERROR and cam in SWINGING else ""
+def _note(field: Field) -> str:
+    if field.name != "kind" and field.choices:
+        return f": {either(field.choices)}"
+    return ", mm" if field.kind in {Kind.LENGTH, Kind.POINT} else ""
 
 
 def _line(key: str, text: str, comment: str) -> str:
