@@ -581,6 +581,12 @@ def test_a_slope_just_below_one_is_proved_and_just_above_refused():
                 from_law(3, 1, L, build)
 
 
+def test_a_slope_too_steep_at_the_very_end_of_a_law():
+    quadratic = Segment("rise", math.radians(20), math.radians(11), polynomial_law([0, 0, 1]))  # ends with slope 1.1
+    with pytest.raises(IntentError, match=r"it reaches 1\.1 at a shaft angle of 45 degrees"):
+        from_law(4, 3, L, programme([degrees("return", 25, 11), quadratic], math.pi / 4))
+
+
 def test_a_programme_of_another_angle_is_the_callers_fault():
     with pytest.raises(ValueError, match="not delta"):
         from_law(3, 1, L, programme([Segment("dwell", 1.0)], 1.0))

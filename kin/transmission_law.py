@@ -1,0 +1,170 @@
+"""Transmission laws of a single-disk cam with an oscillating double follower (W), by every route.
+
+The follower's two arms of length l include 2 alpha, alpha = pi mu/lam, its pivot stands at distance l from the shaft.
+phi is the shaft angle, psi the follower's (positive clockwise). The law has period 2 delta = 2 pi/lam and maps onto
+itself by (phi, psi) -> (phi - psi + delta, -psi) (W 4.9). A law is held over a parameter tau in which psi just changes
+its sign, psi(tau + delta) = -psi(tau), and
+
+    phi = tau + w psi + c.
+
+Polar routes: tau is the polar angle t of roller A, w = 1/2, c = alpha/2 (W 4.4). A given law: tau is phi itself on
+[0, delta], w = c = 0, and w = 1 on the next delta, which is W 4.9.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kin.jet import Ball, BallJet, Jet, cos
+from kin.piecewise import Affine, Constant, Piecewise, Series
+
+Array = NDArray[np.float64]
+
+_TURN = 2 * math.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Transmission:
+    """psi and phi over the parameter tau; see the module. `arm` is l, mm.
+
+    `psi` has period 2 delta; `lean` holds w for each of its stretches, `offset` is c. `arc` is, for routes that give
+    roller A a circular arc, (x, y, signed radius) for the first stretch of psi, the arc standing as at its first place.
+
+    Over the whole turn, stretch i runs from breaks[i] to the next break, the last one over 2 pi; without breaks there
+    is one stretch.
+    """
+
+    lam: int
+    mu: int
+    arm: float
+    psi: Piecewise
+    lean: tuple[float, ...]
+    offset: float
+    arc: tuple[float, float, float] | None = None
+
+    @property
+    def alpha(self) -> float:
+        """Half the angle between the arms, rad."""
+        return math.pi * self.mu / self.lam
+
+    @property
+    def delta(self) -> float:
+        """Half the period of the law, rad."""
+        return math.pi / self.lam
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Parameters tau in [0, 2 pi) at which the second or a higher derivative may jump, rising."""
+        turns = np.arange(self.lam) * (_TURN / self.lam)
+        return np.sort((self.psi.breaks[None, :] + turns[:, None]).ravel())
+
+    @property
+    def level(self) -> Array:
+        """For each stretch the value of psi if it is exactly constant there, a dwell, else nan."""
+        functions = [self.psi.functions[i] for i in self._stretches()]
+        return np.array([f.value if isinstance(f, Constant) else math.nan for f in functions])
+
+    @property
+    def steady(self) -> NDArray[np.bool_]:
+        """For each stretch whether psi is exactly constant: the pitch curve is an arc about the shaft."""
+        return ~np.isnan(self.level)
+
+    @property
+    def radius(self) -> Array:
+        """For each stretch the radius of the pitch curve about the shaft, mm, if psi is constant there, else nan."""
+        return 2 * self.arm * np.cos((self.level + self.alpha) / 2)
+
+    @property
+    def pitch_arcs(self) -> Array:
+        """For each stretch the arc that the pitch curve exactly is: centre x, y and radius, mm, else nan; (m, 3).
+
+        The radius is negative where the arc is hollow. Dwells count, and the given arcs of that route.
+        """
+        stretches, at = self._stretches(), self.breaks if len(self.breaks) else np.zeros(1)
+        arcs = np.column_stack((np.zeros((len(at), 2)), self.radius))
+        arcs[~self.steady] = math.nan
+        if self.arc is not None:
+            x, y, radius = self.arc
+            given = np.flatnonzero(stretches == 0)
+            turn = np.round((at[given] - self.psi.knots[0]) / (2 * self.delta)) * (2 * self.delta)
+            c, s = np.cos(turn), np.sin(turn)
+            arcs[given] = np.column_stack((x * c - y * s, x * s + y * c, np.full(len(given), radius)))
+        return arcs
+
+    def _stretches(self) -> NDArray[np.intp]:
+        at = self.breaks if len(self.breaks) else np.zeros(1)
+        return self.psi.locate(at, 1)[0]
+
+    @cached_property
+    def _lead(self) -> Piecewise:
+        """The angle phi - tau."""
+        pairs = zip(self.psi.functions, self.lean, strict=True)
+        functions = tuple(Affine(f, self.offset, w) if w else Constant(self.offset) for f, w in pairs)
+        return Piecewise(self.psi.knots, functions, self.psi.period, self.psi.smooth_seam)
+
+    def jets(self, tau: Series, side: int = 1) -> tuple[Series, Series]:
+        """Give phi and psi of a jet or ball jet tau; `side` decides at breaks."""
+        psi = self.psi.on(tau, side)
+        if len(set(self.lean)) == 1:
+            return tau + psi * self.lean[0] + self.offset, psi
+        return tau + self._lead.on(tau, side), psi
+
+    def at(self, tau: float | Array, order: int, side: int = 1) -> tuple[Array, Array]:
+        """Give phi and psi with their derivatives by tau at tau (n,), (order + 1, n) each."""
+        phi, psi = self.jets(Jet.variable(tau, order), side)
+        return phi.derivatives(), psi.derivatives()
+
+    def enclosure(
+        self, lower: float | Array, upper: float | Array, order: int
+    ) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Enclose phi, and psi, with their derivatives by tau over [lower, upper]: (mid, rad), (order + 1, n) each."""
+        balls = [Ball.between(*jet.bounds()) for jet in self.jets(BallJet.variable(lower, upper, order))]
+        return (balls[0].mid, balls[0].rad), (balls[1].mid, balls[1].rad)
+
+    def pitch(self, tau: float | Array, order: int, side: int = 1) -> tuple[Array, Array]:
+        """Give r and t of roller A's centre with their derivatives by tau, (order + 1, n) each (W 4.10)."""
+        phi, psi = self.jets(Jet.variable(tau, order), side)
+        half = psi * 0.5 + self.alpha / 2
+        return (cos(half) * (2 * self.arm)).derivatives(), (phi - half).derivatives()
+
+    def psi_of_shaft(self, phi: float | Array, order: int, side: int = 1) -> Array:
+        """Give psi and its derivatives by phi at shaft angles phi (n,), (order + 1, n); at a break by side."""
+        tau = self.parameter(phi, side)
+        shaft, psi = self.jets(Jet.variable(tau, order), side)
+        out = np.empty((order + 1, len(tau)))
+        out[0] = psi.c[0]
+        for k in range(1, order + 1):
+            psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1 - k])
+            out[k] = psi.c[0]
+        return out
+
+    def parameter(self, phi: float | Array, side: int = 1) -> Array:
+        """Solve phi(tau) = phi for tau, (n,): Newton's steps inside the stretch, halving where they leave it."""
+        phi = np.atleast_1d(np.asarray(phi, dtype=float))
+        knots, period = self.psi.knots, 2 * self.delta
+        ends = np.append(self.at(knots[:-1], 0)[0][0], 0.0)
+        ends[-1] = ends[0] + period
+        shaft = Piecewise(ends, (Constant(0.0),) * (len(ends) - 1), period)
+        index, x = shaft.locate(phi, side)
+        low, high = knots[index], knots[index + 1]
+        tau = low + (x - ends[index]) * (high - low) / (ends[index + 1] - ends[index])
+        for _ in range(80):
+            (value, slope), _psi = self.at(tau, 1, 1)
+            miss = value - x
+            low, high = np.where(miss < 0, tau, low), np.where(miss > 0, tau, high)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                step = tau - miss / slope
+            better = np.where((step > low) & (step < high), step, 0.5 * (low + high))
+            better = np.where(miss == 0, tau, better)
+            settled = np.abs(better - tau) <= 2 * np.spacing(np.maximum(np.abs(tau), period))
+            tau = better
+            if settled.all():
+                break
+        tau = np.where(x == ends[index], knots[index], np.where(x == ends[index + 1], knots[index + 1], tau))
+        turns = np.round((phi - x) / period)
+        return tau + turns * period
