@@ -1,0 +1,91 @@
+"""Draw docs/pictures/overview.png from the files that three shipped recipes export: `python docs/make_pictures.py`."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+
+from camgeo import pipeline
+from camgeo.recipe.load import load
+from kin.read_dxf import read_dxf
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt  # the backend must be chosen first
+
+ROOT = Path(__file__).parents[1]
+INK, METAL, ACCENT = "#26323f", "#cfd8e3", "#c8442c"
+
+
+def main() -> None:
+    """Export, read back, draw."""
+    figure, axes = plt.subplots(2, 3, figsize=(11, 6.2), height_ratios=[3, 1], constrained_layout=True)
+    names = ("as-figure-2a", "shu-wu", "w-figure-9")
+    titles = ("support function, yoke", "motion law, constant breadth", "oscillating double roller")
+    for column, (name, title) in enumerate(zip(names, titles, strict=True)):
+        recipe = load(ROOT / "recipes" / f"{name}.yaml")
+        recipe = replace(recipe, export=replace(recipe.export, files=(recipe.export.files[0],)))
+        design = pipeline.designed(recipe)
+        with tempfile.TemporaryDirectory() as folder:
+            outcome = pipeline.export(recipe, Path(folder))
+            path = Path(folder) / recipe.name / f"{recipe.name}.dxf"
+            drawing = read_dxf(path)
+        follower = pipeline.intended(recipe, design).follower
+        phi = np.linspace(0.0, 2.0 * np.pi, 3601)
+        error = np.atleast_2d(follower.contact(drawing.contour, phi) - follower.intended(phi))
+        draw_mechanism(axes[0, column], drawing, follower, phi[300])
+        axes[0, column].set_title(title, color=INK, fontsize=11)
+        draw_error(axes[1, column], np.degrees(phi), error, outcome.report)
+    figure.savefig(ROOT / "docs" / "pictures" / "overview.png", dpi=110)
+
+
+def draw_mechanism(axis, drawing, follower, phi: float) -> None:
+    """The cam as read back, its bore and its follower at one shaft angle, in the cam frame."""
+    fine = np.linspace(0.0, 2.0 * np.pi, 2001)
+    points = np.append(drawing.contour.vertices, drawing.contour.vertices[:1], axis=0)
+    axis.fill(points[:, 0], points[:, 1], facecolor=METAL, edgecolor=INK, lw=1.2)
+    bore = drawing.holes[0]
+    radius = np.hypot(*bore.vertices[0])
+    axis.fill(radius * np.cos(fine), radius * np.sin(fine), facecolor="white", edgecolor=INK, lw=1.0)
+    axis.plot(0, 0, "+", color=INK, ms=7)
+    if hasattr(follower, "breadth"):
+        u, n = np.array([np.cos(phi), np.sin(phi)]), np.array([-np.sin(phi), np.cos(phi)])
+        lift = float(follower.intended(np.array([phi]))[0])
+        for distance in (lift, lift - follower.breadth):
+            ends = distance * u + np.outer([-1, 1], n) * 0.62 * follower.breadth
+            axis.plot(ends[:, 0], ends[:, 1], color=ACCENT, lw=2)
+    else:
+        law = follower.transmission
+        psi = float(follower.intended(np.array([phi]))[0])
+        pivot = law.arm * np.array([np.cos(phi), np.sin(phi)])
+        for angle in (phi - psi - law.alpha, phi - psi + law.alpha):
+            centre = pivot + law.arm * np.array([np.cos(angle), np.sin(angle)])
+            axis.plot(*np.column_stack([pivot, centre]), color=ACCENT, lw=1.6)
+            circle = centre + follower.roller_radius * np.column_stack([np.cos(fine), np.sin(fine)])
+            axis.fill(circle[:, 0], circle[:, 1], facecolor="#f3d6cf", edgecolor=ACCENT, lw=1.2)
+        axis.plot(*pivot, "o", color=ACCENT, ms=5)
+    axis.set_aspect("equal")
+    axis.axis("off")
+
+
+def draw_error(axis, degrees: np.ndarray, error: np.ndarray, report: dict) -> None:
+    """Motion error measured from the file, with its limit."""
+    check = next(c for c in report["checks"] if c["name"] == "motion")
+    scale = 1e3 if check["unit"] == "mm" else np.degrees(1e3)
+    unit = "um" if check["unit"] == "mm" else "mdeg"
+    for row in error:
+        axis.plot(degrees, scale * row, color=INK, lw=0.6)
+    for side in (-1, 1):
+        axis.axhline(side * 1e3 * check["limit"], color=ACCENT, lw=1, ls="--")
+    axis.set_xlim(0, 360)
+    axis.set_xticks([0, 90, 180, 270, 360])
+    axis.set_xlabel("shaft angle, degrees", fontsize=8, color=INK)
+    axis.set_ylabel(f"motion error of the file, {unit}", fontsize=7, color=INK)
+    axis.tick_params(labelsize=8, colors=INK)
+
+
+if __name__ == "__main__":
+    main()
