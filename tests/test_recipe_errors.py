@@ -287,6 +287,7 @@ def test_keys(body: str, message: str) -> None:
         ("2020-01-01", "not a number, given '2020-01-01'; this is a date"),
         ("1/0", f"divides by zero, given 1/0; {LENGTH}"),
         ("1e999", f"too large, given 1e999; {LENGTH}"),
+        ("-1e-31", "too small, given -1e-31; write 0, or what was meant"),
         ("1e-999", f"not above 0, given 1e-999; {LENGTH}"),
         ("0", f"not above 0, given 0; {LENGTH}"),
         ("-2", f"not above 0, given -2; {LENGTH}"),
@@ -550,6 +551,10 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
                     "s(1) = 2; let c0 be 0 and the sum of all coefficients 1"
                 )
             ],
+        ),
+        (
+            MOTION.replace("LAW", "{polynomial: [0, 2, -1, 1e-310]}"),
+            ["1:108: cam.motion[0].law.polynomial[3]: too small, given 1e-310; write 0, or what was meant"],
         ),
         (
             MOTION.replace("LAW", "{polynom: [0, 1]}"),

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe import scalars
 from camgeo.recipe.build import build
 from camgeo.recipe.checks import check
 from camgeo.recipe.errors import RecipeError, RecipeErrors
 from camgeo.recipe.reader import Reader
+from camgeo.recipe.scalars import NAME_RULE, Complaint, read_name
 from camgeo.recipe.source import MAX_BYTES, read_source
 
 if TYPE_CHECKING:
@@ -41,9 +41,9 @@ def read(data: bytes, path: str | PathLike[str]) -> Recipe:
     if "name" not in reader.marks:
         stem = Path(path).stem
         try:
-            values["name"] = scalars.name(stem)
-        except scalars.Complaint as complaint:
-            remedy = f"give `name:` with {scalars.NAME_RULE}"
+            values["name"] = read_name(stem)
+        except Complaint as complaint:
+            remedy = f"give `name:` with {NAME_RULE}"
             reader.fault(source.root.mark, "name", f"the file's stem is {complaint.problem}", repr(stem), remedy)
     if reader.errors:
         raise RecipeErrors(reader.errors)

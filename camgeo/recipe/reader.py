@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from camgeo.recipe import scalars
 from camgeo.recipe.errors import RecipeError, shown, suggestion
+from camgeo.recipe.scalars import Complaint, read_name, read_number, read_paragraph, read_ratio, read_whole
 from camgeo.recipe.source import (
     Mapping,
     Node,
@@ -217,22 +217,22 @@ class Reader:
         self.fault(node.mark, path, f"not {field.kind.value}", described(node), self.wanted(field))
         return None
 
-    def _complain(self, field: Field, node: Scalar, path: str, complaint: scalars.Complaint) -> None:
+    def _complain(self, field: Field, node: Scalar, path: str, complaint: Complaint) -> None:
         remedy = complaint.remedy or self.wanted(field)
         self.fault(node.mark, path, complaint.problem, written(node), remedy)
 
     def _text(self, field: Field, node: Node, path: str) -> Any:  # noqa: ANN401 - a text, or a ratio's pair
         readers: dict[Kind, Callable[[str], object]] = {
-            Kind.TEXT: scalars.paragraph,
-            Kind.NAME: scalars.name,
-            Kind.RATIO: scalars.ratio,
+            Kind.TEXT: read_paragraph,
+            Kind.NAME: read_name,
+            Kind.RATIO: read_ratio,
         }
         text = self._scalar(field, node, path)
         if text is None or not isinstance(node, Scalar):
             return None
         try:
             return readers[field.kind](text)
-        except scalars.Complaint as complaint:
+        except Complaint as complaint:
             self._complain(field, node, path, complaint)
             return None
 
@@ -250,8 +250,8 @@ class Reader:
         if text is None or not isinstance(node, Scalar):
             return None
         try:
-            value = scalars.whole(text) if field.kind is Kind.INTEGER else scalars.number(text)
-        except scalars.Complaint as complaint:
+            value = read_whole(text) if field.kind is Kind.INTEGER else read_number(text)
+        except Complaint as complaint:
             self._complain(field, node, path, complaint)
             return None
         if problem := field.out_of_bounds(value):

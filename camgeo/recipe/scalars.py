@@ -12,6 +12,7 @@ _FRACTION = re.compile(r"([+-]?[0-9]{1,9})/([0-9]{1,9})")
 _RATIO = re.compile(r"([0-9]{1,9})(?:/([0-9]{1,9}))?")
 _LEADING_ZERO = re.compile(r"[+-]?0+[0-9]")
 _MOST_DIGITS = 60
+_LEAST = 1e-30  # so that no later square or quotient leaves the range of floats
 
 # Other ways to write a number, and what would do.
 _NOT_NUMBERS = (
@@ -40,7 +41,7 @@ class Complaint(ValueError):  # noqa: N818 - it never leaves the package
         self.remedy = remedy
 
 
-def number(text: str) -> float:
+def read_number(text: str) -> float:
     """Read a decimal number or a fraction such as 180/7; raises Complaint."""
     if len(text) > _MOST_DIGITS:
         raise Complaint(f"a number of more than {_MOST_DIGITS} characters", "sixteen digits are all that counts")
@@ -56,18 +57,20 @@ def number(text: str) -> float:
     value = float(text)
     if math.isinf(value):
         raise Complaint("too large")
+    if 0 < abs(value) < _LEAST:
+        raise Complaint("too small", "write 0, or what was meant")
     return value
 
 
-def whole(text: str) -> int:
+def read_whole(text: str) -> int:
     """Read a whole number; raises Complaint."""
-    value = number(text)
+    value = read_number(text)
     if value != math.floor(value):
         raise Complaint("not a whole number")
     return int(value)
 
 
-def ratio(text: str) -> tuple[int, int]:
+def read_ratio(text: str) -> tuple[int, int]:
     """Read lambda/mu as (lambda, mu), above 1, in lowest terms, mu odd (Wunderlich 2.2); raises Complaint."""
     found = _RATIO.fullmatch(text)
     if not found:
@@ -90,7 +93,7 @@ def _fraction(lam: int, mu: int) -> str:
     return str(lam) if mu == 1 else f"{lam}/{mu}"
 
 
-def name(text: str) -> str:
+def read_name(text: str) -> str:
     """Check a name that becomes a folder, on any system; raises Complaint."""
     if not _NAME.fullmatch(text) or text.endswith("."):
         raise Complaint("not safe as the name of a folder", f"use {NAME_RULE}")
@@ -101,7 +104,7 @@ def name(text: str) -> str:
     return text
 
 
-def paragraph(text: str) -> str:
+def read_paragraph(text: str) -> str:
     """Read a note as one paragraph, line breaks as spaces; raises Complaint."""
     words = " ".join(text.split())
     if len(words) > MOST_TEXT:
