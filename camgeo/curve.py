@@ -184,6 +184,12 @@ class Curve:
         return len(self.runs) == 1 and self.runs[0].closed
 
     @cached_property
+    def size(self) -> float:
+        """How far the curve reaches from the shaft, as far as the ends of its cells show."""
+        point = self.sample(np.append(self.cells.low, self.cells.high[-1])).point
+        return float(np.hypot(point[:, 0], point[:, 1]).max())
+
+    @cached_property
     def cells(self) -> Cells:
         """Proved bounds over the whole curve, computed when first asked for."""
         return Cells.of(self)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.deviation import Chain, chain_deviation, foot, seen_deviation
-from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared
+from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import ArcSpline, Bound
 
 if TYPE_CHECKING:
@@ -49,15 +49,15 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     where the tolerance is below rounding, needs too many arcs, or is not reached.
     """
     stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
-    size = float(np.abs(curve.sample(np.array([a for a, _ in stretches])).point).max())
+    size = curve.size
     check_precision(size, tolerance)
-    usable = USABLE * tolerance
+    usable = min(USABLE * tolerance, tolerance - rounding(size))
     fits = _fit_stretches(curve, stretches, usable)
     points = np.concatenate([fit[0] for fit in fits])
     bulges = np.concatenate([fit[1] for fit in fits])
     outward = max(fit[2] for fit in fits)
     inward = max(fit[3] for fit in fits)
-    return ArcSpline(points, bulges, Bound(outward, inward).widened(4.0 * math.ulp(size)))
+    return ArcSpline(points, bulges, Bound(outward, inward).widened(rounding(size)))
 
 
 def _fit_stretches(
@@ -72,7 +72,7 @@ def _fit_stretches(
         if steady is not None:
             done[i] = _steady_arcs(curve, stretch, steady[1])
             continue
-        density = Density.of(curve, *stretch, arc_density)
+        density = Density.of(curve, np.array([stretch]), arc_density)[0]
         needed = density.total / math.cbrt(tolerance)
         check_count(needed, "arcs", tolerance)
         turning = (stretch[1] - stretch[0]) * float(np.abs(curve.sample(density.t[1:-1]).turn).max())

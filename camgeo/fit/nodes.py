@@ -10,7 +10,7 @@ import numpy as np
 from camgeo.curve import CurveError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from camgeo.curve import Array, Curve, Frame
 
@@ -26,6 +26,11 @@ class ToleranceError(ValueError):
     def __init__(self, message: str, reached: float) -> None:
         super().__init__(message)
         self.reached = reached
+
+
+def rounding(size: float) -> float:
+    """Cover (mm) for the rounding of points and distances on a contour that reaches `size` mm from the shaft."""
+    return 0.5 * ROUNDING_STEPS * float(np.finfo(np.float64).eps) * size
 
 
 def check_precision(size: float, tolerance: float) -> None:
@@ -58,29 +63,39 @@ class Density:
     sum: Array
 
     @staticmethod
-    def of(curve: Curve, low: float, high: float, density: Callable[[Frame], Array]) -> Density:
-        """Integrate over a stretch that spans no break, on a grid that follows the curve's cells."""
+    def of(curve: Curve, stretches: Array, density: Callable[[Frame], Array]) -> list[Density]:
+        """Integrate over stretches (m, 2), none of which spans a break, on a grid that follows the curve's cells.
+
+        Raises CurveError where the curve runs backwards.
+        """
         cells = curve.cells
-        inside = (cells.high > low) & (cells.low < high)
-        left = np.maximum(cells.low[inside], low)
-        right = np.minimum(cells.high[inside], high)
-        share = np.linspace(0.0, 1.0, STEPS_PER_CELL + 1)
-        t = left[:, None] + (right - left)[:, None] * share
+        first = np.searchsorted(cells.low, stretches[:, 0], side="right") - 1
+        last = np.searchsorted(cells.high, stretches[:, 1], side="left")
+        index = np.concatenate([np.arange(a, b + 1) for a, b in zip(first, last, strict=True)])
+        stretch = np.repeat(np.arange(len(stretches)), last - first + 1)
+        left = np.maximum(cells.low[index], stretches[stretch, 0])
+        right = np.minimum(cells.high[index], stretches[stretch, 1])
+        t = left[:, None] + (right - left)[:, None] * np.linspace(0.0, 1.0, STEPS_PER_CELL + 1)
         interior = curve.sample(t[:, :-1].ravel(), 1)
+        slowest = int(np.argmin(interior.speed))
+        if float(interior.speed[slowest]) <= 0.0:
+            where = float(t[:, :-1].ravel()[slowest])
+            raise CurveError(f"the curve runs backwards near parameter {where:.9g}: it undercuts", where)
         value = np.empty_like(t)
         value[:, :-1] = density(interior).reshape(-1, STEPS_PER_CELL)
         value[:-1, -1] = value[1:, 0]
-        value[-1:, -1] = density(curve.sample(t[-1:, -1], -1))
-        if float(interior.speed.min()) <= 0.0:
-            where = float(t[:, :-1].ravel()[int(np.argmin(interior.speed))])
-            raise CurveError(f"the curve runs backwards near parameter {where:.9g}: it undercuts", where)
-        step = (right - left) / STEPS_PER_CELL
-        area = 0.5 * (value[:, :-1] + value[:, 1:]) * step[:, None]
-        grid = np.append(t[:, :-1].ravel(), t[-1, -1])
-        return Density(grid, np.concatenate([[0.0], np.cumsum(area.ravel())]))
+        ends = np.cumsum(last - first + 1) - 1
+        value[ends, -1] = density(curve.sample(t[ends, -1], -1))
+        area = 0.5 * (value[:, :-1] + value[:, 1:]) * ((right - left) / STEPS_PER_CELL)[:, None]
+        out, begin = [], 0
+        for end in ends:
+            grid = np.append(t[begin : end + 1, :-1].ravel(), t[end, -1])
+            out.append(Density(grid, np.concatenate([[0.0], np.cumsum(area[begin : end + 1].ravel())])))
+            begin = end + 1
+        return out
 
     @staticmethod
-    def joined(parts: list[Density]) -> Density:
+    def joined(parts: Sequence[Density]) -> Density:
         """One density over consecutive stretches."""
         t = np.concatenate([parts[0].t, *(part.t[1:] for part in parts[1:])])
         base = np.cumsum([0.0, *(part.total for part in parts[:-1])])
@@ -99,6 +114,10 @@ class Density:
         nodes: Array = np.interp(share, self.sum, self.t)
         return nodes
 
+    def share(self, t: float) -> float:
+        """Running integral up to a parameter."""
+        return float(np.interp(t, self.t, self.sum))
+
     def nodes(self, count: int) -> Array:
         """Parameters of `count` equal shares, both ends included (count + 1,)."""
         nodes = self.at(np.linspace(0.0, self.total, count + 1))
@@ -106,16 +125,16 @@ class Density:
         return nodes
 
 
-def reshared(nodes: Array, load: Array, order: float) -> Array:
+def reshared(nodes: Array, load: Array, order: float, count: int | None = None) -> Array:
     """Nodes moved so that pieces with more error become shorter: error grows as the length to the power `order`.
 
-    `load` (n,) is the error of each piece between nodes (n + 1,); the same number of nodes is returned.
+    `load` (n,) is the error of each piece between nodes (n + 1,); `count` pieces are made of them, by default as many.
     """
     top = float(load.max(initial=0.0))
-    if not 0.0 < top < np.inf:
-        return nodes
-    weight = np.maximum(load / top, 1e-6) ** (1.0 / order)
+    weight = np.ones_like(load)
+    if 0.0 < top < np.inf:
+        weight = np.maximum(load / top, 1e-6) ** (1.0 / order)
     total = np.concatenate([[0.0], np.cumsum(weight)])
-    moved: Array = np.interp(np.linspace(0.0, total[-1], nodes.size), total, nodes)
+    moved: Array = np.interp(np.linspace(0.0, total[-1], (count or load.size) + 1), total, nodes)
     moved[0], moved[-1] = nodes[0], nodes[-1]
     return moved

@@ -1,28 +1,37 @@
-"""A curve as a polygon that straddles it: as much outside at the vertices as inside between them (THEORY section 3)."""
+"""A curve as a polygon that straddles it: as much outside at the vertices as inside between them (THEORY section 3).
+
+Vertices stand off the curve by the tolerance, on its convex side. The curve is divided at its breaks, where a vertex
+stands, and at its inflections, which one edge crosses; in each part as few edges as will do are made equally high.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.deviation import Chain, Deviation, chain_deviation
-from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared
+from camgeo.fit.edges import Edges, look, placed, proved
+from camgeo.fit.inflection import REACH, crossings, inflections
+from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, Polygon
 
 if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame, Run
 
-USABLE = 0.9995  # of the tolerance; the rest covers rounding and the second order at the vertices
+USABLE = 0.9995  # of the tolerance; the rest covers the second order at the vertices
 BALANCED = 1e-3  # of the tolerance: how far the two sides may differ before the vertices are moved once more
-ROUNDS = 3  # of sharing the nodes anew before there are more of them
-# What part of the tolerance to aim at, and whether by proved or, quicker, by seen sagittas, until the proof holds it all.
-PARTS = ((1.0, False), (0.996, True), (0.98, True), (0.9, True), (0.6, True), (0.3, True))
-ACROSS = 0.8  # shares on each side of an inflection that one edge can cover; the limit is sqrt(24)/6
+AIMS = (1.0, 0.998, 0.98, 0.9, 0.6, 0.3, 0.1)  # parts of the tolerance aimed at until the proof holds it all
+TRIES = 24  # of placing nodes for one aim
+ROUNDS = 5  # of levelling the edges of a part before there are more of them
+FREE_TRIES = 4  # counts tried with edges across the breaks
 FULL = 0.93  # of the tolerance used is enough; below it fewer edges are looked for
+SLIGHT = 1.0  # shares: what bends the other way for less than this is not worth two crossings
+CROSSING = 0.994  # of the tolerance: what an edge across an inflection aims at, the rest covers its proof
+ROOM = 0.45  # of a part between two inflections that one crossing may take
+EXACT = 1.0 + 1e-9
 
 
 def polygon_density(frame: Frame) -> Array:
@@ -33,257 +42,224 @@ def polygon_density(frame: Frame) -> Array:
 
 def least_vertices(curve: Curve, tolerance: float) -> float:
     """Leading-order count of a straddling polygon: integral of ``sqrt(|kappa|/(16 e)) ds`` (THEORY section 3)."""
-    stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
-    total = sum(Density.of(curve, a, b, polygon_density).total for a, b in stretches)
+    total = sum(part.total for run in curve.runs for part in Density.of(curve, run.stretches, polygon_density))
     return total / math.sqrt(tolerance)
 
 
-@dataclass(frozen=True)
-class _Edges:
-    """Edges of one run: nodes (n + 1,), vertices (n + 1, 2), and how they lie.
-
-    Vertices stand `outward` and `inward` of the curve at most; `overhang` is how far the curve can reach past the ends
-    of the edge that belongs to it; `bend` (n,) is 1 for an edge of a convex stretch, -1 for a concave one, 0 across an
-    inflection; `load` is the greatest sagitta found.
+@dataclass
+class _Part:
+    """Nodes (n + 1,) between two fixed ones; `sense` is the side of the vertices; `crossed` if an edge leads on from it
+    across an inflection; `least` is the fewest edges not yet known to fail, `tried` counts the tries to level them.
     """
 
     nodes: Array
-    vertices: Array
-    outward: float
-    inward: float
-    overhang: float
-    bend: Array
-    deviation: Deviation
-    load: float = math.inf
+    sense: float
+    crossed: bool
+    least: int = 1
+    tried: int = 0
 
     @property
-    def extremes(self) -> tuple[float, float]:
-        """Farthest that the edges are proved to lie outward and inward of the curve, and the curve of them."""
-        outward = max(self.outward, math.hypot(-min(float(self.deviation.inside.min()), 0.0), self.overhang))
-        inward = max(self.inward, math.hypot(max(float(self.deviation.outside.max()), 0.0), self.overhang))
-        return outward, inward
+    def count(self) -> int:
+        """Edges of the part."""
+        return int(self.nodes.size - 1)
 
 
 def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
     """Polygon within `tolerance` mm of a curve, vertices as far outside as the edges' middles are inside.
 
     The bound is proved by `chain_deviation`. The number of vertices grows as tolerance^(-1/2) and stays within about
-    1 % of the leading-order least. Raises ToleranceError where the tolerance is below rounding, needs too many
-    vertices, or is not reached.
+    1 % of the leading-order least, one more for each break. Raises ToleranceError where the tolerance is below
+    rounding, needs too many vertices, or is not reached; CurveError where the curve runs backwards.
     """
-    stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
-    size = float(np.abs(curve.sample(np.array([a for a, _ in stretches])).point).max())
+    size = curve.size
     check_precision(size, tolerance)
+    usable = min(USABLE * tolerance, tolerance - rounding(size))
     parts, outward, inward = [], 0.0, 0.0
     for run in curve.runs:
-        vertices, out, into = _fit_run(curve, run, USABLE * tolerance)
-        parts.append(vertices[:-1])
+        edges = _fit_run(curve, run, usable)
+        parts.append(edges.vertices[:-1])
+        out, into = edges.extremes
         outward, inward = max(outward, out), max(inward, into)
-    return Polygon(np.concatenate(parts), Bound(outward, inward).widened(4.0 * math.ulp(size)))
+    return Polygon(np.concatenate(parts), Bound(outward, inward).widened(rounding(size)))
 
 
-def _fit_run(curve: Curve, run: Run, tolerance: float) -> tuple[Array, float, float]:
-    """Vertices of one run, its end included, and how far they lie outward and inward of the curve.
-
-    First with a vertex at every break, which costs at most one edge a break more than the least. Where the stretches
-    take so few edges that rounding their numbers up wastes part of the tolerance, fewer edges that run across the
-    breaks are tried as well.
-    """
-    densities = [Density.of(curve, float(a), float(b), polygon_density) for a, b in run.stretches]
+def _fit_run(curve: Curve, run: Run, tolerance: float) -> Edges:
+    """Edges of one run, proved to lie within the tolerance."""
+    densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
     check_count(needed, "straight edges", tolerance)
+    bends, sense = inflections(curve, densities)
     best = math.inf
-    for part, proved in PARTS:
-        edges = _shared(curve, run, densities, part * tolerance, proved=proved)
-        if edges is None:
-            break
-        # the greatest sagitta, halved, is how far the vertices stand out
-        shift = min(0.5 * edges.load, tolerance)
-        placed = _edges(curve, run, edges.nodes, shift, tolerance)
-        outward, inward = placed.extremes
-        if run.closed and math.isfinite(outward + inward) and abs(outward - inward) > BALANCED * tolerance:
-            shift = min(shift * (outward + inward) / (2.0 * outward), tolerance)
-            placed = _edges(curve, run, edges.nodes, shift, tolerance)
-            outward, inward = placed.extremes
-        best = min(best, max(outward, inward))
+    for aim in AIMS:
+        goal = aim * tolerance
+        parts, height = _settled(curve, run, _parts(curve, run, densities, bends, sense, goal), goal)
+        if len(densities) > 1 and height < FULL * goal:
+            parts, height = _across_breaks(curve, run, Density.joined(densities), parts, goal) or (parts, height)
+        edges = _balanced(curve, run, parts, min(height, goal), tolerance)
+        best = min(best, max(edges.extremes))
         if best <= tolerance:
-            return placed.vertices, outward, inward
+            return edges
     raise ToleranceError(f"a polygon within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
-def _shared(
-    curve: Curve, run: Run, densities: list[Density], tolerance: float, *, proved: bool
-) -> _Edges | None:
-    """Fewest edges found whose sagittas stay within twice the tolerance."""
-    least = 3 if run.closed else 1
-    edges = _settled(curve, run, densities, tolerance, least, math.inf, proved=proved)
-    if edges is not None and len(densities) > 1 and edges.load < FULL * 2.0 * tolerance:
-        whole = [Density.joined(densities)]
-        free = _settled(curve, run, whole, tolerance, least, edges.nodes.size - 2, proved=proved)
-        return free or edges
+def _balanced(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance: float) -> Edges:
+    """Proved edges; moved once more where one side is used more than the other, which runs without corners allow."""
+    nodes, _, sides = _chained(parts)
+    edges = proved(curve, placed(curve, run, nodes, shift * sides), tolerance)
+    outward, inward = edges.extremes
+    level = run.closed and bool((sides == sides[0]).all())
+    if level and math.isfinite(outward + inward) and abs(outward - inward) > BALANCED * tolerance:
+        shift = min(0.5 * (outward + inward), tolerance)
+        moved = proved(curve, placed(curve, run, nodes, shift * sides), tolerance)
+        if max(moved.extremes) < max(outward, inward):
+            return moved
     return edges
 
 
-def _settled(
-    curve: Curve, run: Run, groups: list[Density], tolerance: float, least: int, most: float, *, proved: bool
-) -> _Edges | None:
-    """Fewest nodes, shared within each group, that keep every sagitta within twice the tolerance.
-
-    None where more than `most` edges would be needed.
-    """
-    allowed = 2.0 * tolerance * (1.0 + 1e-12)
-    parts, links = _first_nodes(curve, groups, math.sqrt(tolerance), least)
-    shared = [0] * len(parts)
-    for _ in range(TRIES):
-        nodes, owner = _chained(parts)
-        if nodes.size - 1 > most:
-            return None
-        edges = _edges(curve, run, nodes, tolerance, tolerance if proved else math.inf)
-        found = edges.deviation
-        high, low = (found.outside, found.inside) if proved else (found.seen_high, found.seen_low)
-        # what lies beyond the vertices' own side; across an inflection both sides count
-        worst = np.maximum(high, -low)
-        load = np.where(edges.bend > 0, high, np.where(edges.bend < 0, -low, worst)) + tolerance
-        load = np.where(worst > tolerance * (1.0 + 1e-12), np.maximum(load, worst + tolerance), load)
-        load[~np.isfinite(found.inside) | ~np.isfinite(found.outside)] = np.inf
-        top = float(load.max())
-        if top <= allowed:
-            return replace(edges, load=top)
-        for i, part in enumerate(parts):
-            mine = load[owner == i]
-            if mine.size and float(mine.max()) > allowed:
-                parts[i], shared[i] = _denser(part, mine, 2.0 * tolerance, shared[i])
-                check_count(parts[i].size, "straight edges", tolerance)
-        for i, at in links.items():
-            over = float(load[(owner == -1) & (nodes[:-1] == parts[i][-1])].max(initial=0.0))
-            if over > allowed:
-                # the error of an edge across an inflection grows as the cube of its length
-                share = 0.99 * (2.0 * tolerance / over) ** (1.0 / 3.0) if math.isfinite(over) else 0.5
-                parts[i][-1] = at + share * (parts[i][-1] - at)
-                parts[i + 1][0] = at + share * (parts[i + 1][0] - at)
-    return None
-
-
-def _first_nodes(
-    curve: Curve, groups: list[Density], root: float, least: int
-) -> tuple[list[Array], dict[int, float]]:
-    """Nodes in equal shares of each group, cut at inflections; `links` holds the inflection after each part.
-
-    The edge that runs across an inflection covers `ACROSS` shares on each side of it: there the curve is a cubic, and
-    the line that best fits a cubic does so over k' a^3 = 24 e (Chebyshev's polynomial of degree 3).
-    """
-    parts: list[Array] = []
-    links: dict[int, float] = {}
-    total = sum(group.total for group in groups) / root
-    scale = min(1.0, total / least)
-    seams = _flips(curve, groups)
-    for number, group in enumerate(groups):
-        cuts = _inflections(curve, group)
-        ends = [0.0, *(float(np.interp(cut, group.t, group.sum)) / root for cut in cuts), group.total / root]
-        starts_across, ends_across = seams[number], seams[number + 1]
-        for i, (begin, end) in enumerate(pairwise(ends)):
-            before = ACROSS if i > 0 or starts_across else 0.0
-            after = ACROSS if i < len(cuts) or ends_across else 0.0
-            count = max(1, math.ceil((end - begin) / scale - before - after - 1e-6))
-            share = (end - begin) / (count + before + after)
-            part = group.at((begin + share * (before + np.arange(count + 1))) * root)
-            if i == 0 and not starts_across:
-                part[0] = group.t[0]
-            if i == len(cuts) and not ends_across:
-                part[-1] = group.t[-1]
-            if after:
-                links[len(parts)] = cuts[i] if i < len(cuts) else float(group.t[-1])
-            parts.append(part)
-    return parts, links
+def _parts(
+    curve: Curve, run: Run, densities: list[Density], bends: Array, sense: float, tolerance: float
+) -> list[_Part]:
+    """Parts between breaks and inflections, nodes in equal shares."""
+    root = math.sqrt(tolerance)
+    whole = Density.joined(densities)
+    bends = _worthwhile(bends, whole, root)
+    share = np.array([whole.share(float(t)) for t in bends]) / root
+    room = ROOM * np.diff(np.concatenate([[0.0], share, [whole.total / root]]))
+    low = whole.at(root * (share - np.minimum(REACH, room[:-1])))
+    high = whole.at(root * (share + np.minimum(REACH, room[1:])))
+    edge = crossings(curve, bends, low, high, CROSSING * tolerance)
+    low, high = np.array(edge.low), np.array(edge.high)
+    overlap = np.append(high[:-1] >= low[1:], False) if bends.size else np.zeros(0, dtype=bool)
+    for i in np.flatnonzero(overlap):
+        # two crossings that meet leave one edge between them
+        high[i], low[i + 1] = whole.at(np.array([0.6, 0.4]) * share[i] * root + np.array([0.4, 0.6]) * share[i + 1] * root)
+    ends: list[tuple[float, float, float]] = [(run.low, run.low, 1.0)]
+    ends += [(float(a), float(b), -1.0) for a, b in zip(low, high, strict=True)]
+    for at in run.breaks:
+        if not ((low <= at) & (at <= high)).any():
+            ends.append((at, at, 1.0))
+    ends.append((run.high, run.high, 1.0))
+    ends.sort()
+    parts = []
+    for (_, begin, _), (end, _, flip) in pairwise(ends):
+        first, last = whole.share(begin), whole.share(end)
+        nodes = whole.at(np.linspace(first, last, max(1, math.ceil((last - first) / root - 0.05)) + 1))
+        nodes[0], nodes[-1] = begin, end
+        parts.append(_Part(nodes, sense, flip < 0.0))
+        sense *= flip
+    if run.closed and (missing := 3 - sum(part.count + part.crossed for part in parts)) > 0:
+        first_part = parts[0]
+        count = first_part.count + missing
+        parts[0] = _Part(np.linspace(first_part.nodes[0], first_part.nodes[-1], count + 1), first_part.sense,
+                         first_part.crossed, count)
+    return parts
 
 
-def _flips(curve: Curve, groups: list[Density]) -> list[bool]:
-    """Whether a convex and a concave stretch meet at the beginning of each group, and at the end of the last: never."""
-    at = np.array([group.t[0] for group in groups[1:]])
-    if not at.size:
-        return [False, False]
-    before, after = curve.sample(at, -1).turn, curve.sample(at, 1).turn
-    return [False, *(bool(flip) for flip in (before >= 0.0) != (after >= 0.0)), False]
-
-
-def _inflections(curve: Curve, group: Density) -> list[float]:
-    """Parameters inside a group at which the turn changes its sign, by bisection."""
-    inner = group.t[1:-1]
-    positive = curve.sample(inner).turn >= 0.0
-    found = np.flatnonzero(positive[1:] != positive[:-1])
-    low, high, sense = inner[found], inner[found + 1], positive[found]
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        same = (curve.sample(middle).turn >= 0.0) == sense
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return [float(x) for x in 0.5 * (low + high)]
-
-
-def _chained(parts: list[Array]) -> tuple[Array, Array]:
-    """All nodes in order, and for each edge the part it belongs to, -1 for one that links two parts."""
-    pieces, owner = [parts[0]], [np.zeros(parts[0].size - 1, dtype=np.int64)]
-    for i, part in enumerate(parts[1:], start=1):
-        if part[0] == parts[i - 1][-1]:
-            pieces.append(part[1:])
+def _worthwhile(bends: Array, whole: Density, root: float) -> Array:
+    """Inflections without the pairs that enclose less than `SLIGHT` shares."""
+    kept: list[float] = []
+    for bend in bends:
+        if kept and whole.share(float(bend)) - whole.share(kept[-1]) < SLIGHT * root:
+            kept.pop()
         else:
-            pieces.append(part)
+            kept.append(float(bend))
+    return np.array(kept)
+
+
+def _chained(parts: list[_Part]) -> tuple[Array, Array, Array]:
+    """All nodes in order, for each edge its part (-1 across an inflection), for each node the side of its vertex."""
+    nodes, owner = [parts[0].nodes], [np.zeros(parts[0].count, dtype=np.int64)]
+    sides = [np.full(parts[0].nodes.size, parts[0].sense)]
+    for i, part in enumerate(parts[1:], start=1):
+        skip = 0 if parts[i - 1].crossed else 1
+        nodes.append(part.nodes[skip:])
+        sides.append(np.full(part.nodes.size - skip, part.sense))
+        if not skip:
             owner.append(np.array([-1]))
-        owner.append(np.full(part.size - 1, i))
-    return np.concatenate(pieces), np.concatenate(owner)
+        owner.append(np.full(part.count, i))
+    return np.concatenate(nodes), np.concatenate(owner), np.concatenate(sides)
 
 
-def _denser(nodes: Array, load: Array, allowed: float, shared: int) -> tuple[Array, int]:
-    """Nodes for the next try: shared anew while the mean load is within what is allowed, then more of them."""
-    if not np.isfinite(load).all():
-        wild = ~np.isfinite(load)
-        return np.sort(np.append(nodes, 0.5 * (nodes[:-1] + nodes[1:])[wild])), 0
-    mean = float(np.mean(np.sqrt(load))) ** 2
-    if mean <= allowed and shared < ROUNDS:
-        return reshared(nodes, load, 2.0), shared + 1
-    count = nodes.size - 1
-    more = max(count + 1, math.ceil(count * math.sqrt(mean / allowed)))
-    total = np.concatenate([[0.0], np.cumsum(np.sqrt(load))])
-    spread: Array = np.interp(np.linspace(0.0, total[-1], more + 1), total, nodes)
-    spread[0], spread[-1] = nodes[0], nodes[-1]
-    return spread, 0
+def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tuple[list[_Part], float]:
+    """Parts with the fewest edges found whose sagittas keep within twice the tolerance, and half the greatest."""
+    allowed = 2.0 * tolerance
+    height = math.inf
+    for _ in range(TRIES):
+        nodes, owner, sides = _chained(parts)
+        seen = look(curve, placed(curve, run, nodes, tolerance * sides), sides, tolerance)
+        height = 0.5 * float(seen.load.max())
+        busy = False
+        for i, part in enumerate(parts):
+            mine = owner == i
+            busy |= _improve(part, seen.load[mine], seen.by_low[mine], seen.by_high[mine], allowed)
+        check_count(sum(part.count for part in parts), "straight edges", tolerance)
+        if not busy:
+            break
+    crossed = any(part.crossed for part in parts)
+    return parts, tolerance if crossed else min(height, tolerance)
 
 
-def _edges(curve: Curve, run: Run, nodes: Array, shift: float, tolerance: float) -> _Edges:
-    """Edges between nodes moved by `shift` to the convex side, and their deviation over each edge.
+def _improve(part: _Part, load: Array, by_low: Array, by_high: Array, allowed: float) -> bool:
+    """Give a part better nodes; False where it has the fewest edges and none is too high."""
+    shares = float(np.sqrt(np.maximum(load, 0.0) / allowed).sum())
+    best = max(part.least, math.ceil(shares - 1e-9))
+    fits = float(load.max()) <= allowed * EXACT
+    if fits and best >= part.count:
+        return False
+    if best < part.count and part.tried == 0:
+        part.nodes = reshared(part.nodes, load, 2.0, best)
+        part.tried = 1
+    elif fits:
+        return False
+    elif best == part.count and part.tried < ROUNDS:
+        part.nodes = levelled(part.nodes, load, by_low, by_high)
+        part.tried += 1
+    else:
+        part.least = max(part.count + 1, best)
+        part.nodes = reshared(part.nodes, load, 2.0, part.least)
+        part.tried = 1
+    return True
 
-    An edge across a break of the curve is judged on both sides of it.
+
+def levelled(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Array:
+    """Nodes (n + 1,), ends kept, moved by one step of Newton's method towards equal loads (n,) of all edges.
+
+    `by_low` and `by_high` (n,) are the derivatives of each load by the parameter of its first and second node.
     """
-    at = curve.sample(nodes[:-1])
-    last = at if run.closed else curve.sample(nodes[-1:], -1)
-    normal = np.append(at.normal, last.normal[:1], axis=0)
-    away = np.append(np.where(at.turn >= 0.0, shift, -shift), 0.0)
-    away[-1] = away[0]
-    if not run.closed:
-        away[[0, -1]] = 0.0
-    vertices = np.append(at.point, last.point[:1], axis=0) + away[:, None] * normal
-    chord = np.diff(vertices, axis=0)
-    tangent = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
-    # A vertex stands on the normal of its node. Where the curve bends the same way at both ends of an edge, the nodes'
-    # feet on the edge lie within it; elsewhere part of the curve is nearest to the vertex itself.
-    behind = -away[:-1] * np.sum(tangent * normal[:-1], axis=1)
-    beyond = away[1:] * np.sum(tangent * normal[1:], axis=1)
-    overhang = -min(0.0, float(behind.min()), float(beyond.min()))
-    cuts = np.array([b for b in run.breaks if not np.any(nodes == b)])
-    low = np.sort(np.concatenate([nodes[:-1], cuts]))
-    high = np.append(low[1:], nodes[-1])
-    edge = np.clip(np.searchsorted(nodes, low, side="right") - 1, 0, nodes.size - 2)
-    chain = Chain(vertices[:-1][edge], tangent[edge], np.zeros(low.size), low, high)
-    found = chain_deviation(curve, chain, tolerance, 4)
-    if cuts.size:
-        first = np.searchsorted(edge, np.arange(nodes.size - 1))
-        found = Deviation(
-            np.minimum.reduceat(found.inside, first),
-            np.maximum.reduceat(found.outside, first),
-            np.minimum.reduceat(found.seen_low, first),
-            np.maximum.reduceat(found.seen_high, first),
-        )
-    outward, inward = max(0.0, float(away.max())), max(0.0, -float(away.min()))
-    sense = np.where(at.turn >= 0.0, 1.0, -1.0)
-    sense = np.append(sense, sense[0] if run.closed else math.copysign(1.0, float(last.turn[0])))
-    bend = 0.5 * (sense[:-1] + sense[1:])
-    return _Edges(nodes, vertices, outward, inward, overhang, bend, found)
+    sound = bool((by_low < 0.0).all() and (by_high > 0.0).all())
+    if not sound or float(load.max()) > 4.0 * float(load.min()):
+        return reshared(nodes, load, 2.0)
+    # load + by_low d + by_high d+ = level, from d = 0 to d = 0: a recurrence, solved by its product and sum
+    product = np.cumprod(-by_low / by_high)
+    fixed = product * np.cumsum(-load / by_high / product)
+    slope = product * np.cumsum(1.0 / by_high / product)
+    move = np.concatenate([[0.0], fixed - slope * (fixed[-1] / slope[-1])])
+    if not np.isfinite(move).all():
+        return reshared(nodes, load, 2.0)
+    move[-1] = 0.0
+    width = np.diff(nodes)
+    squeeze = float(np.max(-np.diff(move) / width, initial=0.0))
+    moved: Array = nodes + move * min(1.0, 0.5 / squeeze if squeeze > 0.0 else 1.0)
+    return moved
+
+
+def _across_breaks(
+    curve: Curve, run: Run, whole: Density, parts: list[_Part], tolerance: float
+) -> tuple[list[_Part], float] | None:
+    """Fewer edges with no heed of the breaks, where rounding up the stretches' counts has wasted tolerance.
+
+    None where that is not found, or inflections divide the curve.
+    """
+    if len({part.sense for part in parts}) > 1:
+        return None
+    most = sum(part.count for part in parts)
+    start = max(3 if run.closed else 1, math.ceil(whole.total / math.sqrt(tolerance)))
+    for count in range(start, min(most, start + FREE_TRIES)):
+        free = _Part(whole.nodes(count), parts[0].sense, crossed=False, least=count)
+        sides = np.full(count + 1, free.sense)
+        for _ in range(3 * ROUNDS):
+            seen = look(curve, placed(curve, run, free.nodes, tolerance * sides), sides, tolerance)
+            if float(seen.load.max()) <= 2.0 * tolerance * EXACT:
+                return [free], 0.5 * float(seen.load.max())
+            free.nodes = levelled(free.nodes, seen.load, seen.by_low, seen.by_high)
+    return None

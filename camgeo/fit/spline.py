@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.deviation import Chain, chain_deviation
-from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared
+from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, BSpline
 
 if TYPE_CHECKING:
@@ -38,18 +38,18 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
     tolerance is below rounding, needs too many spans, or is not reached.
     """
     runs = [[(float(a), float(b)) for a, b in run.stretches] for run in curve.runs]
-    size = float(np.abs(curve.sample(np.array([run[0][0] for run in runs])).point).max())
+    size = curve.size
     check_precision(size, tolerance)
     outward, inward = 0.0, 0.0
     groups = []
     for stretches in runs:
         beziers = []
         for stretch in stretches:
-            control, out, into = _fit_stretch(curve, stretch, USABLE * tolerance)
+            control, out, into = _fit_stretch(curve, stretch, min(USABLE * tolerance, tolerance - rounding(size)))
             outward, inward = max(outward, out), max(inward, into)
             beziers.append(control)
         groups.append(np.concatenate(beziers))
-    return _assembled(groups, Bound(outward, inward).widened(4.0 * math.ulp(size)))
+    return _assembled(groups, Bound(outward, inward).widened(rounding(size)))
 
 
 def _assembled(groups: list[Array], bound: Bound) -> BSpline:
@@ -80,7 +80,7 @@ def _spline_density(frame: Frame) -> Array:
 
 def _fit_stretch(curve: Curve, stretch: tuple[float, float], tolerance: float) -> tuple[Array, float, float]:
     """Bezier spans (n, 4, 2) over one smooth stretch, with their outward and inward bound."""
-    density = Density.of(curve, *stretch, _spline_density)
+    density = Density.of(curve, np.array([stretch]), _spline_density)[0]
     middle = curve.sample(np.linspace(*stretch, 17)[1:-1])
     radius = float(np.max(np.abs(middle.speed)))
     first = density.total * (TURN_ERROR * max(radius, tolerance) / tolerance) ** (1.0 / 6.0)

@@ -1,0 +1,157 @@
+"""Straight edges along a curve: where their vertices stand, how high the curve rises over them, and the proof of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.deviation import Chain, Deviation, chain_deviation
+
+if TYPE_CHECKING:
+    from camgeo.curve import Array, Curve, Run
+    from numpy.typing import NDArray
+
+EVEN = 0.02  # change of curvature over an edge, of itself, up to which one look in the middle is enough
+LOOKS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0)  # the other places
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Edges of one run between nodes (n + 1,), vertices (n + 1, 2) `away` (n + 1,) outside the curve on its normals.
+
+    `lean` (n, 2) is how fast each end's vertex moves towards the edge's outer side with its node. Pieces, which no
+    break interrupts, run from `low` to `high` (m,) and belong to `edge` (m,).
+    """
+
+    nodes: Array
+    vertices: Array
+    away: Array
+    tangent: Array
+    behind: Array
+    beyond: Array
+    lean: Array
+    low: Array
+    high: Array
+    edge: NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Sagitta of each edge over its vertices, as seen (n,), and its derivatives by the edge's two nodes."""
+
+    load: Array
+    by_low: Array
+    by_high: Array
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Edges with their proved deviation.
+
+    `overhang` is how far the feet of the curve's points can fall beyond the ends of the edge that belongs to them.
+    """
+
+    vertices: Array
+    outward: float
+    inward: float
+    overhang: float
+    deviation: Deviation
+
+    @property
+    def extremes(self) -> tuple[float, float]:
+        """Farthest that the edges are proved to lie outward and inward of the curve, and the curve of them.
+
+        A point of the curve whose foot lies on its edge is as far from it as `deviation` says, and every point of an
+        edge between two feet has such a point over it. What is left of an edge lies between a foot and the vertex of
+        the same node, nearer to that node than one of the two. A foot beyond the edge's end is `overhang` from it.
+        """
+        outward = max(self.outward, math.hypot(-min(float(self.deviation.inside.min()), 0.0), self.overhang))
+        inward = max(self.inward, math.hypot(max(float(self.deviation.outside.max()), 0.0), self.overhang))
+        return outward, inward
+
+
+def placed(curve: Curve, run: Run, nodes: Array, away: Array) -> Placed:
+    """Edges between vertices that stand `away` (n + 1,) outside the curve; a corner of an open run stays on it."""
+    at = curve.sample(nodes[:-1])
+    last = at if run.closed else curve.sample(nodes[-1:], -1)
+    end = 0 if run.closed else -1
+    away = away.copy()
+    away[-1] = away[0]
+    if not run.closed:
+        away[[0, -1]] = 0.0
+    normal = np.append(at.normal, last.normal[end:][:1], axis=0)
+    heading = np.append(at.tangent, last.tangent[end:][:1], axis=0)
+    pace = np.append(at.speed, last.speed[end:][:1]) + away * np.append(at.turn, last.turn[end:][:1])
+    vertices = np.append(at.point, last.point[end:][:1], axis=0) + away[:, None] * normal
+    chord = np.diff(vertices, axis=0)
+    tangent = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
+    across = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+    lean = np.column_stack(
+        [pace[:-1] * np.sum(heading[:-1] * across, axis=1), pace[1:] * np.sum(heading[1:] * across, axis=1)]
+    )
+    cuts = np.setdiff1d(np.array(run.breaks), nodes)
+    low = np.sort(np.concatenate([nodes[:-1], cuts]))
+    high = np.append(low[1:], nodes[-1])
+    edge = np.clip(np.searchsorted(nodes, low, side="right") - 1, 0, nodes.size - 2)
+    behind = -away[:-1] * np.sum(tangent * normal[:-1], axis=1)
+    beyond = away[1:] * np.sum(tangent * normal[1:], axis=1)
+    return Placed(nodes, vertices, away, tangent, behind, beyond, lean, low, high, edge)
+
+
+def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
+    """How high the curve rises over each edge from vertices that stand off by `tolerance`: seen, not proved.
+
+    An edge whose ends stand on different sides crosses an inflection and is not looked at: its load is 0. Derivatives
+    are those of the edge's own height where the curve rises highest (envelope theorem).
+    """
+    count = edges.nodes.size - 1
+    width = edges.high - edges.low
+    at = curve.sample(edges.low + 0.5 * width)
+    # one look will do where the curve is all but a circle over the edge
+    with np.errstate(divide="ignore", invalid="ignore"):
+        change = np.abs(at.speed_slope / at.speed) + np.abs(at.turn_slope / at.turn)
+    uneven = np.flatnonzero(~(change * width < EVEN))
+    piece, reach = np.arange(width.size), 0.5 * width
+    if uneven.size:
+        piece = np.append(piece, np.repeat(uneven, len(LOOKS)))
+        t = edges.low[uneven, None] + width[uneven, None] * np.array(LOOKS)
+        at = curve.sample(np.append(edges.low + 0.5 * width, t.ravel()))
+        reach[uneven] /= len(LOOKS) + 1
+        reach = reach[piece]
+    edge = edges.edge[piece]
+    sense = sides[:-1][edge]
+    along = edges.tangent[edge]
+    offset = at.point - edges.vertices[:-1][edge]
+    height = sense * (offset[:, 0] * along[:, 1] - offset[:, 1] * along[:, 0])
+    slope = sense * (at.tangent[:, 0] * along[:, 1] - at.tangent[:, 1] * along[:, 0])
+    # from each place up to the top of the parabola there, if that is not beyond half way to the next place
+    with np.errstate(divide="ignore", invalid="ignore"):
+        move = np.where(sense * at.turn > 0.0, slope / np.abs(at.turn), np.sign(slope) * np.inf)
+    move = np.clip(np.where(np.isnan(move), 0.0, move), -reach, reach)
+    top = height + at.speed * (slope * move - 0.5 * np.abs(at.turn) * move**2)
+    load = np.maximum(top, np.where(-height > tolerance * (1.0 + 1e-9), -height, 0.0)) + tolerance
+    share = np.sum(offset * along, axis=1) + at.speed * move
+    chord = np.hypot(*(edges.vertices[1:] - edges.vertices[:-1]).T)
+    order = np.lexsort((load, edge))
+    last = np.searchsorted(edge[order], np.arange(count), side="right") - 1
+    best = order[last]
+    u = np.clip(share[best] / chord, 0.0, 1.0)
+    side = sides[:-1]
+    across = sides[:-1] != sides[1:]
+    return Seen(
+        np.where(across, 0.0, load[best]), -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1]
+    )
+
+
+def proved(curve: Curve, edges: Placed, tolerance: float) -> Edges:
+    """Edges with their proved deviation; an edge across a break of the curve is judged on both sides of it."""
+    chain = Chain(
+        edges.vertices[:-1][edges.edge], edges.tangent[edges.edge], np.zeros(edges.low.size), edges.low, edges.high
+    )
+    found = chain_deviation(curve, chain, tolerance)
+    overhang = -min(0.0, float(edges.behind.min()), float(edges.beyond.min()))
+    outward, inward = max(0.0, float(edges.away.max())), max(0.0, -float(edges.away.min()))
+    return Edges(edges.vertices, outward, inward, overhang, found)

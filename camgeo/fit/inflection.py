@@ -1,0 +1,111 @@
+"""Inflections of a curve, and the one straight edge that runs across each.
+
+Near an inflection the curve is a cubic, and the line that fits a cubic best touches the limits at both ends and twice
+between (Chebyshev's polynomial of degree 3): it reaches ``k' a^3 = 24 e`` to each side, k' the slope of the curvature.
+That is ``sqrt(24)/6 = 0.8165`` shares of the density of a straddling polygon.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.curve import Array, Curve
+    from camgeo.fit.nodes import Density
+
+REACH = math.sqrt(24.0) / 6.0
+_BISECTIONS = 40
+_STEPS = 8
+_SETTLED = 1e-4  # of the tolerance
+_MOST_STEP = 0.3  # of an edge's reach, in one step
+
+
+def inflections(curve: Curve, densities: Sequence[Density]) -> tuple[Array, float]:
+    """Parameters (n,) at which the sampled turn changes its sign, rising, and its sign (1 or -1) before the first.
+
+    They lie inside the stretches or at the breaks between them; a change where a closed run ends is not among them.
+    """
+    if float(curve.cells.rows[2].min()) >= 0.0:
+        return np.zeros(0), 1.0
+    if float(curve.cells.rows[3].max()) <= 0.0:
+        return np.zeros(0), -1.0
+    inner = np.concatenate([density.t[1:-1] for density in densities])
+    positive = curve.sample(inner).turn >= 0.0
+    last = np.cumsum([density.t.size - 2 for density in densities])[:-1] - 1
+    breaks = np.array([density.t[0] for density in densities[1:]])
+    change = positive[1:] != positive[:-1]
+    at_break = breaks[change[last]]
+    change[last] = False
+    found = np.flatnonzero(change)
+    low, high, sense = inner[found], inner[found + 1], positive[found]
+    for _ in range(_BISECTIONS if found.size else 0):
+        middle = 0.5 * (low + high)
+        same = (curve.sample(middle).turn >= 0.0) == sense
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    roots: Array = np.sort(np.concatenate([at_break, 0.5 * (low + high)]))
+    return roots, 1.0 if positive[0] else -1.0
+
+
+@dataclass(frozen=True)
+class Crossings:
+    """Edges across inflections: parameters of their ends (n,), which stand off the curve by the tolerance."""
+
+    low: Array
+    high: Array
+
+
+def crossings(curve: Curve, at: Array, low: Array, high: Array, tolerance: float) -> Crossings:
+    """Longest edges across the inflections `at` (n,) that keep within the tolerance, from a first guess `low`, `high`.
+
+    Newton's method for the two extremes between the ends to be as large as the ends' own distance; each extreme is
+    followed as its edge moves. An edge that does not settle is returned as its first guess.
+    """
+    count = at.size
+    if not count:
+        return Crossings(low, high)
+    first_low, first_high = low, high
+    near, far = 0.5 * (at + low), 0.5 * (at + high)
+    settled = np.zeros(count, dtype=bool)
+    for _ in range(_STEPS):
+        frame = curve.sample(np.concatenate([low, high, near, far]))
+        point, tangent = frame.point.reshape(4, count, 2), frame.tangent.reshape(4, count, 2)
+        normal, turn = frame.normal.reshape(4, count, 2), np.abs(frame.turn.reshape(4, count))
+        speed = frame.speed.reshape(4, count)
+        sense = np.where(frame.turn[:count] >= 0.0, 1.0, -1.0)
+        away = (sense * tolerance)[:, None]
+        begin, end = point[0] + away * normal[0], point[1] - away * normal[1]
+        chord = end - begin
+        length = np.hypot(chord[:, 0], chord[:, 1])
+        along = chord / length[:, None]
+        across = np.column_stack([along[:, 1], -along[:, 0]]) * sense[:, None]
+        lean = np.sum(tangent * across, axis=2)
+        height = np.sum((point[2:] - begin) * across, axis=2) * np.array([[1.0], [-1.0]])
+        share = np.sum((point[2:] - begin) * along, axis=2) / length
+        with np.errstate(divide="ignore", invalid="ignore"):
+            move = lean[2:] * np.array([[1.0], [-1.0]]) / turn[2:]
+            top = height + 0.5 * speed[2:] * turn[2:] * move**2
+            rise = lean[:2] * (speed[:2] + tolerance * turn[:2])
+            # height of the extremes by the ends: the line's own height at each, by the shares of the two ends
+            a, b = -(1.0 - share) * rise[0], -share * rise[1]
+            a[1], b[1] = -a[1], -b[1]
+            miss = tolerance - top
+            determinant = a[0] * b[1] - a[1] * b[0]
+            step_low = (miss[0] * b[1] - miss[1] * b[0]) / determinant
+            step_high = (a[0] * miss[1] - a[1] * miss[0]) / determinant
+        settled = (np.abs(miss) <= _SETTLED * tolerance).all(axis=0) & (np.abs(move[0]) < at - low)
+        if settled.all():
+            break
+        usable = np.isfinite(step_low) & np.isfinite(step_high) & ~settled
+        limit_low, limit_high = _MOST_STEP * (at - low), _MOST_STEP * (high - at)
+        low = low + np.where(usable, np.clip(step_low, -limit_low, limit_low), 0.0)
+        high = high + np.where(usable, np.clip(step_high, -limit_high, limit_high), 0.0)
+        moved = np.where(np.isfinite(move), move, 0.0)
+        near = np.clip(near + moved[0], low, at)
+        far = np.clip(far + moved[1], at, high)
+    return Crossings(np.where(settled, low, first_low), np.where(settled, high, first_high))
