@@ -1,0 +1,173 @@
+"""Every shipped recipe from its text to judged files, and what a run does when something is wrong."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from camgeo import pipeline
+from camgeo.recipe.errors import RecipeErrors
+from camgeo.recipe.load import load, read
+
+RECIPES = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
+UNDERCUT = b"cam: {kind: support, p: 10 + 2*cos(3*t)%s}\npart: {thickness: 5}\nexport: {tolerance: 0.001, files: [dxf, stl]}\n"
+
+
+def names(report: dict) -> list[str]:
+    return [check["name"] for check in report["checks"]]
+
+
+def failed(report: dict) -> set[str]:
+    return {check["name"] for check in report["checks"] if not check["ok"]}
+
+
+def test_there_are_recipes() -> None:
+    assert len(RECIPES) >= 17
+
+
+@pytest.mark.parametrize("path", RECIPES, ids=lambda path: path.stem)
+def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> None:
+    recipe = load(path)
+    outcome = pipeline.export(recipe, tmp_path)
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    folder = tmp_path / recipe.name
+    assert outcome.folder == folder
+    report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    assert report == outcome.report
+    assert sorted(entry.name for entry in folder.iterdir()) == sorted(
+        ["report.json", *(file["path"] for file in report["files"])]
+    )
+    assert {"radius-of-curvature", "undercut-local", "contour", "motion", "wall"} <= set(names(report))
+    for file in report["files"]:
+        data = (folder / file["path"]).read_bytes()
+        assert file["bytes"] == len(data)
+        assert file["sha256"] == hashlib.sha256(data).hexdigest()
+        if file["kind"] == "csv":
+            continue
+        assert 0.0 <= file["geometry_error"] <= file["tolerance"]
+        # The judge measures no more than was proved, but for rounding.
+        assert file["measured_error"] <= file["geometry_error"] * (1 + 1e-9) + 1e-11
+        motion = file["motion"]
+        assert motion["rms"] <= motion["max"]
+        assert 0.0 <= motion["at_deg"] < 360.0
+
+
+@pytest.mark.parametrize("name", ["as-figure-2a", "w-booth", "reuleaux-nine"])
+def test_the_same_recipe_gives_the_same_bytes(name: str, tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name(f"{name}.yaml"))
+    first = pipeline.export(recipe, tmp_path / "a")
+    second = pipeline.export(recipe, tmp_path / "b")
+    assert first.folder is not None
+    assert second.folder is not None
+    files = [entry for entry in first.folder.iterdir() if entry.name != "report.json"]
+    assert files
+    for entry in files:
+        assert entry.read_bytes() == (second.folder / entry.name).read_bytes()
+    for report in (first.report, second.report):
+        report.pop("stages")
+    assert first.report == second.report
+
+
+def test_counter_clockwise_mirrors_drawing_and_keeps_motion(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("as-figure-2d.yaml"))
+    other = replace(recipe, rotation="ccw", name="other")
+    here, there = (pipeline.export(r, tmp_path) for r in (recipe, other))
+    assert here.ok
+    assert there.ok
+    table = [(tmp_path / name / f"{name}.csv").read_bytes() for name in (recipe.name, "other")]
+    assert table[0] == table[1]
+    # a file drawn for the one rotation is wrong for the other
+    report = pipeline.judged(other, [tmp_path / recipe.name / f"{recipe.name}.dxf"])
+    assert {"contour", "motion"} <= failed(report)
+
+
+def test_undercut_is_refused_with_angle_depth_and_remedy(tmp_path: Path) -> None:
+    recipe = read(UNDERCUT % b"", "sharp.yaml")
+    outcome = pipeline.export(recipe, tmp_path)
+    assert not outcome.ok
+    found = {check["name"]: check for check in outcome.report["checks"]}
+    assert found["radius-of-curvature"]["value"] == pytest.approx(-6.0, abs=1e-9)
+    assert not found["undercut-local"]["ok"]
+    assert found["undercut-local"]["value"] > 0.1
+    assert "a base radius larger by 6 would be free of it" in found["undercut-local"]["detail"]
+    assert not (tmp_path / "sharp").exists()
+    rejected = tmp_path / "sharp.rejected"
+    assert json.loads((rejected / "report.json").read_text(encoding="utf-8"))["ok"] is False
+    assert [entry.name for entry in rejected.iterdir()] == ["report.json"]
+
+
+def test_undercut_trimmed_on_request_tells_the_lost_motion(tmp_path: Path) -> None:
+    recipe = read(UNDERCUT % b", undercut: trim", "sharp.yaml")
+    outcome = pipeline.export(recipe, tmp_path)
+    found = {check["name"]: check for check in outcome.report["checks"] if "file" not in check}
+    assert "trimmed" in found["undercut-local"]["detail"]
+    depth = found["undercut-local"]["value"]
+    for file in outcome.report["files"]:
+        # what the follower drops by is what the trimmed metal no longer gives
+        assert file["motion"]["max"] == pytest.approx(depth, abs=0.003)
+        assert file["geometry_error"] <= 0.001
+    assert outcome.ok
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (b"cam: {kind: support, p: 25 + t}", "p jumps"),
+        (b"cam: {kind: support, p: 25 + sin(t/2)}", "jumps"),
+        (b"cam: {kind: support, p: 25 + log(cos(t))}", "does not exist"),
+        (
+            b"cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 180, law: {polynomial: [0, 1]}}]}",
+            "does not join over the half turn",
+        ),
+        (b"cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 2000}}}", "below 1"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_place_and_reason(text: bytes, words: str, tmp_path: Path) -> None:
+    recipe = read(text + b"\npart: {thickness: 5}\nexport: {tolerance: 0.001, files: [dxf]}\n", "bad.yaml")
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.export(recipe, tmp_path)
+    (error,) = caught.value.errors
+    assert words in error.problem
+    assert error.line == 1
+    assert error.path.startswith("cam.")
+    assert not (tmp_path / "bad").exists()
+
+
+def test_tolerance_that_single_precision_cannot_hold_is_refused_with_the_figure(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("shu-wu.yaml"))
+    recipe = replace(recipe, export=replace(recipe.export, tolerance=1e-6))
+    with pytest.raises(RecipeErrors, match="single precision") as caught:
+        pipeline.export(recipe, tmp_path)
+    assert "at least" in str(caught.value)
+    assert not (tmp_path / "shu-wu").exists()
+
+
+def test_a_scene_without_dxf_imports_no_dxf_library(tmp_path: Path) -> None:
+    import subprocess
+    import sys
+
+    code = (
+        "import sys; from pathlib import Path; from dataclasses import replace\n"
+        "from camgeo import pipeline; from camgeo.recipe.load import load\n"
+        f"r = load({str(RECIPES[0])!r})\n"
+        "r = replace(r, export=replace(r.export, files=tuple(f for f in r.export.files if f.kind == 'stl')))\n"
+        f"assert pipeline.export(r, Path({str(tmp_path)!r})).ok\n"
+        "heavy = {'ezdxf', 'shapely', 'trimesh', 'scipy', 'manifold3d', 'matplotlib', 'pydantic', 'multiprocessing'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_skipped_stages_are_listed_with_the_reason(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("shu-wu.yaml"))
+    recipe = replace(recipe, part=replace(recipe.part, bore=None))
+    report = pipeline.export(recipe, tmp_path, only=("dxf",)).report
+    skipped = {item["what"]: item["why"] for item in report["skipped"]}
+    assert skipped["stl"] == "left out by --only"
+    assert "bore" in skipped
+    assert not any(stage["name"].endswith("stl") for stage in report["stages"])
