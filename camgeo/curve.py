@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 CELLS_PER_TURN = 96  # proved bounds are kept for about this many stretches; more cost time, fewer cost sharpness
 CELLS_PER_STRETCH = 6  # and for at least this many between two breaks
-SHARP_ENOUGH = 3.0  # a cell is halved while its bound is this many times what its own ends and middle show
+SHARP_ENOUGH = 4.0  # a cell is halved while its bound is this many times what its own ends and middle show
 HALVINGS = 7
 
 
@@ -119,6 +119,11 @@ class Shape(Protocol):
         """For each stretch between breaks, (m, 2): speed and turn where both are exactly constant, else nan."""
         ...
 
+    @property
+    def radii(self) -> Array:
+        """For each stretch between breaks, (m,): the signed radius of curvature if that is exactly constant, else nan."""
+        ...
+
     def sample(self, t: Array, side: int = 1) -> Frame:
         """Frame at parameters t (n,); at a break the limit from above (side 1) or from below (side -1)."""
         ...
@@ -160,7 +165,7 @@ class Curve:
 
     @staticmethod
     def whole(shape: Shape) -> Curve:
-        """The curve of the whole turn, begun at a break so that no stretch runs across the seam.
+        """Curve of the whole turn, begun at a break so that no stretch runs across the seam.
 
         A break at which a convex stretch meets a concave one is no place to begin; where all are such, the curve begins
         in the middle of a stretch.
@@ -198,21 +203,40 @@ class Curve:
         """Frame at parameters t (n,); see `Shape.sample`."""
         return self.shape.sample(t, side)
 
+    def stretch_of(self, t: Array) -> NDArray[np.intp]:
+        """Index of the shape's stretch in which each parameter (n,) lies, as `Shape.steady` counts them."""
+        breaks = np.asarray(self.shape.breaks, dtype=np.float64)
+        if breaks.size == 0:
+            return np.zeros(t.shape, dtype=np.intp)
+        return (np.searchsorted(breaks, t % self.shape.period, side="right") - 1) % breaks.size
+
     def span(self, low: Array, high: Array) -> tuple[Frame, Frame]:
         """Frames at the two ends of intervals that span no break, each taken from inside its interval."""
         return self.shape.sample(low, 1), self.shape.sample(high, -1)
 
+    @cached_property
+    def _steady(self) -> Array:
+        return self.shape.steady
+
+    @cached_property
+    def _radii(self) -> Array:
+        return self.shape.radii
+
+    def _index(self, stretch: Sequence[float] | Array) -> int:
+        """Which of the shape's stretches between breaks holds this one."""
+        breaks = np.asarray(self.shape.breaks, dtype=np.float64)
+        middle = (0.5 * (stretch[0] + stretch[1])) % self.shape.period
+        return (int(np.searchsorted(breaks, middle, side="right")) - 1) % breaks.size if breaks.size else 0
+
     def steady(self, stretch: Sequence[float] | Array) -> tuple[float, float] | None:
         """Speed and turn where both are exactly constant over a stretch (a dwell, a Reuleaux arc), else None."""
-        breaks = np.asarray(self.shape.breaks, dtype=np.float64)
-        table = self.shape.steady
-        if breaks.size == 0:
-            index = 0
-        else:
-            middle = (0.5 * (stretch[0] + stretch[1])) % self.shape.period
-            index = (int(np.searchsorted(breaks, middle, side="right")) - 1) % breaks.size
-        speed, turn = float(table[index, 0]), float(table[index, 1])
-        return None if np.isnan(speed) else (speed, turn)
+        speed, turn = self._steady[self._index(stretch)]
+        return None if np.isnan(speed) else (float(speed), float(turn))
+
+    def radius(self, stretch: Sequence[float] | Array) -> float | None:
+        """Signed radius of curvature, in mm, where a stretch is exactly a circular arc, however fast it is run along."""
+        radius = float(self._radii[self._index(stretch)])
+        return None if np.isnan(radius) else radius
 
 
 @dataclass(frozen=True)

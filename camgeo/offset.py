@@ -40,6 +40,11 @@ class Parallel:
         table = self.base.steady
         return np.column_stack([table[:, 0] - self.distance * table[:, 1], table[:, 1]])
 
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,)."""
+        return self.base.radii - self.distance
+
     def sample(self, t: Array, side: int = 1) -> Frame:
         """Frame at parameters t (n,)."""
         at = self.base.sample(t, side)

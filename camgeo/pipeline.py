@@ -91,7 +91,7 @@ def export(
     requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
     with Run(out, recipe.name) as run:
         found = _produced(recipe, requests, run.folder, clock)
-        kept = run.kept(recipe.export.files) if only else ()
+        kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
         (run.folder / REPORT).write_text(encoded(report), encoding="utf-8")
         names = [file.path.name for file in found.files]

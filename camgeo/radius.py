@@ -54,11 +54,21 @@ def least_radius(curve: Curve) -> tuple[float, float]:
     possible = _may_hold_least(cells)
     if not possible.any():
         return math.inf, float(cells.low[0])
+    # circular arcs need no search, and would not end one
+    arcs = curve.shape.radii[curve.stretch_of(0.5 * (cells.low + cells.high))]
+    exact = np.where(possible & (arcs > 0.0), arcs, np.inf)
+    first = int(np.argmin(exact))
+    best, at = float(exact[first]), float(cells.low[first])
+    possible &= np.isnan(arcs)
+    if not possible.any():
+        return best, at
     state = _Intervals.of(
         curve, cells.low[possible], cells.high[possible], cells.rows[6, possible], cells.rows[7, possible]
     )
     tolerance = SHARPNESS * _extent(state.at_low)
-    best, at = _least_end(state)
+    least, where = _least_end(state)
+    if least < best:
+        best, at = least, where
     for _ in range(LEVELS):
         dips = state.part(state.dips & (state.floor(best - tolerance) < 0.0))
         bottoms = roots(lambda t: _radius_slope(curve.sample(t)), dips.low, dips.high, 1e-7)

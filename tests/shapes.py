@@ -31,6 +31,10 @@ class Polar:
     def steady(self):
         return np.array([[np.nan, np.nan]])
 
+    @property
+    def radii(self):
+        return np.array([np.nan])
+
     def rates(self, t):
         r = self.radius(t)
         slope = r.derivative()
@@ -68,6 +72,10 @@ class Moved:
     @property
     def steady(self):
         return self.shape.steady
+
+    @property
+    def radii(self):
+        return self.shape.radii
 
     def sample(self, t, side=1):
         f = self.shape.sample(t, side)

@@ -40,6 +40,11 @@ class SupportShape:
         radius = np.where(self.lift.steady, self.lift.radius, np.nan)
         return np.column_stack([radius, np.where(np.isnan(radius), np.nan, 1.0)])
 
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,)."""
+        return self.lift.radius
+
     def sample(self, t: Array, side: int = 1) -> Frame:
         """Frame at normal directions t (n,)."""
         p = self.lift.derivatives(t, 3, side)

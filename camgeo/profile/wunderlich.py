@@ -15,13 +15,18 @@ import numpy as np
 
 from camgeo.curve import Bounds, Frame
 from kin import jet
+from kin.ball import Ball
 from kin.jet import BallJet, Jet
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.curve import Array
     from kin.transmission import Transmission
 
 Series = TypeVar("Series", Jet, BallJet)
+
+ROUNDING = 1e-10  # relative: what the rounding of a few dozen operations is far below
 
 
 @dataclass(frozen=True)
@@ -29,10 +34,12 @@ class PitchShape:
     """Path of a roller's centre round the standing cam.
 
     In the complex plane the centre is ``c = l (exp(i phi) + exp(i chi))``, ``chi = phi - psi - alpha``: the pivot and
-    the arm. That form keeps every digit and gives, with a = phi', b = chi', g = psi + alpha,
+    the arm. That form keeps every digit and gives, with a = phi', b = chi' = a - psi', h = (psi + alpha)/2,
 
-        sigma^2 = l^2 (a^2 + b^2 + 2 a b cos g),
-        omega sigma^2 / l^2 = a^3 + b^3 + a b (a + b) cos g + (a' b - a b') sin g.
+        (sigma/l)^2 = psi'^2 + 4 a b cos^2 h,
+        omega = (a + b)/2 (1 + psi'^2 l^2/sigma^2) + (a psi'' - a' psi') sin 2h l^2/sigma^2,
+
+    sums in which nothing cancels: a and b are positive where the cam can be turned through.
     """
 
     law: Transmission
@@ -50,13 +57,12 @@ class PitchShape:
     @property
     def steady(self) -> Array:
         """Speed and turn (m, 2) where the follower rests and the pitch curve is a circle about the shaft."""
-        count = self.law.steady.size
-        out = np.full((count, 2), np.nan)
-        for i, (low, high) in enumerate(_stretches(self.law)):
-            if self.law.steady[i]:
-                at = self.sample(np.array([0.5 * (low + high)]))
-                out[i] = at.speed[0], at.turn[0]
-        return out
+        return _steady(self, self.law)
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,): dwells, and the arcs of a law made from an arc."""
+        return self.law.pitch_arcs[:, 2]
 
     def sample(self, t: Array, side: int = 1) -> Frame:
         """Frame at parameters t (n,) of the law."""
@@ -73,21 +79,21 @@ class PitchShape:
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
-        phi, psi = self.law.jets(BallJet.variable(low, high, 4))
-        return _bounds(*self._rates(phi, psi))
+        return _bounds(self.law, low, high, self._rates)
 
     def _rates(self, phi: Series, psi: Series) -> tuple[Series, Series]:
         """Speed and turn from phi and psi: two orders fewer."""
-        a = phi.derivative()
-        b = a - psi.derivative()
-        a_slope, b_slope = a.derivative(), b.derivative()
-        order = a_slope.order
-        a, b, angle = _cut(a, order), _cut(b, order), _cut(psi, order) + self.law.alpha
-        cosine, sine = jet.cos(angle), jet.sin(angle)
-        product = a * b
-        square = a * a + b * b + product * cosine * 2.0
-        cubic = a * a * a + b * b * b + product * (a + b) * cosine
-        return jet.sqrt(square) * self.law.arm, (cubic + (a_slope * b - a * b_slope) * sine) / square
+        a, slope = phi.derivative(), psi.derivative()
+        a_slope, bend = a.derivative(), slope.derivative()
+        order = bend.order
+        a, slope, half = _cut(a, order), _cut(slope, order), (_cut(psi, order) + self.law.alpha) * 0.5
+        cosine, sine = jet.cos(half), jet.sin(half)
+        b = a - slope
+        lean = slope**2
+        square = lean + a * b * cosine**2 * 4.0
+        inverse = square**-1
+        turn = (a + b) * (lean * inverse + 1.0) * 0.5 + (a * bend - a_slope * slope) * sine * cosine * inverse * 2.0
+        return jet.sqrt(square) * self.law.arm, turn
 
 
 @dataclass(frozen=True)
@@ -112,13 +118,13 @@ class FlatPairShape:
     @property
     def steady(self) -> Array:
         """Speed and turn (m, 2) where the follower rests."""
-        count = self.law.steady.size
-        out = np.full((count, 2), np.nan)
-        for i, (low, high) in enumerate(_stretches(self.law)):
-            if self.law.steady[i]:
-                at = self.sample(np.array([0.5 * (low + high)]))
-                out[i] = at.speed[0], at.turn[0]
-        return out
+        return _steady(self, self.law)
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,): dwells."""
+        steady = self.steady
+        return steady[:, 0] / steady[:, 1]
 
     def sample(self, t: Array, side: int = 1) -> Frame:
         """Frame at parameters t (n,) of the law."""
@@ -135,8 +141,7 @@ class FlatPairShape:
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
-        phi, psi = self.law.jets(BallJet.variable(low, high, 4))
-        return _bounds(*self._rates(phi, psi))
+        return _bounds(self.law, low, high, self._rates)
 
     def _rates(self, phi: Series, psi: Series) -> tuple[Series, Series]:
         """Speed and turn from phi and psi: with k = dh/dt, ``r + r'' = 2 l (cos h (1 - k^2) - sin h dk/dt)``."""
@@ -147,6 +152,17 @@ class FlatPairShape:
         half, turn, k = _cut(half, slope.order), _cut(turn, slope.order), _cut(k, slope.order)
         speed = (turn * (1.0 - k * k) * jet.cos(half) - slope * jet.sin(half)) * (2.0 * self.law.arm)
         return speed, turn
+
+
+def _steady(shape: PitchShape | FlatPairShape, law: Transmission) -> Array:
+    """Speed and turn (m, 2) on the stretches where the follower rests; nan on the others."""
+    rests = law.steady
+    out = np.full((rests.size, 2), np.nan)
+    if rests.any():
+        middle = np.array([0.5 * (low + high) for low, high in _stretches(law)])[rests]
+        at = shape.sample(middle)
+        out[rests] = np.column_stack([at.speed, at.turn])
+    return out
 
 
 def _stretches(law: Transmission) -> list[tuple[float, float]]:
@@ -170,19 +186,43 @@ def _jet(rows: Array) -> Jet:
     return Jet(rows / scale[:, None])
 
 
-def _bounds(speed: BallJet, turn: BallJet) -> Bounds:
-    """Bounds from enclosures of speed and turn up to their second derivatives at least."""
-    speed_low, speed_high = speed.bounds()
-    turn_low, turn_high = turn.bounds()
-    speed_size = np.maximum(np.abs(speed_low), np.abs(speed_high))
-    turn_size = np.maximum(np.abs(turn_low), np.abs(turn_high))
+def _bounds(
+    law: Transmission, low: Array, high: Array, rates: Callable[[Series, Series], tuple[Series, Series]]
+) -> Bounds:
+    """Bounds over intervals (n,) from the law and from speed and turn as functions of phi and psi.
+
+    Interval arithmetic alone loses how its operands hang together. So each derivative, of the law as of speed and
+    turn, is taken from the middle of the interval, plus half the width times what bounds the next derivative; only the
+    last comes from the arithmetic.
+    """
+    half = 0.5 * (high - low)
+    exact = law.jets(Jet.variable(low + half, 5))
+    law_balls = law.jets(BallJet.variable(low, high, 5))
+    phi, psi = (_sharpened(ball, jet_, half) for ball, jet_ in zip(law_balls, exact, strict=True))
+    found = rates(_ball(*phi), _ball(*psi))
+    speed, turn = (_sharpened(ball, jet_, half) for ball, jet_ in zip(found, rates(*exact), strict=True))
+    speed_size, turn_size = np.abs(speed).max(axis=0), np.abs(turn).max(axis=0)
     return Bounds(
-        speed_low[0],
-        speed_high[0],
-        turn_low[0],
-        turn_high[0],
-        speed_size[1],
-        turn_size[1],
-        speed_size[2],
-        turn_size[2],
-    )
+        speed[0][0], speed[1][0], turn[0][0], turn[1][0], speed_size[1], turn_size[1], speed_size[2], turn_size[2]
+    )  # fmt: skip
+
+
+def _sharpened(ball: BallJet, middle: Jet, half: Array) -> tuple[Array, Array]:
+    """Lower and upper bounds (order + 1, n) of the derivatives over intervals, given exactly in their middles."""
+    low, high = ball.bounds()
+    low, high = low.copy(), high.copy()
+    centre = middle.derivatives()
+    # the rounding of the middle's own derivatives is far below this part of them
+    room = ROUNDING * np.abs(centre).max(axis=1)
+    for k in range(len(centre) - 2, -1, -1):
+        spread = half * np.maximum(np.abs(low[k + 1]), np.abs(high[k + 1])) * (1.0 + ROUNDING) + room[k]
+        low[k] = np.fmax(low[k], centre[k] - spread)
+        high[k] = np.fmin(high[k], centre[k] + spread)
+    return low, high
+
+
+def _ball(low: Array, high: Array) -> BallJet:
+    """Ball jets from bounds of true derivatives (order + 1, n)."""
+    factorial = np.array([math.factorial(k) for k in range(len(low))], dtype=np.float64)[:, None]
+    ball = Ball.between(low, high)
+    return BallJet(ball.mid / factorial, ball.rad / factorial * (1.0 + ROUNDING) + 1e-15 * np.abs(ball.mid))
