@@ -251,10 +251,11 @@ def _verify(arguments: argparse.Namespace) -> int:
         if arguments.tolerance is not None:
             recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
         paths = [Path(name) for name in arguments.files]
-        missing = [path for path in paths if not path.is_file()]
-        if missing:
-            for path in missing:
-                _complain(f"{path}: there is no such file")
+        faults = [f"{path}: there is no such file" for path in paths if not path.is_file()]
+        faults += [f"{p}: neither a .dxf nor a .stl file" for p in paths if p.suffix.lower() not in {".dxf", ".stl"}]
+        if faults:
+            for fault in faults:
+                _complain(fault)
             return WRONG
         report = pipeline.judged(recipe, paths)
     except RecipeErrors as errors:
