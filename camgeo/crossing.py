@@ -60,9 +60,8 @@ def seen_crossings(t: Array, points: Array, period: float) -> Array:
     edge = np.roll(points, -1, axis=0) - points
     length = np.diff(np.append(t, t[0] + period))
     # side[i, j]: on which side of edge i vertex j lies
-    side = (
-        edge[:, 0, None] * (points[None, :, 1] - points[:, None, 1])
-        - edge[:, 1, None] * (points[None, :, 0] - points[:, None, 0])
+    side = edge[:, 0, None] * (points[None, :, 1] - points[:, None, 1]) - edge[:, 1, None] * (
+        points[None, :, 0] - points[:, None, 0]
     )
     after = np.roll(side, -1, axis=1)
     parted = (side < 0.0) != (after < 0.0)

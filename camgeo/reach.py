@@ -150,7 +150,7 @@ def narrowest_necks(pitch: Pitch, below: float) -> tuple[Neck, ...]:
     limit = below
     for _ in range(LEVELS):
         if boxes.low.shape[0] == 0:
-            return _distinct(found, limit, pitch.contour.shape.period)
+            return _distinct([n for n in found if n.half < below], limit, pitch.contour.shape.period)
         if boxes.low.shape[0] > MOST_BOXES:
             break
         boxes, limit = _sifted(pitch, boxes, limit, found)

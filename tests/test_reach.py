@@ -1,0 +1,116 @@
+"""Necks of pitch curves, against closed forms and against all pairs of many points."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapes import PEAR, Polar, booth, waves
+
+from camgeo.curve import Curve
+from camgeo.offset import Parallel
+from camgeo.radius import least_radius
+from camgeo.reach import NECK_SHARPNESS, Pitch, narrowest_necks, neck_from, rolling_radius
+from kin import jet
+
+LENGTH = 60.0
+
+
+def pitch(shape, e=1.0):
+    return Pitch(Curve.whole(Parallel(shape, e)), e)
+
+
+def least_of_pairs(curve, count=700):
+    t = 2 * np.pi * np.arange(count) / count
+    radius = rolling_radius(curve, t, t)
+    np.fill_diagonal(radius, np.inf)
+    return radius.min()
+
+
+@pytest.mark.parametrize("share", [0.5, 0.8, 0.95])
+@pytest.mark.parametrize("e", [1.0, 40.0])
+def test_the_waist_of_booths_lemniscate(share, e):
+    waist = LENGTH * math.sqrt(2.0 * (1.0 - share))
+    curve = pitch(booth(LENGTH, LENGTH * math.sqrt(share)), e)
+    (neck,) = narrowest_necks(curve, 1.001 * waist)
+    assert neck.half == pytest.approx(waist, rel=1e-13)
+    assert (neck.first, neck.second) == pytest.approx((0.5 * math.pi, 1.5 * math.pi), abs=1e-9)
+    assert narrowest_necks(curve, waist * (1.0 - 1e-8)) == ()
+    assert len(narrowest_necks(curve, waist * (1.0 + 1e-8))) == 1
+
+
+def test_a_convex_curve_has_no_neck():
+    # half of the narrowest double normal is 53.7 mm, but the ends are bent more
+    curve = pitch(booth(LENGTH, 0.55 * LENGTH))
+    assert narrowest_necks(curve, least_radius(Curve.whole(curve.contour.shape.base))[0]) == ()
+
+
+def test_the_neck_of_a_pear_is_a_double_normal():
+    curve = pitch(PEAR, 10.0)
+    (neck,) = narrowest_necks(curve, 18.0)
+    ends = np.array([neck.first, neck.second])
+    frame = PEAR.sample(ends)
+    chord = frame.point[1] - frame.point[0]
+    assert np.hypot(*chord) == pytest.approx(2.0 * neck.half, rel=1e-14)
+    assert frame.tangent @ chord == pytest.approx([0.0, 0.0], abs=1e-11)
+    assert neck.half <= least_of_pairs(curve) <= 1.001 * neck.half
+
+
+@pytest.mark.parametrize("place", [0.0, 0.3, 1.234])
+def test_opposite_notches_make_a_neck(place):
+    # on a circle of 30 mm, about as narrow as their shoulders allow
+    def notched(t):
+        a = jet.cos(t - place)
+        return t.constant(30.0) - (jet.exp((a - 1.0) * 5.0) + jet.exp((a + 1.0) * -5.0)) * 20.0
+
+    curve = pitch(Polar(notched), 0.3)
+    half = 10.0 - 20.0 * math.exp(-10.0)
+    assert least_radius(curve.contour)[0] + 0.3 > half
+    (neck,) = narrowest_necks(curve, half + 1e-3)
+    assert neck.half == pytest.approx(half, rel=1e-13)
+    assert narrowest_necks(curve, half - 1e-6) == ()
+
+
+def test_alike_necks_are_all_found():
+    # a bulb between two others: a vertical neck on either side, where y has its least value
+    def height(t):
+        r = 20 + 10.85 * mpmath.cos(2 * t) + 0.89 * mpmath.cos(4 * t) - 0.77 * mpmath.cos(6 * t)
+        return r * mpmath.sin(t)
+
+    at = mpmath.findroot(lambda t: mpmath.diff(height, t), (1.2, 1.4), solver="anderson")
+    curve = pitch(waves(20.0, (2, 10.85, 0.0), (4, 0.89, 0.0), (6, 0.77, math.pi)), 0.5)
+    necks = narrowest_necks(curve, least_radius(curve.contour)[0] + 0.5)
+    assert [n.half for n in necks] == pytest.approx([float(height(at))] * 2, rel=1e-13)
+    assert [n.first for n in necks] == pytest.approx([float(at), math.pi - float(at)], abs=1e-8)
+    assert [n.second for n in necks] == pytest.approx([2 * math.pi - float(at), math.pi + float(at)], abs=1e-8)
+
+
+@given(
+    st.lists(st.tuples(st.integers(2, 7), st.floats(-4.0, 4.0), st.floats(0.0, 6.28)), min_size=1, max_size=3),
+    st.floats(1.0, 25.0),
+)
+@settings(deadline=None, max_examples=40)
+def test_no_pair_of_points_lies_closer_than_is_proved(terms, below):
+    shape = waves(25.0, *terms)
+    curve = pitch(shape, 0.5)
+    least = least_radius(Curve.whole(shape))[0]
+    below = min(below, least)
+    necks = narrowest_necks(curve, below)
+    seen = least_of_pairs(curve)
+    proved = min([below, *(n.half for n in necks)])
+    assert seen >= proved * (1.0 - NECK_SHARPNESS) - 1e-9
+    for neck in necks:
+        assert neck.half < below
+        assert seen <= neck.half * 1.01
+
+
+def test_newtons_method_tells_inside_from_outside():
+    curve = pitch(booth(LENGTH, 0.9 * LENGTH))
+    assert neck_from(curve, 1.5, 4.8).half == pytest.approx(LENGTH * math.sqrt(0.38), rel=1e-13)
+    # two lobes of a star face each other across the outside
+    star = pitch(waves(20.0, (5, 8.0, 0.0)), 0.1)
+    assert neck_from(star, 0.1, 2 * math.pi / 5 - 0.1) is None
