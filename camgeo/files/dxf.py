@@ -83,15 +83,16 @@ def write_dxf(
     (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment on top. `$EXTMIN` and
     `$EXTMAX` are the exact extremes of all that is drawn. `name` and `about` go into comments.
 
-    Raises ValueError for a spline in R12, for a contour that comes twice through a point, and for anything drawn twice
-    on one layer or without extent; OSError as the file system does.
+    Nothing is drawn twice: shapes of the reference that coincide become one entity with all their names.
+
+    Raises ValueError for a spline in R12, for a contour that comes twice through a point, and for a circle or a span
+    without extent; OSError as the file system does.
     """
     if version not in VERSIONS:
         raise ValueError(f"DXF version must be one of {', '.join(VERSIONS)}, not {version!r}")
     if mm not in UNITS:
         raise ValueError(f"a drawing unit must be 1.0 or 25.4 mm, not {mm!r}")
     unit, insunits, measurement = UNITS[mm]
-    _check_reference(reference)
 
     from ezdxf.document import Drawing  # ezdxf.new() warns whenever it makes an R12 drawing
     from ezdxf.enums import InsertUnits
@@ -102,7 +103,7 @@ def write_dxf(
     boxes = [_draw_outline(space, outline, mm, _CUT)[1]]
     if bore is not None:
         boxes.append(_draw_circle(space, Circle("bore", (0.0, 0.0), 0.5 * bore), mm, _BORE)[1])
-    for item in reference:
+    for item, names in _distinct(reference):
         if isinstance(item, Circle):
             entity, box = _draw_circle(space, item, mm, _REFERENCE)
         elif isinstance(item, Point):
@@ -110,7 +111,7 @@ def write_dxf(
             entity, box = space.add_point((x, y), {"layer": _REFERENCE}), (x, y, x, y)
         else:
             entity, box = _draw_outline(space, item.outline, mm, _REFERENCE)
-        entity.set_xdata(APPLICATION, [(1000, _comment(item.name))])
+        entity.set_xdata(APPLICATION, [(1000, _comment(label)) for label in names])
         boxes.append(box)
 
     corners = np.array(boxes)
@@ -211,8 +212,9 @@ def _check_points(points: Array) -> None:
         raise ValueError(f"the contour comes twice through ({where.real!r}, {where.imag!r})")
 
 
-def _check_reference(reference: Sequence[Reference]) -> None:
-    seen: dict[tuple[float, ...] | int, str] = {}
+def _distinct(reference: Sequence[Reference]) -> list[tuple[Reference, list[str]]]:
+    """Each shape once, with all the names it is given: a prime circle may be the pivots' circle as well."""
+    found: dict[tuple[float, ...] | int, tuple[Reference, list[str]]] = {}
     for item in reference:
         key: tuple[float, ...] | int
         if isinstance(item, Circle):
@@ -221,9 +223,8 @@ def _check_reference(reference: Sequence[Reference]) -> None:
             key = item.at
         else:
             key = id(item.outline)
-        if key in seen:
-            raise ValueError(f"reference: {item.name} is the same as {seen[key]}")
-        seen[key] = item.name
+        found.setdefault(key, (item, []))[1].append(item.name)
+    return list(found.values())
 
 
 def _comment(text: str) -> str:
