@@ -22,7 +22,7 @@ INK, METAL, ACCENT = "#26323f", "#cfd8e3", "#c8442c"
 
 def main() -> None:
     """Export, read back, draw."""
-    figure, axes = plt.subplots(2, 3, figsize=(11, 6.2), height_ratios=[3, 1], constrained_layout=True)
+    figure, axes = plt.subplots(2, 3, figsize=(11, 5.6), height_ratios=[3, 1.1], constrained_layout=True)
     names = ("as-figure-2a", "shu-wu", "w-figure-9")
     titles = ("support function, yoke", "motion law, constant breadth", "oscillating double roller")
     for column, (name, title) in enumerate(zip(names, titles, strict=True)):
@@ -45,7 +45,8 @@ def main() -> None:
 def draw_mechanism(axis, drawing, follower, phi: float) -> None:
     """The cam as read back, its bore and its follower at one shaft angle, in the cam frame."""
     fine = np.linspace(0.0, 2.0 * np.pi, 2001)
-    points = np.append(drawing.contour.vertices, drawing.contour.vertices[:1], axis=0)
+    arcs = drawing.contour.as_arcs()[0]
+    points = np.stack([arcs.points(share * arcs.length) for share in np.linspace(0.0, 1.0, 33)], axis=1).reshape(-1, 2)
     axis.fill(points[:, 0], points[:, 1], facecolor=METAL, edgecolor=INK, lw=1.2)
     bore = drawing.holes[0]
     radius = np.hypot(*bore.vertices[0])
@@ -64,7 +65,7 @@ def draw_mechanism(axis, drawing, follower, phi: float) -> None:
         for angle in (phi - psi - law.alpha, phi - psi + law.alpha):
             centre = pivot + law.arm * np.array([np.cos(angle), np.sin(angle)])
             axis.plot(*np.column_stack([pivot, centre]), color=ACCENT, lw=1.6)
-            circle = centre + follower.roller_radius * np.column_stack([np.cos(fine), np.sin(fine)])
+            circle = centre + follower.radius * np.column_stack([np.cos(fine), np.sin(fine)])
             axis.fill(circle[:, 0], circle[:, 1], facecolor="#f3d6cf", edgecolor=ACCENT, lw=1.2)
         axis.plot(*pivot, "o", color=ACCENT, ms=5)
     axis.set_aspect("equal")
@@ -75,7 +76,7 @@ def draw_error(axis, degrees: np.ndarray, error: np.ndarray, report: dict) -> No
     """Motion error measured from the file, with its limit."""
     check = next(c for c in report["checks"] if c["name"] == "motion")
     scale = 1e3 if check["unit"] == "mm" else np.degrees(1e3)
-    unit = "um" if check["unit"] == "mm" else "mdeg"
+    unit = "µm" if check["unit"] == "mm" else "mdeg"
     for row in error:
         axis.plot(degrees, scale * row, color=INK, lw=0.6)
     for side in (-1, 1):
