@@ -107,11 +107,11 @@ def _radius(beziers: Beziers, row: Indices, t: Array) -> Array:
 def bearing_of(contour: Contour) -> Bearing:
     """Find what bears in every direction. Cost: one support evaluation for each break of the contour's support."""
     breaks = contour.normals
+    middle = np.mod(breaks + 0.5 * np.diff(breaks, append=breaks[:1] + TURN), TURN)
     if (contour.kind == LINE).all():
         normals, corners = contour.hull_edges
-        point = contour.vertices[corners[np.searchsorted(normals, breaks, side="right") - 1]]
+        point = contour.vertices[corners[np.searchsorted(normals, middle, side="right") - 1]]
         return Bearing(contour, breaks, point, np.full(len(breaks), -1))
-    middle = breaks + 0.5 * np.diff(breaks, append=breaks[:1] + TURN)
     found = contour.support(middle)
     ranges = contour.normal_ranges
     low, width = np.zeros(len(contour)), np.full(len(contour), -1.0)

@@ -120,9 +120,10 @@ def first_contact(obstacle: Arcs, arm: Arm, phi: Array) -> tuple[Array, Indices]
         won = (r == best[index]) & (r > 0.0)
         met[index[won]] = piece[won]
         begin = end
-    radius, piece_met = np.empty(len(angle)), np.empty(len(angle), dtype=np.intp)
-    radius[order] = np.where(met < 0, np.nan, best)
-    piece_met[order] = np.where(met < 0, -1, owner[met])
+    radius, piece_met = np.full(len(angle), np.nan), np.full(len(angle), -1)
+    touched = met >= 0
+    radius[order[touched]] = best[touched]
+    piece_met[order[touched]] = owner[met[touched]]
     return radius, piece_met
 
 

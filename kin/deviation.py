@@ -2,8 +2,9 @@
 
 From the file to the exact contour: the excess of every point, its extremes found piece by piece (`kin.extremes`). From
 the exact contour to the file: a closed contour within a tube about the exact one, whose feet go round it once, meets
-every normal of it inside the tube, so no point of the exact contour is farther from the file than the tube is wide. The
-feet also tell a contour that turns back on itself within the tube.
+every normal of it inside the tube, so no point of the exact contour is farther from the file than the tube is wide.
+That takes normals that do not cross inside the tube: tight corners, whose radius of curvature compares with the tube's
+width, are looked at on their own. The feet also tell a contour that turns back on itself within the tube.
 """
 
 from __future__ import annotations
@@ -15,13 +16,19 @@ import numpy as np
 
 from kin.arcs import Arcs, dot, left
 from kin.extremes import extremes
+from kin.nearest import nearest
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from kin.arcs import Array, Indices
-    from kin.envelope import Envelope, Feet
+    from kin.envelope import Envelope
+    from kin.foot import Feet
 
 RESOLUTION = 1e-11  # mm
 LEAST_PARTS = 1024  # a contour of fewer pieces is cut into about so many
+TIGHT = 4.0  # a radius of curvature below so many widths of the tube makes a tight corner
+CUT_OFF = 1e-9  # mm; points of the exact curve with more excess are no part of the trimmed contour
 MOST_TURN = 0.05  # rad; greatest turn of a part
 JOINED = 1e-12  # ends closer than this share of the contour's extent are one point
 
@@ -32,6 +39,7 @@ class Deviation:
 
     outside, inside     greatest excess, and greatest want, of metal, mm; one is below 0 if the contour lies wholly on
                         the other side
+    bare                greatest distance of a tight corner of the exact contour from this one, mm; 0 without any
     outside_at, ...     the envelope's parameters of those places
     rounds              how often the feet go round
     backwards           greatest length, mm, of a run in which they go back
@@ -41,15 +49,15 @@ class Deviation:
     outside_at: float
     inside: float
     inside_at: float
+    bare: float
+    bare_at: float
     rounds: int
     backwards: float
 
     @property
     def worst(self) -> tuple[float, float]:
         """Two-sided deviation, mm, and where: the envelope's parameter."""
-        if self.outside >= self.inside:
-            return self.outside, self.outside_at
-        return self.inside, self.inside_at
+        return max((self.outside, self.outside_at), (self.inside, self.inside_at), (self.bare, self.bare_at))
 
 
 def deviation(chain: Arcs, envelope: Envelope) -> Deviation:
@@ -70,15 +78,46 @@ def deviation(chain: Arcs, envelope: Envelope) -> Deviation:
     at_start = _along(feet, pieces.tangent, pieces.curvature)
     at_end = _along(end_feet, end_tangents, pieces.curvature)
     found = extremes(zero, pieces.length, at_start, at_end, inside, resolution=RESOLUTION)
+    bare, bare_at = _bare(chain, envelope, max(found.greatest, -found.least))
     advance = np.mod(end_feet.parameter - feet.parameter + np.pi, 2.0 * np.pi) - np.pi
     return Deviation(
         outside=found.greatest,
         outside_at=_parameter(pieces, envelope, found.greatest_index, found.greatest_at),
         inside=-found.least,
         inside_at=_parameter(pieces, envelope, found.least_index, found.least_at),
+        bare=bare,
+        bare_at=bare_at,
         rounds=round(float(advance.sum()) / (2.0 * np.pi)),
         backwards=_longest_run(np.where(advance < 0.0, np.abs(dot(ends - pieces.start, left(feet.normal))), 0.0)),
     )
+
+
+def _bare(chain: Arcs, envelope: Envelope, width: float) -> tuple[float, float]:
+    """Greatest distance from the chain of the exact contour's tight corners, and the parameter of that place."""
+    parameter, radius = envelope.radii()
+    tight = np.abs(radius) < TIGHT * width
+    if not envelope.regular:
+        parameter, tight = _trimmed(envelope, parameter, tight)
+    if not tight.any():
+        return 0.0, float("nan")
+    parameter = parameter[tight]
+    _, distance = nearest(chain, envelope.points(parameter))
+    worst = int(np.argmax(distance))
+    return float(distance[worst]), float(parameter[worst])
+
+
+def _trimmed(envelope: Envelope, parameter: Array, tight: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:
+    """Leave out what an undercut cuts off, and add the corners that it leaves."""
+    kept = envelope.feet(envelope.points(parameter)).excess <= CUT_OFF
+    after = np.roll(kept, -1)
+    edge = np.flatnonzero(kept != after)
+    low, high = parameter[edge], np.append(parameter[1:], parameter[0] + 2.0 * np.pi)[edge]
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        same = (envelope.feet(envelope.points(middle)).excess <= CUT_OFF) == kept[edge]
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    corner = np.where(kept[edge], low, high)
+    return np.concatenate([parameter, corner]), np.concatenate([tight & kept, np.ones(len(corner), dtype=bool)])
 
 
 def _along(feet: Feet, tangent: Array, curvature: Array) -> Array:
@@ -94,12 +133,7 @@ def _along(feet: Feet, tangent: Array, curvature: Array) -> Array:
 
 
 def _rolled(feet: Feet) -> Feet:
-    return type(feet)(
-        np.roll(feet.parameter, -1),
-        np.roll(feet.excess, -1),
-        np.roll(feet.normal, -1, axis=0),
-        np.roll(feet.curvature, -1),
-    )
+    return type(feet)(*(np.roll(row, -1, axis=0) for row in feet.rows))
 
 
 def _parameter(pieces: Arcs, envelope: Envelope, piece: int, s: float) -> float:

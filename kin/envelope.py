@@ -16,34 +16,13 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from kin.arcs import cross, dot, left, right, unit
+from kin.foot import TURN, Feet, Inverse, better, climb, gauss, grid, searched_again, two_best
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kin.arcs import Array, Indices
     from kin.transmission import Transmission
-
-TURN = 2.0 * np.pi
-COARSE = 4096  # samples from which the search for a foot starts
-FINE_STEP = 1e-5  # rad: a Newton step below this leaves the excess good to a third power of it
-MOST_STEPS = 60
-CHUNK = 4_000_000  # entries of a matrix of points against samples held at a time
-
-
-@dataclass(frozen=True, eq=False)
-class Feet:
-    """The feet of n points on an exact contour.
-
-    parameter (n,)      of the foot
-    excess (n,)         of the point, mm
-    normal (n, 2)       gradient of the excess
-    curvature (n,)      of the line of equal excess through the point, 1/mm
-    """
-
-    parameter: Array
-    excess: Array
-    normal: Array
-    curvature: Array
 
 
 class Envelope(Protocol):
@@ -56,8 +35,11 @@ class Envelope(Protocol):
     def feet(self, points: Array) -> Feet:
         """Feet of points (n, 2)."""
 
-    def samples(self, count: int) -> Array:
-        """Points of the contour at `count` equal steps of the parameter, and at its breaks: (m, 2)."""
+    def points(self, parameter: Array) -> Array:
+        """Points (n, 2) of the contour; of an undercut one also of the parts that are cut off."""
+
+    def radii(self) -> tuple[Array, Array]:
+        """Parameters (m,) closely round the turn, and radii of curvature there (m,), mm, negative where hollow."""
 
     def area_and_perimeter(self) -> tuple[float, float]:
         """Enclosed area and length of a regular contour, mm^2 and mm."""
@@ -72,41 +54,6 @@ class SupportLaw(Protocol):
 
     def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
         """Return p and its derivatives, (order + 1, n)."""
-
-
-class Inverse:
-    """Inverse of a rising function that gains 2 pi over its period 2 pi, from a table and one Newton step or more."""
-
-    def __init__(self, function: Callable[[Array], Array], breaks: Array) -> None:
-        """`function(x)` gives value and two derivatives, (3, n); `breaks` are where the second one jumps."""
-        self._function = function
-        x = grid(breaks)
-        y = function(x)[0]
-        self._x = np.concatenate([x - TURN, x, x + TURN])
-        self._y = np.concatenate([y - TURN, y, y + TURN])
-        self._middle = float(y[0]) + 0.5 * TURN
-
-    def __call__(self, y: Array) -> tuple[Array, Array]:
-        """Return x near the solutions, and the remaining steps to them, |step| below FINE_STEP: each (n,)."""
-        base = TURN * np.round((y - self._middle) / TURN)
-        x = np.interp(y - base, self._y, self._x)
-        step = np.zeros_like(x)
-        todo = np.arange(len(x))
-        for _ in range(MOST_STEPS):
-            value, slope, bend = self._function(x[todo])
-            miss = y[todo] - base[todo] - value
-            first = miss / slope
-            step[todo] = first - 0.5 * bend * first * first / slope
-            todo = todo[np.abs(step[todo]) > FINE_STEP]
-            if not len(todo):
-                break
-            x[todo] += step[todo]
-        return x + base, step
-
-
-def grid(breaks: Array, count: int = COARSE) -> Array:
-    """`count` equal steps of [0, 2 pi) and the breaks, rising and distinct."""
-    return np.unique(np.concatenate([np.arange(count) * (TURN / count), np.mod(breaks, TURN)]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,28 +89,40 @@ class FlatEnvelope:
 
     support: SupportLaw
 
+    def points(self, parameter: Array) -> Array:
+        """Points c = p u + p' n at angles theta (n,): (n, 2)."""
+        p, slope = self.support.derivatives(parameter, 1)
+        u = unit(parameter)
+        points: Array = p[:, None] * u + slope[:, None] * left(u)
+        return points
+
     @cached_property
-    def _table(self) -> tuple[Array, Array, Array, Array]:
-        """theta, point, smaller radius of curvature of the two sides, p."""
+    def _table(self) -> tuple[Array, Array, Array]:
+        """theta, smaller radius of curvature rho of the two sides, p."""
         theta = grid(self.support.breaks)
-        p, slope, bend = self.support.derivatives(theta, 2)
+        p, _, bend = self.support.derivatives(theta, 2)
         left_bend = self.support.derivatives(self.support.breaks, 2, -1)[2]
         rho = p + bend
         at = np.searchsorted(theta, np.mod(self.support.breaks, TURN))
         rho[at] = np.minimum(rho[at], p[at] + left_bend)
-        u = unit(theta)
-        return theta, p[:, None] * u + slope[:, None] * left(u), rho, p
+        return theta, rho, p
+
+    def radii(self) -> tuple[Array, Array]:
+        """Angles theta (m,) closely round the turn, and rho (m,), mm."""
+        theta, rho, _ = self._table
+        return theta, rho
 
     @cached_property
     def regular(self) -> bool:
         """Whether rho >= 0 all round."""
-        _, _, rho, p = self._table
+        _, rho, p = self._table
         return bool(rho.min() >= -1e-12 * np.abs(p).max())
 
     @cached_property
     def _start(self) -> tuple[Array, Array, Array]:
         """A point inside (the mean of c(theta), Steiner's), and theta over the direction from there."""
-        theta, point, _, _ = self._table
+        theta, _, _ = self._table
+        point = self.points(theta)
         inside = point.mean(axis=0)
         away = np.unwrap(np.arctan2(point[:, 1] - inside[1], point[:, 0] - inside[0]))
         away = np.maximum.accumulate(away)
@@ -172,12 +131,18 @@ class FlatEnvelope:
 
     def feet(self, points: Array) -> Feet:
         """Feet of points (n, 2): where X.u - p is greatest."""
-        if self.regular:
-            inside, direction, theta = self._start
-            return self._climb(points, np.interp(_angle(points - inside), direction, theta))
-        theta, _, _, p = self._table
+        if not self.regular:
+            return self._search(points)
+        inside, direction, theta = self._start
+        feet = self._climb(points, np.interp(_angle(points - inside), direction, theta))
+        return searched_again(feet, points, self, self._search)
+
+    def _search(self, points: Array) -> Feet:
+        """Feet found from samples all round."""
+        theta, _, p = self._table
         u = unit(theta)
-        return _best([self._climb(points, theta[j]) for j in two_best(lambda x: x @ u.T - p, points, len(theta))])
+        first, second = two_best(lambda x: x @ u.T - p, points, len(theta))
+        return better(self._climb(points, theta[first]), self._climb(points, theta[second]))
 
     def _climb(self, points: Array, theta: Array) -> Feet:
         def slopes(x: Array, which: Indices) -> tuple[Array, Array, Array]:
@@ -187,19 +152,11 @@ class FlatEnvelope:
             away = dot(here, u)
             return away - p, dot(here, left(u)) - slope, away + bend
 
-        theta, step, value, slope, bend = climb(slopes, theta)
+        theta, step, value, slope, bend = climb(slopes, theta, self.support.breaks)
         curved = bend > 0.0
         radius = np.where(curved, bend, 1.0)
         excess = value + np.where(curved, 0.5 * slope * slope / radius, 0.0)
         return Feet(theta + step, excess, unit(theta + step), np.where(curved, 1.0 / radius, 0.0))
-
-    def samples(self, count: int) -> Array:
-        """Points at `count` equal steps of theta, and at the breaks (m, 2)."""
-        theta = grid(self.support.breaks, count)
-        p, slope = self.support.derivatives(theta, 1)
-        u = unit(theta)
-        points: Array = p[:, None] * u + slope[:, None] * left(u)
-        return points
 
     def area_and_perimeter(self) -> tuple[float, float]:
         """1/2 integral of (p^2 - p'^2), and integral of p (Cauchy)."""
@@ -247,18 +204,30 @@ class RollerEnvelope:
     pitch: Pitch
     radius: float
 
+    def points(self, parameter: Array) -> Array:
+        """Points (n, 2) at the radius inside the pitch curve."""
+        point, first, _ = self.pitch.points(parameter)
+        points: Array = point - self.radius * right(first) / np.hypot(first[:, 0], first[:, 1])[:, None]
+        return points
+
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
-        """Parameter, pitch point, contour point."""
+        """Parameter, pitch point, radius of curvature of the contour there, of the right side at a break."""
         tau = grid(self.pitch.breaks)
-        point, first, _ = self.pitch.points(tau)
-        outward = right(first) / np.hypot(first[:, 0], first[:, 1])[:, None]
-        return tau, point, point - self.radius * outward
+        point, first, second = self.pitch.points(tau)
+        speed = np.hypot(first[:, 0], first[:, 1])
+        bend = cross(first, second) / speed**3
+        radius = 1.0 / np.where(bend == 0.0, np.finfo(float).tiny, bend) - self.radius
+        return tau, point, radius
+
+    def radii(self) -> tuple[Array, Array]:
+        """Parameters (m,) closely round the turn, and radii of curvature (m,), mm, negative where hollow."""
+        tau, _, radius = self._table
+        return tau, radius
 
     @cached_property
     def _direction(self) -> Array:
-        _, _, contour = self._table
-        return np.unwrap(_angle(contour))
+        return np.unwrap(_angle(self.points(self._table[0])))
 
     @cached_property
     def regular(self) -> bool:
@@ -268,13 +237,19 @@ class RollerEnvelope:
 
     def feet(self, points: Array) -> Feet:
         """Feet of points (n, 2): the nearest points of the pitch curve."""
+        if not self.regular:
+            return self._search(points)
+        tau = self._table[0]
+        away, turns = self._direction, np.array([-TURN, 0.0, TURN])[:, None]
+        feet = self._climb(points, np.interp(_angle(points), (away + turns).ravel(), (tau + turns).ravel()))
+        return searched_again(feet, points, self, self._search)
+
+    def _search(self, points: Array) -> Feet:
+        """Feet found from samples all round."""
         tau, centre, _ = self._table
-        if self.regular:
-            away, turns = self._direction, np.array([-TURN, 0.0, TURN])[:, None]
-            start = np.interp(_angle(points), (away + turns).ravel(), (tau + turns).ravel())
-            return self._climb(points, start)
         size = 0.5 * dot(centre, centre)
-        return _best([self._climb(points, tau[j]) for j in two_best(lambda x: x @ centre.T - size, points, len(tau))])
+        first, second = two_best(lambda x: x @ centre.T - size, points, len(tau))
+        return better(self._climb(points, tau[first]), self._climb(points, tau[second]))
 
     def _climb(self, points: Array, tau: Array) -> Feet:
         reached = [np.empty_like(points) for _ in range(3)]
@@ -286,7 +261,7 @@ class RollerEnvelope:
             gap = points[which] - centre
             return -0.5 * dot(gap, gap), dot(gap, first), dot(first, first) - dot(gap, second)
 
-        tau, step, _, _, _ = climb(slopes, tau)
+        tau, step, _, _, _ = climb(slopes, tau, self.pitch.breaks)
         centre, first, second = reached
         h = step[:, None]
         centre, first = centre + h * (first + 0.5 * h * second), first + h * second
@@ -299,11 +274,6 @@ class RollerEnvelope:
         curvature = np.where(widened > 0.0, bend / np.where(widened > 0.0, widened, 1.0), 0.0)
         return Feet(tau + step, height + self.radius, outward, curvature)
 
-    def samples(self, count: int) -> Array:
-        """Points of the contour at `count` equal steps of the parameter, and at the breaks (m, 2)."""
-        point, first, _ = self.pitch.points(grid(self.pitch.breaks, count))
-        return point - self.radius * right(first) / np.hypot(first[:, 0], first[:, 1])[:, None]
-
     def area_and_perimeter(self) -> tuple[float, float]:
         """Steiner's formulas for the inner parallel curve: A - e P + pi e^2 and P - 2 pi e."""
         tau, weight = gauss(self.pitch.breaks)
@@ -311,85 +281,6 @@ class RollerEnvelope:
         area = float(0.5 * weight @ cross(point, first))
         perimeter = float(weight @ np.hypot(first[:, 0], first[:, 1]))
         return area - self.radius * perimeter + np.pi * self.radius**2, perimeter - TURN * self.radius
-
-
-def climb(
-    slopes: Callable[[Array, Indices], tuple[Array, Array, Array]], x: Array
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Climb to the maximum nearest uphill from x (n,) by Newton's method, bracketed and with bounded steps.
-
-    `slopes(x, which)` gives f, f' and -f''. Returns x, the last Newton step that remains (below FINE_STEP, unless the
-    bracket closed first), and f, f', -f'' at x: (n,) each.
-    """
-    x = x.copy()
-    f, slope, bend = slopes(x, np.arange(len(x)))
-    step = _newton(slope, bend)
-    todo = np.flatnonzero(np.abs(step) > FINE_STEP)
-    low, high = np.full(len(x), -np.inf), np.full(len(x), np.inf)
-    for _ in range(MOST_STEPS):
-        if not len(todo):
-            break
-        uphill = slope[todo] > 0.0
-        low[todo] = np.where(uphill, x[todo], low[todo])
-        high[todo] = np.where(uphill, high[todo], x[todo])
-        new = x[todo] + step[todo]
-        out = ~((new > low[todo]) & (new < high[todo]))
-        new[out] = 0.5 * (low[todo] + high[todo])[out]
-        x[todo] = new
-        f[todo], slope[todo], bend[todo] = slopes(new, todo)
-        step[todo] = _newton(slope[todo], bend[todo])
-        closed = high[todo] - low[todo] <= 1e-15 * TURN
-        step[todo[closed]] = 0.0
-        todo = todo[np.abs(step[todo]) > FINE_STEP]
-    return x, step, f, slope, bend
-
-
-def _newton(slope: Array, bend: Array) -> Array:
-    """Newton's step, at most 0.2 rad; uphill by that much where the function is not bent the right way."""
-    most = 0.2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        step = np.where(bend > 0.0, slope / bend, np.copysign(most, slope))
-    step = np.where(slope == 0.0, 0.0, step)
-    return np.clip(step, -most, most)
-
-
-def two_best(score: Callable[[Array], Array], points: Array, count: int) -> tuple[Indices, Indices]:
-    """For each point the sample of highest score, and the best of those well away from it: (n,) each.
-
-    Near a corner of a trimmed contour two feet count, and coarse samples cannot tell which one wins.
-    """
-    first, second = np.empty(len(points), dtype=np.intp), np.empty(len(points), dtype=np.intp)
-    away = count // 64
-    near = np.arange(-away, away + 1)
-    size = max(1, CHUNK // count)
-    for begin in range(0, len(points), size):
-        part = slice(begin, begin + size)
-        value = score(points[part])
-        first[part] = value.argmax(axis=1)
-        np.put_along_axis(value, (first[part][:, None] + near) % count, -np.inf, axis=1)
-        second[part] = value.argmax(axis=1)
-    return first, second
-
-
-def _best(options: list[Feet]) -> Feet:
-    one, two = options
-    wins = one.excess >= two.excess
-    return Feet(
-        np.where(wins, one.parameter, two.parameter),
-        np.where(wins, one.excess, two.excess),
-        np.where(wins[:, None], one.normal, two.normal),
-        np.where(wins, one.curvature, two.curvature),
-    )
-
-
-def gauss(breaks: Array) -> tuple[Array, Array]:
-    """Nodes and weights (m,) that integrate over one turn a function smooth between the breaks."""
-    ends = grid(breaks, 64)
-    ends = np.append(ends, ends[0] + TURN)
-    node, weight = np.polynomial.legendre.leggauss(16)
-    half = 0.5 * np.diff(ends)
-    at = (0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * node
-    return at.ravel(), (half[:, None] * weight).ravel()
 
 
 def _angle(v: Array) -> Array:

@@ -14,8 +14,9 @@ import numpy as np
 
 from kin.bearing import Bearing, bearing_of
 from kin.check import degrees
-from kin.envelope import FINE_STEP, FlatEnvelope, PairSupport, SupportLaw, grid
+from kin.envelope import FlatEnvelope, PairSupport, SupportLaw
 from kin.extremes import Extremes, extremes
+from kin.foot import FINE_STEP, grid
 from kin.motion import TURN, ContactError, Judged, MotionError, Play, Unit, motion_error, with_steps
 
 if TYPE_CHECKING:
@@ -231,7 +232,7 @@ class FlatPair:
 
         That is e over the distance from pivot to contact, the largest over the turn, and the term of second order.
         """
-        return float(np.degrees(self._leeway(tolerance, 1.0)[1].max()))
+        return float(np.degrees(max(self._leeway(tolerance, side)[1].max() for side in (1.0, -1.0))))
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest play, degrees, from such shifts at both faces."""

@@ -15,8 +15,9 @@ import numpy as np
 from kin.arcs import Arcs, cross, dot, left, right, unit
 from kin.check import degrees
 from kin.contact import LEADING, TRAILING, Arm, dilated, first_contact
-from kin.envelope import RollerEnvelope, TransmissionPitch, grid
+from kin.envelope import RollerEnvelope, TransmissionPitch
 from kin.flat import dwell_angles
+from kin.foot import grid
 from kin.motion import TURN, ContactError, Judged, Play, Unit, motion_error, with_steps
 from kin.nearest import signed_distance
 
