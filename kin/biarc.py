@@ -17,6 +17,8 @@ __all__ = ["arcs_along"]
 
 # Each halving divides the deviation by about eight; this many take any curve to below rounding.
 MOST_HALVINGS = 24
+# Rounding of the proof's own terms, in units of the curve's extent.
+ROUNDING = 64.0 * np.finfo(float).eps
 # An arc may turn by so much at most, so that its distance from the curve is the same seen from either.
 MOST_TURN = np.pi / 2.0
 
@@ -30,26 +32,32 @@ class Pair(NamedTuple):
 
 
 def arcs_along(beziers: Beziers, tolerance: float) -> tuple[Arcs, Indices]:
-    """Arcs along the pieces, tangents continuous, nowhere farther than `tolerance` mm from them; the row of each (k,).
+    """Arcs along the pieces, nowhere farther than `tolerance` mm from them, and the row of each (k,).
 
-    The pieces turn one way by less than pi, as `Beziers.unrolled` leaves them. Each is halved until a pair of arcs with
-    its end points and end tangents is proved close enough. Cost grows as tolerance^(-1/3). Raises ValueError where
-    rounding keeps the arcs farther away than that.
+    Tangents are continuous wherever the curve's are. The pieces turn one way by less than pi, as `Beziers.unrolled`
+    leaves them. Each is halved until a pair of arcs with its end points and end tangents is proved close enough. Cost
+    grows as tolerance^(-1/3). Raises ValueError where rounding keeps the arcs farther away than that.
     """
+    extent = float(np.abs(beziers.control).max(initial=0.0))
+    if not tolerance > ROUNDING * extent:
+        raise ValueError(f"arcs within {tolerance:g} mm of a curve {extent:g} mm from the origin are lost in rounding")
     row, low, high = np.arange(beziers.count), np.zeros(beziers.count), np.ones(beziers.count)
     nothing = Arcs(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0), np.zeros(0))
     runs, rows, places = [nothing], [row[:0]], [low[:0]]
     for _ in range(MOST_HALVINGS):
         if not row.size:
             break
-        pair = pair_of(Beziers.from_homogeneous(restrict(beziers.homogeneous[row], low, high)))
+        part = Beziers.from_homogeneous(restrict(beziers.homogeneous[row], low, high))
+        pair = pair_of(part)
         middle = (low + high) / 2.0
         good = pair.bound <= tolerance
-        runs += [pair.first.take(good), pair.second.take(good)]
-        rows += [row[good], row[good]]
-        places += [low[good], middle[good]]
-        row = np.repeat(row[~good], 2)
-        low, high = (np.stack(ends, axis=1)[~good].ravel() for ends in ((low, middle), (middle, high)))
+        tiny = ~good & (np.hypot(*np.ptp(part.control, axis=1).T) <= tolerance)  # what is left about a cusp
+        runs += [pair.first.take(good), pair.second.take(good), chords(part.take(tiny))]
+        rows += [row[good], row[good], row[tiny]]
+        places += [low[good], middle[good], low[tiny]]
+        left_over = ~(good | tiny)
+        row = np.repeat(row[left_over], 2)
+        low, high = (np.stack(ends, axis=1)[left_over].ravel() for ends in ((low, middle), (middle, high)))
     if row.size:
         x, y = beziers.control[row[0], 0]
         raise ValueError(f"arcs within {tolerance:g} mm of the curve at ({x:g}, {y:g}) are lost in rounding")
@@ -61,7 +69,16 @@ def arcs_along(beziers: Beziers, tolerance: float) -> tuple[Arcs, Indices]:
     )
     owner = np.concatenate(rows)
     order = np.lexsort((np.concatenate(places), owner))
+    order = order[arcs.length[order] > 0.0]
     return arcs.take(order), owner[order]
+
+
+def chords(curves: Beziers) -> Arcs:
+    """Return the straight lines between the ends of curves."""
+    chord = curves.control[:, -1] - curves.control[:, 0]
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    tangent = chord / np.where(length > 0.0, length, 1.0)[:, None]
+    return Arcs(curves.control[:, 0], tangent, np.zeros(curves.count), length)
 
 
 def pair_of(curves: Beziers) -> Pair:

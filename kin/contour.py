@@ -29,7 +29,11 @@ PAIRS_AT_ONCE = 1_000_000
 ARC_TOLERANCE = 1e-9
 # Rounding of a tangent's angle, in units of the machine's precision times extent over chord.
 ANGLE_ROUNDING = 16.0
-# Part of an interval between two breaks at which its ends are looked at, to see whether the contact moves in between.
+# Normals that are closer than this, radians, are one.
+NORMAL_ROUNDING = 1e-12
+# Directions, besides the pieces' own, between which a dented contour is searched for lines that touch it twice.
+PROBES = 720
+# How far within an interval between two directions, as a part of it, the contact is looked at to see whether it leaps.
 INSET = 1e-6
 
 
@@ -164,33 +168,30 @@ class Contour(Pieces):
     def normals(self) -> Array:
         """Angles in [0, 2 pi) at which the support function changes its form, rising.
 
-        These are the normals of hull edges, the ends of each curved piece's range of normals where they are active, and
-        for a dented contour the normals of lines that touch it twice. Between two of them one corner, arc or Bezier
-        piece is the farthest throughout.
+        For a convex contour these are the normals at both ends of each piece; else those of them and of hull edges that
+        are active, and the normals of lines that touch the contour twice. Between two of them one corner, arc or Bezier
+        piece is the farthest throughout; one that is farthest over less than half a degree, between two such lines, may
+        be overlooked. Angles that differ by rounding alone are given once.
         """
+        if self.is_convex:
+            return apart(np.concatenate(self.directions) - np.pi / 2.0)
         normals, corners = self.hull_edges
         ranges = self.normal_ranges
-        theta = np.concatenate([normals, ranges.low, ranges.low + ranges.width])
         if not ranges.piece.size:
-            return np.unique(theta)
+            return apart(normals)
         # The ends of a range belong to the ends of its piece, in an order that depends on the sense of turning.
-        leftward = self.turns[ranges.piece] >= 0.0
+        leftward = (self.turns[ranges.piece] >= 0.0)[:, None]
         first, last = self.start[ranges.piece], self.end[ranges.piece]
-        low_end = np.where(leftward[:, None], first, last)
-        high_end = np.where(leftward[:, None], last, first)
+        low_end, high_end = np.where(leftward, first, last), np.where(leftward, last, first)
         point = np.concatenate([self.vertices[corners], low_end, high_end])
-        own = dot(point, unit(theta))
-        if not self.is_convex:
-            extent = float(np.abs(self.vertices).max())
-            active = own >= self.support(theta).q - 64.0 * np.finfo(float).eps * extent
-            theta = theta[active]
-        theta = np.unique(np.mod(theta, TURN))
-        return theta if self.is_convex else np.unique(np.concatenate([theta, self._switches(theta)]))
+        theta = np.concatenate([normals, ranges.low, ranges.low + ranges.width])
+        rounding = 64.0 * np.finfo(float).eps * float(np.abs(self.vertices).max())
+        active = theta[dot(point, unit(theta)) >= self.support(theta).q - rounding]
+        probes = apart(np.concatenate([theta, np.arange(PROBES) * (TURN / PROBES)]))
+        return apart(np.concatenate([active, self._switches(probes)]))
 
     def _switches(self, theta: Array) -> Array:
         """Angles strictly between neighbours in theta (k,), rising, at which the farthest point leaps: by bisection."""
-        if not theta.size:
-            return theta
         width = np.diff(theta, append=theta[0] + TURN)
         wide = width > 4.0 * np.finfo(float).eps / INSET
         low, high = (theta + INSET * width)[wide], (theta + (1.0 - INSET) * width)[wide]
@@ -280,6 +281,13 @@ class Contour(Pieces):
         """Distance of points (k, 2) from the contour, mm (k,): exact from lines and arcs, else within `tolerance`."""
         _, distance = nearest(self.as_arcs(tolerance)[0], np.asarray(points, dtype=np.float64))
         return distance
+
+
+def apart(theta: Array) -> Array:
+    """Return angles brought to [0, 2 pi), rising, without those that differ from the one before by rounding."""
+    reduced = np.mod(theta, TURN)
+    rising = np.sort(np.where(reduced < TURN, reduced, 0.0))
+    return rising[np.diff(rising, prepend=-1.0) > NORMAL_ROUNDING]
 
 
 def less_sine(x: Array) -> Array:

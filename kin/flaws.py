@@ -245,8 +245,10 @@ def common_points(first: Arcs, second: Arcs, i: Indices, j: Indices) -> Shared:
         # of  k x^2 + 2 slope x + height = 0  the one root divides by what the other multiplies
         steps = np.stack([height / far, np.where(k == 0.0, np.nan, far / k)])
         crossing = a.start + foot + steps[:, :, None] * along
-    point = np.concatenate([*crossing, a.start, a.ends, b.start, b.ends])
-    pair = np.tile(np.arange(len(i)), 6)
+    # Pieces that cover each other have no crossing, but an end or the middle of one lies on the other.
+    covering = (a.start, a.points(a.length / 2.0), a.ends, b.start, b.points(b.length / 2.0), b.ends)
+    point = np.concatenate([*crossing, *covering])
+    pair = np.tile(np.arange(len(i)), 2 + len(covering))
     near = np.isfinite(point).all(axis=1)
     point, pair = point[near], pair[near]
     s, off = nearest_on(a.take(pair), point)

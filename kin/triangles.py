@@ -118,9 +118,8 @@ def plan_welded(corners: NDArray[Real], bottom: float, top: float) -> Mesh:
 
 def weld(points: NDArray[Real]) -> tuple[NDArray[Real], Indices]:
     """Find the distinct ones of points (n, m), bit for bit, and for each point its number among them (n,)."""
-    flat = points + points.dtype.type(0.0)  # -0.0 becomes 0.0
-    columns = [np.ascontiguousarray(c) for c in flat.T]
-    if flat.dtype.itemsize == 4 and len(columns) == 2:
+    columns = [column + points.dtype.type(0.0) for column in points.T]  # -0.0 becomes 0.0
+    if points.dtype.itemsize == 4 and len(columns) == 2:
         x, y = (c.view(np.uint32).astype(np.uint64) for c in columns)
         key = (x << np.uint64(32)) | y
         order = np.argsort(key)
@@ -128,14 +127,15 @@ def weld(points: NDArray[Real]) -> tuple[NDArray[Real], Indices]:
         differs = key[1:] != key[:-1]
     else:
         order = hashed_order(columns)
-        differs = np.zeros(len(flat) - 1, dtype=bool)
+        differs = np.zeros(len(points) - 1, dtype=bool)
         for column in columns:
             rising = column[order]
             differs |= rising[1:] != rising[:-1]
     new = np.concatenate([[True], differs])
-    numbers = np.empty(len(flat), dtype=np.intp)
+    numbers = np.empty(len(points), dtype=np.intp)
     numbers[order] = np.cumsum(new) - 1
-    return flat[order[new]], numbers
+    first = order[new]
+    return np.stack([column[first] for column in columns], axis=1), numbers
 
 
 def hashed_order(columns: list[NDArray[Real]]) -> Indices:
