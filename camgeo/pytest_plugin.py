@@ -1,1 +1,325 @@
-"""Pytest plugin: each check of each recipe a project names becomes a test item."""
+"""Pytest plugin: each check of each recipe that a project names becomes a test item.
+
+A project asks for it with one line of its pytest configuration, `camgeo_recipes = recipes/*.yaml`. Where that line is
+missing nothing is registered and nothing imported beyond this module.
+
+Collection reads the recipes and foresees their checks, which takes milliseconds. A recipe is made and judged when its
+first item runs, once a process.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import glob
+import os
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from _pytest._code.code import TerminalRepr, TracebackStyle
+
+    from camgeo.foreseen import Foreseen
+    from camgeo.recipe.model import Recipe
+
+INI = "camgeo_recipes"
+WHOLE = "recipe"  # name of the item that stands for a recipe as a whole
+TOGETHER = frozenset({"no", "loadfile", "loadgroup"})  # of xdist's ways those that leave a recipe to one process
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the ini line and the option."""
+    parser.addini(
+        INI,
+        "recipes of camgeo whose checks become test items: paths or glob patterns, relative to this file",
+        type="args",
+        default=[],
+    )
+    group = parser.getgroup("camgeo")
+    group.addoption("--camgeo-out", metavar="DIR", help="keep the files and reports of all recipes that run under DIR")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Go to work in projects that ask for it."""
+    patterns: list[str] = config.getini(INI)
+    out: str | None = config.getoption("camgeo_out")
+    if patterns:
+        config.addinivalue_line("markers", "camgeo: a check of a recipe")
+        kept = None if out is None else Path(config.invocation_params.dir, out)
+        config.pluginmanager.register(Recipes(config, patterns, kept), "camgeo-recipes")
+    elif out is not None and not config.getoption("help"):
+        raise pytest.UsageError(f"--camgeo-out: no recipes are named; give {INI} in the pytest configuration")
+
+
+class Recipes:
+    """The recipes of one session."""
+
+    def __init__(self, config: pytest.Config, patterns: list[str], out: Path | None) -> None:
+        self.config = config
+        self.patterns = patterns
+        self.out = out
+        self.base = config.rootpath if config.inipath is None else config.inipath.parent
+        self.runs: dict[Path, Run] = {}
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_sessionstart(self) -> None:
+        """Find the recipes; have them collected with the rest where the command line names nothing to collect."""
+        dist = self.config.getoption("dist", "no")
+        if self.out is not None and dist not in TOGETHER and self.config.getoption("numprocesses", None):
+            raise pytest.UsageError(
+                f"--camgeo-out: under --dist {dist} several processes would write one recipe's files; "
+                "give --dist loadfile or loadgroup"
+            )
+        for path in self._found():
+            self.runs[path.resolve()] = Run(path, _relative(path, self.config.invocation_params.dir), self.out)
+        sources = type(self.config).ArgsSource
+        whole = self.config.invocation_params.dir == self.config.rootpath
+        if whole and self.config.args_source is not sources.ARGS:
+            self.config.args += [run.shown for run in self.runs.values() if self._can_be_named(run)]
+
+    def pytest_report_header(self) -> str:
+        """Tell how many recipes there are."""
+        return f"camgeo: {len(self.runs)} recipe{'s' * (len(self.runs) != 1)}"
+
+    def pytest_collect_file(self, file_path: Path, parent: pytest.Collector) -> RecipeFile | None:
+        """Collect the files that the project names."""
+        run = self.runs.get(file_path.resolve())
+        if run is None:
+            return None
+        collected: RecipeFile = RecipeFile.from_parent(parent, path=file_path, run=run, others=self.runs)
+        return collected
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        """Keep one of each item: a recipe may have been found both by itself and on the way through its folder."""
+        seen: set[str] = set()
+        for item in [item for item in items if isinstance(item, CheckItem)]:
+            if item.nodeid in seen:
+                items.remove(item)
+            seen.add(item.nodeid)
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        """Note which items are left of each recipe once -k, -m and the like have had their say."""
+        for item in session.items:
+            if isinstance(item, CheckItem):
+                item.run.selected.add(item.name)
+
+    def _found(self) -> list[Path]:
+        """Files that the patterns match, each once, in the patterns' order; raises UsageError."""
+        found: dict[Path, None] = {}
+        faults = []
+        for pattern in self.patterns:
+            # pathlib's own glob takes no absolute patterns
+            names = glob.glob(pattern, root_dir=self.base, recursive=True)  # noqa: PTH207
+            matches = sorted(self.base / name for name in names)
+            files = [path for path in matches if path.is_file()]
+            if not files:
+                what = "names a folder; name the files in it, such as folder/*.yaml" if matches else "matches no file"
+                faults.append(f"{INI}: {pattern!r} {what} (looked for in {self.base})")
+            found |= dict.fromkeys(files)
+        if faults:
+            raise pytest.UsageError("\n".join(faults))
+        return list(found)
+
+    def _can_be_named(self, run: Run) -> bool:
+        """Whether a recipe may stand among pytest's arguments, which outrank --ignore and give [ and :: a meaning."""
+        folder = self.config.invocation_params.dir
+        ignored = {Path(folder, name) for name in self.config.getoption("ignore") or ()}
+        patterns = [str(Path(folder, name)) for name in self.config.getoption("ignore_glob") or ()]
+        if any(path in ignored or any(fnmatch.fnmatch(str(path), p) for p in patterns) for path in _upward(run.path)):
+            return False
+        return "[" not in run.shown and "::" not in run.shown
+
+
+@dataclass
+class Run:
+    """One recipe of a session, made and judged when its report is first asked for.
+
+    `shown` is its path as messages show it, `fault` all that keeps it from being made, `selected` the names of its
+    items that are going to run.
+    """
+
+    path: Path
+    shown: str
+    out: Path | None
+    recipe: Recipe | None = None
+    fault: str = ""
+    selected: set[str] = field(default_factory=set)
+    _report: dict[str, Any] | None = field(default=None, repr=False)
+
+    def load(self) -> None:
+        """Read the recipe, or find its faults."""
+        from camgeo.recipe import RecipeErrors, load
+
+        try:
+            self.recipe = load(self.path)
+        except RecipeErrors as errors:
+            self.fault = self._told(errors)
+
+    @property
+    def report(self) -> dict[str, Any] | None:
+        """The report on the recipe; None where it has faults, which `fault` then tells."""
+        if self._report is None and not self.fault:
+            self._run()
+        return self._report
+
+    def _run(self) -> None:
+        from camgeo import pipeline
+        from camgeo.recipe import RecipeErrors
+        from camgeo.store import SurroundingsError
+
+        assert self.recipe is not None
+        # what the items that follow say, should an exception end this one
+        self.fault = f"{self.shown}: the run broke off with an error of camgeo's own, told by the first item that ran"
+        try:
+            outcome = pipeline.check(self.recipe) if self.out is None else pipeline.export(self.recipe, self.out)
+            self._report, self.fault = outcome.report, ""
+        except RecipeErrors as errors:
+            self.fault = self._told(errors)
+        except (SurroundingsError, OSError) as error:
+            self.fault = f"{self.shown}: {error}"
+
+    def _told(self, errors: Any) -> str:  # noqa: ANN401 - RecipeErrors, whose module is not imported here
+        return "\n".join(str(replace(error, file=self.shown)) for error in errors.errors)
+
+
+class RecipeFile(pytest.File):
+    """A recipe as a collection of checks."""
+
+    def __init__(self, *, run: Run, others: dict[Path, Run], **rest: Any) -> None:  # noqa: ANN401 - pytest's own
+        super().__init__(**rest)
+        self.run = run
+        self.others = others
+
+    def collect(self) -> Iterator[CheckItem]:
+        """One item for the recipe as a whole, and one for each check that is foreseen."""
+        self.run.load()
+        recipe = self.run.recipe
+        if recipe is not None and self.run.out is not None:
+            for other in self.others.values():
+                if other is not self.run and other.recipe and other.recipe.name.casefold() == recipe.name.casefold():
+                    raise self.CollectError(
+                        f"{self.run.shown}: its files would go to the folder of {other.shown}, "
+                        f"as both are named {recipe.name}; give each its own `name:`"
+                    )
+        checks = () if recipe is None else _foreseen(recipe)
+        for check in (None, *checks):
+            name = WHOLE if check is None else str(check)
+            yield CheckItem.from_parent(self, name=name, run=self.run, check=check, known=frozenset(checks))
+
+
+def _foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
+    """Tell the checks to come; none where there is no such motion, which the recipe's own item then tells."""
+    from camgeo.foreseen import foreseen
+    from kin.law import IntentError
+
+    try:
+        return foreseen(recipe)
+    except IntentError:
+        return ()
+
+
+class CheckItem(pytest.Item):
+    """One check of a recipe; or, without a check, the recipe as a whole with all checks that were not foreseen."""
+
+    def __init__(
+        self,
+        *,
+        run: Run,
+        check: Foreseen | None,
+        known: frozenset[Foreseen],
+        **rest: Any,  # noqa: ANN401 - pytest's own
+    ) -> None:
+        super().__init__(**rest)
+        self.run = run
+        self.check = check
+        self.known = known
+        self.add_marker("camgeo")
+        if self.config.pluginmanager.hasplugin("xdist"):
+            self.add_marker(pytest.mark.xdist_group(run.shown))
+
+    def runtest(self) -> None:
+        """Hold the check's figure against its limit."""
+        report = self.run.report
+        if self.check is None:
+            self._whole(report)
+        elif report is None:
+            self._not_judged(self.run.fault.partition("\n")[0], WHOLE)
+        else:
+            self._one(self.check, report)
+
+    def repr_failure(
+        self, excinfo: pytest.ExceptionInfo[BaseException], style: TracebackStyle | None = None
+    ) -> str | TerminalRepr:
+        """Leave pytest's own calls out of the traceback of an error in camgeo."""
+        excinfo.traceback = excinfo.traceback.cut(path=__file__)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, None, str]:
+        """Say where the item comes from."""
+        return self.path, None, self.name
+
+    def _whole(self, report: dict[str, Any] | None) -> None:
+        if report is None:
+            _fail(self.run.fault)
+            return
+        more = [check for check in report["checks"] if (check["name"], check.get("file")) not in self.known]
+        self._hold(more, report)
+
+    def _one(self, wanted: Foreseen, report: dict[str, Any]) -> None:
+        found = [check for check in report["checks"] if (check["name"], check.get("file")) == wanted]
+        if found:
+            self.user_properties += [(key, found[0][key]) for key in ("value", "limit", "unit", "at_deg")]
+            self._hold(found, report)
+            return
+        self._missing(wanted, report)
+
+    def _hold(self, checks: list[dict[str, Any]], report: dict[str, Any]) -> None:
+        from camgeo.report.failure import failure
+
+        assert self.run.recipe is not None
+        failed = [failure(check, report, self.run.recipe, self.run.shown) for check in checks if not check["ok"]]
+        if failed:
+            _fail("\n".join(failed))
+
+    def _missing(self, wanted: Foreseen, report: dict[str, Any]) -> None:
+        """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
+        from camgeo.foreseen import PLAY, Foreseen
+        from camgeo.report.failure import headline
+
+        assert self.run.recipe is not None
+        cause = [check for check in report["checks"] if not check["ok"] and check.get("file") in (None, wanted.file)]
+        if cause:
+            self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
+            return
+        if self.run.recipe.cam.undercut == "trim" and wanted.name in {"motion", *PLAY}:
+            reason = "an undercut is trimmed: what motion is lost is told, and judged against verify.motion_error alone"
+            pytest.skip(f"{self.run.shown}: {reason}")
+        _fail(f"{wanted} is not among the checks that were made")
+
+    def _not_judged(self, cause: str, told_by: str) -> None:
+        """Skip where another item of this session fails for the same cause; else fail, as nothing else would."""
+        name = told_by if told_by in map(str, self.known) else WHOLE
+        if name in self.run.selected:
+            pytest.skip(f"not judged, see {self.run.shown}::{name}")
+        _fail(f"{self.name}: not judged: {cause}")
+
+
+def _fail(text: str) -> None:
+    pytest.fail(text, pytrace=False)
+
+
+def _relative(path: Path, folder: Path) -> str:
+    """Name a path as seen from a folder; another drive has no such name."""
+    try:
+        return os.path.relpath(path, folder)
+    except ValueError:
+        return str(path)
+
+
+def _upward(path: Path) -> tuple[Path, ...]:
+    return (path, *path.parents)

@@ -1,0 +1,66 @@
+"""The checks that a run of a recipe is going to make, told without running it.
+
+Only the intended motion is built, which costs milliseconds, no curve and no file. A run may differ where an undercut
+decides: without a contour no file is judged, and a trimmed one only against a limit of the motion that is given.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+
+if TYPE_CHECKING:
+    from camgeo.recipe.model import Recipe
+
+PLAY = frozenset({"constant-breadth", "breadth-max", "form-closure"})
+"""Checks of a file on what is left between contour and follower."""
+
+
+class Foreseen(NamedTuple):
+    """One check to come: its name, and the file it concerns, None for the exact curve and the intended motion."""
+
+    name: str
+    file: str | None = None
+
+    def __str__(self) -> str:
+        """Write it as in a test's name."""
+        return self.name if self.file is None else f"{self.name}[{self.file}]"
+
+
+def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
+    """Tell the checks of a recipe, those of each file after those that need none; raises kin.law.IntentError."""
+    yoke = _in_a_yoke(recipe)
+    names = ["radius-of-curvature", "undercut-local"]
+    if isinstance(recipe.cam, DoubleRollerCam):
+        names += ["undercut-global", "closing-equation", "transmission", "pressure-angle"]
+    elif isinstance(recipe.cam, FlatPairCam):
+        names += ["closing-equation", "transmission"]
+    else:
+        names += ["constant-breadth", "face-length"] if yoke else ["face-length"]
+    bore = ["bore"] if recipe.part.bore is not None else []
+    if bore:
+        names.append("wall")
+    found = [Foreseen(name) for name in names]
+    play = ["form-closure"] if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam) else []
+    if yoke:
+        play = ["constant-breadth", "breadth-max"]
+    for request in recipe.export.files:
+        if request.kind == "csv":
+            continue
+        file = request.filename(recipe.name, recipe.export.files)
+        own = ["watertight", *bore, "thickness", "volume"] if request.kind == "stl" else ["units", "closed", *bore]
+        found += [Foreseen(name, file) for name in (*own, "contour", "motion", *play)]
+    return tuple(found)
+
+
+def _in_a_yoke(recipe: Recipe) -> bool:
+    """Whether two parallel faces hold the cam. Builds the motion in any case: one that cannot be is told first."""
+    from camgeo.figures import is_constant_breadth
+    from camgeo.profile.build import intent_of
+    from kin.lift import Lift
+
+    intent = intent_of(recipe.cam)
+    if isinstance(recipe.cam, ConstantBreadthCam):
+        return True
+    return isinstance(recipe.cam, SupportCam) and isinstance(intent, Lift) and is_constant_breadth(intent)

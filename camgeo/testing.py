@@ -1,0 +1,338 @@
+"""Assertions for one's own tests of cams: on any DXF or STL file, and on recipes.
+
+Each function returns the figure it has measured and raises AssertionError with figure, limit and place. A file that
+cannot be read as a contour fails; a file that is not there raises OSError, a recipe with faults RecipeErrors. Paths are
+those of .dxf or .stl files, told apart by the suffix. Lengths are in mm where a function takes no recipe, else in the
+recipe's units, as in its report.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from os import PathLike
+
+    from camgeo.recipe.model import Recipe
+    from kin.contour import Contour
+    from kin.read_dxf import Drawing
+    from kin.read_stl import Solid
+
+    AnyPath: TypeAlias = str | PathLike[str]
+    AnyRecipe: TypeAlias = Recipe | str | PathLike[str]
+
+__all__ = [
+    "Breadth",
+    "Motion",
+    "assert_closed",
+    "assert_constant_breadth",
+    "assert_contour",
+    "assert_motion",
+    "assert_no_undercut",
+    "assert_recipe",
+    "assert_watertight",
+]
+
+GAP = 1e-6  # mm
+MOST_NAMED = 5  # faults named in a message
+UNREAD = frozenset({"closed", "readable", "watertight"})  # one of them alone stands for a file that is no contour
+PLAY = frozenset({"constant-breadth", "breadth-max", "form-closure"})
+
+
+@dataclass(frozen=True)
+class Breadth:
+    """Least and greatest distance between parallel tangents, mm, and the direction of their normal, deg in [0, 360)."""
+
+    least: float
+    least_at_deg: float
+    greatest: float
+    greatest_at_deg: float
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A follower's motion error over one turn, measured less intended, in `unit`.
+
+    `rms` is taken over the recipe's `verify.angles`, `max` over the whole turn; it is at the shaft angle `at_deg`.
+    `dwell_flatness` is the range of the measured position over a dwell, None where the motion has none.
+    """
+
+    max: float
+    rms: float
+    unit: str
+    at_deg: float
+    dwell_flatness: float | None
+
+
+# --- any file ---------------------------------------------------------------------------------------------------------
+
+
+def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
+    """Assert that the cut contour closes, without crossing itself and without anything drawn twice or without length.
+
+    Returns the widest gap between two entities, mm; at most `gap` is permitted. Of an STL its whole surface has to be
+    closed, as `assert_watertight` has it, and the gap is 0.
+    """
+    __tracebackhide__ = True
+    path = Path(path)
+    if _kind(path) == "stl":
+        assert_watertight(path)
+        return 0.0
+    drawing = _drawing(path, gap)
+    faults = [f"{fault.kind} {fault.entity} at ({fault.x:.6g}, {fault.y:.6g}) mm" for fault in drawing.faults]
+    _no_faults(path, faults + _crossings(drawing.contour))
+    return drawing.widest_gap
+
+
+def assert_watertight(path: AnyPath) -> float:
+    """Assert that an STL is closed, its triangles facing outward, none of them without area or there twice.
+
+    Returns the enclosed volume, mm^3.
+    """
+    __tracebackhide__ = True
+    path = Path(path)
+    if _kind(path) != "stl":
+        raise ValueError(f"{path.name}: not a .stl file")
+    solid = _solid(path)
+    counts = {
+        "edges with one triangle": solid.edges.open,
+        "edges with more than two triangles": solid.edges.crowded,
+        "edges between triangles that face opposite sides": solid.edges.misdirected,
+        "triangles without area": solid.degenerate,
+        "triangles drawn twice": solid.duplicate,
+    }
+    faults = [f"{number} {what}, none allowed" for what, number in counts.items() if number]
+    if not solid.volume > 0.0:
+        faults.append(f"the volume is {solid.volume:.6g} mm^3: the triangles face inward")
+    _no_faults(path, faults + _crossings(solid.contour))
+    return solid.volume
+
+
+def assert_constant_breadth(
+    path: AnyPath, breadth: float | None = None, tolerance: float = 1e-3, *, mm: float | None = None
+) -> Breadth:
+    """Assert that a contour has the same breadth in all directions: a yoke of two parallel faces fits it all round.
+
+    The breadth may differ from the given one by twice the `tolerance` of the contour, which both sides may be off by;
+    without one, from the mean of its extremes. All in mm; `mm` is the length of a drawing unit, for a DXF that states
+    none. The extremes are those of the whole turn, not of samples. Returns them.
+    """
+    __tracebackhide__ = True
+    path = Path(path)
+    found = _breadth(_contour(path, mm))
+    nominal = 0.5 * (found.least + found.greatest) if breadth is None else breadth
+    for value, at in ((found.greatest, found.greatest_at_deg), (found.least, found.least_at_deg)):
+        if not abs(value - nominal) <= 2.0 * tolerance:
+            named = "the mean" if breadth is None else "the nominal"
+            raise AssertionError(
+                f"{path}: breadth {value:.9g} at {at:.4f} deg, {value - nominal:+.6g} from {named} {nominal:.9g} mm, "
+                f"at most {2.0 * tolerance:.6g} mm allowed (breadth from {found.least:.9g} to {found.greatest:.9g} mm)"
+            )
+    return found
+
+
+def _breadth(contour: Contour) -> Breadth:
+    """Extremes of the breadth: the play of the contour in a yoke, over the whole turn."""
+    import numpy as np
+
+    from kin.follower import Yoke
+    from kin.lift import lift_from_fourier
+
+    # any breadth of the yoke and any intended motion would do, as only the play is asked for
+    frame = float(contour.support(np.array([0.0, math.pi])).q.sum())
+    play = Yoke(lift_from_fourier(0.5 * frame, {}, {}), frame).judge(contour, np.zeros(1)).play
+    assert play is not None
+    return Breadth(frame - play.most, play.most_at_deg, frame - play.least, play.least_at_deg)
+
+
+# --- a file against a recipe ------------------------------------------------------------------------------------------
+
+
+def assert_motion(
+    recipe: AnyRecipe,
+    path: AnyPath,
+    *,
+    limit: float | None = None,
+    tolerance: float | None = None,
+    angles: int | None = None,
+) -> Motion:
+    """Assert that a file moves the recipe's follower as intended: position by contact, and play where it is held twice.
+
+    `limit` of the motion error is in the recipe's units, in degrees for a follower that swings; without one it is that
+    of the recipe, or what `tolerance` implies. `tolerance` of the contour is by default the recipe's for a file of that
+    name, else `export.tolerance`. `angles` takes the place of `verify.angles`. Returns the motion error.
+    """
+    __tracebackhide__ = True
+    motion = _judged(recipe, path, {"motion", *PLAY}, limit=limit, tolerance=tolerance, angles=angles)["motion"]
+    if motion is None:
+        raise AssertionError(f"{path}: the follower's motion cannot be measured")
+    return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
+
+
+def assert_contour(recipe: AnyRecipe, path: AnyPath, *, tolerance: float | None = None) -> float:
+    """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
+
+    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` as in `assert_motion`. Returns the
+    greatest distance between the two, in the recipe's units.
+    """
+    __tracebackhide__ = True
+    error: float = _judged(recipe, path, {"contour"}, tolerance=tolerance)["measured_error"]
+    return error
+
+
+def _judged(
+    recipe: AnyRecipe,
+    path: AnyPath,
+    names: set[str],
+    *,
+    limit: float | None = None,
+    tolerance: float | None,
+    angles: int | None = None,
+) -> dict[str, Any]:
+    """Judge a file and assert the checks of those names; its entry in the report."""
+    __tracebackhide__ = True
+    from camgeo.pipeline import judged
+    from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
+
+    path, recipe = Path(path), _loaded(recipe)
+    swings = isinstance(recipe.cam, DoubleRollerCam | FlatPairCam)
+    verify = recipe.verify
+    if limit is not None:
+        verify = replace(verify, motion_error=math.radians(limit) if swings else limit * recipe.mm)
+    if angles is not None:
+        verify = replace(verify, angles=angles)
+    mm = _tolerance(recipe, path) if tolerance is None else tolerance * recipe.mm
+    recipe = replace(recipe, verify=verify, export=replace(recipe.export, tolerance=mm))
+    report = judged(recipe, [path])
+    own = [check for check in report["checks"] if check.get("file") == path.name]
+    if len(own) == 1 and own[0]["name"] in UNREAD:
+        _all_hold(own, report, recipe, str(path))
+    asked = [check for check in own if check["name"] in names]
+    if not asked:
+        raise AssertionError(f"{path}: the judge has made no check of {', '.join(sorted(names))}")
+    _all_hold(asked, report, recipe, str(path))
+    entry: dict[str, Any] = report["files"][0]
+    return entry
+
+
+def _tolerance(recipe: Recipe, path: Path) -> float:
+    """Tolerance in mm that the recipe gives a file of that name, else that of the export."""
+    files = recipe.export.files
+    own = [request.tolerance for request in files if request.filename(recipe.name, files) == path.name]
+    return own[0] if own and own[0] is not None else recipe.export.tolerance
+
+
+# --- a recipe ---------------------------------------------------------------------------------------------------------
+
+
+def assert_recipe(recipe: AnyRecipe) -> dict[str, Any]:
+    """Assert that a recipe has no faults, and that every check of its exact curve and of its files holds.
+
+    Makes and judges the files in a temporary folder. Returns the report, as report.json has it.
+    """
+    __tracebackhide__ = True
+    from camgeo import pipeline
+    from camgeo.recipe import RecipeErrors
+
+    try:
+        recipe = _loaded(recipe)
+        report = pipeline.check(recipe).report
+    except RecipeErrors as errors:
+        raise AssertionError(f"the recipe has faults:\n{errors}") from None
+    _all_hold(report["checks"], report, recipe, recipe.name)
+    return report
+
+
+def assert_no_undercut(recipe: AnyRecipe) -> float:
+    """Assert that the exact contour of a recipe has no undercut, local or global, also where it asks to trim it.
+
+    Returns the least radius of curvature, in the recipe's units: of the contour for a flat face, of the pitch curve for
+    a roller.
+    """
+    __tracebackhide__ = True
+    from camgeo.design import designed
+    from camgeo.report.document import Findings, document
+
+    recipe = _loaded(recipe)
+    recipe = replace(recipe, cam=replace(recipe.cam, undercut="refuse"))
+    design = designed(recipe)
+    report = document(recipe, Findings(design.checks, (), (), (), design.follower))
+    checks = [c for c in report["checks"] if c["name"] == "radius-of-curvature" or c["name"].startswith("undercut-")]
+    _all_hold(checks, report, recipe, recipe.name)
+    radius: float = next(check["value"] for check in checks if check["name"] == "radius-of-curvature")
+    return radius
+
+
+def _loaded(recipe: AnyRecipe) -> Recipe:
+    from camgeo.recipe import Recipe, load
+
+    return recipe if isinstance(recipe, Recipe) else load(recipe)
+
+
+# --- all of them ------------------------------------------------------------------------------------------------------
+
+
+def _all_hold(checks: Iterable[dict[str, Any]], report: dict[str, Any], recipe: Recipe, what: str) -> None:
+    __tracebackhide__ = True
+    from camgeo.report.failure import failure
+
+    failed = [failure(check, report, recipe) for check in checks if not check["ok"]]
+    if failed:
+        raise AssertionError(f"{what}: " + "\n".join(failed))
+
+
+def _no_faults(path: Path, faults: list[str]) -> None:
+    __tracebackhide__ = True
+    if faults:
+        more = f"; and {len(faults) - MOST_NAMED} more" if len(faults) > MOST_NAMED else ""
+        raise AssertionError(f"{path}: {'; '.join(faults[:MOST_NAMED])}{more}")
+
+
+def _crossings(contour: Contour) -> list[str]:
+    from kin.flaws import crossings
+
+    return [f"the contour crosses or touches itself at ({x:.6g}, {y:.6g}) mm" for x, y in crossings(contour).point]
+
+
+def _contour(path: Path, mm: float | None) -> Contour:
+    """Outer contour of a file, mm."""
+    __tracebackhide__ = True
+    if _kind(path) == "stl":
+        return _solid(path).contour
+    drawing = _drawing(path, GAP)
+    if drawing.units_mm is not None:
+        return drawing.contour
+    if mm is None:
+        raise AssertionError(f"{path}: the drawing states no unit; give mm=, the length of a drawing unit in mm")
+    return drawing.contour.scaled(mm)
+
+
+def _drawing(path: Path, gap: float) -> Drawing:
+    __tracebackhide__ = True
+    from kin.read import ReadError, read_dxf
+
+    try:
+        return read_dxf(path, gap)
+    except ReadError as error:
+        raise AssertionError(str(error)) from None
+
+
+def _solid(path: Path) -> Solid:
+    __tracebackhide__ = True
+    from kin.read import ReadError, read_stl
+
+    try:
+        return read_stl(path)
+    except ReadError as error:
+        raise AssertionError(str(error)) from None
+
+
+def _kind(path: Path) -> str:
+    kind = path.suffix.lower().lstrip(".")
+    if kind not in ("dxf", "stl"):
+        raise ValueError(f"{path.name}: neither a .dxf nor a .stl file")
+    return kind

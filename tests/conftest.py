@@ -1,0 +1,3 @@
+"""Fixtures of pytest's own that tests of the plugin need."""
+
+pytest_plugins = ["pytester"]
