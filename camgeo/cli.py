@@ -55,8 +55,12 @@ def _parser() -> argparse.ArgumentParser:
 
     def recipes(to: argparse.ArgumentParser) -> None:
         to.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
-        to.add_argument("--tolerance", type=_length, metavar="E", help="in place of export.tolerance, in the recipe's unit")
+        tolerance(to)
         output(to)
+
+    def tolerance(to: argparse.ArgumentParser) -> None:
+        text = "in place of export.tolerance, in the recipe's unit"
+        to.add_argument("--tolerance", type=_length, metavar="E", help=text)
 
     def output(to: argparse.ArgumentParser) -> None:
         to.add_argument("-v", "--verbose", action="store_true", help="every check and file as a table")
@@ -75,7 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     verify = command("verify", _verify, "Judge DXF and STL files against a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
-    verify.add_argument("--tolerance", type=_length, metavar="E", help="in place of export.tolerance, in the recipe's unit")
+    tolerance(verify)
     output(verify)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file.")
     new.add_argument("kind", metavar="KIND")
@@ -161,7 +165,8 @@ def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs:
     from concurrent.futures import ProcessPoolExecutor
 
     progress = _Progress(f"{len(recipes)} recipes")
-    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn" if sys.platform != "linux" else "fork")) as pool:
+    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+    with ProcessPoolExecutor(workers, context) as pool:
         futures = [pool.submit(_one, recipe, command, options, None) for recipe in recipes]
         try:
             for number, future in enumerate(futures):

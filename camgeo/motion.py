@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from camgeo.recipe.model import FlatPairCam
+from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
 
 if TYPE_CHECKING:
     from camgeo.curve import Array
@@ -26,13 +27,14 @@ def motion_table(recipe: Recipe, intent: Lift | Transmission) -> tuple[tuple[str
     """
     count = recipe.verify.angles
     phi = np.linspace(0.0, 2.0 * np.pi, count + 1)
-    if hasattr(intent, "datum"):
-        unit = "in" if recipe.units == "inch" else "mm"
-        rows = np.concatenate([intent.derivatives(phi[:-1], ORDER), intent.derivatives(phi[-1:], ORDER, -1)], axis=1)
-        rows[0] -= intent.datum
-        name, scale = f"lift_{unit}", 1.0 / recipe.mm
+    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        law = cast("Transmission", intent)  # the kind of cam decides the kind of intent
+        rows = np.concatenate([law.psi_of_shaft(phi[:-1], ORDER), law.psi_of_shaft(phi[-1:], ORDER, -1)], axis=1)
+        name, scale = "follower_deg", math.degrees(0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0)
     else:
-        rows = np.concatenate([intent.psi_of_shaft(phi[:-1], ORDER), intent.psi_of_shaft(phi[-1:], ORDER, -1)], axis=1)
-        name, scale = "follower_deg", np.degrees(0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0)
+        lift = cast("Lift", intent)
+        rows = np.concatenate([lift.derivatives(phi[:-1], ORDER), lift.derivatives(phi[-1:], ORDER, -1)], axis=1)
+        rows[0] -= lift.datum
+        name, scale = ("lift_in" if recipe.units == "inch" else "lift_mm"), 1.0 / recipe.mm
     table = np.column_stack([np.linspace(0.0, 360.0, count + 1), *(rows * scale)])
     return ("shaft_deg", name, "velocity", "acceleration", "jerk"), table

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
@@ -15,6 +16,12 @@ from kin.read_dxf import read_dxf
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt  # the backend must be chosen first
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from kin.follower import Follower
+    from kin.read_dxf import Drawing
 
 ROOT = Path(__file__).parents[1]
 INK, METAL, ACCENT = "#26323f", "#cfd8e3", "#c8442c"
@@ -42,7 +49,7 @@ def main() -> None:
     figure.savefig(ROOT / "docs" / "pictures" / "overview.png", dpi=110)
 
 
-def draw_mechanism(axis, drawing, follower, phi: float) -> None:
+def draw_mechanism(axis: Axes, drawing: Drawing, follower: Follower, phi: float) -> None:
     """The cam as read back, its bore and its follower at one shaft angle, in the cam frame."""
     fine = np.linspace(0.0, 2.0 * np.pi, 2001)
     arcs = drawing.contour.as_arcs()[0]
@@ -72,7 +79,7 @@ def draw_mechanism(axis, drawing, follower, phi: float) -> None:
     axis.axis("off")
 
 
-def draw_error(axis, degrees: np.ndarray, error: np.ndarray, report: dict) -> None:
+def draw_error(axis: Axes, degrees: np.ndarray, error: np.ndarray, report: dict) -> None:
     """Motion error measured from the file, with its limit."""
     check = next(c for c in report["checks"] if c["name"] == "motion")
     scale = 1e3 if check["unit"] == "mm" else np.degrees(1e3)

@@ -12,7 +12,11 @@ import pytest
 from camgeo.cli import main
 
 RECIPES = Path(__file__).parents[1] / "recipes"
-GOOD = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8, bore: 10}\nexport: {tolerance: 0.01, files: [dxf, stl]}\n"
+GOOD = """\
+cam: {kind: support, p: 25 + 2*cos(3*t)}
+part: {thickness: 8, bore: 10}
+export: {tolerance: 0.01, files: [dxf, stl]}
+"""
 
 
 @pytest.fixture

@@ -14,7 +14,11 @@ from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load, read
 
 RECIPES = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
-UNDERCUT = b"cam: {kind: support, p: 10 + 2*cos(3*t)%s}\npart: {thickness: 5}\nexport: {tolerance: 0.001, files: [dxf, stl]}\n"
+UNDERCUT = b"""\
+cam: {kind: support, p: 10 + 2*cos(3*t)%s}
+part: {thickness: 5}
+export: {tolerance: 0.001, files: [dxf, stl]}
+"""
 
 
 def names(report: dict) -> list[str]:
@@ -120,7 +124,8 @@ def test_undercut_trimmed_on_request_tells_the_lost_motion(tmp_path: Path) -> No
         (b"cam: {kind: support, p: 25 + sin(t/2)}", "p does not close"),
         (b"cam: {kind: support, p: 25 + log(cos(t))}", "does not exist"),
         (
-            b"cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 180, law: {polynomial: [0, 1]}}]}",
+            b"cam: {kind: constant-breadth, base_radius: 40, "
+            b"motion: [{rise: 20, over: 180, law: {polynomial: [0, 1]}}]}",
             "does not join over the half turn",
         ),
         (b"cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 2000}}}", "below 1"),

@@ -1,0 +1,166 @@
+"""Speed as ratios in one run on one machine: `python benchmarks/speed.py [fit] [stl] [judge] [cold]`.
+
+Each figure is the least of several repeats, taken in turn with what it is compared with, so that a machine whose speed
+drifts changes both alike. The targets stand beside the figures; nothing here passes or fails.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.files.stl import bore_polygon, write_stl
+from camgeo.fit.arcs import fit_arcs
+from camgeo.fit.pieces import Bound, Polygon
+from camgeo.fit.polygon import fit_polygon
+from camgeo.fit.spline import fit_spline
+from camgeo.profile.build import intent_of, profile_of
+from camgeo.recipe.load import load
+from kin.contour import Contour
+from kin.flat import FlatPair, Yoke
+from kin.lift import lift_from_fourier
+from kin.roller import DoubleRoller
+from kin.transmission import from_delta
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.curve import Curve
+
+ROOT = Path(__file__).parents[1]
+MICROMETRE = 1e-3
+
+
+def least(*functions: Callable[[], object], repeats: int = 7) -> list[float]:
+    """Least seconds of each function, the functions taken in turn."""
+    best = [float("inf")] * len(functions)
+    for _ in range(repeats):
+        for i, function in enumerate(functions):
+            start = time.perf_counter()
+            function()
+            best[i] = min(best[i], time.perf_counter() - start)
+    return best
+
+
+def fits() -> None:
+    """Recipe object to fitted pieces at 1 micrometre, against sin and cos at as many points."""
+    print("\nrecipe object to pieces at 1 um; target: 50 times sin and cos at as many points, or 5 ms if that is more")
+    print(f"{'recipe':16} {'form':8} {'pieces':>6} {'ms':>7} {'target ms':>9} {'ratio':>6}")
+    for path in sorted((ROOT / "recipes").glob("*.yaml")):
+        cam = load(path).cam
+        for name, fit in (("arcs", fit_arcs), ("polygon", fit_polygon), ("spline", fit_spline)):
+
+            def whole(fit: Callable[[Curve, float], object] = fit, cam: object = cam) -> object:
+                return fit(profile_of(cam, intent_of(cam)).curve, MICROMETRE)
+
+            count = whole().count
+            t = np.linspace(0.0, 6.0, count)
+            seconds, base = least(whole, lambda t=t: (np.sin(t), np.cos(t)))
+            target = max(50.0 * base, 5e-3)
+            times = f"{1e3 * seconds:7.2f} {1e3 * target:9.2f} {seconds / target:6.2f}"
+            print(f"{path.stem:16} {name:8} {count:6} {times}")
+
+
+def stl() -> None:
+    """A ring's STL against numpy writing the same bytes."""
+    print("\nSTL of a contour with a bore against numpy writing the same triangles; target: 5 times at 1e4, 10 at 1e5")
+    with tempfile.TemporaryDirectory() as folder:
+        for count in (1_000, 10_000, 100_000):
+            t = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+            r = 25.0 + 2.0 * np.cos(3 * t)
+            polygon = Polygon(np.column_stack([r * np.cos(t), r * np.sin(t)]), Bound(0.0, 0.0))
+            path, other = Path(folder) / "ours.stl", Path(folder) / "numpy.stl"
+
+            def ours(polygon: Polygon = polygon, path: Path = path) -> None:
+                write_stl(path, polygon, bore=10.0, thickness=8.0, tolerance=1e-3)
+
+            ours()
+            data = np.fromfile(path, dtype=np.uint8)
+            corners = np.frombuffer(data[84:].tobytes(), dtype=RECORD)["vertices"].copy()
+
+            def plain(corners: np.ndarray = corners, other: Path = other) -> None:
+                records = np.zeros(len(corners), dtype=RECORD)
+                edges = corners[:, 1:] - corners[:, :1]
+                normal = np.cross(edges[:, 0], edges[:, 1])
+                records["normal"] = normal / np.linalg.norm(normal, axis=1)[:, None]
+                records["vertices"] = corners
+                with other.open("wb") as stream:
+                    stream.write(bytes(80) + len(records).to_bytes(4, "little"))
+                    records.tofile(stream)
+
+            seconds, base = least(ours, plain)
+            bore = len(bore_polygon(10.0, 1e-3)[0])
+            print(f"{count:7} + {bore:3} vertices: {1e3 * seconds:8.2f} ms, numpy {1e3 * base:8.2f} ms", end="")
+            print(f", ratio {seconds / base:5.2f}")
+
+
+RECORD = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def judge() -> None:
+    """Judging 1e5 pieces at 3600 shaft angles; the contour has been read already."""
+    print("\njudging 1e5 pieces at 3600 shaft angles; target: 50 ms for flat faces, 500 ms for double rollers")
+    phi = np.linspace(0.0, 2.0 * np.pi, 3600, endpoint=False)
+    t = np.linspace(0.0, 2.0 * np.pi, 100_000, endpoint=False)
+    lift = lift_from_fourier(25.0, {3: 2.0}, {}, (10.0, 5.0))
+    p = lift.derivatives(t, 1)
+    flat = np.column_stack([p[0] * np.cos(t) - p[1] * np.sin(t), p[0] * np.sin(t) + p[1] * np.cos(t)])
+    law = from_delta(2, 1, 60.0, {1: 360.0}, {})
+    r = law.pitch(t, 1)
+    support = np.column_stack([r[0][0] * np.cos(t) - r[0][1] * np.sin(t), r[0][0] * np.sin(t) + r[0][1] * np.cos(t)])
+    booth = from_delta(2, 1, 40.0, {1: 400.0}, {})
+    radius, slope = booth.pitch(t, 1)[0]
+    u, n = np.column_stack([np.cos(t), np.sin(t)]), np.column_stack([-np.sin(t), np.cos(t)])
+    normal = radius[:, None] * u - slope[:, None] * n
+    rolled = radius[:, None] * u - 8.0 * normal / np.hypot(normal[:, 0], normal[:, 1])[:, None]
+    for name, follower, points in (
+        ("yoke", Yoke(lift, breadth=50.0), flat),
+        ("flat pair", FlatPair(law), support),
+        ("double roller", DoubleRoller(booth, 8.0), rolled),
+    ):
+
+        def contact(follower: object = follower, points: np.ndarray = points) -> None:
+            follower.contact(Contour.from_vertices(points), phi)
+
+        def whole(follower: object = follower, points: np.ndarray = points) -> None:
+            follower.judge(Contour.from_vertices(points), phi)
+
+        both = least(contact, whole, repeats=3)
+        print(f"{name:14} contact {1e3 * both[0]:7.1f} ms, with true extremes and play {1e3 * both[1]:7.1f} ms")
+
+
+def cold() -> None:
+    """The whole command in a fresh process, against the imports it cannot do without."""
+    print("\nthe whole command in a fresh process; target: STL alone 3 times numpy, DXF and STL 1.4 times numpy and ezdxf")
+    text = (
+        "cam: {{kind: constant-breadth, base_radius: 40, motion: [{{rise: 20, over: 120, law: modified-sine}}, "
+        "{{dwell: 60}}]}}\n"
+        "part: {{thickness: 10, bore: 20}}\nexport: {{tolerance: 0.001, files: [{files}]}}\n"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        for files, imports in (("stl", "numpy"), ("dxf, stl", "numpy, ezdxf")):
+            recipe = Path(folder) / "cam.yaml"
+            recipe.write_text(text.format(files=files), encoding="utf-8")
+            command = [sys.executable, "-m", "camgeo.cli", "export", str(recipe), "--out", str(Path(folder) / "out")]
+
+            def run(command: list[str] = command) -> None:
+                subprocess.run(command, check=True, capture_output=True)
+
+            def bare(imports: str = imports) -> None:
+                subprocess.run([sys.executable, "-c", f"import {imports}"], check=True)
+
+            seconds, base = least(run, bare, repeats=9)
+            print(f"{files:9} {1e3 * seconds:6.0f} ms, import {imports:12} {1e3 * base:6.0f} ms, ratio {seconds / base:5.2f}")
+
+
+if __name__ == "__main__":
+    chosen = sys.argv[1:] or ["fit", "stl", "judge", "cold"]
+    for name, part in (("fit", fits), ("stl", stl), ("judge", judge), ("cold", cold)):
+        if name in chosen:
+            part()

@@ -1,0 +1,205 @@
+"""The exact cam of a recipe: what the follower is meant to do, the curve that does it, and what is wrong with either.
+
+Nothing here writes or fits. `designed` is the part of a run that needs no file; `intended` and `permitted` say in kin's
+words what a file will be held against.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, cast
+
+from camgeo.curve import CurveError
+from camgeo.profile.build import Profile, intent_of, profile_of
+from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam
+from kin.check import Check, degrees
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from camgeo.curve import Curve
+    from camgeo.recipe.model import Recipe
+    from kin.follower import Follower
+    from kin.lift import Lift
+    from kin.transmission import Transmission
+    from kin.verify import Intent, Limits
+
+
+@dataclass
+class Clock:
+    """Seconds of each stage in order; `told` hears of each as it begins."""
+
+    told: Callable[[str], None] | None = None
+    stages: list[tuple[str, float]] = field(default_factory=list)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time one stage."""
+        if self.told is not None:
+            self.told(name)
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.stages.append((name, time.perf_counter() - start))
+
+
+@dataclass(frozen=True)
+class Design:
+    """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file."""
+
+    intent: Lift | Transmission
+    profile: Profile
+    contour: Curve | None
+    checks: tuple[Check, ...]
+    follower: str
+    yoke_breadth: float | None
+    trimmed: bool
+
+
+def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
+    """Intent, curve and exact checks of a recipe; raises RecipeErrors where there is no such motion or curve."""
+    from kin.law import IntentError
+
+    clock = clock or Clock()
+    cam = recipe.cam
+    with clock.stage("motion"):
+        try:
+            intent = intent_of(cam)
+        except IntentError as error:
+            raise recipe.error(f"cam.{error.field}", error.message) from error
+    try:
+        with clock.stage("profile"):
+            profile = profile_of(cam, intent)
+        with clock.stage("undercut"):
+            checks, contour = _sound(recipe, profile, intent)
+    except CurveError as error:
+        raise recipe.error("cam", str(error)) from error
+    with clock.stage("figures"):
+        breadth, follower, more = _figures(recipe, intent, profile)
+    if contour is not None:
+        more += _wall(recipe, contour, intent)
+    trimmed = contour is not None and not contour.closed
+    return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed)
+
+
+def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
+    """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
+    from camgeo.radius import least_radius
+    from camgeo.trim import UndercutError, trimmed
+    from camgeo.undercut import undercuts
+
+    trim = recipe.cam.undercut == "trim"
+    radius, at = least_radius(profile.base)
+    checks = [
+        Check(
+            "radius-of-curvature",
+            trim or radius > profile.roller_radius,
+            radius,
+            profile.roller_radius,
+            "mm",
+            _shaft_deg(intent, at),
+            "at_least",
+        )
+    ]
+    try:
+        found = undercuts(profile.curve)
+        contour = trimmed(profile.curve) if trim and found else profile.curve
+    except UndercutError as error:
+        checks.append(Check("undercut-local", False, None, 0.0, "mm", None, detail=str(error)))
+        return checks, None
+    for kind in ("local", "global"):
+        cuts = [cut for cut in found if cut.kind == kind]
+        if kind == "global" and profile.roller_radius == 0.0 and not cuts:
+            continue
+        worst = max(cuts, key=lambda cut: cut.depth, default=None)
+        if worst is None:
+            checks.append(Check(f"undercut-{kind}", True, 0.0, 0.0, "mm"))
+            continue
+        mm = recipe.mm
+        free = (
+            f"a roller radius of {worst.free_at / mm:.6g} would be free of it"
+            if profile.roller_radius
+            else f"a base radius larger by {worst.free_at / mm:.6g} would be free of it"
+        )
+        first, last = _shaft_deg(intent, worst.start), _shaft_deg(intent, worst.end)
+        detail = f"from {first:.6g} to {last:.6g} deg; {free}" + ("; trimmed" if trim else "")
+        depth = worst.depth if math.isfinite(worst.depth) else None
+        checks.append(Check(f"undercut-{kind}", trim, depth, 0.0, "mm", _shaft_deg(intent, worst.at), detail=detail))
+    sound = trim or not found
+    return checks, contour if sound else None
+
+
+def _shaft_deg(intent: Lift | Transmission, parameter: float) -> float:
+    """Shaft angle in degrees of a parameter of the profile."""
+    at = getattr(intent, "at", None)
+    phi = parameter if at is None else float(at(parameter, 0)[0][0, 0])
+    found = degrees(phi)
+    return 0.0 if found is None else found
+
+
+def _figures(
+    recipe: Recipe, intent: Lift | Transmission, profile: Profile
+) -> tuple[float | None, str, list[Check]]:
+    """Breadth of the yoke if there is one, the follower's name, and the checks of the intended motion."""
+    from camgeo.figures import breadth_of, flat_face_checks, is_constant_breadth, pressure_angle, transmission_checks
+
+    cam = recipe.cam
+    if isinstance(cam, DoubleRollerCam | FlatPairCam):
+        law = cast("Transmission", intent)  # the kind of cam decides the kind of intent
+        if isinstance(cam, FlatPairCam):
+            return None, "flat pair", transmission_checks(law)
+        return None, "double roller", [*transmission_checks(law), pressure_angle(profile, law)]
+    lift = cast("Lift", intent)
+    yoke = isinstance(cam, ConstantBreadthCam) or is_constant_breadth(lift)
+    breadth = breadth_of(lift)[0] if yoke else None
+    return breadth, "yoke" if yoke else "flat face", flat_face_checks(lift, yoke=yoke)
+
+
+def _wall(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> list[Check]:
+    """Least wall between bore and contour, where there is a bore."""
+    if recipe.part.bore is None:
+        return []
+    from camgeo.part import least_wall
+
+    wall, at = least_wall(contour, recipe.part.bore)
+    at_deg = _shaft_deg(intent, at)
+    return [Check("wall", wall > 0.0, wall, 0.0, "mm", at_deg, "at_least")]
+
+
+def intended(recipe: Recipe, design: Design) -> Intent:
+    """What kin is told of the part: the follower with its law, and how the part is drawn."""
+    from kin import follower
+    from kin.verify import Intent
+
+    cam = recipe.cam
+    held: Follower
+    if isinstance(cam, DoubleRollerCam):
+        held = follower.DoubleRoller(cast("Transmission", design.intent), cam.roller_radius)
+    elif isinstance(cam, FlatPairCam):
+        held = follower.FlatPair(cast("Transmission", design.intent))
+    elif design.yoke_breadth is not None:
+        held = follower.Yoke(cast("Lift", design.intent), breadth=design.yoke_breadth)
+    else:
+        held = follower.FlatFace(cast("Lift", design.intent))
+    return Intent(
+        follower=held,
+        mm=recipe.mm,
+        mirrored=recipe.rotation == "ccw",
+        bore=recipe.part.bore,
+        thickness=recipe.part.thickness,
+        trimmed=design.trimmed,
+    )
+
+
+def permitted(recipe: Recipe, tolerance: float) -> Limits:
+    """What kin permits: the tolerance, and the recipe's own limit of the motion error (degrees for a swing)."""
+    from kin.verify import Limits
+
+    motion = recipe.verify.motion_error
+    if motion is not None and isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        motion = math.degrees(motion)
+    return Limits(tolerance, motion)
