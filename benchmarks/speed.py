@@ -137,7 +137,7 @@ def judge() -> None:
 
 def cold() -> None:
     """The whole command in a fresh process, against the imports it cannot do without."""
-    print("\nthe whole command in a fresh process; target: STL alone 3 times numpy, DXF and STL 1.4 times numpy and ezdxf")
+    print("\nthe whole command in a fresh process; target: STL alone 3 times numpy, DXF and STL 1.4 times with ezdxf")
     text = (
         "cam: {{kind: constant-breadth, base_radius: 40, motion: [{{rise: 20, over: 120, law: modified-sine}}, "
         "{{dwell: 60}}]}}\n"
@@ -156,7 +156,8 @@ def cold() -> None:
                 subprocess.run([sys.executable, "-c", f"import {imports}"], check=True)
 
             seconds, base = least(run, bare, repeats=9)
-            print(f"{files:9} {1e3 * seconds:6.0f} ms, import {imports:12} {1e3 * base:6.0f} ms, ratio {seconds / base:5.2f}")
+            print(f"{files:9} {1e3 * seconds:6.0f} ms, import {imports:12} {1e3 * base:6.0f} ms", end="")
+            print(f", ratio {seconds / base:5.2f}")
 
 
 if __name__ == "__main__":
