@@ -137,7 +137,8 @@ def _drawn(
                 bound, pieces = outline.bound, outline.count
     except ToleranceError as error:
         where = field_path if request.tolerance is not None else "export.tolerance"
-        raise recipe.error(where, str(error), None, f"at least {error.reached / recipe.mm:.3g}") from error
+        reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
+        raise recipe.error(where, str(error), None, reached) from error
     with clock.stage(f"judge {request.kind}"):
         from kin.check import about
         from kin.verify import verify

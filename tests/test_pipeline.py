@@ -124,7 +124,7 @@ def test_undercut_trimmed_on_request_tells_the_lost_motion(tmp_path: Path) -> No
         (b"cam: {kind: support, p: 25 + sin(t/2)}", "p does not close"),
         (b"cam: {kind: support, p: 25 + log(cos(t))}", "does not exist"),
         (
-            b"cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 9, over: 180, law: {polynomial: [0, 1]}}]}",
+            b"cam: {kind: constant-breadth, base_radius: 9, motion: [{rise: 9, over: 180, law: {polynomial: [0, 1]}}]}",
             "does not join over the half turn",
         ),
         (b"cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 2000}}}", "below 1"),
