@@ -121,7 +121,7 @@ class Shape(Protocol):
 
     @property
     def radii(self) -> Array:
-        """For each stretch between breaks, (m,): the signed radius of curvature if that is exactly constant, else nan."""
+        """For each stretch between breaks, (m,): the signed radius of curvature if exactly constant, else nan."""
         ...
 
     def sample(self, t: Array, side: int = 1) -> Frame:
@@ -234,7 +234,7 @@ class Curve:
         return None if np.isnan(speed) else (float(speed), float(turn))
 
     def radius(self, stretch: Sequence[float] | Array) -> float | None:
-        """Signed radius of curvature, in mm, where a stretch is exactly a circular arc, however fast it is run along."""
+        """Signed radius of curvature, in mm, where a stretch is exactly a circular arc, else None."""
         radius = float(self._radii[self._index(stretch)])
         return None if np.isnan(radius) else radius
 

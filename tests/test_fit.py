@@ -121,7 +121,7 @@ def test_arcs_are_proved_and_few(lift: Lift, tolerance: float) -> None:
     arcs = fit_arcs(curve, tolerance)
     check_proof(arcs_gap(lift, arcs), arcs, tolerance, 0.02)
     stretches = curve.runs[0].stretches
-    least = sum(Density.of(curve, a, b, arc_density).total for a, b in stretches) / math.cbrt(tolerance)
+    least = sum(density.total for density in Density.of(curve, stretches, arc_density)) / math.cbrt(tolerance)
     theta = directions(lift)
     slope = lift.derivatives(theta, 3)
     extrema = np.count_nonzero(np.diff(np.sign(slope[1] + slope[3])))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,9 +22,12 @@ if TYPE_CHECKING:
 
 CONSTANT = 40.5  # error of a biarc of arcs of length s: |kappa'| s^3 / 40.5
 LOOKS = 8  # places on an arc at which its error is seen while the nodes are being shared
-ROUNDS = 5  # of sharing the nodes anew before there are more of them
+ROUNDS = 8  # of sharing the nodes anew before there are more of them
+DAMPED = 4.0  # power of the length by which nodes are shared anew; the error's own, 3, overshoots
+MOST_RATIO = 1.5  # of the tangents' lengths of a biarc
+APART = 2.0  # arcs at least between extrema of curvature that are told apart
 WIDEST = 2.0  # radians that a biarc may turn through
-USABLE = 0.995  # of the tolerance, left to the fit; the rest covers rounding of the written coordinates
+USABLE = 0.995  # of the tolerance, that errors seen may use; the rest is left to the proof
 
 
 def arc_density(frame: Frame) -> Array:
@@ -48,11 +52,10 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     The bound is proved by `chain_deviation`. Cost and number of arcs grow as tolerance^(-1/3). Raises ToleranceError
     where the tolerance is below rounding, needs too many arcs, or is not reached.
     """
-    stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
     size = curve.size
     check_precision(size, tolerance)
-    usable = min(USABLE * tolerance, tolerance - rounding(size))
-    fits = _fit_stretches(curve, stretches, usable)
+    stretches = _between_extrema(curve, tolerance)
+    fits = _fit_stretches(curve, stretches, USABLE * tolerance, tolerance - 2.0 * rounding(size))
     points = np.concatenate([fit[0] for fit in fits])
     bulges = np.concatenate([fit[1] for fit in fits])
     outward = max(fit[2] for fit in fits)
@@ -60,23 +63,54 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     return ArcSpline(points, bulges, Bound(outward, inward).widened(rounding(size)))
 
 
+def _between_extrema(curve: Curve, tolerance: float) -> list[tuple[float, float]]:
+    """Smooth stretches of the curve, divided where the curvature seems extreme and arcs enough lie between.
+
+    Biarcs do not fit alike on the two sides of an extremum, so one that may or may not cross it never comes to rest.
+    """
+    stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
+    bent = [stretch for stretch in stretches if curve.radius(stretch) is None]
+    found: dict[tuple[float, float], list[float]] = {}
+    densities = Density.of(curve, np.array(bent).reshape(-1, 2), arc_density)
+    at = curve.sample(np.concatenate([np.zeros(0), *(density.t[1:-1] for density in densities)]))
+    slope = at.turn_slope * at.speed - at.turn * at.speed_slope
+    first = 0
+    for stretch, density in zip(bent, densities, strict=True):
+        mine = slope[first : first + density.t.size - 2]
+        first += mine.size
+        found[stretch] = []
+        last = 0.0
+        share = density.sum / math.cbrt(tolerance)
+        for i in np.flatnonzero(mine[1:] * mine[:-1] < 0.0):
+            low, high = density.t[i + 1], density.t[i + 2]
+            if share[i + 1] - last >= APART and share[-1] - share[i + 2] >= APART:
+                found[stretch].append(float(low + (high - low) * mine[i] / (mine[i] - mine[i + 1])))
+                last = float(share[i + 1])
+    out = []
+    for stretch in stretches:
+        out += list(pairwise([stretch[0], *found.get(stretch, []), stretch[1]]))
+    return out
+
+
 def _fit_stretches(
-    curve: Curve, stretches: list[tuple[float, float]], tolerance: float
+    curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float
 ) -> list[tuple[Array, Array, float, float]]:
-    """Points, bulges, outward and inward bound of each stretch."""
+    """Points, bulges, outward and inward bound of each stretch: errors seen up to `aim`, proved up to `limit`."""
+    tolerance = min(aim, limit)
     done: dict[int, tuple[Array, Array, float, float]] = {}
     nodes: dict[int, Array] = {}
     best = math.inf
     for i, stretch in enumerate(stretches):
-        steady = curve.steady(stretch)
-        if steady is not None:
-            done[i] = _steady_arcs(curve, stretch, steady[1])
-            continue
-        density = Density.of(curve, np.array([stretch]), arc_density)[0]
-        needed = density.total / math.cbrt(tolerance)
-        check_count(needed, "arcs", tolerance)
-        turning = (stretch[1] - stretch[0]) * float(np.abs(curve.sample(density.t[1:-1]).turn).max())
-        nodes[i] = density.nodes(max(1, math.ceil(0.5 * needed - 1e-6), math.ceil(turning / WIDEST)))
+        radius = curve.radius(stretch)
+        if radius is not None:
+            done[i] = _circular(curve, stretch, radius)
+    bent = [i for i in range(len(stretches)) if i not in done]
+    densities = Density.of(curve, np.array([stretches[i] for i in bent]).reshape(-1, 2), arc_density)
+    check_count(sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance)
+    for i, density in zip(bent, densities, strict=True):
+        nodes[i] = density.nodes(
+            max(1, math.ceil(0.5 * density.total / math.cbrt(tolerance) - 1e-6), math.ceil(density.turning / WIDEST))
+        )
     settled = dict.fromkeys(nodes, 0)
     for _ in range(TRIES):
         todo = [i for i in nodes if i not in done]
@@ -99,25 +133,23 @@ def _fit_stretches(
             first += count
             reached = float(worst[mine].max())
             best = min(best, reached)
-            if deviation is not None and reached <= tolerance:
+            if deviation is not None and reached <= limit:
                 # f is the curve's distance outside the arc: where it is positive the file lies inward
                 inward = max(float(deviation.outside[both].max()), 0.0)
                 outward = max(-float(deviation.inside[both].min()), 0.0)
                 done[i] = (biarcs.points[both], biarcs.bulges[both], outward, inward)
-            elif reached > tolerance:
-                nodes[i], settled[i] = _denser(curve, nodes[i], worst[mine], tolerance, settled[i])
+            elif deviation is not None or reached > tolerance:
+                nodes[i], settled[i] = _denser(nodes[i], worst[mine], tolerance, settled[i])
     raise ToleranceError(f"arcs within {tolerance:.3g} mm were not reached; the best was {best:.3g} mm", best)
 
 
-def _denser(curve: Curve, nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[Array, int]:
-    """Nodes for the next try: shared anew twice, then more of them; all intervals halved where errors are unknown."""
+def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[Array, int]:
+    """Nodes for the next try: shared anew, then more of them; halved where errors are unknown."""
     if not np.isfinite(worst).all():
-        halved = np.empty(2 * nodes.size - 1)
-        halved[::2], halved[1::2] = nodes, 0.5 * (nodes[:-1] + nodes[1:])
-        return halved, 0
+        return np.sort(np.append(nodes, 0.5 * (nodes[:-1] + nodes[1:])[~np.isfinite(worst)])), 0
     mean = float(np.mean(np.cbrt(worst))) ** 3
     if tried < ROUNDS and mean <= tolerance:
-        return reshared(nodes, worst, 3.0), tried + 1
+        return reshared(nodes, worst, DAMPED), tried + 1
     count = nodes.size - 1
     factor = math.cbrt(max(mean, tolerance) / tolerance)
     more = max(count + 1, math.ceil(count * factor))
@@ -127,31 +159,54 @@ def _denser(curve: Curve, nodes: Array, worst: Array, tolerance: float, tried: i
     return spread, 0
 
 
-def _steady_arcs(curve: Curve, stretch: tuple[float, float], turn: float) -> tuple[Array, Array, float, float]:
-    """One arc for a stretch of constant curvature, two for more than a half turn."""
-    sweep = turn * (stretch[1] - stretch[0])
+def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> tuple[Array, Array, float, float]:
+    """One arc for a stretch that is a circular arc, two for more than a half turn."""
+    steady = curve.steady(stretch)
+    ends = curve.span(np.array([stretch[0]]), np.array([stretch[1]]))
+    (cx, cy), (dx, dy) = ends[0].tangent[0], ends[1].tangent[0]
+    sweep = math.atan2(cx * dy - cy * dx, cx * dx + cy * dy)
+    if steady is not None:
+        sweep = steady[1] * (stretch[1] - stretch[0])
+    elif sweep * radius < 0.0:
+        sweep += math.copysign(2.0 * math.pi, radius)
     count = 1 if abs(sweep) <= math.pi * (1.0 + 1e-9) else 2
-    starts = np.linspace(stretch[0], stretch[1], count + 1)[:-1]
-    bulge = math.tan(0.25 * sweep / count)
-    return curve.sample(starts, 1).point, np.full(count, bulge), 0.0, 0.0
+    points = ends[0].point
+    if count > 1:
+        half = 0.5 * sweep
+        sine, versine = math.sin(half), 1.0 - math.cos(half)
+        turned = np.array([cx * sine - cy * versine, cy * sine + cx * versine])
+        points = np.vstack([points, points + radius * turned])
+    return points, np.full(count, math.tan(0.25 * sweep / count)), 0.0, 0.0
 
 
 def _biarcs(curve: Curve, low: Array, high: Array) -> _Biarcs:
-    """Biarcs with equal tangent lengths between the ends of each interval (n,)."""
+    """Biarcs between the ends of each interval (n,).
+
+    The tangents' lengths, which leave one freedom, are equal but where curvature changes faster at one end than at the
+    other: there the arcs' lengths are to make their errors alike, ``|kappa'| s^3``.
+    """
     a, b = curve.span(low, high)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.abs(b.curvature_slope / a.curvature_slope) ** (1.0 / 6.0)
+    ratio = np.where(np.isfinite(ratio), np.clip(ratio, 1.0 / MOST_RATIO, MOST_RATIO), 1.0)
     chord = b.point - a.point
-    both = a.tangent + b.tangent
-    along = np.sum(chord * both, axis=1)
+    along = np.sum(chord * (ratio[:, None] * a.tangent + b.tangent), axis=1)
     square = np.sum(chord * chord, axis=1)
     # |T0 - T1|^2 = 2 (1 - T0.T1), without its cancellation
-    spread = np.sum((a.tangent - b.tangent) ** 2, axis=1)
+    spread = ratio * np.sum((a.tangent - b.tangent) ** 2, axis=1)
     length = square / (along + np.sqrt(np.maximum(along**2 + spread * square, 0.0)))
-    joint = 0.5 * (a.point + b.point) + 0.5 * length[:, None] * (a.tangent - b.tangent)
+    share = (ratio / (1.0 + ratio))[:, None]
+    leave = a.point + (ratio * length)[:, None] * a.tangent
+    joint = (1.0 - share) * leave + share * (b.point - length[:, None] * b.tangent)
     k0, bulge0, _ = _arc_from(a.point, a.tangent, joint)
     k1, bulge1, far = _arc_from(b.point, -b.tangent, joint)
     k1, bulge1 = -k1, -bulge1
     joint_tangent = -far
-    middle, _ = foot(curve, 0.5 * (low + high), low, high, joint, joint_tangent)
+    enough = 0.25 * rounding(curve.size)
+    middle, miss = foot(curve, low, high, joint, joint_tangent, enough=enough)
+    # a joint whose normal does not meet the curve at `middle` would leave part of the curve without its arc
+    lost = miss > 2.0 * enough
+    k0 = np.where(lost, np.nan, k0)
     chain = Chain(
         _interleave(a.point, b.point),
         _interleave(a.tangent, b.tangent),

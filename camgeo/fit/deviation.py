@@ -8,6 +8,13 @@ normal), beta the angle from the piece's tangent to the curve's and k the piece'
 so f'' is known at every node and, through the curve's proved bounds on the second derivatives of sigma and omega,
 everywhere between two nodes: f lies within a parabola's sagitta of the straight line between its end values. Nodes
 are added until that sagitta no longer matters.
+
+Between nodes beta and f are confined first. No place is farther than half a step from a node, so as long as |beta| <= B
+and |f| <= F the bound of beta' that follows keeps |beta| below its node's value plus half a step times that bound; if
+that is less than B, and likewise for F, neither can ever leave (continuity). With B below a right angle the curve's
+foot runs forward along the piece from where it starts to where it ends. So, where the first foot is the piece's own
+beginning and the last its end, every point of the curve has its foot on the piece and every point of the piece has a
+point of the curve over it: the range of f bounds both distances, from the curve to the piece and back.
 """
 
 from __future__ import annotations
@@ -18,11 +25,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array, Curve, Frame
+    from camgeo.curve import Array, Curve
 
 SLACK = 0.004  # nodes are doubled until the proof exceeds what the nodes show by less than this share of the tolerance
 FIRST_NODES = 4
+FOOT_STEPS = 25
+TURN = 1.5  # radians, below a right angle: as long as beta stays below it the foot moves forward along the piece
 MOST_NODES = 512
+FEW = 1000  # pieces, up to which a proof is sharpened further where the tolerance hangs on it
 
 
 @dataclass(frozen=True)
@@ -58,11 +68,14 @@ class Deviation:
         return np.maximum(self.outside, -self.inside)
 
 
-def chain_deviation(curve: Curve, chain: Chain, tolerance: float, nodes: int = FIRST_NODES) -> Deviation:
+def chain_deviation(
+    curve: Curve, chain: Chain, tolerance: float, nodes: int = FIRST_NODES, *, decide: bool = False
+) -> Deviation:
     """Proved deviation of each piece of a chain; pieces must not span a break of the curve.
 
     `tolerance` says how sharp the proof needs to be: the result exceeds the truth by at most `SLACK` of it wherever
-    `MOST_NODES` nodes a piece are enough. Cost grows with the nodes used.
+    `MOST_NODES` nodes a piece are enough. `decide` asks for more where that leaves open whether a piece, one of at most
+    `FEW`, holds the tolerance. Cost grows with the nodes used.
     """
     count = chain.low.size
     inside, outside = np.empty(count), np.empty(count)
@@ -72,9 +85,12 @@ def chain_deviation(curve: Curve, chain: Chain, tolerance: float, nodes: int = F
         part = Chain(*(getattr(chain, name)[todo] for name in ("start", "tangent", "curvature", "low", "high")))
         low, high, node_low, node_high = _ranges(curve, part, nodes)
         inside[todo], outside[todo], seen_low[todo], seen_high[todo] = low, high, node_low, node_high
+        seen = np.maximum(node_high, -node_low)
         loose = np.maximum(high - node_high, node_low - low) > SLACK * tolerance
+        if decide and count <= FEW:
+            loose |= (np.maximum(high, -low) > tolerance) & (seen <= tolerance)
         # A piece already known to break the tolerance needs no sharper proof of it.
-        hopeless = np.maximum(node_high, -node_low) > 1.05 * tolerance
+        hopeless = seen > 1.05 * tolerance
         todo = todo[loose & ~hopeless]
         nodes *= 2
         if nodes > MOST_NODES:
@@ -129,7 +145,7 @@ def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array
     f, away = radial(chain.start[:, None], chain.tangent[:, None], chain.curvature[:, None], points)
     sine = -np.sum(tangents * away, axis=-1)
     cosine = tangents[..., 1] * away[..., 0] - tangents[..., 0] * away[..., 1]
-    backwards = (cosine <= 0.0).any(axis=1)
+    backwards = ~(cosine > 0.0).all(axis=1)
     beta = np.arctan2(sine, cosine)
     fa, fb = f[:, :-1].ravel(), f[:, 1:].ravel()
     angle = np.maximum(np.abs(beta[:, :-1]), np.abs(beta[:, 1:])).ravel()
@@ -153,7 +169,7 @@ def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array
     kf = size * (furthest + 0.5 * step * speed * beta_room)
     with np.errstate(divide="ignore", invalid="ignore"):
         extra = size * speed * (0.5 * beta_room**2 + kf) / (1.0 - kf)
-        confirmed = (kf < 0.5) & (extra <= 2.0 * lag + 1e-15)
+        confirmed = (kf < 0.5) & (extra <= 2.0 * lag + 1e-15) & (beta_room < TURN)
     # f'' = -sigma m up to `correction`; sigma m itself by its end values and its second derivative
     product_bend = bounds.speed_bend * m + 2.0 * bounds.speed_slope * m_slope + speed * m_bend
     correction = bounds.speed_slope * beta_room + speed * (extra + 0.5 * m * beta_room**2) + square * product_bend
@@ -178,22 +194,29 @@ def _peak(fa: Array, fb: Array, step: Array, bend: Array) -> Array:
     return top + np.where(0.5 * sag > rise, over, 0.0)
 
 
-def foot(curve: Curve, t: Array, low: Array, high: Array, point: Array, across: Array) -> tuple[Array, Frame]:
+def foot(
+    curve: Curve, low: Array, high: Array, point: Array, across: Array, *, enough: float
+) -> tuple[Array, Array]:
     """Parameters in [low, high] where the curve meets the lines through `point` (n, 2) square to `across` (n, 2).
 
-    Newton's method from t (n,), each step kept inside its interval; used for joints of arcs, where `across` is the
+    Newton's method from the middle, each step kept inside what remains of its interval, until the distance along
+    `across` is at most `enough`; that distance (n,) is returned as well. Used for joints of arcs, where `across` is the
     common tangent of the two arcs.
     """
+    t = 0.5 * (low + high)
     at = curve.sample(t)
-    for _ in range(12):
-        miss = np.sum((at.point - point) * across, axis=1)
+    miss = np.sum((at.point - point) * across, axis=1)
+    for _ in range(FOOT_STEPS):
         with np.errstate(divide="ignore", invalid="ignore"):
             move = miss / (at.speed * np.sum(at.tangent * across, axis=1))
-        move = np.where(np.isfinite(move), move, 0.0)
-        moved = np.clip(t - move, low, high)
-        small = np.abs(moved - t) <= 4e-16 * np.maximum(np.abs(t), high - low)
-        t = moved
-        at = curve.sample(t)
-        if small.all():
+        # the side of the foot is known, as the curve runs forward
+        low, high = np.where(miss < 0.0, t, low), np.where(miss > 0.0, t, high)
+        moved = t - np.where(np.isfinite(move), move, 0.0)
+        moved = np.where((moved > low) & (moved < high), moved, 0.5 * (low + high))
+        open_ = np.abs(miss) > enough
+        if not open_.any():
             break
-    return t, at
+        t = np.where(open_, moved, t)
+        at = curve.sample(t)
+        miss = np.sum((at.point - point) * across, axis=1)
+    return t, np.abs(miss)

@@ -11,8 +11,9 @@ import numpy as np
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array, Curve, Run
     from numpy.typing import NDArray
+
+    from camgeo.curve import Array, Curve, Run
 
 EVEN = 0.02  # change of curvature over an edge, of itself, up to which one look in the middle is enough
 LOOKS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0)  # the other places
@@ -78,13 +79,15 @@ def placed(curve: Curve, run: Run, nodes: Array, away: Array) -> Placed:
     at = curve.sample(nodes[:-1])
     last = at if run.closed else curve.sample(nodes[-1:], -1)
     end = 0 if run.closed else -1
-    away = away.copy()
+    turn = np.append(at.turn, last.turn[end:][:1])
+    # where a slight bend the other way was not worth two crossings, a vertex on the far side would only add to it
+    away = np.where(away * turn < 0.0, 0.0, away)
     away[-1] = away[0]
     if not run.closed:
         away[[0, -1]] = 0.0
     normal = np.append(at.normal, last.normal[end:][:1], axis=0)
     heading = np.append(at.tangent, last.tangent[end:][:1], axis=0)
-    pace = np.append(at.speed, last.speed[end:][:1]) + away * np.append(at.turn, last.turn[end:][:1])
+    pace = np.append(at.speed, last.speed[end:][:1]) + away * turn
     vertices = np.append(at.point, last.point[end:][:1], axis=0) + away[:, None] * normal
     chord = np.diff(vertices, axis=0)
     tangent = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
@@ -92,10 +95,16 @@ def placed(curve: Curve, run: Run, nodes: Array, away: Array) -> Placed:
     lean = np.column_stack(
         [pace[:-1] * np.sum(heading[:-1] * across, axis=1), pace[1:] * np.sum(heading[1:] * across, axis=1)]
     )
-    cuts = np.setdiff1d(np.array(run.breaks), nodes)
+    # nodes of a closed run may begin later than it does and end as much later: pieces beyond its end are folded back
+    span = run.high - run.low
+    breaks = np.array(run.breaks)
+    cuts = breaks if nodes[-1] <= run.high else np.concatenate([breaks, [run.high], breaks + span])
+    cuts = np.setdiff1d(cuts[(cuts > nodes[0]) & (cuts < nodes[-1])], nodes)
     low = np.sort(np.concatenate([nodes[:-1], cuts]))
     high = np.append(low[1:], nodes[-1])
     edge = np.clip(np.searchsorted(nodes, low, side="right") - 1, 0, nodes.size - 2)
+    late = low >= run.high
+    low, high = np.where(late, np.maximum(low - span, run.low), low), np.where(late, high - span, high)
     behind = -away[:-1] * np.sum(tangent * normal[:-1], axis=1)
     beyond = away[1:] * np.sum(tangent * normal[1:], axis=1)
     return Placed(nodes, vertices, away, tangent, behind, beyond, lean, low, high, edge)
@@ -104,8 +113,8 @@ def placed(curve: Curve, run: Run, nodes: Array, away: Array) -> Placed:
 def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
     """How high the curve rises over each edge from vertices that stand off by `tolerance`: seen, not proved.
 
-    An edge whose ends stand on different sides crosses an inflection and is not looked at: its load is 0. Derivatives
-    are those of the edge's own height where the curve rises highest (envelope theorem).
+    Of an edge whose ends stand on different sides, which crosses an inflection, both sides count. Derivatives are those
+    of the edge's own height where the curve rises highest (envelope theorem).
     """
     count = edges.nodes.size - 1
     width = edges.high - edges.low
@@ -127,12 +136,15 @@ def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
     offset = at.point - edges.vertices[:-1][edge]
     height = sense * (offset[:, 0] * along[:, 1] - offset[:, 1] * along[:, 0])
     slope = sense * (at.tangent[:, 0] * along[:, 1] - at.tangent[:, 1] * along[:, 0])
-    # from each place up to the top of the parabola there, if that is not beyond half way to the next place
+    # from each place to the top of the parabola there, if that is not beyond half way to the next place
+    across = (sides[:-1] != sides[1:])[edge]
+    bend = sense * at.turn
     with np.errstate(divide="ignore", invalid="ignore"):
-        move = np.where(sense * at.turn > 0.0, slope / np.abs(at.turn), np.sign(slope) * np.inf)
+        move = np.where(across | (bend > 0.0), slope / bend, np.sign(slope) * np.inf)
     move = np.clip(np.where(np.isnan(move), 0.0, move), -reach, reach)
-    top = height + at.speed * (slope * move - 0.5 * np.abs(at.turn) * move**2)
-    load = np.maximum(top, np.where(-height > tolerance * (1.0 + 1e-9), -height, 0.0)) + tolerance
+    top = height + at.speed * (slope * move - 0.5 * bend * move**2)
+    low = np.where(across | (top < -tolerance * (1.0 + 1e-9)), -top, -tolerance)
+    load = np.maximum(top, low) + tolerance
     share = np.sum(offset * along, axis=1) + at.speed * move
     chord = np.hypot(*(edges.vertices[1:] - edges.vertices[:-1]).T)
     order = np.lexsort((load, edge))
@@ -140,9 +152,7 @@ def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
     best = order[last]
     u = np.clip(share[best] / chord, 0.0, 1.0)
     side = sides[:-1]
-    across = sides[:-1] != sides[1:]
-    return Seen(
-        np.where(across, 0.0, load[best]), -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1]
+    return Seen(load[best], -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1]
     )
 
 
@@ -151,7 +161,7 @@ def proved(curve: Curve, edges: Placed, tolerance: float) -> Edges:
     chain = Chain(
         edges.vertices[:-1][edges.edge], edges.tangent[edges.edge], np.zeros(edges.low.size), edges.low, edges.high
     )
-    found = chain_deviation(curve, chain, tolerance)
+    found = chain_deviation(curve, chain, tolerance, decide=True)
     overhang = -min(0.0, float(edges.behind.min()), float(edges.beyond.min()))
     outward, inward = max(0.0, float(edges.away.max())), max(0.0, -float(edges.away.min()))
     return Edges(edges.vertices, outward, inward, overhang, found)

@@ -57,10 +57,11 @@ def check_count(needed: float, form: str, tolerance: float) -> None:
 
 @dataclass(frozen=True)
 class Density:
-    """Running integral `sum` (m,) of a density at the parameters `t` (m,)."""
+    """Running integral `sum` (m,) of a density at the parameters `t` (m,); `turning` is how far the tangent turns."""
 
     t: Array
     sum: Array
+    turning: float
 
     @staticmethod
     def of(curve: Curve, stretches: Array, density: Callable[[Frame], Array]) -> list[Density]:
@@ -68,6 +69,8 @@ class Density:
 
         Raises CurveError where the curve runs backwards.
         """
+        if not len(stretches):
+            return []
         cells = curve.cells
         first = np.searchsorted(cells.low, stretches[:, 0], side="right") - 1
         last = np.searchsorted(cells.high, stretches[:, 1], side="left")
@@ -87,10 +90,12 @@ class Density:
         ends = np.cumsum(last - first + 1) - 1
         value[ends, -1] = density(curve.sample(t[ends, -1], -1))
         area = 0.5 * (value[:, :-1] + value[:, 1:]) * ((right - left) / STEPS_PER_CELL)[:, None]
+        turned = np.abs(interior.turn).reshape(-1, STEPS_PER_CELL).max(axis=1) * (right - left)
         out, begin = [], 0
         for end in ends:
             grid = np.append(t[begin : end + 1, :-1].ravel(), t[end, -1])
-            out.append(Density(grid, np.concatenate([[0.0], np.cumsum(area[begin : end + 1].ravel())])))
+            total = np.concatenate([[0.0], np.cumsum(area[begin : end + 1].ravel())])
+            out.append(Density(grid, total, float(turned[begin : end + 1].sum())))
             begin = end + 1
         return out
 
@@ -100,7 +105,7 @@ class Density:
         t = np.concatenate([parts[0].t, *(part.t[1:] for part in parts[1:])])
         base = np.cumsum([0.0, *(part.total for part in parts[:-1])])
         total = np.concatenate([parts[0].sum, *(p.sum[1:] + b for p, b in zip(parts[1:], base[1:], strict=True))])
-        return Density(t, total)
+        return Density(t, total, sum(part.turning for part in parts))
 
     @property
     def total(self) -> float:
@@ -115,7 +120,7 @@ class Density:
         return nodes
 
     def share(self, t: float) -> float:
-        """Running integral up to a parameter."""
+        """Integrate up to a parameter."""
         return float(np.interp(t, self.t, self.sum))
 
     def nodes(self, count: int) -> Array:

@@ -23,15 +23,17 @@ if TYPE_CHECKING:
 
 USABLE = 0.9995  # of the tolerance; the rest covers the second order at the vertices
 BALANCED = 1e-3  # of the tolerance: how far the two sides may differ before the vertices are moved once more
-AIMS = (1.0, 0.998, 0.98, 0.9, 0.6, 0.3, 0.1)  # parts of the tolerance aimed at until the proof holds it all
+AIMS = (1.0, 0.998, 0.995, 0.99, 0.97, 0.9, 0.6, 0.3, 0.1)  # parts of the tolerance aimed at until it is proved
 TRIES = 24  # of placing nodes for one aim
 ROUNDS = 5  # of levelling the edges of a part before there are more of them
 FREE_TRIES = 4  # counts tried with edges across the breaks
+LEVELLINGS = 16  # steps for each
 FULL = 0.93  # of the tolerance used is enough; below it fewer edges are looked for
 SLIGHT = 1.0  # shares: what bends the other way for less than this is not worth two crossings
-CROSSING = 0.994  # of the tolerance: what an edge across an inflection aims at, the rest covers its proof
+CROSSING = 0.9995  # of the tolerance: what an edge across an inflection aims at, the rest covers its proof
 ROOM = 0.45  # of a part between two inflections that one crossing may take
 EXACT = 1.0 + 1e-9
+SEEN = 1.03  # how much a look at an edge across an inflection may overrate it
 
 
 def polygon_density(frame: Frame) -> Array:
@@ -48,8 +50,10 @@ def least_vertices(curve: Curve, tolerance: float) -> float:
 
 @dataclass
 class _Part:
-    """Nodes (n + 1,) between two fixed ones; `sense` is the side of the vertices; `crossed` if an edge leads on from it
-    across an inflection; `least` is the fewest edges not yet known to fail, `tried` counts the tries to level them.
+    """Nodes (n + 1,) between two fixed ones; `sense` is the side of the vertices (1 outside).
+
+    `crossed` if an edge leads on from the part across an inflection; `least` is the fewest edges not yet known to fail,
+    `tried` counts the tries to level them.
     """
 
     nodes: Array
@@ -92,9 +96,9 @@ def _fit_run(curve: Curve, run: Run, tolerance: float) -> Edges:
     best = math.inf
     for aim in AIMS:
         goal = aim * tolerance
-        parts, height = _settled(curve, run, _parts(curve, run, densities, bends, sense, goal), goal)
+        parts, height = _settled(curve, run, _parts(curve, run, densities, bends, sense=sense, tolerance=goal), goal)
         if len(densities) > 1 and height < FULL * goal:
-            parts, height = _across_breaks(curve, run, Density.joined(densities), parts, goal) or (parts, height)
+            parts, height = _across_breaks(curve, run, densities, parts, goal) or (parts, height)
         edges = _balanced(curve, run, parts, min(height, goal), tolerance)
         best = min(best, max(edges.extremes))
         if best <= tolerance:
@@ -117,12 +121,12 @@ def _balanced(curve: Curve, run: Run, parts: list[_Part], shift: float, toleranc
 
 
 def _parts(
-    curve: Curve, run: Run, densities: list[Density], bends: Array, sense: float, tolerance: float
+    curve: Curve, run: Run, densities: list[Density], bends: Array, *, sense: float, tolerance: float
 ) -> list[_Part]:
     """Parts between breaks and inflections, nodes in equal shares."""
     root = math.sqrt(tolerance)
     whole = Density.joined(densities)
-    bends = _worthwhile(bends, whole, root)
+    bends, sense = _worthwhile(bends, sense, whole, root, closed=run.closed)
     share = np.array([whole.share(float(t)) for t in bends]) / root
     room = ROOM * np.diff(np.concatenate([[0.0], share, [whole.total / root]]))
     low = whole.at(root * (share - np.minimum(REACH, room[:-1])))
@@ -132,7 +136,8 @@ def _parts(
     overlap = np.append(high[:-1] >= low[1:], False) if bends.size else np.zeros(0, dtype=bool)
     for i in np.flatnonzero(overlap):
         # two crossings that meet leave one edge between them
-        high[i], low[i + 1] = whole.at(np.array([0.6, 0.4]) * share[i] * root + np.array([0.4, 0.6]) * share[i + 1] * root)
+        gap = share[i + 1] - share[i]
+        high[i], low[i + 1] = whole.at(root * (share[i] + gap * np.array([0.4, 0.6])))
     ends: list[tuple[float, float, float]] = [(run.low, run.low, 1.0)]
     ends += [(float(a), float(b), -1.0) for a, b in zip(low, high, strict=True)]
     for at in run.breaks:
@@ -148,22 +153,28 @@ def _parts(
         parts.append(_Part(nodes, sense, flip < 0.0))
         sense *= flip
     if run.closed and (missing := 3 - sum(part.count + part.crossed for part in parts)) > 0:
-        first_part = parts[0]
-        count = first_part.count + missing
-        parts[0] = _Part(np.linspace(first_part.nodes[0], first_part.nodes[-1], count + 1), first_part.sense,
-                         first_part.crossed, count)
+        first_part, count = parts[0], parts[0].count + missing
+        nodes = np.linspace(first_part.nodes[0], first_part.nodes[-1], count + 1)
+        parts[0] = _Part(nodes, first_part.sense, first_part.crossed, count)
     return parts
 
 
-def _worthwhile(bends: Array, whole: Density, root: float) -> Array:
-    """Inflections without the pairs that enclose less than `SLIGHT` shares."""
-    kept: list[float] = []
-    for bend in bends:
-        if kept and whole.share(float(bend)) - whole.share(kept[-1]) < SLIGHT * root:
-            kept.pop()
+def _worthwhile(bends: Array, sense: float, whole: Density, root: float, *, closed: bool) -> tuple[Array, float]:
+    """Inflections, and the sense before the first, without the pairs that enclose less than `SLIGHT` shares."""
+    share = [whole.share(float(bend)) / root for bend in bends]
+    kept = [float(bend) for bend in bends]
+    while len(kept) > 1:
+        between = np.diff(share)
+        least = int(np.argmin(between))
+        around = share[0] + whole.total / root - share[-1]
+        if closed and around < min(SLIGHT, between[least]):
+            del kept[0], share[0], kept[-1], share[-1]
+            sense = -sense
+        elif between[least] < SLIGHT:
+            del kept[least : least + 2], share[least : least + 2]
         else:
-            kept.append(float(bend))
-    return np.array(kept)
+            break
+    return np.array(kept), sense
 
 
 def _chained(parts: list[_Part]) -> tuple[Array, Array, Array]:
@@ -192,6 +203,10 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
         for i, part in enumerate(parts):
             mine = owner == i
             busy |= _improve(part, seen.load[mine], seen.by_low[mine], seen.by_high[mine], allowed)
+        for first, second in pairwise(parts):
+            if first.crossed:
+                over = float(seen.load[(owner < 0) & (nodes[:-1] == first.nodes[-1])].max(initial=0.0)) / allowed
+                busy |= over > SEEN and _shorter(first, second, over)
         check_count(sum(part.count for part in parts), "straight edges", tolerance)
         if not busy:
             break
@@ -221,15 +236,27 @@ def _improve(part: _Part, load: Array, by_low: Array, by_high: Array, allowed: f
     return True
 
 
+def _shorter(first: _Part, second: _Part, over: float) -> bool:
+    """Shorten the edge across an inflection, whose height is `over` times too much and grows as its length cubed."""
+    low, high = first.nodes[-1], second.nodes[0]
+    move = 0.5 * (1.0 - over ** (-1.0 / 3.0)) * (high - low)
+    first.nodes, second.nodes = first.nodes.copy(), second.nodes.copy()
+    first.nodes[-1], second.nodes[0] = low + move, high - move
+    first.tried = second.tried = 0
+    return True
+
+
 def levelled(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Array:
     """Nodes (n + 1,), ends kept, moved by one step of Newton's method towards equal loads (n,) of all edges.
 
     `by_low` and `by_high` (n,) are the derivatives of each load by the parameter of its first and second node.
     """
-    sound = bool((by_low < 0.0).all() and (by_high > 0.0).all())
-    if not sound or float(load.max()) > 4.0 * float(load.min()):
+    if not bool((load > 0.0).all() and (by_low < 0.0).all() and (by_high > 0.0).all()):
         return reshared(nodes, load, 2.0)
-    # load + by_low d + by_high d+ = level, from d = 0 to d = 0: a recurrence, solved by its product and sum
+    # roots of the loads, which grow with the length:  root + by_low d + by_high d+ = level,  d = 0 at both ends;
+    # a recurrence, solved by its product and sum
+    root = np.sqrt(load)
+    by_low, by_high, load = 0.5 * by_low / root, 0.5 * by_high / root, root
     product = np.cumprod(-by_low / by_high)
     fixed = product * np.cumsum(-load / by_high / product)
     slope = product * np.cumsum(1.0 / by_high / product)
@@ -244,22 +271,56 @@ def levelled(nodes: Array, load: Array, by_low: Array, by_high: Array) -> Array:
 
 
 def _across_breaks(
-    curve: Curve, run: Run, whole: Density, parts: list[_Part], tolerance: float
+    curve: Curve, run: Run, densities: list[Density], parts: list[_Part], tolerance: float
 ) -> tuple[list[_Part], float] | None:
     """Fewer edges with no heed of the breaks, where rounding up the stretches' counts has wasted tolerance.
 
     None where that is not found, or inflections divide the curve.
     """
-    if len({part.sense for part in parts}) > 1:
+    if any(part.crossed for part in parts):
         return None
+    whole = Density.joined(densities)
+    starts = [0.0]
+    if run.closed:
+        totals = np.array([density.total for density in densities])
+        longest = int(np.argmax(totals))
+        starts = [float(totals[:longest].sum() + 0.5 * totals[longest]), 0.0]
     most = sum(part.count for part in parts)
-    start = max(3 if run.closed else 1, math.ceil(whole.total / math.sqrt(tolerance)))
-    for count in range(start, min(most, start + FREE_TRIES)):
-        free = _Part(whole.nodes(count), parts[0].sense, crossed=False, least=count)
-        sides = np.full(count + 1, free.sense)
-        for _ in range(3 * ROUNDS):
-            seen = look(curve, placed(curve, run, free.nodes, tolerance * sides), sides, tolerance)
-            if float(seen.load.max()) <= 2.0 * tolerance * EXACT:
-                return [free], 0.5 * float(seen.load.max())
-            free.nodes = levelled(free.nodes, seen.load, seen.by_low, seen.by_high)
+    least = max(3 if run.closed else 1, math.ceil(whole.total / math.sqrt(tolerance)))
+    for count in range(least, min(most, least + FREE_TRIES)):
+        for start in starts:
+            share = start + np.linspace(0.0, whole.total, count + 1)
+            over = share >= whole.total
+            nodes = whole.at(np.where(over, share - whole.total, share)) + np.where(over, run.high - run.low, 0.0)
+            nodes[-1] = nodes[0] + (run.high - run.low)
+            found = _level(curve, run, nodes, parts[0].sense, tolerance)
+            if found is not None:
+                return [_Part(found[0], parts[0].sense, crossed=False)], found[1]
+    return None
+
+
+def _level(curve: Curve, run: Run, nodes: Array, sense: float, tolerance: float) -> tuple[Array, float] | None:
+    """Nodes moved until no sagitta exceeds twice the tolerance, and half the greatest; None where none are found.
+
+    Newton's method on the edges' heights, which have corners where edges meet breaks: a step that does not make them
+    more alike is shortened.
+    """
+    sides = np.full(nodes.size, sense)
+    best, spread, move, pace = nodes, math.inf, np.zeros_like(nodes), 1.0
+    for _ in range(LEVELLINGS):
+        seen = look(curve, placed(curve, run, nodes, tolerance * sides), sides, tolerance)
+        top = float(seen.load.max())
+        if top <= 2.0 * tolerance * EXACT:
+            return nodes, 0.5 * top
+        root = np.sqrt(np.maximum(seen.load, 0.0))
+        found = float(np.std(root) / np.mean(root))
+        if found < spread:
+            best, spread = nodes, found
+            move = levelled(nodes, seen.load, seen.by_low, seen.by_high) - nodes
+            pace = min(1.0, 2.0 * pace)
+        else:
+            pace *= 0.3
+        if spread < 1e-3 or pace < 1e-3:
+            break
+        nodes = best + pace * move
     return None

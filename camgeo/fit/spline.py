@@ -20,13 +20,14 @@ from camgeo.fit.pieces import Bound, BSpline
 if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame
 
-USABLE = 0.995  # of the tolerance; the rest covers rounding of the written coordinates
+USABLE = 0.985  # of the tolerance, that errors seen may use; the rest is left to the proof
 INSIDE = (0.3373, 0.6627)  # roots of the fourth-degree part that make the error's humps equal
 ORDER = 5.0  # power of the span's length with which the error falls, for sharing nodes
 TURN_ERROR = 4.9e-6  # error of an arc of unit radius and unit angle: a quarter circle has 2.7e-4 mm at 1 mm
 LOOKS = 12  # steps of a span at which its error is first seen
 MOST_LOOKS = 384
 SLACK = 0.01  # of the tolerance: how far the proof may exceed what is seen before it is sharpened
+SHARINGS = 3  # of the nodes before there are more of them
 NEWTON = 5  # steps that settle handles and feet of normals to rounding
 
 
@@ -37,18 +38,16 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
     each span's distance to them. Spans grow as tolerance^(-1/5) to tolerance^(-1/6). Raises ToleranceError where the
     tolerance is below rounding, needs too many spans, or is not reached.
     """
-    runs = [[(float(a), float(b)) for a, b in run.stretches] for run in curve.runs]
     size = curve.size
     check_precision(size, tolerance)
-    outward, inward = 0.0, 0.0
-    groups = []
-    for stretches in runs:
-        beziers = []
-        for stretch in stretches:
-            control, out, into = _fit_stretch(curve, stretch, min(USABLE * tolerance, tolerance - rounding(size)))
-            outward, inward = max(outward, out), max(inward, into)
-            beziers.append(control)
-        groups.append(np.concatenate(beziers))
+    stretches = np.concatenate([run.stretches for run in curve.runs])
+    spans = _fit_stretches(curve, stretches, USABLE * tolerance, tolerance - 2.0 * rounding(size))
+    groups, first = [], 0
+    for run in curve.runs:
+        count = len(run.stretches)
+        groups.append(np.concatenate([control for control, _, _ in spans[first : first + count]]))
+        first += count
+    outward, inward = max(out for _, out, _ in spans), max(into for _, _, into in spans)
     return _assembled(groups, Bound(outward, inward).widened(rounding(size)))
 
 
@@ -78,41 +77,63 @@ def _spline_density(frame: Frame) -> Array:
     return density
 
 
-def _fit_stretch(curve: Curve, stretch: tuple[float, float], tolerance: float) -> tuple[Array, float, float]:
-    """Bezier spans (n, 4, 2) over one smooth stretch, with their outward and inward bound."""
-    density = Density.of(curve, np.array([stretch]), _spline_density)[0]
-    middle = curve.sample(np.linspace(*stretch, 17)[1:-1])
-    radius = float(np.max(np.abs(middle.speed)))
-    first = density.total * (TURN_ERROR * max(radius, tolerance) / tolerance) ** (1.0 / 6.0)
-    check_count(first, "spline spans", tolerance)
-    nodes = density.nodes(max(1, math.ceil(first)))
-    best, shared = math.inf, 0
+def _fit_stretches(curve: Curve, stretches: Array, aim: float, limit: float) -> list[tuple[Array, float, float]]:
+    """Bezier spans (n, 4, 2) over each smooth stretch, with their outward and inward bound.
+
+    Errors are seen up to `aim` and proved up to `limit`.
+    """
+    tolerance = min(aim, limit)
+    densities = Density.of(curve, stretches, _spline_density)
+    nodes = []
+    for density in densities:
+        middle = curve.cells.over(density.t[:1], density.t[-1:])
+        radius = max(float(middle.speed_high[0]), tolerance)
+        first = density.total * (TURN_ERROR * radius / tolerance) ** (1.0 / 6.0)
+        check_count(first, "spline spans", tolerance)
+        nodes.append(density.nodes(max(1, math.ceil(first))))
+    done: dict[int, tuple[Array, float, float]] = {}
+    shared = [0] * len(nodes)
+    best = math.inf
     for _ in range(TRIES):
-        low, high = nodes[:-1], nodes[1:]
+        todo = [i for i in range(len(nodes)) if i not in done]
+        if not todo:
+            return [done[i] for i in range(len(nodes))]
+        owner = np.repeat(todo, [nodes[i].size - 1 for i in todo])
+        check_count(2.0 * owner.size, "spline spans", tolerance)
+        low = np.concatenate([nodes[i][:-1] for i in todo])
+        high = np.concatenate([nodes[i][1:] for i in todo])
         control = _handled(curve, low, high)
         worst = _seen(curve, control, low, high)
-        if float(worst.max()) <= tolerance:
-            out, into = _spline_range(curve, control, low, high, tolerance)
+        out = into = worst
+        passed = [i for i in todo if float(worst[owner == i].max()) <= tolerance]
+        if passed:
+            mine = np.isin(owner, passed)
+            out, into = worst.copy(), worst.copy()
+            out[mine], into[mine] = _spline_range(curve, control[mine], low[mine], high[mine], tolerance)
             worst = np.maximum(out, into)
-            if float(worst.max()) <= tolerance:
-                return control, max(float(out.max()), 0.0), max(float(into.max()), 0.0)
-        reached = float(worst.max())
-        best = min(best, reached)
-        check_count(2.0 * nodes.size, "spline spans", tolerance)
-        if not math.isfinite(reached):
-            nodes = np.unique(np.concatenate([nodes, 0.5 * (low + high)]))
-            continue
-        mean = float(np.mean(worst ** (1.0 / ORDER))) ** ORDER
-        if shared < 3 and mean < 0.9 * tolerance:
-            nodes, shared = reshared(nodes, worst, ORDER), shared + 1
-            continue
-        count = nodes.size - 1
-        more = max(count + 1, math.ceil(count * (max(mean, tolerance) / tolerance) ** (1.0 / ORDER)))
-        total = np.concatenate([[0.0], np.cumsum(np.maximum(worst, 1e-6 * reached) ** (1.0 / ORDER))])
-        nodes = np.interp(np.linspace(0.0, total[-1], more + 1), total, nodes)
-        nodes[0], nodes[-1] = stretch
-        shared = 0
+        for i in todo:
+            mine = owner == i
+            reached = float(worst[mine].max())
+            best = min(best, reached)
+            if i in passed and reached <= limit:
+                done[i] = control[mine], max(float(out[mine].max()), 0.0), max(float(into[mine].max()), 0.0)
+            else:
+                nodes[i], shared[i] = _denser(nodes[i], worst[mine], tolerance, shared[i])
     raise ToleranceError(f"a spline within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
+
+
+def _denser(nodes: Array, worst: Array, tolerance: float, shared: int) -> tuple[Array, int]:
+    """Nodes for the next try: shared anew while the mean error allows it, then more of them; halved where unproved."""
+    reached = float(worst.max())
+    if not math.isfinite(reached):
+        middle = 0.5 * (nodes[:-1] + nodes[1:])
+        return np.sort(np.append(nodes, middle[~np.isfinite(worst)])), 0
+    mean = float(np.mean(worst ** (1.0 / ORDER))) ** ORDER
+    if shared < SHARINGS and mean < 0.9 * tolerance:
+        return reshared(nodes, worst, ORDER), shared + 1
+    count = nodes.size - 1
+    more = max(count + 1, math.ceil(count * (max(mean, tolerance) / tolerance) ** (1.0 / ORDER)))
+    return reshared(nodes, worst, ORDER, more), 0
 
 
 def _handled(curve: Curve, low: Array, high: Array) -> Array:
@@ -132,7 +153,8 @@ def _handled(curve: Curve, low: Array, high: Array) -> Array:
         at, t = _onto(curve, t, low, high, on)
         normal = at.normal.reshape(*t.shape, 2)
         error = np.sum((on - at.point.reshape(*t.shape, 2)) * normal, axis=2)
-        pull = inner0 * np.sum(a.tangent[:, None] * normal, axis=2) - inner1 * np.sum(b.tangent[:, None] * normal, axis=2)
+        pull = inner0 * np.sum(a.tangent[:, None] * normal, axis=2)
+        pull = pull - inner1 * np.sum(b.tangent[:, None] * normal, axis=2)
         gain = pull.sum(axis=1)
         # where the curve is nearly straight the handles move nothing sideways: leave them
         firm = np.abs(gain) > 1e-6
@@ -189,7 +211,8 @@ def _spline_range(curve: Curve, control: Array, low: Array, high: Array, toleran
     out, into = np.full(count, np.inf), np.full(count, np.inf)
     todo, looks = np.arange(count), LOOKS
     while todo.size and looks <= MOST_LOOKS:
-        top, bottom, seen_top, seen_bottom = _against_arcs(curve, control[todo], low[todo], high[todo], looks, tolerance)
+        spans = control[todo], low[todo], high[todo]
+        top, bottom, seen_top, seen_bottom = _against_arcs(curve, *spans, looks=looks, tolerance=tolerance)
         out[todo], into[todo] = top, bottom
         loose = np.maximum(top - seen_top, bottom - seen_bottom) > SLACK * tolerance
         hopeless = np.maximum(seen_top, seen_bottom) > 1.02 * tolerance
@@ -201,7 +224,7 @@ def _spline_range(curve: Curve, control: Array, low: Array, high: Array, toleran
 
 
 def _against_arcs(
-    curve: Curve, control: Array, low: Array, high: Array, looks: int, tolerance: float
+    curve: Curve, control: Array, low: Array, high: Array, *, looks: int, tolerance: float
 ) -> tuple[Array, Array, Array, Array]:
     """Outward and inward range of each span, proved and as seen at the nodes (each (n,)), through `looks` arcs a span.
 
@@ -225,6 +248,7 @@ def _against_arcs(
         speed = np.sum(velocity * tangent, axis=2)
         u = np.clip(u - gap / np.where(speed > 0.0, speed, np.inf), 0.0, 1.0)
     u[:, 0], u[:, -1] = 0.0, 1.0
+    left = np.abs(np.sum((_bezier(control[:, None], u) - point) * tangent, axis=2))
     chord = point[:, 1:] - point[:, :-1]
     start, along = point[:, :-1], tangent[:, :-1]
     cross = along[..., 0] * chord[..., 1] - along[..., 1] * chord[..., 0]
@@ -246,9 +270,18 @@ def _against_arcs(
     )
     with np.errstate(invalid="ignore"):
         distance = height / (1.0 + np.sqrt(1.0 + k[..., None] * height))
-    sane = np.isfinite(distance).all(axis=2) & (b > a)
-    top = np.where(sane, distance.max(axis=2), np.inf) - found.inside.reshape(count, -1)
-    bottom = np.where(sane, -distance.min(axis=2), np.inf) + found.outside.reshape(count, -1)
+    # The span runs forward: each leg of its control polygon does at both ends of the arc, and so between them.
+    leg = np.diff(pieces, axis=2)
+    sweep = np.sum(chord * along, axis=2)[..., None]
+    last = 2.0 * sweep * chord / np.sum(chord * chord, axis=2)[..., None] - along
+    forward = (np.sum(leg * along[:, :, None], axis=3) > 0.0) & (np.sum(leg * last[:, :, None], axis=3) > 0.0)
+    sane = np.isfinite(distance).all(axis=2) & forward.all(axis=2) & (sweep[..., 0] > 0.0)
+    # It meets the curve's normal at the arc's end, not the arc's own: its foot there may miss the end by `slip`.
+    sine = np.abs(last[..., 0] * tangent[:, 1:, 1] - last[..., 1] * tangent[:, 1:, 0])
+    slip = np.abs(distance).max(axis=2) * sine + left[:, 1:] + left[:, :-1]
+    outer, inner = np.maximum(distance.max(axis=2), 0.0), np.maximum(-distance.min(axis=2), 0.0)
+    top = np.hypot(np.where(sane, outer, np.inf), slip) - found.inside.reshape(count, -1)
+    bottom = np.hypot(np.where(sane, inner, np.inf), slip) + found.outside.reshape(count, -1)
     node = distance[..., 0]
     return top.max(axis=1), bottom.max(axis=1), node.max(axis=1), (-node).max(axis=1)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from camgeo.curve import Curve
 from camgeo.offset import Parallel
@@ -18,14 +18,12 @@ from camgeo.recipe.model import (
     FourierShape,
     LawRoute,
     ReuleauxShape,
-    RosetteRoute,
     SupportCam,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.curve import Shape
     from camgeo.recipe.model import Cam, MotionSegment
     from kin.law import Programme
     from kin.lift import Lift
@@ -60,22 +58,27 @@ def intent_of(cam: Cam) -> Lift | Transmission:
 
 
 def profile_of(cam: Cam, intent: Lift | Transmission) -> Profile:
-    """Exact curve of the cam that gives the intended motion."""
-    if isinstance(cam, DoubleRollerCam):
-        from camgeo.profile.wunderlich import PitchShape
+    """Exact curve of the cam that gives the intended motion.
 
-        pitch = PitchShape(intent)
-        return Profile(Curve.whole(pitch), Curve.whole(Parallel(pitch, cam.roller_radius)), cam.roller_radius)
-    shape: Shape
-    if isinstance(cam, FlatPairCam):
-        from camgeo.profile.wunderlich import FlatPairShape
+    Raises TypeError where the intent is not of the cam's kind.
+    """
+    from kin.lift import Lift
 
-        shape = FlatPairShape(intent)
-    else:
+    if isinstance(intent, Lift):
+        if isinstance(cam, DoubleRollerCam | FlatPairCam):
+            raise TypeError("a lift is no motion of a double follower")
         from camgeo.profile.support import SupportShape
 
-        shape = SupportShape(intent)
-    whole = Curve.whole(shape)
+        whole = Curve.whole(SupportShape(intent))
+        return Profile(whole, whole, 0.0)
+    from camgeo.profile.wunderlich import FlatPairShape, PitchShape
+
+    if isinstance(cam, DoubleRollerCam):
+        pitch = PitchShape(intent)
+        return Profile(Curve.whole(pitch), Curve.whole(Parallel(pitch, cam.roller_radius)), cam.roller_radius)
+    if not isinstance(cam, FlatPairCam):
+        raise TypeError("a transmission law is no motion of a single flat face")
+    whole = Curve.whole(FlatPairShape(intent))
     return Profile(whole, whole, 0.0)
 
 
@@ -101,7 +104,7 @@ def _transmission(cam: DoubleRollerCam | FlatPairCam) -> Transmission:
     if isinstance(route, DeltaRoute):
         return transmission.from_delta(cam.lam, cam.mu, cam.arm, dict(route.cos), dict(route.sin))
     if isinstance(route, LawRoute):
-        swing_of = "pair" if isinstance(cam, FlatPairCam) else "arm"
+        swing_of: Literal["arm", "pair"] = "pair" if isinstance(cam, FlatPairCam) else "arm"
         motion = _programme(route.motion, math.pi / cam.lam, "law")
         return transmission.from_law(cam.lam, cam.mu, cam.arm, motion, swing_of)
     if isinstance(route, ArcRoute):

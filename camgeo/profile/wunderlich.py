@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
@@ -19,12 +19,16 @@ from kin.ball import Ball
 from kin.jet import BallJet, Jet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from camgeo.curve import Array
     from kin.transmission import Transmission
 
 Series = TypeVar("Series", Jet, BallJet)
+
+class _Rates(Protocol):
+    """Speed and turn of a shape from jets of phi and psi."""
+
+    def __call__(self, phi: Series, psi: Series, /) -> tuple[Series, Series]: ...
+
 
 ROUNDING = 1e-10  # relative: what the rounding of a few dozen operations is far below
 
@@ -166,7 +170,7 @@ def _steady(shape: PitchShape | FlatPairShape, law: Transmission) -> Array:
 
 
 def _stretches(law: Transmission) -> list[tuple[float, float]]:
-    """Ends of the stretches between breaks; the whole turn where there is none."""
+    """List the ends of the stretches between breaks; the whole turn where there is none."""
     breaks = [float(b) for b in law.breaks]
     if not breaks:
         return [(0.0, 2.0 * math.pi)]
@@ -174,7 +178,7 @@ def _stretches(law: Transmission) -> list[tuple[float, float]]:
 
 
 def _cut(series: Series, order: int) -> Series:
-    """The same series to a lower order."""
+    """Cut a series to a lower order."""
     if isinstance(series, Jet):
         return Jet(series.c[: order + 1])
     return BallJet(series.mid[: order + 1], series.rad[: order + 1])
@@ -186,9 +190,7 @@ def _jet(rows: Array) -> Jet:
     return Jet(rows / scale[:, None])
 
 
-def _bounds(
-    law: Transmission, low: Array, high: Array, rates: Callable[[Series, Series], tuple[Series, Series]]
-) -> Bounds:
+def _bounds(law: Transmission, low: Array, high: Array, rates: _Rates) -> Bounds:
     """Bounds over intervals (n,) from the law and from speed and turn as functions of phi and psi.
 
     Interval arithmetic alone loses how its operands hang together. So each derivative, of the law as of speed and
