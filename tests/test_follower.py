@@ -119,12 +119,9 @@ def rounded_reuleaux(breadth, rounding):
     """Six arcs about the corners of a triangle, as vertices and bulges; corners on the +x axis and 120 degrees on."""
     side = breadth - 2 * rounding
     corner = side / np.sqrt(3) * circle_points(3)
-    vertices, bulges = [], []
-    for k in range(3):
-        for sign in (-1, 1):  # the small arc about corner k spans 60 degrees about the direction 120 k
-            vertices.append(corner[k] + rounding * unit(np.array(2 * np.pi * k / 3 + sign * np.pi / 6)))
-        bulges += [np.tan(np.pi / 12)] * 2
-    return np.array(vertices), np.array(bulges)
+    # the small arc about corner k spans 60 degrees about the direction 120 k
+    ends = [corner[k] + rounding * unit((4 * k + sign) * np.pi / 6) for k in range(3) for sign in (-1, 1)]
+    return np.array(ends), np.full(6, np.tan(np.pi / 12))
 
 
 def test_rounded_reuleaux_of_six_arcs_fills_its_yoke():
@@ -353,7 +350,7 @@ def test_dwell_of_a_double_roller():
 def test_a_roller_that_meets_nothing():
     follower = DoubleRoller(DOUBLES["Booth"][0], 8.0)
     with pytest.raises(ContactError, match="the roller meets nothing at 0 degrees"):
-        follower.judge(polygon(circle_points(8) + [200.0, 0.0]), PHI)
+        follower.judge(polygon(circle_points(8) + np.array([200.0, 0.0])), PHI)
 
 
 @pytest.mark.parametrize("name", DOUBLES)
