@@ -31,6 +31,7 @@ SPLITS = 8  # parts into which an undecided interval is divided
 NEAR = 100.0  # an end this many times `SHARPNESS` from the least counts as a minimum
 GROWTH = 1.6  # from part to part away from a minimum already found
 LEVELS = 30
+MOST_INTERVALS = 50_000  # undecided at a time
 _ROOT_STEPS = 60
 
 
@@ -55,10 +56,8 @@ def least_radius(curve: Curve) -> tuple[float, float]:
     if not possible.any():
         return math.inf, float(cells.low[0])
     # circular arcs need no search, and would not end one
-    arcs = curve.shape.radii[curve.stretch_of(0.5 * (cells.low + cells.high))]
-    exact = np.where(possible & (arcs > 0.0), arcs, np.inf)
-    first = int(np.argmin(exact))
-    best, at = float(exact[first]), float(cells.low[first])
+    arcs = _arc_radii(curve)
+    best, at = _least_arc(curve, arcs, possible)
     possible &= np.isnan(arcs)
     if not possible.any():
         return best, at
@@ -79,12 +78,34 @@ def least_radius(curve: Curve) -> tuple[float, float]:
         state = state.part(state.floor(best - tolerance) < 0.0)
         if state.low.size == 0:
             return best, at
+        if state.low.size > MOST_INTERVALS:
+            break
         grade = 0.5 * math.sqrt(8.0 * tolerance / max(state.bend(best).max(), 1e-300))
         state = state.divided(curve, np.concatenate([bottoms, state.ends_below(best + NEAR * tolerance)]), grade)
         least, where = _least_end(state)
         if least < best:
             best, at = least, where
     raise CurveError(f"the least radius of curvature near parameter {at:.9g}, {best:.9g} mm, cannot be proved", at)
+
+
+def _arc_radii(curve: Curve) -> Array:
+    """Signed radius of each cell (n,) that lies on a circular arc, else nan."""
+    cells = curve.cells
+    radii: Array = curve.shape.radii[curve.stretch_of(0.5 * (cells.low + cells.high))]
+    return radii
+
+
+def _least_arc(curve: Curve, radii: Array, possible: Mask) -> tuple[float, float]:
+    """Least radius (n,) of the possible cells that are circular arcs and convex, and where; infinite without one."""
+    cells = curve.cells
+    arcs = np.flatnonzero(possible & ~np.isnan(radii))
+    if arcs.size:
+        # the sign of the radius does not tell: inside a roller that is too large a convex arc has a negative one
+        arcs = arcs[curve.sample(0.5 * (cells.low[arcs] + cells.high[arcs])).turn > 0.0]
+    if not arcs.size:
+        return math.inf, float(cells.low[0])
+    least = arcs[np.argmin(radii[arcs])]
+    return float(radii[least]), float(cells.low[least])
 
 
 def reversals(curve: Curve) -> tuple[Reversal, ...]:
@@ -99,8 +120,9 @@ def reversals(curve: Curve) -> tuple[Reversal, ...]:
         return ()
     state = _Intervals.of(curve, cells.low, cells.high, cells.rows[6], cells.rows[7])
     tolerance = ROUNDING * _extent(state.at_low)
-    state = state.part(doubtful)
-    found: list[tuple[float, float, bool]] = []
+    arcs = _arc_radii(curve)
+    found = _arcs_below_zero(state, arcs, tolerance)
+    state = state.part(doubtful & np.isnan(arcs))
     for _ in range(LEVELS):
         a, b = state.at_low, state.at_high
         room = 0.125 * state.speed_bend * (state.high - state.low) ** 2
@@ -114,6 +136,8 @@ def reversals(curve: Curve) -> tuple[Reversal, ...]:
         state = state.part(~decided)
         if state.low.size == 0:
             return _joined(curve, found)
+        if state.low.size > MOST_INTERVALS:
+            break
         state = state.divided(curve, np.empty(0), 0.0)
     where = float(state.low[0])
     raise CurveError(f"whether the curve runs backwards near parameter {where:.9g} cannot be proved", where)
@@ -264,13 +288,18 @@ def roots(function: Callable[[Array], Array], low: Array, high: Array, precision
     return last
 
 
+def _arcs_below_zero(state: _Intervals, radii: Array, tolerance: float) -> list[tuple[float, float, bool]]:
+    """Intervals on circular arcs, their radii (n,) nan elsewhere, that are run along backwards or shrink to a point."""
+    with np.errstate(invalid="ignore"):
+        still = np.abs(radii) <= tolerance
+        backwards = ~still & (radii * state.at_low.turn < 0.0)
+    return [(float(state.low[i]), float(state.high[i]), bool(still[i])) for i in np.flatnonzero(still | backwards)]
+
+
 def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple[float, float, bool]]:
-    """Parts of intervals, each with at most one change of sign, over which the speed is below zero, or is zero."""
+    """Parts of intervals, each with at most one change of sign, over which the speed is below zero."""
     a, b = state.at_low.speed, state.at_high.speed
-    still = (np.abs(a) <= tolerance) & (np.abs(b) <= tolerance)
-    for i in np.flatnonzero(still):
-        still[i] = curve.steady((state.low[i], state.high[i])) is not None
-    first, last = (a < -tolerance) & ~still, (b < -tolerance) & ~still
+    first, last = a < -tolerance, b < -tolerance
     begin, end = state.low.copy(), state.high.copy()
     mixed = first != last
     crossing = mixed & (a * b < 0.0)
@@ -278,8 +307,8 @@ def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple
     falling = first[crossing]
     end[crossing] = np.where(falling, change, state.high[crossing])
     begin[crossing] = np.where(falling, state.low[crossing], change)
-    kept = np.flatnonzero(first | last | still)
-    return [(float(begin[i]), float(end[i]), bool(still[i])) for i in kept if end[i] > begin[i]]
+    kept = np.flatnonzero(first | last)
+    return [(float(begin[i]), float(end[i]), False) for i in kept if end[i] > begin[i]]
 
 
 def _joined(curve: Curve, found: list[tuple[float, float, bool]]) -> tuple[Reversal, ...]:

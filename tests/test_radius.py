@@ -14,10 +14,12 @@ from shapes import booth
 from camgeo.curve import Curve
 from camgeo.offset import Parallel
 from camgeo.profile.support import SupportShape
+from camgeo.profile.wunderlich import PitchShape
 from camgeo.radius import Reversal, least_radius, reversals
 from kin.formula import Formula
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_formula, lift_from_fourier, lift_reuleaux
+from kin.transmission import from_arc
 
 
 def flat(mean, cos, sin=None):
@@ -98,6 +100,28 @@ def test_a_rounded_corner_is_the_least_radius(rounding):
     assert value == pytest.approx(rounding, abs=1e-14)
 
 
+@pytest.mark.parametrize("e", [8.0, 30.0, 80.0])
+def test_a_circular_first_arc(e):
+    # W Figure 5: the pitch curve begins with an arc of 75 mm, run along at a changing speed
+    pitch = Curve.whole(PitchShape(from_arc(3, 1, 60.0, 75.0, "convex")))
+    least, at = least_radius(pitch)
+    inside, _ = least_radius(Curve.whole(Parallel(pitch.shape, e)))
+    assert inside == pytest.approx(least - e, abs=1e-11)
+    frame = pitch.sample(np.array([at]))
+    assert frame.speed[0] / frame.turn[0] == pytest.approx(least, rel=1e-12)
+    dense = pitch.sample(np.linspace(0.0, 2.0 * np.pi, 20_001))
+    assert least <= (dense.speed / dense.turn)[dense.turn > 0.0].min() + 1e-12
+
+
+@pytest.mark.parametrize("radius", [4.0, 10.0])
+def test_an_arc_too_tight_for_the_roller(radius):
+    # a convex arc of the pitch curve that turns inside out still counts, and a hollow one of that sign does not
+    base = SupportShape(lift_reuleaux(3, 50.0, radius))
+    value, at = least_radius(Curve.whole(Parallel(base, 12.0)))
+    assert value == pytest.approx(radius - 12.0, abs=1e-13)
+    assert base.sample(np.array([at])).speed[0] == pytest.approx(radius)
+
+
 @pytest.mark.parametrize("place", [0.1, 2.345, 5.0])
 def test_a_narrow_dip_is_not_missed(place):
     # rho falls from 20 by 22 within a few thousandths of a radian, the curve's other 6.28 are a circle
@@ -146,6 +170,14 @@ def test_a_corner_stands_still_and_does_not_run_backwards():
     found = reversals(Curve.whole(SupportShape(lift_reuleaux(3, 50.0, 0.0))))
     assert [r.still for r in found] == [True] * 3
     assert [r.end - r.start for r in found] == pytest.approx([math.pi / 3] * 3)
+
+
+def test_a_roller_as_large_as_an_arc_leaves_it_one_point():
+    shape = Parallel(PitchShape(from_arc(3, 1, 60.0, 75.0, "convex")), 75.0)
+    found = reversals(Curve.whole(shape))
+    still = [r for r in found if r.still]
+    assert len(still) == 3
+    assert all(r.start in shape.breaks for r in still)
 
 
 def test_all_backwards_is_one_reversal():
