@@ -70,7 +70,8 @@ def least_radius(curve: Curve) -> tuple[float, float]:
         best, at = least, where
     for _ in range(LEVELS):
         dips = state.part(state.dips & (state.floor(best - tolerance) < 0.0))
-        bottoms = roots(lambda t: _radius_slope(curve.sample(t)), dips.low, dips.high, 1e-7)
+        ends = _radius_slope(dips.at_low), _radius_slope(dips.at_high)
+        bottoms = roots(lambda t: _radius_slope(curve.sample(t)), dips.low, dips.high, ends, 1e-7)
         if bottoms.size:
             radius = _radius(curve.sample(bottoms))
             if radius.min() < best:
@@ -259,15 +260,19 @@ def _least_end(state: _Intervals) -> tuple[float, float]:
     return float(radius[where]), float(np.concatenate([state.low, state.high])[where])
 
 
-def roots(function: Callable[[Array], Array], low: Array, high: Array, precision: float) -> Array:
+def roots(
+    function: Callable[[Array], Array], low: Array, high: Array, values: tuple[Array, Array], precision: float
+) -> Array:
     """Roots of a function that changes its sign in each interval (n,), to `precision` of the interval.
+
+    `values` are the function's at both ends, (n,) each.
 
     The Illinois form of the rule of false position, halving where it is slow.
     """
     if low.size == 0:
         return low
     a, b = low.copy(), high.copy()
-    fa, fb = function(a), function(b)
+    fa, fb = values
     close = precision * (high - low) + 2.0 * np.spacing(np.maximum(np.abs(low), np.abs(high)))
     last = np.full_like(a, np.inf)
     for step in range(_ROOT_STEPS):
@@ -303,7 +308,8 @@ def _below_zero(curve: Curve, state: _Intervals, tolerance: float) -> list[tuple
     begin, end = state.low.copy(), state.high.copy()
     mixed = first != last
     crossing = mixed & (a * b < 0.0)
-    change = roots(lambda t: curve.sample(t).speed, state.low[crossing], state.high[crossing], 0.0)
+    ends = a[crossing], b[crossing]
+    change = roots(lambda t: curve.sample(t).speed, state.low[crossing], state.high[crossing], ends, 0.0)
     falling = first[crossing]
     end[crossing] = np.where(falling, change, state.high[crossing])
     begin[crossing] = np.where(falling, state.low[crossing], change)

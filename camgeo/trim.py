@@ -204,7 +204,8 @@ class _Contact:
             at = self.curve.sample(t)
             return np.asarray(np.sum((points[which] - at.point) * at.tangent, axis=1))
 
-        at = self.curve.sample(roots(facing, nodes[where], after[where], 1e-9))
+        values = along[which, where], along[which, (where + 1) % nodes.size]
+        at = self.curve.sample(roots(facing, nodes[where], after[where], values, 1e-9))
         low = self.clearance(points[which] - at.point, at.normal) < -self.tolerance
         cut[which[low]] = True
         return [c for c, gone in zip(corners, cut.tolist(), strict=True) if not gone]
