@@ -7,6 +7,7 @@ oracle needs nothing of the fitters: it evaluates support functions at many dire
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -16,12 +17,14 @@ from hypothesis import strategies as st
 from camgeo.curve import Curve
 from camgeo.fit.arcs import arc_density, fit_arcs
 from camgeo.fit.nodes import Density, ToleranceError
-from camgeo.fit.pieces import ArcSpline, BSpline, Polygon
 from camgeo.fit.polygon import fit_polygon, least_vertices
 from camgeo.fit.spline import fit_spline
 from camgeo.profile.support import SupportShape
 from kin.law import Segment, law, programme
 from kin.lift import Lift, lift_constant_breadth, lift_from_fourier, lift_reuleaux
+
+if TYPE_CHECKING:
+    from camgeo.fit.pieces import ArcSpline, BSpline, Polygon
 
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 
@@ -196,7 +199,9 @@ def test_too_many_pieces_are_refused() -> None:
     st.floats(-7.0, -2.0),
     st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)),
 )
-def test_any_convex_fourier_curve(size: float, k: int, share: float, exponent: float, pivot: tuple[float, float]) -> None:
+def test_any_convex_fourier_curve(
+    size: float, k: int, share: float, exponent: float, pivot: tuple[float, float]
+) -> None:
     tolerance = size * 10.0**exponent
     lift = lift_from_fourier(size, {k: share * size / (k * k - 1)}, {}, (pivot[0] * size, pivot[1] * size))
     curve = Curve.whole(SupportShape(lift))
