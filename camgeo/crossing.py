@@ -14,10 +14,13 @@ import numpy as np
 from camgeo.radius import ROUNDING
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from camgeo.curve import Array, Curve
 
 SHORT = 0.02  # of the period: parameter lengths over which points' differences are integrated, not subtracted
 STEPS = 40
+MOST_PAIRS = 200_000  # looked at together
 _GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(12)
 
 
@@ -57,21 +60,37 @@ def seen_crossings(t: Array, points: Array, period: float) -> Array:
 
     Linear along each edge: a beginning for `settled`. Cost grows as n^2.
     """
+    count = t.size
     edge = np.roll(points, -1, axis=0) - points
     length = np.diff(np.append(t, t[0] + period))
-    # side[i, j]: on which side of edge i vertex j lies
-    side = edge[:, 0, None] * (points[None, :, 1] - points[:, None, 1]) - edge[:, 1, None] * (
-        points[None, :, 0] - points[:, None, 0]
-    )
-    after = np.roll(side, -1, axis=1)
-    parted = (side < 0.0) != (after < 0.0)
+    parted = np.empty((count, count), dtype=bool)
+    for rows in in_parts(count):
+        side = _side(edge[rows, None], points[None] - points[rows, None])
+        parted[rows] = (side < 0.0) != (np.roll(side, -1, axis=1) < 0.0)
     first, second = np.nonzero(np.triu(parted & parted.T, 2))
-    if t.size > 2:
-        whole = (first != 0) | (second != t.size - 1)
-        first, second = first[whole], second[whole]
-    on_second = side[first, second] / (side[first, second] - after[first, second])
-    on_first = side[second, first] / (side[second, first] - after[second, first])
-    return np.column_stack([t[first] + on_first * length[first], t[second] + on_second * length[second]])
+    apart = (first != 0) | (second != count - 1)
+    first, second = first[apart], second[apart]
+
+    def share(cut: NDArray[np.intp], by: NDArray[np.intp]) -> Array:
+        """Where edges are cut by the lines of others, as a share of their length."""
+        start = _side(edge[by], points[cut] - points[by])
+        return start / (start - _side(edge[by], points[(cut + 1) % count] - points[by]))
+
+    return np.column_stack(
+        [t[first] + share(first, second) * length[first], t[second] + share(second, first) * length[second]]
+    )
+
+
+def _side(edge: Array, to: Array) -> Array:
+    """On which side of an edge (..., 2) a point lies that is `to` (..., 2) away from its start; left is positive."""
+    side: Array = edge[..., 0] * to[..., 1] - edge[..., 1] * to[..., 0]
+    return side
+
+
+def in_parts(count: int) -> list[slice]:
+    """Rows of a table of `count` by `count` pairs, so many at a time that memory stays small."""
+    step = max(1, MOST_PAIRS // max(count, 1))
+    return [slice(i, min(i + step, count)) for i in range(0, count, step)]
 
 
 def settled(curve: Curve, pairs: Array, size: float) -> Array:

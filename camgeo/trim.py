@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.crossing import SHORT, all_breaks, displacement, seen_crossings, settled
+from camgeo.crossing import SHORT, all_breaks, displacement, in_parts, seen_crossings, settled
 from camgeo.curve import Curve, Run
 from camgeo.offset import Parallel
 from camgeo.radius import ROUNDING, least_radius, reversals, roots
@@ -184,9 +184,10 @@ class _Contact:
 
     def cut(self, on: Frame) -> NDArray[np.bool_]:
         """Whether contour points (n,) are cut away by contact at any of them (n,)."""
-        g = self.clearance(on.point[:, None] - on.point[None], on.normal[None])
-        below: NDArray[np.bool_] = g.min(axis=1) < -self.tolerance
-        return below
+        least = np.empty(len(on.point))
+        for rows in in_parts(len(on.point)):
+            least[rows] = self.clearance(on.point[rows, None] - on.point[None], on.normal[None]).min(axis=1)
+        return np.asarray(least < -self.tolerance)
 
     def standing(self, corners: list[Corner], nodes: Array, on: Frame) -> list[Corner]:
         """Corners that no contact position cuts away; every least value of g between nodes is found."""
