@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.fit.nodes import Density
 
 REACH = math.sqrt(24.0) / 6.0
-_BISECTIONS = 40
+_ROOT_STEPS = 4  # of Newton's method; a crossing edge is far wider than what is left
 _STEPS = 8
 _SETTLED = 1e-4  # of the tolerance
 _MOST_STEP = 0.3  # of an edge's reach, in one step
@@ -43,12 +43,16 @@ def inflections(curve: Curve, densities: Sequence[Density]) -> tuple[Array, floa
     at_break = breaks[change[last]]
     change[last] = False
     found = np.flatnonzero(change)
-    low, high, sense = inner[found], inner[found + 1], positive[found]
-    for _ in range(_BISECTIONS if found.size else 0):
-        middle = 0.5 * (low + high)
-        same = (curve.sample(middle).turn >= 0.0) == sense
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    roots: Array = np.sort(np.concatenate([at_break, 0.5 * (low + high)]))
+    low, high, sense = inner[found], inner[found + 1], np.where(positive[found], 1.0, -1.0)
+    root = 0.5 * (low + high)
+    for _ in range(_ROOT_STEPS if found.size else 0):
+        at = curve.sample(root)
+        before = at.turn * sense >= 0.0
+        low, high = np.where(before, root, low), np.where(before, high, root)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            better = root - at.turn / at.turn_slope
+        root = np.where((better > low) & (better < high), better, 0.5 * (low + high))
+    roots: Array = np.sort(np.concatenate([at_break, root]))
     return roots, 1.0 if positive[0] else -1.0
 
 

@@ -132,7 +132,9 @@ def _parts(
     low = whole.at(root * (share - np.minimum(REACH, room[:-1])))
     high = whole.at(root * (share + np.minimum(REACH, room[1:])))
     edge = crossings(curve, bends, low, high, CROSSING * tolerance)
-    low, high = np.array(edge.low), np.array(edge.high)
+    # an edge that would reach beyond the run's own end keeps to the guess, which leaves room
+    low = np.where(edge.low > run.low, edge.low, low)
+    high = np.where(edge.high < run.high, edge.high, high)
     overlap = np.append(high[:-1] >= low[1:], False) if bends.size else np.zeros(0, dtype=bool)
     for i in np.flatnonzero(overlap):
         # two crossings that meet leave one edge between them
