@@ -338,15 +338,12 @@ def on_spans(spline, count=24):
 
 
 FITS = {"polygon": (fit_polygon, on_edges), "arcs": (fit_arcs, on_arcs), "spline": (fit_spline, on_spans)}
-UNFIT = {("star", "polygon", 1e-4)}
 
 
 @pytest.mark.parametrize("form", FITS)
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
-def test_fits_keep_the_corners_and_their_promise(case, form, tolerance, request):
-    if (case, form, tolerance) in UNFIT:
-        request.applymarker(pytest.mark.xfail(reason="a run that ends near an inflection", strict=True))
+def test_fits_keep_the_corners_and_their_promise(case, form, tolerance):
     curve = trimmed(CASES[case])
     fit, on = FITS[form]
     fitted = fit(curve, tolerance)
