@@ -1,0 +1,173 @@
+"""Rows of docs/validation.md, and the files they are measured on: recipe, pipeline, file, read back.
+
+`python tests/validation/ledger.py` writes the tables anew; `test_document.py` holds the page against them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from importlib import import_module
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from camgeo import pipeline
+from camgeo.design import designed
+from camgeo.recipe import load, read
+from camgeo.recipe.model import FileRequest
+from kin.read_dxf import read_dxf
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "validation.md"
+TOPICS = (
+    "test_support_functions",
+    "test_rabinowitz",
+    "test_least_polygon",
+    "test_motion_laws",
+    "test_shu_wu",
+    "test_wunderlich",
+)
+HEAD = "| quantity | source | published | ours | differs by |\n| --- | --- | --- | --- | --- |"
+MISPRINT_HEAD = "| where | printed | right | measured | printed is off by |\n| --- | --- | --- | --- | --- |"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of a table.
+
+    `published` is the text to show, `value` the number it stands for (None where the source gives no number);
+    `within` how far ours may lie from it, or from the page's where there is no value; `form` shows ours.
+    """
+
+    quantity: str
+    source: str
+    published: str
+    value: float | None
+    ours: float
+    within: float
+    form: str = ".7g"
+
+    @property
+    def key(self):
+        return self.quantity, self.source, self.published
+
+    @property
+    def holds(self):
+        return self.value is None or abs(self.ours - self.value) <= self.within
+
+    def line(self):
+        if self.value is None:
+            differs = "-"
+        else:
+            # rounding differs between machines, so below a billionth only the order is told
+            off = abs(self.ours - self.value)
+            floor = 1e-9 * max(1.0, abs(self.value))
+            differs = f"{off:.1e}" if off > floor else f"< {floor:.0e}"
+        return f"| {' | '.join(self.key)} | {self.ours:{self.form}} | {differs} |"
+
+
+def shown(mark):
+    """Rows of a table of the page, as lists of cells."""
+    text = PAGE.read_text(encoding="utf-8")
+    block = text.split(f"<!-- {mark} -->\n")[1].split("\n<!-- end -->")[0]
+    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in block.splitlines()[2:]]
+
+
+@dataclass(frozen=True)
+class Made:
+    """A recipe exported to a folder, as its files give it."""
+
+    recipe: object
+    report: dict
+    folder: Path
+
+    @cached_property
+    def design(self):
+        return designed(self.recipe)
+
+    @cached_property
+    def drawing(self):
+        return read_dxf(self.folder / f"{self.recipe.name}.dxf")
+
+    @cached_property
+    def contour(self):
+        """Outer contour in mm as if the shaft turned clockwise."""
+        contour = self.drawing.contour
+        return contour.mirrored() if self.recipe.rotation == "ccw" else contour
+
+    @cached_property
+    def motion(self):
+        """The motion table by column."""
+        return np.genfromtxt(self.folder / f"{self.recipe.name}.csv", delimiter=",", names=True)
+
+    def value(self, check):
+        return next(c["value"] for c in self.report["checks"] if c["name"] == check)
+
+    @cached_property
+    def normal_samples(self):
+        """Points of the contour of lines and arcs, with outward normals: (n, 2) each, some 200 to a piece."""
+        arcs = self.contour.as_arcs()[0]
+        piece = np.repeat(np.arange(len(arcs)), 200)
+        s = np.tile((np.arange(200) + 0.5) / 200, len(arcs)) * arcs.length[piece]
+        chosen = arcs.take(piece)
+        tangent = chosen.tangents(s)
+        return chosen.points(s), np.column_stack([tangent[:, 1], -tangent[:, 0]])
+
+
+class Workshop:
+    """Exports each recipe once."""
+
+    def __init__(self, out):
+        self.out = Path(out)
+        self._made = {}
+
+    def shipped(self, name, as_="arcs", tolerance=None):
+        """A shipped recipe as a DXF of one form and a motion table."""
+        key = (name, as_, tolerance)
+        if key not in self._made:
+            recipe = load(ROOT / "recipes" / f"{name}.yaml")
+            self._made[key] = self._export(recipe, as_, tolerance, self.out / f"{as_}-{tolerance}")
+        return self._made[key]
+
+    def written(self, name, text, as_="arcs"):
+        """A recipe written out in a test."""
+        if name not in self._made:
+            self._made[name] = self._export(read(text.encode(), f"{name}.yaml"), as_, None, self.out / "written")
+        return self._made[name]
+
+    def _export(self, recipe, as_, tolerance, out):
+        files = (FileRequest("dxf", as_, "R2010", tolerance), FileRequest("csv"))
+        recipe = replace(recipe, export=replace(recipe.export, files=files))
+        outcome = pipeline.export(recipe, out)
+        assert outcome.ok, [c for c in outcome.report["checks"] if not c["ok"]]
+        return Made(recipe, outcome.report, outcome.folder)
+
+
+def topics(workshop):
+    """Rows of each topic by the name of its module."""
+    return {topic: import_module(topic).rows(workshop) for topic in TOPICS}
+
+
+def misprints(workshop):
+    return import_module("test_misprints").misprints(workshop)
+
+
+def main():
+    with TemporaryDirectory() as folder:
+        workshop = Workshop(folder)
+        found = topics(workshop)
+        wrong = [MISPRINT_HEAD, *(one.line() for one in misprints(workshop))]
+    for row in (row for rows in found.values() for row in rows if not row.holds):
+        print(f"{row.line()}  allowed {row.within}")
+    written = {topic: "\n".join([HEAD, *(row.line() for row in rows)]) for topic, rows in found.items()}
+    text = PAGE.read_text(encoding="utf-8")
+    for mark, table in {**written, "misprints": "\n".join(wrong)}.items():
+        before, rest = text.split(f"<!-- {mark} -->\n")
+        text = f"{before}<!-- {mark} -->\n{table}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}"
+    PAGE.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

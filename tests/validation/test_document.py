@@ -1,0 +1,49 @@
+"""docs/validation.md: every line of it is measured anew, and there is none besides."""
+
+import re
+
+import ledger
+import pytest
+
+
+@pytest.fixture(scope="module")
+def measured(workshop):
+    return ledger.topics(workshop)
+
+
+@pytest.mark.parametrize("topic", ledger.TOPICS)
+def test_published_values_hold(measured, topic):
+    assert len(measured[topic]) >= 4
+    assert [row.line() for row in measured[topic] if not row.holds] == []
+
+
+@pytest.mark.parametrize("topic", ledger.TOPICS)
+def test_the_page_shows_what_is_measured(measured, topic):
+    """The same lines in the same order, our figures within what each may differ by or half its last digit."""
+    lines = ledger.shown(topic)
+    assert [tuple(line[:3]) for line in lines] == [row.key for row in measured[topic]]
+    for line, row in zip(lines, measured[topic], strict=True):
+        digit = abs(float(f"{row.ours:{row.form}}") - row.ours) + 1e-9 * abs(row.ours)
+        assert float(line[3]) == pytest.approx(row.ours, abs=row.within + digit), line
+        assert float(line[4].lstrip("< ")) <= max(row.within, 2e-9 * max(1.0, abs(row.value))), line
+
+
+def test_the_page_shows_what_is_misprinted(workshop):
+    lines = ledger.shown("misprints")
+    found = ledger.misprints(workshop)
+    assert [line[:4] for line in lines] == [[one.where, one.printed, one.right, one.measured] for one in found]
+    assert [float(line[4]) for line in lines] == pytest.approx([one.off[0] for one in found], rel=0.01)
+
+
+def test_the_page_has_no_table_besides():
+    text = ledger.PAGE.read_text(encoding="utf-8")
+    marks = re.findall(r"^<!-- (?!end)(.*) -->$", text, re.MULTILINE)
+    assert marks == [*ledger.TOPICS, "misprints"]
+    assert len(re.findall(r"^\| ---", text, re.MULTILINE)) == len(marks)
+
+
+def test_a_wrong_figure_is_caught(measured):
+    row = measured["test_rabinowitz"][2]
+    spoilt = ledger.Row(row.quantity, row.source, row.published, row.value, row.ours + 2 * row.within, row.within)
+    assert row.holds
+    assert not spoilt.holds
