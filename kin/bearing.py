@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from kin.contour import Contour
 
 TURN = 2.0 * np.pi
+NEAR_CENTRE = 1e3  # mm; a point found from a centre farther away would lose more than a picometre to rounding
 FLATTEST = 1e9  # mm; larger radii of curvature are all alike
 
 
@@ -46,7 +47,7 @@ class Bearing:
         return self._rows(theta, stretch, unit(theta))
 
     def _rows(self, theta: Array, stretch: Indices, u: Array) -> Array:
-        x, radius = self._contact(theta, stretch)
+        x, radius = self._contact(theta, stretch, u)
         q = dot(x, u)
         return np.stack([q, cross(u, x), radius - q])
 
@@ -61,7 +62,7 @@ class Bearing:
         u = unit(nodes + turned)
         return stretch, self._rows(low, stretch, u[:-1]), self._rows(high, stretch, u[1:])
 
-    def _contact(self, theta: Array, stretch: Indices) -> tuple[Array, Array]:
+    def _contact(self, theta: Array, stretch: Indices, u: Array) -> tuple[Array, Array]:
         x = self.point[stretch]
         radius = np.zeros(len(x))
         piece = self.piece[stretch]
@@ -70,8 +71,11 @@ class Bearing:
             kind = self.contour.kind[piece[curved]]
             arc, bow = curved[kind == ARC], curved[kind == BEZIER]
             i = piece[arc]
+            radius[arc] = r = self.contour.radius[i]
+            x[arc] = self.contour.centre[i] + r[:, None] * u[arc]
+            far = r > NEAR_CENTRE
+            arc, i = arc[far], i[far]
             x[arc] = self.contour.arc_points(i, theta[arc] - self.contour.angle[i])
-            radius[arc] = self.contour.radius[i]
             if len(bow):
                 row = self.contour.curve[piece[bow]]
                 beziers = self.contour.beziers
@@ -108,13 +112,21 @@ def bearing_of(contour: Contour) -> Bearing:
     """Find what bears in every direction. Cost: one support evaluation for each break of the contour's support."""
     breaks = contour.normals
     middle = np.mod(breaks + 0.5 * np.diff(breaks, append=breaks[:1] + TURN), TURN)
-    if (contour.kind == LINE).all():
-        normals, corners = contour.hull_edges
-        point = contour.vertices[corners[np.searchsorted(normals, middle, side="right") - 1]]
-        return Bearing(contour, breaks, point, np.full(len(breaks), -1))
+    if contour.is_convex:
+        return _of_convex(contour, breaks, middle)
     found = contour.support(middle)
     ranges = contour.normal_ranges
     low, width = np.zeros(len(contour)), np.full(len(contour), -1.0)
     low[ranges.piece], width[ranges.piece] = ranges.low, ranges.width
     curved = np.mod(middle - low[found.piece], TURN) <= width[found.piece]
     return Bearing(contour, breaks, found.point, np.where(curved, found.piece, -1))
+
+
+def _of_convex(contour: Contour, breaks: Array, middle: Array) -> Bearing:
+    """In order: each piece bears over its own normals, its end from there to the first normal of the next piece."""
+    first = np.mod(contour.directions[0] - 0.5 * np.pi, TURN)
+    order = np.roll(np.arange(len(contour)), -int(np.argmin(first)))
+    piece = order[np.searchsorted(first[order], middle, side="right") - 1]
+    own = np.mod(middle - first[piece], TURN) < contour.turns[piece]
+    own &= contour.kind[piece] != LINE
+    return Bearing(contour, breaks, contour.end[piece], np.where(own, piece, -1))

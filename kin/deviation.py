@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from kin.arcs import Array, Indices
     from kin.envelope import Envelope
+    from kin.extremes import Extremes
     from kin.foot import Feet
 
 RESOLUTION = 1e-11  # mm
@@ -89,6 +90,23 @@ def deviation(chain: Arcs, envelope: Envelope) -> Deviation:
         bare_at=bare_at,
         rounds=round(float(advance.sum()) / (2.0 * np.pi)),
         backwards=_longest_run(np.where(advance < 0.0, np.abs(dot(ends - pieces.start, left(feet.normal))), 0.0)),
+    )
+
+
+def convex_deviation(reach: Extremes) -> Deviation:
+    """Deviation of a convex contour from a convex exact one, from the extremes of q - p over theta.
+
+    For convex bodies the Hausdorff distance is the greatest difference of their support functions, either way.
+    """
+    return Deviation(
+        outside=reach.greatest,
+        outside_at=reach.greatest_at,
+        inside=-reach.least,
+        inside_at=reach.least_at,
+        bare=0.0,
+        bare_at=float("nan"),
+        rounds=1,
+        backwards=0.0,
     )
 
 

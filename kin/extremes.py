@@ -8,17 +8,20 @@ until they cannot hold the extreme.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from numpy.typing import NDArray
+
     from kin.arcs import Array, Indices
 
 MOST_HALVINGS = 48
+BLOCK = 8192  # intervals at a time, so that their arrays stay in the cache
 
 
 @dataclass(frozen=True)
@@ -60,54 +63,73 @@ def extremes(
     gives the same rows at points inside, `interval` (k,) being the interval each x comes from. Values are good to
     `resolution`, as far as f'''' does not swing within an interval; halving costs grow as resolution ** -1/4.
     """
+    found = Extremes(-np.inf, np.nan, -1, np.inf, np.nan, -1)
     owner = np.arange(len(low))
-    best = (-np.inf, np.nan, -1)
-    worst = (np.inf, np.nan, -1)
     for halving in range(MOST_HALVINGS):
-        if not len(low):
+        last = halving == MOST_HALVINGS - 1
+        parts = [slice(begin, begin + BLOCK) for begin in range(0, len(low), BLOCK)]
+        doubtful = []
+        for part in parts:
+            block = _Block(low[part], high[part], at_low[:, part], at_high[:, part], owner[part])
+            found, open_ = _scan(found, block, np.inf if last else resolution)
+            doubtful.append(open_)
+        open_ = np.concatenate(doubtful) if doubtful else np.zeros(0, dtype=bool)
+        if not open_.any():
             break
-        top, top_at, bottom, bottom_at, doubt = _cubic(low, high, at_low, at_high)
-        # An extreme between the ends counts once the cubic is trusted; before, only the ends do.
-        trusted = (doubt <= resolution) | (halving == MOST_HALVINGS - 1)
-        for f, x in ((at_low[0], low), (at_high[0], high), (np.where(trusted, top, -np.inf), top_at)):
-            best = _better(best, f, x, owner, 1.0)
-        for f, x in ((at_low[0], low), (at_high[0], high), (np.where(trusted, bottom, np.inf), bottom_at)):
-            worst = _better(worst, f, x, owner, -1.0)
-        # Sixteen times the estimate covers an f'''' that swings, or a break of f'' nobody declared.
-        open_ = ~trusted & ((top + 16.0 * doubt > best[0]) | (bottom - 16.0 * doubt < worst[0]))
         low, high, at_low, at_high, owner = low[open_], high[open_], at_low[:, open_], at_high[:, open_], owner[open_]
         middle = 0.5 * (low + high)
-        at_middle = evaluate(middle, owner) if len(low) else at_low
+        at_middle = evaluate(middle, owner)
         low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
         at_low, at_high = np.concatenate([at_low, at_middle], axis=1), np.concatenate([at_middle, at_high], axis=1)
         owner = np.concatenate([owner, owner])
-    return Extremes(*best, *worst)
+    return found
 
 
-def _better(
-    best: tuple[float, float, int], f: Array, x: Array, owner: Indices, sign: float
-) -> tuple[float, float, int]:
-    i = int(np.argmax(sign * f))
-    return (float(f[i]), float(x[i]), int(owner[i])) if sign * f[i] > sign * best[0] else best
+class _Block(NamedTuple):
+    """Some of the intervals."""
+
+    low: Array
+    high: Array
+    at_low: Array
+    at_high: Array
+    owner: Indices
 
 
-def _cubic(low: Array, high: Array, at_low: Array, at_high: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Greatest value of each cubic and where, least value and where, and the doubt about both."""
-    h = high - low
+def _scan(found: Extremes, block: _Block, resolution: float) -> tuple[Extremes, NDArray[np.bool_]]:
+    """Take in the ends of the intervals, and the extremes between where the cubic is trusted; and which to halve."""
+    low, high, at_low, at_high, owner = block
+    x, value, doubt = _cubic(high - low, at_low, at_high)
+    trusted = doubt <= resolution
+    values = np.stack([at_low[0], at_high[0], *np.where(trusted, value, at_low[0])])
+    for i, rising in ((int(values.argmax()), True), (int(values.argmin()), False)):
+        which, k = divmod(i, len(low))
+        share = (0.0, 1.0, *x[:, k])[which]
+        at = float(high[k] if which == 1 else low[k] + share * (high[k] - low[k]))
+        if rising and values[which, k] > found.greatest:
+            found = replace(found, greatest=float(values[which, k]), greatest_at=at, greatest_index=int(owner[k]))
+        if not rising and values[which, k] < found.least:
+            found = replace(found, least=float(values[which, k]), least_at=at, least_index=int(owner[k]))
+    if trusted.all():
+        return found, ~trusted
+    # Sixteen times the estimate covers an f''''' that swings, or a break of f''' nobody declared.
+    top, bottom = np.maximum(values.max(axis=0), value.max(axis=0)), np.minimum(values.min(axis=0), value.min(axis=0))
+    promising = (top + 16.0 * doubt > found.greatest) | (bottom - 16.0 * doubt < found.least)
+    return found, ~trusted & promising
+
+
+def _cubic(h: Array, at_low: Array, at_high: Array) -> tuple[Array, Array, Array]:
+    """Each cubic's extremes inside its interval of width h (n,): share of the width (2, n), value (2, n), doubt (n,).
+
+    Instead of an extreme that is not inside the low end is given.
+    """
     f, g = at_low[0], h * at_low[1]
     rise, slope = at_high[0] - f, h * at_high[1]
     c, d = 3.0 * rise - 2.0 * g - slope, g + slope - 2.0 * rise
-    doubt = np.maximum(np.abs(2.0 * c - h * h * at_low[2]), np.abs(2.0 * c + 6.0 * d - h * h * at_high[2])) / 16.0
+    square = h * h
+    doubt = np.maximum(np.abs(2.0 * c - square * at_low[2]), np.abs(2.0 * c + 6.0 * d - square * at_high[2])) / 16.0
     # f' = g + 2 c x + 3 d x^2; both roots in the form that does not cancel
-    root = np.sqrt(np.maximum(c * c - 3.0 * d * g, 0.0))
-    q = -(c + np.copysign(root, c))
-    top, top_at = np.maximum(f, at_high[0]), np.where(rise > 0, 1.0, 0.0)
-    bottom, bottom_at = np.minimum(f, at_high[0]), np.where(rise > 0, 0.0, 1.0)
+    q = -(c + np.copysign(np.sqrt(np.maximum(c * c - 3.0 * d * g, 0.0)), c))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        for x in (g / q, q / (3.0 * d)):
-            inside = (x > 0.0) & (x < 1.0)
-            y = np.where(inside, x, 0.0)
-            value = f + y * (g + y * (c + y * d))
-            top, top_at = np.where(value > top, value, top), np.where(value > top, y, top_at)
-            bottom, bottom_at = np.where(value < bottom, value, bottom), np.where(value < bottom, y, bottom_at)
-    return top, low + h * top_at, bottom, low + h * bottom_at, doubt
+        x = np.stack([g / q, q / (3.0 * d)])
+    x[~((x > 0.0) & (x < 1.0))] = 0.0
+    return x, f + x * (g + x * (c + x * d)), doubt

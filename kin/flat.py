@@ -60,7 +60,9 @@ class FlatFace:
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error: its extremes over the whole turn, rms and increments from the shaft angles theta (n,)."""
-        return Judged(_face_error(bearing_of(contour), self.lift, theta), None)
+        bearing = bearing_of(contour)
+        reach = error_extremes(bearing, self.lift)
+        return Judged(_face_error(bearing, self.lift, theta, reach), None, reach)
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
@@ -100,7 +102,8 @@ class Yoke:
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error of either face, and the play of the contour in the frame; extremes over the whole turn."""
         bearing = bearing_of(contour)
-        return Judged(_face_error(bearing, self.lift, theta), self._play(bearing))
+        reach = error_extremes(bearing, self.lift)
+        return Judged(_face_error(bearing, self.lift, theta, reach), self._play(bearing), reach)
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
@@ -129,11 +132,11 @@ class Yoke:
         )
 
 
-def _face_error(bearing: Bearing, lift: Lift, theta: Array) -> MotionError:
+def _face_error(bearing: Bearing, lift: Lift, theta: Array, reach: Extremes) -> MotionError:
     angle = with_steps(theta)
     errors = bearing.derivatives(angle, bearing.find(angle))[0] - lift.derivatives(angle, 0)[0]
     ranges = [lift_range(bearing, begin, end) for begin, end in dwells(lift)]
-    return motion_error(error_extremes(bearing, lift).worst, errors, max(ranges, default=None), "mm")
+    return motion_error(reach.worst, errors, max(ranges, default=None), "mm")
 
 
 def error_extremes(bearing: Bearing, law: SupportLaw) -> Extremes:

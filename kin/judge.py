@@ -9,7 +9,7 @@ import numpy as np
 
 from kin.arcs import dot, left
 from kin.check import Check, at_most, failed
-from kin.deviation import Deviation, deviation
+from kin.deviation import Deviation, convex_deviation, deviation
 from kin.extremes import extremes
 from kin.follower import ContactError, DoubleRoller, FlatPair, Follower, Judged, Yoke
 
@@ -72,15 +72,18 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) 
     """Judge a contour at shaft angles phi (n,): checks contour, motion, and constant-breadth or form-closure."""
     spline = min(SPLINE_ERROR, SPLINE_SHARE * limits.tolerance) if contour.beziers.count else 0.0
     slack = spline + ROUNDING * float(np.abs(contour.vertices).max())
-    found = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], intent.follower.envelope)
-    checks = [_contour_check(found, intent.follower, limits.tolerance, slack)]
-    judged = None
+    judged, checks = None, []
     try:
         judged = intent.follower.judge(contour, phi)
-        checks += _motion_checks(judged, intent, limits, slack)
+        checks = _motion_checks(judged, intent, limits, slack)
     except ContactError as error:
-        checks.append(failed("motion", str(error), unit=intent.follower.unit))
-    return Findings(judged, found, tuple(checks))
+        checks = [failed("motion", str(error), unit=intent.follower.unit)]
+    envelope = intent.follower.envelope
+    if judged and judged.reach and contour.is_convex and envelope.regular:
+        found = convex_deviation(judged.reach)
+    else:
+        found = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], envelope)
+    return Findings(judged, found, (_contour_check(found, intent.follower, limits.tolerance, slack), *checks))
 
 
 def _contour_check(found: Deviation, follower: Follower, tolerance: float, slack: float) -> Check:

@@ -11,6 +11,7 @@ from kin.check import degrees
 
 if TYPE_CHECKING:
     from kin.arcs import Array
+    from kin.extremes import Extremes
 
 Unit = Literal["mm", "deg"]
 TURN = 2.0 * np.pi
@@ -54,10 +55,17 @@ class Play:
 
 
 class Judged(NamedTuple):
-    """Motion error, and play for the followers that are held from two sides."""
+    """What a follower tells of a contour.
+
+    motion  its motion error
+    play    for the followers that are held from two sides, else None
+    reach   extremes over the shaft angle (radians) of how far the contour reaches beyond the intended position of a
+            flat face, mm; None for followers that feel something else
+    """
 
     motion: MotionError
     play: Play | None
+    reach: Extremes | None = None
 
 
 class ContactError(ValueError):

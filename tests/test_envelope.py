@@ -10,8 +10,9 @@ from scipy.spatial import cKDTree
 
 from kin.arcs import unit
 from kin.contour import Contour
-from kin.deviation import deviation
+from kin.deviation import convex_deviation, deviation
 from kin.envelope import FlatEnvelope, PairSupport, RollerEnvelope, TransmissionPitch
+from kin.flat import FlatFace
 from kin.foot import Inverse
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
@@ -185,6 +186,10 @@ def test_deviation_of_convex_polygons_is_the_difference_of_support_functions(nam
     assert found.outside >= gap.max() - 1e-11
     assert -gap.min() == pytest.approx(found.worst[0], rel=1e-5)
     assert (found.rounds, found.backwards) == (1, 0.0)
+    reach = FlatFace(lift).judge(contour, DENSE[:10]).reach
+    assert contour.is_convex
+    assert convex_deviation(reach).worst[0] == pytest.approx(found.worst[0], rel=1e-5)
+    assert reach.greatest == pytest.approx(found.outside, abs=1e-11)
 
 
 @pytest.mark.parametrize("name", ["Booth", "hollow", "arc", "given law"])

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicHermiteSpline
 from kin.arcs import unit
 from kin.check import Check, about, at_most, failed
 from kin.contour import Contour
+from kin.deviation import deviation
 from kin.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower import DoubleRoller, FlatFace, FlatPair, Roller, Yoke
 from kin.judge import judge_contour, volume_check
@@ -233,11 +234,15 @@ def test_a_corner_cut_off_a_sharp_reuleaux():
     vertices = np.concatenate([pieces[0], *pieces[1:]])
     vertices = vertices[np.argsort(np.mod(np.arctan2(vertices[:, 1], vertices[:, 0]), 2 * np.pi))]
     contour = Contour.from_vertices(vertices)
-    found = judge_contour(contour, Intent(FlatFace(lift_reuleaux(3, breadth, 0.0))), PHI, Limits(e))
-    assert found.deviation.outside < e
-    assert found.deviation.inside < e
-    assert found.deviation.bare == pytest.approx(1.1 * e, rel=1e-6)
-    assert not found.checks[0].ok
+    face = FlatFace(lift_reuleaux(3, breadth, 0.0))
+    found = deviation(contour.as_arcs()[0], face.envelope)
+    assert found.outside < e
+    assert found.inside < e
+    assert found.bare == pytest.approx(1.1 * e, rel=1e-6)
+    assert found.worst[0] == found.bare
+    check = judge_contour(contour, Intent(face), PHI, Limits(e)).checks[0]
+    assert (check.name, check.ok) == ("contour", False)
+    assert check.value == pytest.approx(1.1 * e, rel=1e-6)
 
 
 def test_a_trimmed_undercut_of_rollers(tmp_path):
