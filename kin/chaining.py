@@ -21,6 +21,8 @@ __all__ = ["Loop", "close_pairs", "loops"]
 SAME_POINT = 1e-9
 # An opening wider than this share of the drawing is called a missing segment, a smaller one a gap.
 MISSING_SHARE = 0.01
+# Rounding of a point computed from an arc's centre, radius and angle, in units of its coordinates.
+ROUNDING = 8.0 * np.finfo(float).eps
 # Openings that an error looks at.
 MOST_SHOWN = 500
 # A direction in which no drawing puts many of its points on one line: sorting along it keeps candidates few.
@@ -62,10 +64,12 @@ def close_pairs(points: Array, tolerance: float) -> tuple[Indices, Indices]:
 def loops(start: Array, end: Array, gap: float, path: Path) -> list[Loop]:
     """Join runs into closed loops: runs with these starts and ends (n, 2), where ends lie within `gap` of each other.
 
-    Raises ReadError: "branch" where more than two ends meet, "gap" or "open" where an end finds no partner.
+    A gap smaller than the rounding of the ends themselves counts as that. Raises ReadError: "branch" where more than
+    two ends meet, "gap" or "open" where an end finds no partner.
     """
     count = len(start)
     ends = np.concatenate([start, end])  # end k of run k % count
+    gap = max(gap, ROUNDING * float(np.abs(ends).max()))
     partner = np.full(2 * count, -1, dtype=np.intp)
     closed = np.flatnonzero((np.abs(start - end) <= min(SAME_POINT, gap)).all(axis=1))
     partner[closed], partner[closed + count] = closed + count, closed

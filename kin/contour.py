@@ -25,8 +25,9 @@ __all__ = ["ARC", "BEZIER", "LINE", "Box", "Contour", "Support"]
 
 # Pairs of piece and angle that are worked on at a time, which bounds the memory a hostile contour can ask for.
 PAIRS_AT_ONCE = 1_000_000
-# Greatest distance, mm, at which arcs stand in for a spline where only arcs will do.
+# Greatest distance at which arcs stand in for a spline where only arcs will do: mm, or share of the contour's extent.
 ARC_TOLERANCE = 1e-9
+ARC_SHARE = 1e-12
 # Rounding of a tangent's angle, in units of the machine's precision times extent over chord.
 ANGLE_ROUNDING = 16.0
 # Normals that are closer than this, radians, are one.
@@ -239,10 +240,10 @@ class Contour(Pieces):
     @cached_property
     def is_convex(self) -> bool:
         """Whether it turns left throughout, and once, up to the rounding of the tangents' angles."""
-        reach = np.abs(self.vertices - self.vertices.mean(axis=0)).max()
+        extent = float(np.abs(self.vertices).max())
         chord = np.hypot(*(self.end - self.start).T)
-        with np.errstate(divide="ignore"):
-            noise = ANGLE_ROUNDING * np.finfo(float).eps * (TURN + np.abs(self.vertices).max() / chord + reach / chord)
+        share = np.divide(extent, chord, out=np.zeros(len(self)), where=chord > 0.0)
+        noise = ANGLE_ROUNDING * np.finfo(float).eps * (TURN + share)
         left_pieces = bool((self.turns >= -noise).all())
         left_joints = bool((self.joints >= -noise - np.roll(noise, 1)).all())
         return left_pieces and left_joints and self.turning == 1
@@ -253,10 +254,11 @@ class Contour(Pieces):
         share = np.tile(np.arange(per_piece) / per_piece, len(self))
         return self.points(piece, share)
 
-    def as_arcs(self, tolerance: float = ARC_TOLERANCE) -> tuple[Arcs, Indices]:
+    def as_arcs(self, tolerance: float | None = None) -> tuple[Arcs, Indices]:
         """Lines and arcs in order, each turning by at most half a turn, and the piece each belongs to (k,).
 
-        Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved. Cost grows as tolerance^(-1/3).
+        Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved, and smooth; by default 1e-9 mm, or
+        1e-12 of the extent if that is more. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
         """
         first, _ = self.directions
         size = np.where(self.kind == ARC, self.radius, 1.0)
@@ -268,6 +270,8 @@ class Contour(Pieces):
         arcs, part = arcs.cut(1 + (np.abs(self.sweep[plain]) > np.pi).astype(np.intp))
         owner = plain[part]
         if self.beziers.count:
+            if tolerance is None:
+                tolerance = max(ARC_TOLERANCE, ARC_SHARE * float(np.abs(self.vertices).max()))
             bows, row = arcs_along(self.beziers, tolerance)
             piece_of_row = np.empty(self.beziers.count, dtype=np.intp)
             bow = np.flatnonzero(self.kind == BEZIER)
@@ -277,8 +281,8 @@ class Contour(Pieces):
             arcs, owner = arcs.joined(bows).take(order), owner[order]
         return arcs, owner
 
-    def distance(self, points: Array, tolerance: float = ARC_TOLERANCE) -> Array:
-        """Distance of points (k, 2) from the contour, mm (k,): exact from lines and arcs, else within `tolerance`."""
+    def distance(self, points: Array, tolerance: float | None = None) -> Array:
+        """Distance of points (k, 2) from the contour, mm (k,): exact from lines and arcs, else as near as `as_arcs`."""
         _, distance = nearest(self.as_arcs(tolerance)[0], np.asarray(points, dtype=np.float64))
         return distance
 

@@ -18,7 +18,7 @@ __all__ = ["CURVES", "NOTES", "Shape", "UnfitError", "shape_of"]
 # Nothing of these is ever cut: they are listed, not refused.
 NOTES = frozenset({"TEXT", "MTEXT", "ATTDEF", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "VIEWPORT", "TOLERANCE"})
 # Beyond this, in drawing units, the squares of coordinates have no digits left for a contour.
-LARGEST = 1e9
+LARGEST = 1e7
 LARGEST_BULGE = 1e6
 LARGEST_WEIGHT_RATIO = 1e6
 HIGHEST_DEGREE = 11
@@ -100,8 +100,8 @@ def arc(entity: Any) -> Shape:  # noqa: ANN401
     needs(entity, "center", "radius", "start_angle", "end_angle")
     first, last = entity.dxf.start_angle, entity.dxf.end_angle
     check(np.array([first, last]))
-    sweep = np.radians(np.mod(last - first, 360.0) or 360.0)
-    return circular(entity, [np.radians(first)], sweep)
+    begin, sweep = np.radians(first), np.radians(np.mod(last - first, 360.0))
+    return circular(entity, [begin], sweep) if sweep > 0.0 else circular(entity, [begin, begin + np.pi], np.pi)
 
 
 def circle(entity: Any) -> Shape:  # noqa: ANN401

@@ -24,6 +24,10 @@ __all__ = ["Crossings", "Dents", "crossings", "dents", "meetings"]
 TOUCHING = 1e-9
 # A loop shorter than this, mm, is the rounding of a joint.
 SHORTEST_LOOP = 1e-7
+# Default precision of a dent's depth: mm, or share of the extent; and the least that may be asked for.
+DENT_TOLERANCE = 1e-7
+DENT_SHARE = 1e-9
+LEAST_SHARE = 1e-12
 # Boxes under one box of the next level.
 BRANCH = 4
 # Pairs of boxes that are looked at together, which bounds the memory.
@@ -47,19 +51,25 @@ class Dents(NamedTuple):
     piece: Indices
 
 
-def dents(contour: Contour, tolerance: float = 1e-7) -> Dents:
+def dents(contour: Contour, tolerance: float | None = None) -> Dents:
     """How far the contour lies inside its convex hull, one entry for each stretch that does; depths within `tolerance`.
 
     Depth is the distance to the hull's boundary. A contour that turns left throughout has none, without further work;
-    any other is replaced by chords within `tolerance` mm. Cost grows as tolerance^(-1/2).
+    any other is replaced by chords within `tolerance` mm, by default 1e-7 or 1e-9 of its extent if that is more. Cost
+    grows as tolerance^(-1/2). Raises ValueError for less than 1e-12 of the extent.
     """
+    extent = float(np.abs(contour.vertices).max())
+    if tolerance is None:
+        tolerance = max(DENT_TOLERANCE, DENT_SHARE * extent)
+    elif tolerance < LEAST_SHARE * extent:
+        raise ValueError(f"{tolerance:g} mm is lost in the rounding of a contour that reaches out to {extent:g} mm")
     nothing = Dents(np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=np.intp))
     if contour.is_convex:
         return nothing
     chain, owner = contour.as_arcs(tolerance / 2.0)
     bend = np.abs(chain.curvature)
-    # The sagitta of a chord over the angle a is (1 - cos(a/2))/k.
-    angle = 2.0 * np.arccos(np.maximum(1.0 - bend * tolerance / 2.0, 0.0))
+    # The sagitta of a chord over the angle a is (1 - cos(a/2))/k = 2 sin(a/4)^2/k.
+    angle = 4.0 * np.arcsin(np.minimum(np.sqrt(bend * tolerance) / 2.0, 0.5))
     with np.errstate(invalid="ignore", divide="ignore"):
         parts = np.where(bend > 0.0, np.ceil(bend * chain.length / angle), 1.0)
     links, source = chain.cut(np.maximum(parts, 1.0).astype(np.intp))

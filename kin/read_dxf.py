@@ -41,7 +41,7 @@ COMMENT_BYTES = 4000
 END_MARK = re.compile(rb"(^|\n)[ \t]*0[ \t]*\r?\n[ \t]*EOF\s*$")
 BINARY_MARK = b"AutoCAD Binary DXF"
 # What wrong text causes in code that expects numbers, names and references.
-DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError)
+DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError, StopIteration)
 # Pieces shorter than this, mm, have no direction to speak of.
 ZERO_LENGTH = 1e-9
 # Pieces whose ends and middles agree to this, mm, are drawn twice.

@@ -28,6 +28,7 @@ RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute
 FACET = {0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex"}
 FACET |= {19: b"endloop", 20: b"endfacet"}
 WORDS = 21
+LONGEST_WORD = 40
 NUMBERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 # Beyond this, mm, products of three coordinates have no digits left for a part.
 LARGEST = 1e7
@@ -146,6 +147,9 @@ def facets(raw: bytes, path: Path) -> Array:
         raise ReadError("unsupported", "the file holds more than one solid", path)
     if len(words) % WORDS:
         raise ReadError("syntax", f"its facets have {len(words)} words, which is no multiple of {WORDS}", path)
+    longest = max(map(len, words))
+    if longest > LONGEST_WORD:
+        raise ReadError("syntax", f"a word of {longest} characters", path)
     table = np.array(words).reshape(-1, WORDS)
     for column, word in FACET.items():
         wrong = np.flatnonzero(table[:, column] != word)

@@ -82,7 +82,9 @@ def rounded_reuleaux() -> Known:
 
 def ellipse(a: float = 30.0, b: float = 12.0, turn: float = 0.4) -> Known:
     centre = np.array([2.0, 1.0])
-    pieces = Beziers.from_ellipse(centre, a * unit(np.array(turn)), b * unit(np.array(turn + np.pi / 2.0)), 0.0, 2.0 * np.pi)
+    pieces = Beziers.from_ellipse(
+        centre, a * unit(np.array(turn)), b * unit(np.array(turn + np.pi / 2.0)), 0.0, 2.0 * np.pi
+    )
     return Known(
         Contour.from_pieces(Pieces.from_beziers(pieces)),
         lambda t: unit(t) @ centre + np.hypot(a * np.cos(t - turn), b * np.sin(t - turn)),
@@ -366,7 +368,9 @@ def test_spline_spans_are_the_spline(degree: int, clamped: bool) -> None:
 def test_rational_spline_circle() -> None:
     """The circle as nine control points with weights 1 and sqrt(1/2): exact."""
     h = np.sqrt(0.5)
-    control = 25.0 * np.array([[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]], dtype=float)
+    control = 25.0 * np.array(
+        [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]], dtype=float
+    )
     weight = np.array([1, h, 1, h, 1, h, 1, h, 1])
     knots = np.array([0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], dtype=float)
     contour = Contour.from_pieces(Pieces.from_beziers(Beziers.from_spline(2, knots, control, weight)))
@@ -408,8 +412,11 @@ def test_unrolled_pieces_turn_one_way_and_their_support_is_that_of_the_curve(
     assert pieces.control[0, 0].tolist() == list(control[0])
     assert pieces.control[-1, -1].tolist() == list(control[-1])
     assert np.array_equal(pieces.control[1:, 0], pieces.control[:-1, -1])
-    there_and_back = Contour.from_pieces(Pieces.joined([Pieces.from_beziers(whole), Pieces.from_beziers(whole).take(
-        np.arange(pieces.count)[::-1]).turned_round()]))
+    there_and_back = Contour.from_pieces(
+        Pieces.joined(
+            [Pieces.from_beziers(whole), Pieces.from_beziers(whole).take(np.arange(pieces.count)[::-1]).turned_round()]
+        )
+    )
     t = np.linspace(0.0, 1.0, 4001)
     points = whole.point(np.zeros(t.size, dtype=np.intp), t)
     theta = np.linspace(0.0, 2.0 * np.pi, 361)
@@ -434,7 +441,7 @@ def test_a_cut_into_halves_keeps_area_and_length() -> None:
 
 
 def rose() -> Contour:
-    """The cam of p = 25 + 2 cos 3t as a periodic quintic spline through 60 points; smooth, curvature from 9 to 41 mm."""
+    """The cam of p = 25 + 2 cos 3t as a periodic quintic through 60 points; radius of curvature 9 to 41 mm."""
     from scipy.interpolate import make_interp_spline
 
     t = np.linspace(0.0, 2.0 * np.pi, 61)

@@ -62,7 +62,9 @@ def test_a_flipped_bulge_is_a_dent_as_deep_as_its_sagitta() -> None:
     found = dents(Contour.from_bulges(points, bulges), 1e-9)
     np.testing.assert_allclose(found.depth, [25.0 * (1.0 - np.cos(np.pi / 50))], atol=1e-9)
     assert found.piece.tolist() == [7]
-    np.testing.assert_allclose(found.point[0], 25.0 * (2.0 * np.cos(np.pi / 50) - 1.0) * unit(np.array(15 * np.pi / 50)), atol=1e-3)
+    np.testing.assert_allclose(
+        found.point[0], 25.0 * (2.0 * np.cos(np.pi / 50) - 1.0) * unit(np.array(15 * np.pi / 50)), atol=1e-3
+    )
 
 
 def test_waves_have_as_many_dents_and_no_crossing() -> None:
@@ -99,7 +101,9 @@ def test_figures_of_eight_cross_once() -> None:
 
 def test_arcs_that_cross_and_lines_that_cross_arcs() -> None:
     # a lens turned inside out: the second arc bulges through the first
-    contour = Contour.from_bulges(np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 3.0], [0.0, 3.0]]), np.array([0.0, 0.0, -0.9, 0.0]))
+    contour = Contour.from_bulges(
+        np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 3.0], [0.0, 3.0]]), np.array([0.0, 0.0, -0.9, 0.0])
+    )
     found = crossings(contour)
     assert len(found.point) == 2
     half = np.tan(2.0 * np.arctan(0.9))
@@ -176,3 +180,15 @@ def test_meetings_of_two_contours() -> None:
     y = np.sqrt(625.0 - x * x)
     np.testing.assert_allclose(found.point[np.argsort(found.point[:, 1])], [[x, -y], [x, y]], atol=1e-12)
     assert len(meetings(one, Contour.from_bulges(*circle(2, 10.0))).point) == 0
+
+
+def test_a_depth_finer_than_rounding_is_refused() -> None:
+    with pytest.raises(ValueError, match="lost in the rounding"):
+        dents(waves(0.5, 12), 1e-12)
+
+
+def test_contours_of_a_kilometre_are_judged_with_a_precision_to_match() -> None:
+    contour = Contour.from_bulges(*circle(50, 1e6))
+    flipped = Contour.from_bulges(contour.start, np.where(np.arange(50) == 7, -1.0, 1.0) * np.tan(np.pi / 100.0))
+    np.testing.assert_allclose(dents(flipped).depth, [1e6 * (1.0 - np.cos(np.pi / 50))], rtol=0.0, atol=1e-3)
+    assert len(crossings(flipped).point) == 0
