@@ -52,8 +52,7 @@ def tables():
     found = {"recipe": RECIPE, **dict(below(RECIPE, ""))}
     for kind, cam in CAMS.items():
         found[f"cam {kind}"] = cam
-        for path, inner in below(cam, f"cam {kind}"):
-            found[path] = inner
+        found.update(below(cam, f"cam {kind}"))
     found.update({f"file {kind}": file for kind, file in FILES.items()})
     # flat pair and double roller share their routes, csv has no keys
     first = {one: name for name, one in reversed(found.items()) if one.fields}
