@@ -93,7 +93,9 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
     from camgeo.undercut import undercuts
 
     trim = recipe.cam.undercut == "trim"
-    radius, at = least_radius(profile.base)
+    # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
+    radius, at = least_radius(profile.curve)
+    radius += profile.roller_radius
     checks = [
         Check(
             "radius-of-curvature",
@@ -111,6 +113,13 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
     except UndercutError as error:
         checks.append(Check("undercut-local", False, None, 0.0, "mm", None, detail=str(error)))
         return checks, None
+    # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
+    free_at = (min if profile.roller_radius else max)((cut.free_at for cut in found), default=0.0) / recipe.mm
+    free = (
+        f"a roller radius of {free_at:.6g} would be free of it"
+        if profile.roller_radius
+        else f"a base radius larger by {free_at:.6g} would be free of it"
+    )
     for kind in ("local", "global"):
         cuts = [cut for cut in found if cut.kind == kind]
         if kind == "global" and profile.roller_radius == 0.0 and not cuts:
@@ -119,12 +128,6 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
         if worst is None:
             checks.append(Check(f"undercut-{kind}", True, 0.0, 0.0, "mm"))
             continue
-        mm = recipe.mm
-        free = (
-            f"a roller radius of {worst.free_at / mm:.6g} would be free of it"
-            if profile.roller_radius
-            else f"a base radius larger by {worst.free_at / mm:.6g} would be free of it"
-        )
         first, last = _shaft_deg(intent, worst.start), _shaft_deg(intent, worst.end)
         detail = f"from {first:.6g} to {last:.6g} deg; {free}" + ("; trimmed" if trim else "")
         depth = worst.depth if math.isfinite(worst.depth) else None
