@@ -24,11 +24,12 @@ if TYPE_CHECKING:
     from _pytest._code.code import TerminalRepr, TracebackStyle
 
     from camgeo.foreseen import Foreseen
+    from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.model import Recipe
 
 INI = "camgeo_recipes"
 WHOLE = "recipe"  # name of the item that stands for a recipe as a whole
-TOGETHER = frozenset({"no", "loadfile", "loadgroup"})  # of xdist's ways those that leave a recipe to one process
+TOGETHER = frozenset({"no", "loadfile", "loadscope"})  # of xdist's ways those that leave a recipe to one process
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -72,7 +73,7 @@ class Recipes:
         if self.out is not None and dist not in TOGETHER and self.config.getoption("numprocesses", None):
             raise pytest.UsageError(
                 f"--camgeo-out: under --dist {dist} several processes would write one recipe's files; "
-                "give --dist loadfile or loadgroup"
+                "give --dist loadfile"
             )
         for path in self._found():
             self.runs[path.resolve()] = Run(path, _relative(path, self.config.invocation_params.dir), self.out)
@@ -139,8 +140,8 @@ class Recipes:
 class Run:
     """One recipe of a session, made and judged when its report is first asked for.
 
-    `shown` is its path as messages show it, `fault` all that keeps it from being made, `selected` the names of its
-    items that are going to run.
+    `shown` is its path as messages show it, `fault` all that keeps it from being made, `certain` if it would do so in
+    any process and at any time, `selected` the names of its items that are going to run.
     """
 
     path: Path
@@ -148,6 +149,7 @@ class Run:
     out: Path | None
     recipe: Recipe | None = None
     fault: str = ""
+    certain: bool = False
     selected: set[str] = field(default_factory=set)
     _report: dict[str, Any] | None = field(default=None, repr=False)
 
@@ -158,7 +160,7 @@ class Run:
         try:
             self.recipe = load(self.path)
         except RecipeErrors as errors:
-            self.fault = self._told(errors)
+            self._refused(errors)
 
     @property
     def report(self) -> dict[str, Any] | None:
@@ -179,12 +181,12 @@ class Run:
             outcome = pipeline.check(self.recipe) if self.out is None else pipeline.export(self.recipe, self.out)
             self._report, self.fault = outcome.report, ""
         except RecipeErrors as errors:
-            self.fault = self._told(errors)
+            self._refused(errors)
         except (SurroundingsError, OSError) as error:
             self.fault = f"{self.shown}: {error}"
 
-    def _told(self, errors: Any) -> str:  # noqa: ANN401 - RecipeErrors, whose module is not imported here
-        return "\n".join(str(replace(error, file=self.shown)) for error in errors.errors)
+    def _refused(self, errors: RecipeErrors) -> None:
+        self.fault, self.certain = "\n".join(str(replace(error, file=self.shown)) for error in errors.errors), True
 
 
 class RecipeFile(pytest.File):
@@ -239,8 +241,6 @@ class CheckItem(pytest.Item):
         self.check = check
         self.known = known
         self.add_marker("camgeo")
-        if self.config.pluginmanager.hasplugin("xdist"):
-            self.add_marker(pytest.mark.xdist_group(run.shown))
 
     def runtest(self) -> None:
         """Hold the check's figure against its limit."""
@@ -248,7 +248,7 @@ class CheckItem(pytest.Item):
         if self.check is None:
             self._whole(report)
         elif report is None:
-            self._not_judged(self.run.fault.partition("\n")[0], WHOLE)
+            self._not_judged(self.run.fault.partition("\n")[0], WHOLE if self.run.certain else None)
         else:
             self._one(self.check, report)
 
@@ -301,11 +301,15 @@ class CheckItem(pytest.Item):
             pytest.skip(f"{self.run.shown}: {reason}")
         _fail(f"{wanted} is not among the checks that were made")
 
-    def _not_judged(self, cause: str, told_by: str) -> None:
-        """Skip where another item of this session fails for the same cause; else fail, as nothing else would."""
-        name = told_by if told_by in map(str, self.known) else WHOLE
-        if name in self.run.selected:
-            pytest.skip(f"not judged, see {self.run.shown}::{name}")
+    def _not_judged(self, cause: str, told_by: str | None) -> None:
+        """Skip where an item of this session is certain to fail for the same cause; else fail, as nothing else might.
+
+        None is for a cause that need not be there in the process in which the other item runs.
+        """
+        if told_by is not None:
+            name = told_by if told_by in map(str, self.known) else WHOLE
+            if name in self.run.selected:
+                pytest.skip(f"not judged, see {self.run.shown}::{name}")
         _fail(f"{self.name}: not judged: {cause}")
 
 
