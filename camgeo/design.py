@@ -49,7 +49,10 @@ class Clock:
 
 @dataclass(frozen=True)
 class Design:
-    """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file."""
+    """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file.
+
+    `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
+    """
 
     intent: Lift | Transmission
     profile: Profile
@@ -81,7 +84,10 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     with clock.stage("figures"):
         breadth, follower, more = _figures(recipe, intent, profile)
     if contour is not None:
-        more += _wall(recipe, contour, intent)
+        wall = _wall(recipe, contour, intent)
+        more += wall
+        if not all(found.ok for found in wall):
+            contour = None  # a bore through the contour leaves no part to draw
     trimmed = contour is not None and not contour.closed
     return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed)
 

@@ -81,16 +81,20 @@ def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
     checks, files = list(design.checks), []
     for path in paths:
         with clock.stage("judge"):
-            limits = permitted(recipe, recipe.export.tolerance)
-            verdict = verify(path, intended(recipe, design), recipe.verify.angles, limits)
+            tolerance = _tolerance_of(recipe, path)
+            verdict = verify(path, intended(recipe, design), recipe.verify.angles, permitted(recipe, tolerance))
         request = FileRequest("stl" if verdict.kind == "stl" else "dxf")
-        files.append(
-            FileResult(
-                path, request, recipe.export.tolerance, verdict.pieces, None, verdict.measured_error, verdict.motion
-            )
-        )
+        measured = verdict.measured_error
+        files.append(FileResult(path, request, tolerance, verdict.pieces, None, measured, verdict.motion))
         checks += [about(check, path.name) for check in verdict.checks]
     return document(recipe, Findings(tuple(checks), tuple(files), tuple(clock.stages), (), design.follower))
+
+
+def _tolerance_of(recipe: Recipe, path: Path) -> float:
+    """Tolerance in mm that the recipe gives a file of this name; that of the export for any other."""
+    files = recipe.export.files
+    own = [request.tolerance for request in files if request.filename(recipe.name, files) == path.name]
+    return next((tolerance for tolerance in own if tolerance is not None), recipe.export.tolerance)
 
 
 def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> Findings:
@@ -270,7 +274,7 @@ def _skipped(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
         elif kind not in wanted:
             found.append((kind, "left out by --only"))
     if design.contour is None:
-        found.append(("files", "the contour undercuts and undercut is refuse"))
+        found.append(("files", "a check of the exact contour fails"))
     if recipe.part.bore is None:
         found.append(("bore", "part.bore is not given"))
     if design.follower == "flat face":

@@ -175,3 +175,21 @@ def test_skipped_stages_are_listed_with_the_reason(tmp_path: Path) -> None:
     assert skipped["stl"] == "left out by --only"
     assert "bore" in skipped
     assert not any(stage["name"].endswith("stl") for stage in report["stages"])
+
+
+def test_a_bore_through_the_contour_is_a_failed_check_and_no_file(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("shu-wu.yaml"))
+    recipe = replace(recipe, part=replace(recipe.part, bore=90.0))
+    outcome = pipeline.export(recipe, tmp_path)
+    assert failed(outcome.report) == {"wall"}
+    assert outcome.report["files"] == []
+
+
+def test_a_file_is_verified_to_its_own_tolerance(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("as-figure-2b.yaml"))
+    assert recipe.export.files[0].tolerance == pytest.approx(0.005)
+    assert pipeline.export(recipe, tmp_path).ok
+    folder = tmp_path / recipe.name
+    report = pipeline.judged(recipe, [folder / f"{recipe.name}.dxf", folder / f"{recipe.name}.stl"])
+    assert report["ok"]
+    assert [file["tolerance"] for file in report["files"]] == pytest.approx([0.005, 0.01])
