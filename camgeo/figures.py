@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.check import Check, degrees
+from kin.distinct import distinct
 
 if TYPE_CHECKING:
     from camgeo.curve import Array
@@ -94,4 +95,4 @@ def pressure_angle(profile: Profile, law: Transmission) -> Check:
 def _angles(breaks: Array, end: float) -> Array:
     """Evenly spread parameters in [0, end) with the breaks among them."""
     inside = breaks[(breaks >= 0.0) & (breaks < end)]
-    return np.unique(np.concatenate([np.linspace(0.0, end, LOOKS, endpoint=False), inside]))
+    return distinct(np.concatenate([np.linspace(0.0, end, LOOKS, endpoint=False), inside]))

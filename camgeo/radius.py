@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.curve import CurveError
+from kin.distinct import distinct
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -202,7 +203,7 @@ class _Intervals:
     def ends_below(self, v: float) -> Array:
         """Find the ends of intervals at which the radius is at most v (m,)."""
         ends = np.concatenate([self.low[_radius(self.at_low) <= v], self.high[_radius(self.at_high) <= v]])
-        return np.unique(ends)
+        return distinct(ends)
 
     def divided(self, curve: Curve, minima: Array, grade: float) -> _Intervals:
         """Divide each interval evenly, or finely about a minimum (m,) found in it, from steps of `grade` upward."""
@@ -215,7 +216,7 @@ class _Intervals:
                 count = max(1, math.ceil(math.log(max((high - low) / grade, 2.0)) / math.log(GROWTH)))
                 away = grade * GROWTH ** np.arange(count)
                 knots = np.concatenate([[low, middle, high], middle - away, middle + away])
-                knots = np.unique(knots[(knots >= low) & (knots <= high)])
+                knots = distinct(knots[(knots >= low) & (knots <= high)])
             lows.append(knots[:-1])
             highs.append(knots[1:])
             owner.append(np.full(knots.size - 1, i))

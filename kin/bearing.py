@@ -15,6 +15,7 @@ import numpy as np
 from kin.arcs import cross, dot, unit
 from kin.bernstein import values
 from kin.contour import ARC, BEZIER, LINE
+from kin.distinct import distinct
 
 if TYPE_CHECKING:
     from kin.arcs import Array, Indices
@@ -91,7 +92,7 @@ class Bearing:
         turns = TURN * np.arange(first, int(np.ceil(high / TURN)) + 1)
         spread = all_breaks if len(turns) == 1 else (all_breaks + turns[:, None]).ravel()
         spread = spread[(spread > low) & (spread < high)]
-        return np.unique(np.concatenate([[low], spread, [high]]))
+        return distinct(np.concatenate([[low], spread, [high]]))
 
 
 def _radius(beziers: Beziers, row: Indices, t: Array) -> Array:

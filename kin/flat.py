@@ -14,6 +14,7 @@ import numpy as np
 
 from kin.bearing import Bearing, bearing_of
 from kin.check import degrees
+from kin.distinct import distinct
 from kin.envelope import FlatEnvelope, PairSupport, SupportLaw
 from kin.extremes import Extremes, extremes
 from kin.foot import FINE_STEP, grid
@@ -342,7 +343,7 @@ class FlatPair:
 
     def _play(self, bearing: Bearing) -> Play:
         ends = np.concatenate([self._starts(bearing, side) for side in (1, -1)])
-        nodes = np.unique(np.concatenate([[0.0], np.mod(ends, TURN), [TURN]]))
+        nodes = distinct(np.concatenate([[0.0], np.mod(ends, TURN), [TURN]]))
         low, high = nodes[:-1], nodes[1:]
         middle = 0.5 * (low + high)
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from kin.distinct import distinct
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -46,7 +48,7 @@ class Feet:
 
 def grid(breaks: Array, count: int = COARSE) -> Array:
     """`count` equal steps of [0, 2 pi) and the breaks, rising and distinct."""
-    return np.unique(np.concatenate([np.arange(count) * (TURN / count), np.mod(breaks, TURN)]))
+    return distinct(np.concatenate([np.arange(count) * (TURN / count), np.mod(breaks, TURN)]))
 
 
 def climb(

@@ -201,7 +201,7 @@ class Piecewise:
     def _on_points(self, t: Jet, side: int) -> Jet:
         index, x = self.locate(t.c[0], side)
         out = np.empty_like(t.c)
-        for i in np.unique(index):
+        for i in np.flatnonzero(np.bincount(index)).tolist():
             here = np.flatnonzero(index == i)
             c = t.c[:, here]
             c[0] = x[here]
@@ -234,7 +234,7 @@ class Piecewise:
         for step in range(int(steps.max(initial=0)) + 1):
             active = np.flatnonzero(steps >= step)
             index = (first[active] + step) % count
-            for i in np.unique(index):
+            for i in np.flatnonzero(np.bincount(index)).tolist():
                 here = active[index == i]
                 begin = np.where(step == 0, low[here], self.knots[i])
                 end = np.where(steps[here] == step, high[here], self.knots[i + 1])

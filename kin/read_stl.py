@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from kin.contour import Contour
+from kin.distinct import distinct
 from kin.nesting import counter_clockwise, nested
 from kin.read_error import ReadError
 from kin.triangles import EdgeFaults, Mesh, plan_welded, welded
@@ -199,7 +200,7 @@ def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
     Each triangle gives an edge from where its boundary comes down through the plane to where it goes up; neighbours
     agree on that point since it belongs to an edge of the mesh.
     """
-    levels = np.unique(mesh.points[:, 2])
+    levels = distinct(mesh.points[:, 2])
     if bool((levels == height).any()):
         height = (height + float(levels[np.searchsorted(levels, height) + 1])) / 2.0
     above = mesh.points[:, 2] > height

@@ -26,7 +26,7 @@ FLOORS = {
         biarc dxf_entities jet pieces
         bezier motion series
         bernstein chaining contact extremes foot hull nearest taylor triangles
-        arcs ball check read_error
+        arcs ball check distinct read_error
     """,
     "camgeo": """
         cli pytest_plugin testing
