@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SHORT = 0.02  # of the period: parameter lengths over which points' differences are integrated, not subtracted
 STEPS = 40
 MOST_PAIRS = 200_000  # looked at together
-_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(12)
+NODES = 12  # of the quadrature between two breaks
 
 
 def displacement(curve: Curve, start: Array, end: Array) -> Array:
@@ -37,10 +37,11 @@ def displacement(curve: Curve, start: Array, end: Array) -> Array:
         knots = np.clip(breaks[None], start[short, None], end[short, None])
         knots = np.concatenate([start[short, None], knots, end[short, None]], axis=1)
         half = 0.5 * np.diff(knots, axis=1)
-        t = 0.5 * (knots[:, 1:] + knots[:, :-1])[..., None] + half[..., None] * _GAUSS
+        node, weight = np.polynomial.legendre.leggauss(NODES)
+        t = 0.5 * (knots[:, 1:] + knots[:, :-1])[..., None] + half[..., None] * node
         at = curve.sample(t.ravel())
         velocity = (at.speed[:, None] * at.tangent).reshape(*t.shape, 2)
-        out[short] = np.einsum("npg,npga->na", half[..., None] * _WEIGHT, velocity)
+        out[short] = np.einsum("npg,npga->na", half[..., None] * weight, velocity)
     return out
 
 

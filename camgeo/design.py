@@ -94,8 +94,8 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
 
 def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
     """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
+    from camgeo.causes import UndercutError
     from camgeo.radius import least_radius
-    from camgeo.trim import UndercutError, trimmed
     from camgeo.undercut import undercuts
 
     trim = recipe.cam.undercut == "trim"
@@ -115,7 +115,7 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
     ]
     try:
         found = undercuts(profile.curve)
-        contour = trimmed(profile.curve) if trim and found else profile.curve
+        contour = _trimmed(profile.curve) if trim and found else profile.curve
     except UndercutError as error:
         checks.append(Check("undercut-local", False, None, 0.0, "mm", None, detail=str(error)))
         return checks, None
@@ -140,6 +140,12 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
         checks.append(Check(f"undercut-{kind}", trim, depth, 0.0, "mm", _shaft_deg(intent, worst.at), detail=detail))
     sound = trim or not found
     return checks, contour if sound else None
+
+
+def _trimmed(curve: Curve) -> Curve:
+    from camgeo.trim import trimmed  # few contours need it
+
+    return trimmed(curve)
 
 
 def _shaft_deg(intent: Lift | Transmission, parameter: float) -> float:

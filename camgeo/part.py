@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.radius import roots
+
 if TYPE_CHECKING:
-    from camgeo.curve import Curve
+    from camgeo.curve import Array, Curve, Frame
 
 LOOKS = 8  # points of each cell at which the distance from the shaft is looked at
-STEPS = 60  # halvings that settle a nearest point to rounding
+SETTLED = 1e-9  # of the interval: a least distance is off by the square of this
 
 
 def least_wall(contour: Curve, bore: float) -> tuple[float, float]:
@@ -24,14 +26,12 @@ def least_wall(contour: Curve, bore: float) -> tuple[float, float]:
     low, high = t[:, :-1].ravel(), t[:, 1:].ravel()
     # between two nodes the nearest point is where the radius meets the tangent square: its product changes sign upwards
     first, last = contour.span(low, high)
-    turning = (np.sum(first.point * first.tangent, axis=1) < 0.0) & (np.sum(last.point * last.tangent, axis=1) > 0.0)
-    a, b = low[turning], high[turning]
-    for _ in range(STEPS):
-        middle = 0.5 * (a + b)
-        at = contour.sample(middle)
-        before = np.sum(at.point * at.tangent, axis=1) < 0.0
-        a, b = np.where(before, middle, a), np.where(before, b, middle)
-    nodes = np.concatenate([low, 0.5 * (a + b)])
+    falls, rises = _outward(first), _outward(last)
+    turning = (falls < 0.0) & (rises > 0.0)
+    nearest_points = roots(
+        lambda t: _outward(contour.sample(t)), low[turning], high[turning], (falls[turning], rises[turning]), SETTLED
+    )
+    nodes = np.concatenate([low, nearest_points])
     point = contour.sample(nodes).point
     distance = np.hypot(point[:, 0], point[:, 1])
     nearest = int(np.argmin(distance))
@@ -43,3 +43,9 @@ def least_wall(contour: Curve, bore: float) -> tuple[float, float]:
     inside = abs(float(turned.sum())) > np.pi
     side = 1.0 if inside else -1.0
     return side * float(distance[nearest]) - 0.5 * bore, float(nodes[nearest])
+
+
+def _outward(at: Frame) -> Array:
+    """Radius times the rate at which it grows along the curve (n,)."""
+    product: Array = np.sum(at.point * at.tangent, axis=1)
+    return product

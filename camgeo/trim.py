@@ -17,18 +17,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.causes import UndercutError, causes, follower_radius
 from camgeo.crossing import SHORT, all_breaks, displacement, in_parts, seen_crossings, settled
 from camgeo.curve import Curve, Run
-from camgeo.offset import Parallel
-from camgeo.radius import ROUNDING, least_radius, reversals, roots
-from camgeo.reach import Pitch, narrowest_necks
+from camgeo.radius import ROUNDING, roots
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from camgeo.causes import Causes
     from camgeo.curve import Array, Frame
-    from camgeo.radius import Reversal
-    from camgeo.reach import Neck
 
 NODES = 480  # of the polygon on which crossings are first seen
 ROUNDS = 3  # of seeing them, each with twice the nodes
@@ -36,27 +34,6 @@ NEAR_BY = 0.03  # of a reversal's length: the first node beside it; the followin
 GROWTH = 1.35
 STARTS = (0.366, 0.05, 1.0)  # a swallowtail reaches (sqrt 3 - 1)/2 of its reversal beyond it, where sigma is a parabola
 ZOOMS = 4
-
-
-class UndercutError(ValueError):
-    """No single contour is left by trimming; `parameter` says where the reason lies, None if all round."""
-
-    def __init__(self, message: str, parameter: float | None = None) -> None:
-        super().__init__(message)
-        self.parameter = parameter
-
-
-@dataclass(frozen=True)
-class Causes:
-    """Why contact is lost: reversals of the contour, and the narrowest necks of a pitch curve."""
-
-    reversals: tuple[Reversal, ...]
-    necks: tuple[Neck, ...]
-
-    @property
-    def none(self) -> bool:
-        """Whether the contour is free of undercut, and has no arc of radius 0 that ought to be a corner."""
-        return not self.reversals and not self.necks
 
 
 @dataclass(frozen=True)
@@ -89,31 +66,6 @@ class Remains:
     lost: tuple[Lost, ...]
     corners: tuple[Corner, ...]
     pieces: int
-
-
-def follower_radius(curve: Curve) -> float:
-    """Radius of the roller whose contour this is, mm, infinite for a flat face; ValueError for an outer parallel."""
-    if not isinstance(curve.shape, Parallel):
-        return math.inf
-    if not curve.shape.distance > 0.0:
-        raise ValueError(f"a roller's contour lies inside its pitch curve, not {-curve.shape.distance:g} mm outside")
-    return curve.shape.distance
-
-
-def causes(curve: Curve) -> Causes:
-    """Find reversals and the narrowest necks a roller does not pass; what is proved: `reversals`, `narrowest_necks`.
-
-    Raises ValueError for a curve that a flat face cannot work, as its tangent turns back.
-    """
-    radius = follower_radius(curve)
-    found = reversals(curve)
-    if math.isinf(radius):
-        hollow = curve.cells.rows[3] < 0.0
-        if hollow.any():
-            raise ValueError(f"a flat face cannot touch the hollow near parameter {curve.cells.low[hollow][0]:.9g}")
-        return Causes(found, ())
-    below = radius if not found else min(radius, radius + least_radius(curve)[0])
-    return Causes(found, narrowest_necks(Pitch(curve, radius), below))
 
 
 def trimmed(curve: Curve) -> Curve:
@@ -230,9 +182,9 @@ def _nodes(curve: Curve, why: Causes, count: int) -> Array:
     for neck in why.necks:
         for end in (neck.first, neck.second):
             parts += [np.array([end]), beside(end, 1e-6 * period, -1), beside(end, 1e-6 * period, 1)]
-    t = np.unique(run.low + np.mod(np.concatenate(parts) - run.low, period))
-    distinct: Array = t[np.append(True, np.diff(t) > 1e-14 * period)]
-    return distinct
+    t = np.sort(run.low + np.mod(np.concatenate(parts) - run.low, period))
+    apart: Array = t[np.append(True, np.diff(t) > 1e-14 * period)]
+    return apart
 
 
 def _guesses(curve: Curve, why: Causes) -> Array:

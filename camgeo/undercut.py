@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.crossing import all_breaks
+from camgeo.causes import Causes, UndercutError, causes, follower_radius
 from camgeo.curve import Curve, Run
 from camgeo.radius import least_radius
-from camgeo.reach import Neck, Pitch, neck_from, rolling_radius
-from camgeo.trim import Causes, Lost, UndercutError, causes, follower_radius, remains
 
 if TYPE_CHECKING:
     from camgeo.radius import Reversal
+    from camgeo.reach import Neck
+    from camgeo.trim import Lost
 
 LOOKS = 240  # parameters at which a neck is looked for where it is known to exist
 
@@ -50,10 +50,14 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
     A `Parallel` is a roller's contour inside its pitch curve, any other shape that of a flat face. A stretch that is
     lost for both reasons is reported for each. Raises CurveError where freedom from undercut can be neither proved nor
     refuted, UndercutError where the extent cannot be told.
+
+    What finds the extent is imported where there is one: most contours are sound.
     """
     why = causes(curve)
     if not why.necks and all(r.still for r in why.reversals):
         return ()
+    from camgeo.trim import remains
+
     found: list[Undercut] = []
     for lost in remains(curve, why).lost:
         inside = [r for r in why.reversals if not r.still and _within(curve, lost, 0.5 * (r.start + r.end))]
@@ -76,6 +80,8 @@ def _still(curve: Curve, lost: Lost, why: Causes) -> bool:
 
 
 def _local(curve: Curve, lost: Lost, inside: list[Reversal]) -> Undercut:
+    from camgeo.crossing import all_breaks
+
     least, at = math.inf, lost.start
     for r in inside:
         breaks = tuple(all_breaks(curve, r.start, r.end).tolist())
@@ -93,6 +99,8 @@ def _global(curve: Curve, lost: Lost, neck: Neck) -> Undercut:
 
 def _neck_of(curve: Curve, lost: Lost) -> Neck:
     """Neck for which a stretch is lost that is nowhere bent too much: the least rolling radius on it."""
+    from camgeo.reach import Pitch, neck_from, rolling_radius
+
     radius = follower_radius(curve)
     pitch = Pitch(curve, radius)
     t = np.linspace(lost.start, lost.end, LOOKS)

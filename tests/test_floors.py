@@ -35,8 +35,8 @@ FLOORS = {
         foreseen recipe.checks undercut
         figures fit.polygon recipe.build trim
         crossing files.stl fit.arcs fit.edges fit.inflection fit.spline motion profile.build recipe.reader
-        report.document report.failure
-        files.dxf fit.deviation fit.nodes offset part profile.support profile.wunderlich radius reach
+        causes part report.document report.failure
+        files.dxf fit.deviation fit.nodes offset profile.support profile.wunderlich radius reach
         recipe.model recipe.scalars recipe.schema recipe.source recipe.starter
         curve files files.table files.triangulate fit fit.pieces profile recipe.errors recipe.spec report store
     """,

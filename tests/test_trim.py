@@ -12,6 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapes import PEAR, STAR, Moved, booth, waves
 
+from camgeo.causes import UndercutError, causes
 from camgeo.crossing import all_breaks
 from camgeo.curve import Curve
 from camgeo.fit.arcs import fit_arcs
@@ -19,7 +20,7 @@ from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.offset import Parallel
 from camgeo.profile.support import SupportShape
-from camgeo.trim import UndercutError, causes, remains, trimmed
+from camgeo.trim import remains, trimmed
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 

@@ -11,12 +11,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapes import PEAR, STAR, Moved, booth, waves
 
+from camgeo.causes import UndercutError
 from camgeo.curve import Curve
 from camgeo.offset import Parallel
 from camgeo.profile.support import SupportShape
 from camgeo.radius import least_radius
 from camgeo.reach import Pitch, rolling_radius
-from camgeo.trim import UndercutError, trimmed
+from camgeo.trim import trimmed
 from camgeo.undercut import undercuts
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_reuleaux

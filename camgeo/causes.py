@@ -1,0 +1,63 @@
+"""Why a follower loses contact: reversals of the contour, and necks that a roller does not pass."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from camgeo.offset import Parallel
+from camgeo.radius import least_radius, reversals
+
+if TYPE_CHECKING:
+    from camgeo.curve import Curve
+    from camgeo.radius import Reversal
+    from camgeo.reach import Neck
+
+
+class UndercutError(ValueError):
+    """No single contour is left by trimming; `parameter` says where the reason lies, None if all round."""
+
+    def __init__(self, message: str, parameter: float | None = None) -> None:
+        super().__init__(message)
+        self.parameter = parameter
+
+
+@dataclass(frozen=True)
+class Causes:
+    """Why contact is lost: reversals of the contour, and the narrowest necks of a pitch curve."""
+
+    reversals: tuple[Reversal, ...]
+    necks: tuple[Neck, ...]
+
+    @property
+    def none(self) -> bool:
+        """Whether the contour is free of undercut, and has no arc of radius 0 that ought to be a corner."""
+        return not self.reversals and not self.necks
+
+
+def follower_radius(curve: Curve) -> float:
+    """Radius of the roller whose contour this is, mm, infinite for a flat face; ValueError for an outer parallel."""
+    if not isinstance(curve.shape, Parallel):
+        return math.inf
+    if not curve.shape.distance > 0.0:
+        raise ValueError(f"a roller's contour lies inside its pitch curve, not {-curve.shape.distance:g} mm outside")
+    return curve.shape.distance
+
+
+def causes(curve: Curve) -> Causes:
+    """Find reversals and the narrowest necks a roller does not pass; what is proved: `reversals`, `narrowest_necks`.
+
+    Raises ValueError for a curve that a flat face cannot work, as its tangent turns back.
+    """
+    radius = follower_radius(curve)
+    found = reversals(curve)
+    if math.isinf(radius):
+        hollow = curve.cells.rows[3] < 0.0
+        if hollow.any():
+            raise ValueError(f"a flat face cannot touch the hollow near parameter {curve.cells.low[hollow][0]:.9g}")
+        return Causes(found, ())
+    from camgeo.reach import Pitch, narrowest_necks
+
+    below = radius if not found else min(radius, radius + least_radius(curve)[0])
+    return Causes(found, narrowest_necks(Pitch(curve, radius), below))
