@@ -7,7 +7,6 @@ and 3. The constants of the "modified" laws follow here from their accelerations
 
 from __future__ import annotations
 
-import difflib
 import math
 from dataclasses import dataclass
 from itertools import pairwise
@@ -229,7 +228,9 @@ LAWS: Mapping[str, Law] = _standard_laws()
 def law(name: str, field: str = "motion") -> Law:
     """Look up a standard law; IntentError lists the names if there is none such."""
     if name not in LAWS:
-        close = difflib.get_close_matches(name, LAWS, 1)
+        from difflib import get_close_matches  # for the message alone
+
+        close = get_close_matches(name, LAWS, 1)
         hint = f"; did you mean {close[0]}?" if close else ""
         raise IntentError(f"no law is called {name!r}{hint} (laws: {', '.join(LAWS)})", field)
     return LAWS[name]

@@ -24,8 +24,8 @@ MAX_DEPTH = 50
 MAX_ALIASES = 100
 MAX_NODES = 10_000  # aliases counted as often as they stand for something
 
-# What YAML permits, less its three line ends that editors do not count (NEL, LS, PS) and the byte order mark.
-_FORBIDDEN = re.compile("[^\t\n\r\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]")
+# What YAML does not permit, with its three line ends that editors do not count (NEL, LS, PS) and the byte order mark.
+_FORBIDDEN = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
 _DISPUTED = re.compile(
     r"[\t?]|[|>][0-9+-]*#"
 )  # libyaml takes some that PyYAML's own reader refuses: the latter decides
