@@ -260,6 +260,13 @@ class Contour(Pieces):
         Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved, and smooth; by default 1e-9 mm, or
         1e-12 of the extent if that is more. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
         """
+        return self._fine_arcs if tolerance is None else self._arcs_within(tolerance)
+
+    @cached_property
+    def _fine_arcs(self) -> tuple[Arcs, Indices]:
+        return self._arcs_within(max(ARC_TOLERANCE, ARC_SHARE * float(np.abs(self.vertices).max())))
+
+    def _arcs_within(self, tolerance: float) -> tuple[Arcs, Indices]:
         first, _ = self.directions
         size = np.where(self.kind == ARC, self.radius, 1.0)
         curvature = np.where(self.kind == ARC, np.copysign(1.0, self.sweep) / size, 0.0)
@@ -270,8 +277,6 @@ class Contour(Pieces):
         arcs, part = arcs.cut(1 + (np.abs(self.sweep[plain]) > np.pi).astype(np.intp))
         owner = plain[part]
         if self.beziers.count:
-            if tolerance is None:
-                tolerance = max(ARC_TOLERANCE, ARC_SHARE * float(np.abs(self.vertices).max()))
             bows, row = arcs_along(self.beziers, tolerance)
             piece_of_row = np.empty(self.beziers.count, dtype=np.intp)
             bow = np.flatnonzero(self.kind == BEZIER)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Levels = list[tuple[Array, Array]]
 
-__all__ = ["Crossings", "Dents", "crossings", "dents", "meetings"]
+__all__ = ["Crossings", "Dents", "crossings", "dents", "first_meeting", "meetings"]
 
 # Two pieces closer than this, mm, have a point in common.
 TOUCHING = 1e-9
@@ -106,13 +106,16 @@ def polygon(corners: Array) -> Arcs:
 def crossings(contour: Contour) -> Crossings:
     """Where the contour crosses, touches or covers itself, to within a nanometre; each place once a pair of pieces.
 
-    A contour seen whole from its middle or from the origin has no such place, without further work. Else pieces whose
-    boxes overlap are found by descending a tree of boxes against itself, and intersected in closed form. The search
-    ends early at a contour that has hundreds.
+    A convex contour, or one seen whole from its middle or from the origin, has none, without further work. Else pieces
+    whose boxes overlap are found by descending a tree of boxes against itself, and intersected in closed form. The
+    search ends early at a contour that has hundreds.
     """
+    nothing = Crossings(np.zeros((0, 2)), np.zeros((0, 2), dtype=np.intp))
+    if contour.is_convex:
+        return nothing
     chain, owner = contour.as_arcs()
     if seen_whole(chain, chain.start.mean(axis=0)) or seen_whole(chain, np.zeros(2)):
-        return Crossings(np.zeros((0, 2)), np.zeros((0, 2), dtype=np.intp))
+        return nothing
     before = np.concatenate([[0.0], np.cumsum(chain.length)])
     found = []
     levels = boxes(chain)
@@ -138,6 +141,21 @@ def meetings(contour: Contour, other: Contour) -> Crossings:
         if sum(len(p) for p, _ in found) > ENOUGH:
             break
     return distinct(found)
+
+
+def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
+    """A place that two of the contours have in common, mm; None if all keep apart."""
+    for k, one in enumerate(contours[:-1]):
+        others = contours[k + 1 :]
+        _, away = nearest(one.as_arcs()[0], np.array([other.start[0] for other in others]))
+        for other, distance in zip(others, away, strict=True):
+            x_min, y_min, x_max, y_max = other.box
+            if distance > np.hypot(x_max - x_min, y_max - y_min):
+                continue  # no point of the other is so far from its first
+            common = meetings(one, other).point
+            if len(common):
+                return float(common[0, 0]), float(common[0, 1])
+    return None
 
 
 def distinct(found: list[tuple[Array, Indices]]) -> Crossings:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from kin.contour import Contour
 
-__all__ = ["counter_clockwise", "nested"]
+__all__ = ["counter_clockwise", "met", "nested"]
 
 
 def counter_clockwise(contour: Contour) -> Contour:
@@ -22,10 +22,17 @@ def counter_clockwise(contour: Contour) -> Contour:
     return contour if contour.area >= 0.0 else contour.reversed()
 
 
+def met(place: tuple[float, float], path: Path) -> ReadError:
+    """Return the error for contours that meet at a place."""
+    x, y = place
+    return ReadError("crossing", f"two closed contours cross or touch at ({x:.9g}, {y:.9g})", path, place)
+
+
 def nested(contours: list[Contour], path: Path) -> list[int]:
     """Numbers of the contours by falling area, the first of which holds all others.
 
-    Raises ReadError "several" for one that lies outside the first, "island" for one inside another hole.
+    The contours do not meet. Raises ReadError "several" for one that lies outside the first, "island" for one inside
+    another hole.
     """
     order = sorted(range(len(contours)), key=lambda k: -abs(contours[k].area))
     places = np.array([contours[k].start[0] for k in order])

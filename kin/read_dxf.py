@@ -16,7 +16,8 @@ from kin.bezier import Beziers
 from kin.chaining import SAME_POINT, close_pairs, loops
 from kin.contour import Box, Contour
 from kin.dxf_entities import CURVES, NOTES, Shape, UnfitError, shape_of
-from kin.nesting import counter_clockwise, nested
+from kin.flaws import first_meeting
+from kin.nesting import counter_clockwise, met, nested
 from kin.pieces import ARC, Pieces
 from kin.read_error import ReadError
 
@@ -146,6 +147,9 @@ def read_dxf(path: Path | str, gap: float = 1e-6, layer: str | None = None, *, a
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
     chained = chain(pieces.take(keep), run[keep], gap, path)
+    meeting = first_meeting([c.contour for c in chained])
+    if meeting:
+        raise met(meeting, path)
     first, *others = nested([c.contour for c in chained], path)
     outer = chained[first]
     return Drawing(

@@ -20,6 +20,7 @@ REASONS = {
     "gap": "two ends are farther apart than the permitted gap",
     "branch": "more than two ends meet",
     "several": "there is more than one outer contour",
+    "crossing": "two contours cross or touch",
     "island": "a contour lies inside a hole",
 }
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from kin.contour import Contour
 from kin.distinct import distinct
-from kin.nesting import counter_clockwise, nested
+from kin.flaws import first_meeting
+from kin.nesting import counter_clockwise, met, nested
 from kin.read_error import ReadError
 from kin.triangles import EdgeFaults, Mesh, plan_welded, welded
 
@@ -42,7 +43,7 @@ class Solid:
     contour, holes      polygons of the section at `height`, counter-clockwise all of them
     z_min, z_max        least and greatest height
     height              at which the section was taken
-    prism               all corners lie at z_min or z_max, and every section is the same, to the bit
+    prism               the walls stand upright and every section is the same, to the bit
     volume              mm^3, negative if the triangles face inward
     triangles           number of them
     edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
@@ -98,10 +99,13 @@ def read_stl(path: Path | str) -> Solid:
     mesh = plan_welded(corners, z_min, z_max) if two_levels else welded(corners)
     outline = prism_outline(mesh) if two_levels else None
     height = (z_min + z_max) / 2.0
-    prism = outline is not None
+    prism = outline is not None or (not two_levels and walls_upright(mesh, z_min, z_max))
     if outline is None:
         height, outline = section(mesh, height)
     contours = [Contour.from_vertices(outline.points[ring]) for ring in rings(outline, path)]
+    meeting = first_meeting(contours)
+    if meeting:
+        raise met(meeting, path)
     first, *others = nested(contours, path)
     return Solid(
         contour=counter_clockwise(contours[first]),
@@ -192,6 +196,14 @@ def prism_outline(mesh: Mesh) -> Outline | None:
     if not np.array_equal(np.sort(mesh.code(start, end)), np.sort(mesh.code(top_end, top_start))):
         return None
     return Outline(mesh.points[::2, :2], start, end)
+
+
+def walls_upright(mesh: Mesh, z_min: float, z_max: float) -> bool:
+    """Whether each triangle lies in the bottom, in the top, or upright: a closed mesh of these is a prism."""
+    z = mesh.points[:, 2][mesh.corners]
+    lid = (z == z_min).all(axis=1) | (z == z_max).all(axis=1)
+    _, _, seen_from_above = mesh.area_vectors
+    return bool((lid | (seen_from_above == 0.0)).all()) and sum(mesh.edge_faults) == 0
 
 
 def section(mesh: Mesh, height: float) -> tuple[float, Outline]:

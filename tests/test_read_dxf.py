@@ -415,6 +415,11 @@ def two_outer(document: Document) -> None:
     document.modelspace().add_circle((60, 0), 5.0)
 
 
+def hole_through_the_edge(document: Document) -> None:
+    document.modelspace().add_circle((0, 0), 25.0, dxfattribs={"layer": "CUT"})
+    document.modelspace().add_circle((23, 0), 5.0, dxfattribs={"layer": "BORE"})
+
+
 def island(document: Document) -> None:
     for radius in (25.0, 10.0, 3.0):
         document.modelspace().add_circle((0, 0), radius)
@@ -491,6 +496,7 @@ def only_reference(document: Document) -> None:
     [
         (two_outer, "several", "the closed contour at (65, 0) does not lie inside the largest one"),
         (island, "island", "lies inside a hole"),
+        (hole_through_the_edge, "crossing", "two closed contours cross or touch at (24."),
         (insert, "unsupported", "explode the block"),
         (insert_from_elsewhere, "unsupported", "brings in block PART"),
         (paper, "unsupported", "paper space Layout1"),
@@ -554,7 +560,27 @@ def test_a_whole_contour_drawn_twice_and_one_that_shares_an_edge(tmp_path: Path)
     document = new()
     document.modelspace().add_lwpolyline([(0, 0), (20, 0), (20, 20), (0, 20)], close=True)
     document.modelspace().add_lwpolyline([(10, 5), (0, 0), (20, 0)], close=True)
-    assert [f.kind for f in read_dxf(saved(document, tmp_path)).faults] == ["overlap"]
+    with pytest.raises(ReadError) as caught:
+        read_dxf(saved(document, tmp_path))
+    assert caught.value.reason == "crossing"
+
+
+def test_an_edge_drawn_there_and_back_is_an_overlap(tmp_path: Path) -> None:
+    document = new()
+    document.modelspace().add_lwpolyline([(0, 0), (20, 0), (20, 20), (20, 30), (20, 20), (0, 20)], close=True)
+    drawing = read_dxf(saved(document, tmp_path))
+    assert [(f.kind, f.x, f.y) for f in drawing.faults] == [("overlap", 20.0, 30.0)]
+    assert len(drawing.contour) == 6
+
+
+def test_a_piece_drawn_again_by_another_entity(tmp_path: Path) -> None:
+    """Two of three pieces are new and dangle: where they leave the contour more than two ends meet."""
+    document = new()
+    stadium(document.modelspace(), "0", [0, 1, 2, 3], [False] * 4)
+    document.modelspace().add_lwpolyline([(-20, -8), (20, -8), (30, -30)])
+    with pytest.raises(ReadError) as caught:
+        read_dxf(saved(document, tmp_path))
+    assert caught.value.reason == "branch"
 
 
 def test_a_line_across_an_arc_of_the_same_ends_is_no_duplicate(tmp_path: Path) -> None:

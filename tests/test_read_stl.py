@@ -179,6 +179,20 @@ def test_a_cone_is_no_prism_and_a_level_at_half_height_is_avoided(tmp_path: Path
     assert solid.contour.area == pytest.approx(0.49 * Contour.from_vertices(OUTER).area, rel=1e-3)
 
 
+def test_walls_with_corners_halfway_up_still_make_a_prism(tmp_path: Path) -> None:
+    whole = ring()
+    low, high = ring(high=3.0), ring(low=3.0)
+    walls = np.concatenate([low[: 4 * N], high[: 4 * N]])
+    solid = read_stl(binary(tmp_path / "cam.stl", np.concatenate([walls, whole[4 * N :]])))
+    assert solid.oriented
+    assert solid.prism
+    assert solid.height == 4.0
+    assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area, rel=1e-13)
+    leaning = np.concatenate([walls, whole[4 * N :]])
+    leaning[:, :, :2] = np.where(leaning[:, :, 2:] == 3.0, leaning[:, :, :2] * (1.0 + 1e-6), leaning[:, :, :2])
+    assert not read_stl(binary(tmp_path / "cam.stl", leaning)).prism
+
+
 # --- planted faults: in the fields
 
 
