@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+    Side = int | NDArray[np.intp]
 
 CELLS_PER_TURN = 96  # proved bounds are kept for about this many stretches; more cost time, fewer cost sharpness
 CELLS_PER_STRETCH = 6  # and for at least this many between two breaks
@@ -49,6 +50,11 @@ class Frame:
     turn: Array
     speed_slope: Array
     turn_slope: Array
+
+    def split(self, count: int) -> tuple[Frame, Frame]:
+        """Frames at the first `count` parameters, and at the others."""
+        rows = (self.point, self.tangent, self.speed, self.turn, self.speed_slope, self.turn_slope)
+        return Frame(*(row[:count] for row in rows)), Frame(*(row[count:] for row in rows))
 
     @property
     def normal(self) -> Array:
@@ -124,8 +130,11 @@ class Shape(Protocol):
         """For each stretch between breaks, (m,): the signed radius of curvature if exactly constant, else nan."""
         ...
 
-    def sample(self, t: Array, side: int = 1) -> Frame:
-        """Frame at parameters t (n,); at a break the limit from above (side 1) or from below (side -1)."""
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,); at a break the limit from above (side 1) or from below (side -1).
+
+        The side may differ from one parameter to the next (n,).
+        """
         ...
 
     def bounds(self, low: Array, high: Array) -> Bounds:
@@ -173,7 +182,9 @@ class Curve:
         breaks = np.asarray(shape.breaks, dtype=np.float64)
         if not breaks.size:
             return Curve(shape, (Run(0.0, shape.period, (), closed=True),))
-        alike = shape.sample(breaks, 1).turn * shape.sample(breaks, -1).turn > 0.0
+        side = np.repeat([1, -1], breaks.size)
+        after, before = shape.sample(np.tile(breaks, 2), side).split(breaks.size)
+        alike = after.turn * before.turn > 0.0
         if alike.any():
             first = int(np.argmax(alike))
             low = float(breaks[first])
@@ -199,7 +210,7 @@ class Curve:
         """Proved bounds over the whole curve, computed when first asked for."""
         return Cells.of(self)
 
-    def sample(self, t: Array, side: int = 1) -> Frame:
+    def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,); see `Shape.sample`."""
         return self.shape.sample(t, side)
 
@@ -212,7 +223,8 @@ class Curve:
 
     def span(self, low: Array, high: Array) -> tuple[Frame, Frame]:
         """Frames at the two ends of intervals that span no break, each taken from inside its interval."""
-        return self.shape.sample(low, 1), self.shape.sample(high, -1)
+        side = np.repeat([1, -1], [low.size, high.size])
+        return self.shape.sample(np.concatenate([low, high]), side).split(low.size)
 
     @cached_property
     def _steady(self) -> Array:

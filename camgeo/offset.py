@@ -10,7 +10,7 @@ import numpy as np
 from camgeo.curve import Bounds, Frame, Shape
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array
+    from camgeo.curve import Array, Side
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Parallel:
         """Radii of the stretches that are circular arcs (m,)."""
         return self.base.radii - self.distance
 
-    def sample(self, t: Array, side: int = 1) -> Frame:
+    def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,)."""
         at = self.base.sample(t, side)
         return Frame(

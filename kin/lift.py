@@ -20,7 +20,7 @@ from kin.bounding import unbounded
 from kin.expression import Expression, FormulaDomainError, FormulaError
 from kin.jet import BallJet, cos, sin
 from kin.law import IntentError, Programme
-from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Series, Stretch
+from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Series, Side, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -122,7 +122,7 @@ class Lift:
         """For each stretch whether rho is exactly constant: a dwell, a Reuleaux arc, a circle."""
         return ~np.isnan(self.radius)
 
-    def derivatives(self, theta: float | Array, order: int, side: int = 1) -> Array:
+    def derivatives(self, theta: float | Array, order: int, side: Side = 1) -> Array:
         """Give p and its derivatives at theta (n,), (order + 1, n); at a break the right-hand limit, or left (-1)."""
         return self.law.derivatives(theta, order, side)
 

@@ -19,6 +19,7 @@ from kin.jet import BallJet, DomainError, Jet, cos, sin
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Side = int | Indices  # 1 or -1 for all, or for each parameter (n,)
 Series = TypeVar("Series", Jet, BallJet)
 
 # Folding by the period, and the sums and products behind a knot, are each good to about an ulp; what lies closer to a
@@ -91,6 +92,8 @@ class Harmonics:
 
     def __call__(self, t: Series, /) -> Series:
         """Sum the series."""
+        if isinstance(t, Jet) and len(self.terms) > 0 and not t.c[2:].any():
+            return self._at_points(t)
         total = t.constant(self.mean)
         for k, a, b in self.terms:
             angle = t * float(k) if k > 1 else t
@@ -99,6 +102,21 @@ class Harmonics:
             if b:
                 total = total + sin(angle) * b
         return total
+
+
+    def _at_points(self, t: Jet) -> Jet:
+        """Sum the series of t = t0 + t1 x: all terms at once, as d/dt turns (sin, cos) and multiplies by k."""
+        k, a, b = np.array(self.terms)[:, :, None].transpose(1, 0, 2)
+        sine, cosine = np.sin(k * t.c[0]), np.cos(k * t.c[0])
+        even, odd = a * cosine + b * sine, b * cosine - a * sine
+        c = np.empty_like(t.c)
+        c[0] = self.mean + even.sum(axis=0)
+        power, scale = k, 1.0
+        for order in range(1, len(c)):
+            scale = scale * t.c[1] / order
+            c[order] = (power * (odd if order % 2 else even)).sum(axis=0) * (scale if order % 4 < 2 else -scale)
+            power = power * k
+        return Jet(c)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +155,7 @@ class Piecewise:
         folded[self.period - folded <= self._snap(folded)] = 0.0
         return np.sort(folded)
 
-    def derivatives(self, t: float | Array, order: int, side: int = 1) -> Array:
+    def derivatives(self, t: float | Array, order: int, side: Side = 1) -> Array:
         """Give derivatives 0..order at t (n,) as (order + 1, n); at a knot the right-hand limit, or left (side -1).
 
         Raises ValueError outside the knots where there is no period, DomainError where a function does not exist.
@@ -159,7 +177,7 @@ class Piecewise:
         at = self.breaks
         return at, self.derivatives(at, order, 1) - self.derivatives(at, order, -1)
 
-    def on(self, t: Series, side: int = 1) -> Series:
+    def on(self, t: Series, side: Side = 1) -> Series:
         """Apply the function to any jet or ball jet; `side` decides for jets whose value is a knot."""
         if isinstance(t, Jet):
             return self._on_points(t, side)
@@ -170,12 +188,12 @@ class Piecewise:
         ulps: Array = np.spacing(scale)
         return _SNAP_ULPS * ulps
 
-    def locate(self, t: Array, side: int = 1) -> tuple[Indices, Array]:
+    def locate(self, t: Array, side: Side = 1) -> tuple[Indices, Array]:
         """For each t (n,): the index of its stretch on the side asked for, and t folded into that stretch."""
         index, x, _ = self._place(np.asarray(t, dtype=float), side)
         return index, x
 
-    def _place(self, t: Array, side: int) -> tuple[Indices, Array, Array]:
+    def _place(self, t: Array, side: Side) -> tuple[Indices, Array, Array]:
         """Stretch, folded parameter, and the whole periods taken off."""
         knots, last = self.knots, len(self.functions) - 1
         if not np.isfinite(t).all():
@@ -189,16 +207,17 @@ class Piecewise:
         near = np.where(x - knots[near - 1] < knots[near] - x, near - 1, near)
         on_knot = np.abs(x - knots[near]) <= snap
         inside = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, last)
-        index = np.where(on_knot, near if side > 0 else near - 1, inside)
+        right = np.asarray(side) > 0
+        index = np.where(on_knot, near - 1 + right, inside)
         if self.period is not None:  # the seam belongs to either end
             wrap = np.floor_divide(index, last + 1)
             index = index - wrap * (last + 1)
             turns = turns + wrap
-            near = np.where(on_knot, index + (0 if side > 0 else 1), near)
+            near = np.where(on_knot, index + 1 - right, near)
         index = np.clip(index, 0, last)
         return index, np.where(on_knot, knots[near], x), turns
 
-    def _on_points(self, t: Jet, side: int) -> Jet:
+    def _on_points(self, t: Jet, side: Side) -> Jet:
         index, x = self.locate(t.c[0], side)
         out = np.empty_like(t.c)
         for i in np.flatnonzero(np.bincount(index)).tolist():

@@ -114,6 +114,12 @@ def binomials(exponent: Fraction, order: int) -> tuple[float, ...]:
 def power_rows(x: Row, exponent: float, order: int) -> list[Row]:
     """x**exponent; a whole exponent from 0 up leaves exact zeros above itself."""
     rows = []
+    if not isinstance(x, Ball) and (exponent < 0 or exponent == 0.5):
+        value, inverse = np.sqrt(x) if exponent == 0.5 else x**exponent, 1.0 / x
+        for binomial in binomials(Fraction(exponent), order):
+            rows.append(value * binomial)
+            value = value * inverse
+        return rows
     for k, binomial in enumerate(binomials(Fraction(exponent), order)):
         if binomial == 0:
             rows.append(x * 0.0)

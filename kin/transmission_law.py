@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.jet import Ball, BallJet, Jet, cos
-from kin.piecewise import Affine, Constant, Piecewise, Series
+from kin.piecewise import Affine, Constant, Piecewise, Series, Side
 
 Array = NDArray[np.float64]
 
@@ -107,14 +107,14 @@ class Transmission:
         functions = tuple(Affine(f, self.offset, w) if w else Constant(self.offset) for f, w in pairs)
         return Piecewise(self.psi.knots, functions, self.psi.period, self.psi.smooth_seam)
 
-    def jets(self, tau: Series, side: int = 1) -> tuple[Series, Series]:
+    def jets(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
         """Give phi and psi of a jet or ball jet tau; `side` decides at breaks."""
         psi = self.psi.on(tau, side)
         if len(set(self.lean)) == 1:
             return tau + psi * self.lean[0] + self.offset, psi
         return tau + self._lead.on(tau, side), psi
 
-    def at(self, tau: float | Array, order: int, side: int = 1) -> tuple[Array, Array]:
+    def at(self, tau: float | Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Give phi and psi with their derivatives by tau at tau (n,), (order + 1, n) each."""
         phi, psi = self.jets(Jet.variable(tau, order), side)
         return phi.derivatives(), psi.derivatives()

@@ -115,7 +115,8 @@ def radial(start: Array, tangent: Array, curvature: Array, point: Array) -> tupl
     """
     normal = np.stack([tangent[..., 1], -tangent[..., 0]], axis=-1)
     offset = point - start
-    height = 2.0 * np.sum(offset * normal, axis=-1) + curvature * np.sum(offset * offset, axis=-1)
+    x, y = offset[..., 0], offset[..., 1]
+    height = 2.0 * (x * normal[..., 0] + y * normal[..., 1]) + curvature * (x * x + y * y)
     root = np.sqrt(np.maximum(1.0 + curvature * height, 0.0))
     away = curvature[..., None] * offset + normal
     return height / (1.0 + root), away / np.maximum(root, 1e-300)[..., None]
@@ -130,28 +131,28 @@ def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array
     left, right = t[:, :-1], t[:, 1:]
     step = (right - left).ravel()
     bounds = curve.cells.over(left.ravel(), right.ravel())
-    inner = curve.sample(t[:, :-1].ravel(), 1)
-    last = curve.sample(t[:, -1], -1)
+    side = np.ones(t.shape, dtype=np.intp)
+    side[:, -1] = -1
+    at = curve.sample(t.ravel(), side.ravel())
 
-    def ends(name: str) -> tuple[Array, Array]:
+    def ends(values: Array) -> tuple[Array, Array]:
         """Values at the left and right node of every step (n * nodes,)."""
-        first = getattr(inner, name).reshape(count, nodes)
-        final = getattr(last, name)
-        return first.ravel(), np.concatenate([first[:, 1:], final[:, None]], axis=1).ravel()
+        both = values.reshape(count, nodes + 1)
+        return both[:, :-1].ravel(), both[:, 1:].ravel()
 
-    points = np.concatenate([inner.point.reshape(count, nodes, 2), last.point[:, None]], axis=1)
-    tangents = np.concatenate([inner.tangent.reshape(count, nodes, 2), last.tangent[:, None]], axis=1)
+    points = at.point.reshape(count, nodes + 1, 2)
+    tangents = at.tangent.reshape(count, nodes + 1, 2)
     k = np.repeat(chain.curvature, nodes)
     f, away = radial(chain.start[:, None], chain.tangent[:, None], chain.curvature[:, None], points)
-    sine = -np.sum(tangents * away, axis=-1)
+    sine = -(tangents[..., 0] * away[..., 0] + tangents[..., 1] * away[..., 1])
     cosine = tangents[..., 1] * away[..., 0] - tangents[..., 0] * away[..., 1]
     backwards = ~(cosine > 0.0).all(axis=1)
     beta = np.arctan2(sine, cosine)
     fa, fb = f[:, :-1].ravel(), f[:, 1:].ravel()
     angle = np.maximum(np.abs(beta[:, :-1]), np.abs(beta[:, 1:])).ravel()
 
-    speed_a, speed_b = ends("speed")
-    turn_a, turn_b = ends("turn")
+    speed_a, speed_b = ends(at.speed)
+    turn_a, turn_b = ends(at.turn)
     square = step**2 / 8.0
     speed = np.maximum(np.abs(speed_a), np.abs(speed_b)) + square * bounds.speed_bend
     speed = np.minimum(speed, np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)))

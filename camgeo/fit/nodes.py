@@ -79,16 +79,20 @@ class Density:
         left = np.maximum(cells.low[index], stretches[stretch, 0])
         right = np.minimum(cells.high[index], stretches[stretch, 1])
         t = left[:, None] + (right - left)[:, None] * np.linspace(0.0, 1.0, STEPS_PER_CELL + 1)
-        interior = curve.sample(t[:, :-1].ravel(), 1)
+        ends = np.cumsum(last - first + 1) - 1
+        inside = t[:, :-1].ravel()
+        side = np.repeat([1, -1], [inside.size, ends.size])
+        both = curve.sample(np.concatenate([inside, t[ends, -1]]), side)
+        interior = both.split(inside.size)[0]
         slowest = int(np.argmin(interior.speed))
         if float(interior.speed[slowest]) <= 0.0:
-            where = float(t[:, :-1].ravel()[slowest])
+            where = float(inside[slowest])
             raise CurveError(f"the curve runs backwards near parameter {where:.9g}: it undercuts", where)
         value = np.empty_like(t)
-        value[:, :-1] = density(interior).reshape(-1, STEPS_PER_CELL)
+        values = density(both)
+        value[:, :-1] = values[: inside.size].reshape(-1, STEPS_PER_CELL)
         value[:-1, -1] = value[1:, 0]
-        ends = np.cumsum(last - first + 1) - 1
-        value[ends, -1] = density(curve.sample(t[ends, -1], -1))
+        value[ends, -1] = values[inside.size :]
         area = 0.5 * (value[:, :-1] + value[:, 1:]) * ((right - left) / STEPS_PER_CELL)[:, None]
         turned = np.abs(interior.turn).reshape(-1, STEPS_PER_CELL).max(axis=1) * (right - left)
         out, begin = [], 0

@@ -28,7 +28,8 @@ LOOKS = 12  # steps of a span at which its error is first seen
 MOST_LOOKS = 384
 SLACK = 0.01  # of the tolerance: how far the proof may exceed what is seen before it is sharpened
 SHARINGS = 3  # of the nodes before there are more of them
-NEWTON = 5  # steps that settle handles and feet of normals to rounding
+HANDLE_STEPS = 2  # of Newton's method for the handles: any will do, the proof takes them as they are
+NEWTON = 5  # steps that settle feet of normals to rounding
 
 
 def fit_spline(curve: Curve, tolerance: float) -> BSpline:
@@ -147,19 +148,19 @@ def _handled(curve: Curve, low: Array, high: Array) -> Array:
     u = np.array(INSIDE)
     t = low[:, None] + (high - low)[:, None] * u
     inner0, inner1 = 3.0 * u * (1.0 - u) ** 2, 3.0 * u**2 * (1.0 - u)
-    for _ in range(NEWTON):
-        control = _control(a, b, handle)
-        on = _bezier(control[:, None], np.broadcast_to(u, t.shape))
-        at, t = _onto(curve, t, low, high, on)
+    for _ in range(HANDLE_STEPS):
+        at = curve.sample(t.ravel())
+        on = _bezier(_control(a, b, handle)[:, None], np.broadcast_to(u, t.shape))
+        gap, moved = _gap(at, t, low, high, on)
         normal = at.normal.reshape(*t.shape, 2)
-        error = np.sum((on - at.point.reshape(*t.shape, 2)) * normal, axis=2)
         pull = inner0 * np.sum(a.tangent[:, None] * normal, axis=2)
         pull = pull - inner1 * np.sum(b.tangent[:, None] * normal, axis=2)
         gain = pull.sum(axis=1)
         # where the curve is nearly straight the handles move nothing sideways: leave them
         firm = np.abs(gain) > 1e-6
-        step = np.where(firm, error.sum(axis=1) / np.where(firm, gain, 1.0), 0.0)
-        handle = handle - np.clip(step, -0.3 * handle, 0.3 * handle)
+        change = np.where(firm, gap.sum(axis=1) / np.where(firm, gain, 1.0), 0.0)
+        handle = handle - np.clip(change, -0.3 * handle, 0.3 * handle)
+        t = moved
     return _control(a, b, handle)
 
 
@@ -182,15 +183,20 @@ def _blossom(control: Array, u: Array, v: Array, w: Array) -> Array:
     return point
 
 
-def _onto(curve: Curve, t: Array, low: Array, high: Array, point: Array) -> tuple[Frame, Array]:
-    """One Newton step of parameters t (n, m) towards the feet of the normals through points (n, m, 2)."""
-    at = curve.sample(t.ravel())
-    gap = point.reshape(-1, 2) - at.point
-    along = np.sum(gap * at.tangent, axis=1)
-    across = np.sum(gap * at.normal, axis=1)
+def _gap(at: Frame, t: Array, low: Array, high: Array, point: Array) -> tuple[Array, Array]:
+    """Signed distance outside the curve of points (n, m, 2), by its circle of curvature at t (n, m), and nearer t.
+
+    `at` are the frames at t. The distance is off by the third power of how far t misses the foot of the point's normal.
+    """
+    offset = point.reshape(-1, 2) - at.point
+    along = np.sum(offset * at.tangent, axis=1)
+    across = np.sum(offset * at.normal, axis=1)
+    curvature = at.curvature
+    with np.errstate(invalid="ignore"):  # a cusp: unknown, and so divided
+        root = np.hypot(1.0 + curvature * across, curvature * along)
+        gap = (2.0 * across + curvature * (across**2 + along**2)) / (1.0 + root)
     step = along / np.maximum(at.speed + at.turn * across, 1e-3 * np.abs(at.speed) + 1e-300)
-    t = np.clip(t + step.reshape(t.shape), low[:, None], high[:, None])
-    return curve.sample(t.ravel()), t
+    return gap.reshape(t.shape), np.clip(t + step.reshape(t.shape), low[:, None], high[:, None])
 
 
 def _seen(curve: Curve, control: Array, low: Array, high: Array) -> Array:
@@ -199,9 +205,8 @@ def _seen(curve: Curve, control: Array, low: Array, high: Array) -> Array:
     t = low[:, None] + (high - low)[:, None] * u
     on = _bezier(control[:, None], np.broadcast_to(u, t.shape))
     for _ in range(2):
-        at, t = _onto(curve, t, low, high, on)
-    normal = at.normal.reshape(*t.shape, 2)
-    worst: Array = np.abs(np.sum((on - at.point.reshape(*t.shape, 2)) * normal, axis=2)).max(axis=1)
+        gap, t = _gap(curve.sample(t.ravel()), t, low, high, on)
+    worst: Array = np.abs(gap).max(axis=1)
     return worst
 
 
@@ -235,10 +240,9 @@ def _against_arcs(
     share = np.linspace(0.0, 1.0, looks + 1)
     t = low[:, None] + (high - low)[:, None] * share
     t[:, -1] = high
-    at = curve.sample(t.ravel(), 1)
-    ends = curve.sample(high, -1)
+    side = np.where(share < 1.0, 1, -1)
+    at = curve.sample(t.ravel(), np.tile(side, count))
     point, tangent = at.point.reshape(count, -1, 2), at.tangent.reshape(count, -1, 2)
-    point[:, -1], tangent[:, -1] = ends.point, ends.tangent
     u = np.broadcast_to(share, t.shape).copy()
     for _ in range(NEWTON):
         gap = np.sum((_bezier(control[:, None], u) - point) * tangent, axis=2)

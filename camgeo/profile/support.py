@@ -10,7 +10,7 @@ import numpy as np
 from camgeo.curve import Bounds, Frame
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array
+    from camgeo.curve import Array, Side
     from kin.lift import Lift
 
 
@@ -45,7 +45,7 @@ class SupportShape:
         """Radii of the stretches that are circular arcs (m,)."""
         return self.lift.radius
 
-    def sample(self, t: Array, side: int = 1) -> Frame:
+    def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at normal directions t (n,)."""
         p = self.lift.derivatives(t, 3, side)
         cosine, sine = np.cos(t), np.sin(t)

@@ -19,7 +19,7 @@ from kin.ball import Ball
 from kin.jet import BallJet, Jet
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array
+    from camgeo.curve import Array, Side
     from kin.transmission import Transmission
 
 Series = TypeVar("Series", Jet, BallJet)
@@ -68,7 +68,7 @@ class PitchShape:
         """Radii of the stretches that are circular arcs (m,): dwells, and the arcs of a law made from an arc."""
         return self.law.pitch_arcs[:, 2]
 
-    def sample(self, t: Array, side: int = 1) -> Frame:
+    def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,) of the law."""
         rows_phi, rows_psi = self.law.at(t, 3, side)
         phi, chi = rows_phi[0], rows_phi[0] - rows_psi[0] - self.law.alpha
@@ -130,7 +130,7 @@ class FlatPairShape:
         steady = self.steady
         return steady[:, 0] / steady[:, 1]
 
-    def sample(self, t: Array, side: int = 1) -> Frame:
+    def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,) of the law."""
         rows_phi, rows_psi = self.law.at(t, 3, side)
         half = 0.5 * (rows_psi[0] + self.law.alpha)
