@@ -184,8 +184,8 @@ def spline(entity: Any) -> Shape:  # noqa: ANN401
     first, last = knots[degree], knots[count]
     if (np.diff(knots) < 0.0).any() or not first < last:
         raise UnfitError("syntax", "its knots fall or span nothing")
-    _, repeats = np.unique(knots[(knots > first) & (knots < last)], return_counts=True)
-    if (repeats > degree).any():
+    inner = knots[(knots > first) & (knots < last)]
+    if (inner[degree:] == inner[:-degree]).any():
         raise UnfitError("unsupported", "a knot repeated too often tears it apart")
     if not ((weight > 0.0).all() and weight.max() <= LARGEST_WEIGHT_RATIO * weight.min()):
         raise UnfitError("unsupported", "its weights are not all positive and of one order")
