@@ -53,12 +53,14 @@ class Arm:
         return angle
 
     def lean(self, r: Array) -> Array:
-        """Angle at the pivot between shaft and roller centre, from the centre's distance r (n,) from the shaft."""
+        """Angle at the pivot between shaft and roller centre, from the centre's distance r (n,) from the shaft.
+
+        A distance beyond the arm's reach counts as the end of it.
+        """
         # Half-angle form: good digits at either end of the reach.
         above = (r - (self.pivot - self.length)) * (r + (self.pivot - self.length))
         below = ((self.pivot + self.length) - r) * ((self.pivot + self.length) + r)
-        with np.errstate(invalid="ignore"):
-            angle: Array = 2.0 * np.arctan2(np.sqrt(above), np.sqrt(below))
+        angle: Array = 2.0 * np.arctan2(np.sqrt(np.maximum(above, 0.0)), np.sqrt(np.maximum(below, 0.0)))
         return angle
 
     def centre(self, phi: Array, lean: Array) -> Array:
@@ -141,7 +143,7 @@ def _interval(pieces: Arcs, arm: Arm) -> tuple[Array, Array]:
     middle = pieces.points(0.5 * pieces.length)
     r = np.hypot(middle[:, 0], middle[:, 1])
     half = 0.5 * pieces.length + SLACK
-    least, most = np.maximum(r - half, 1e-300), r + half
+    least, most = np.maximum(r - half, SLACK), r + half
     # w = cos(phi - t) = (r^2 + L^2 - l^2)/(2 r L); its slope is steepest, and sqrt(1 - w^2) least, at an end
     excess = arm.pivot**2 - arm.length**2
 
@@ -174,7 +176,9 @@ def _meet(pieces: Arcs, arm: Arm, phi: Array) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         across = v / size[:, None]
         depth = -(dot(q, m) + 0.5 * k * (dot(q, q) + arm.length**2)) / size
-        half = np.sqrt(arm.length**2 - depth * depth)
+        square = (arm.length - depth) * (arm.length + depth)
+        touching = (square < 0.0) & (square >= -SLACK * arm.length)
+        half = np.sqrt(np.where(touching, 0.0, square))
     chord_turn = 0.5 * k * pieces.length
     chord = pieces.length * np.sinc(chord_turn / np.pi)
     along = np.cos(chord_turn)[:, None] * pieces.tangent + np.sin(chord_turn)[:, None] * left(pieces.tangent)

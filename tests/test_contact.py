@@ -152,3 +152,15 @@ def test_distance_to_arcs_in_closed_form():
     chain, _ = Contour.from_bulges(np.array([[13.0, 0], [-7.0, 0]]), np.ones(2)).as_arcs()
     probes = np.random.default_rng(3).uniform(-20, 20, (300, 2))
     assert signed_distance(chain, probes) == pytest.approx(np.hypot(probes[:, 0] - 3, probes[:, 1]) - 10, abs=1e-12)
+
+
+def test_a_contour_through_the_shaft_and_one_at_the_end_of_the_reach():
+    """Pieces at r = 0, where the polar angle is any, and at r = 2 l, where the arm lies stretched out."""
+    wedge = np.array([[0.0, 0.0], [40.0, -10.0], [40.0, 10.0]])
+    arm = Arm(60.0, 60.0, TRAILING)
+    assert contact(wedge, 8.0, arm, FEW) == pytest.approx(contact_by_bisection(wedge, 8.0, arm, FEW), abs=1e-9)
+    rim = Contour.from_bulges(112.0 * np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2))
+    r, _ = first_contact(dilated(rim.as_arcs()[0], 8.0), arm, PHI)
+    assert r == pytest.approx(120.0, abs=1e-6)
+    assert arm.lean(r) == pytest.approx(np.pi, abs=1e-6)
+    assert arm.lean(np.array([120.0 + 1e-9, 120.0])) == pytest.approx(np.pi, abs=1e-12)

@@ -393,3 +393,22 @@ def test_the_start_vertex_and_the_sense_of_writing_do_not_matter():
         again = follower.judge(polygon(np.roll(points, start, axis=0)), PHI)
         assert again.motion.max == pytest.approx(first.motion.max, abs=1e-11)
         assert again.play.least == pytest.approx(first.play.least, abs=1e-11)
+
+
+@given(st.integers(4, 30), st.integers(0, 2**32 - 1))
+@settings(max_examples=12, deadline=None)
+def test_arcs_of_either_sense_under_a_flat_face_against_dense_points(count, seed):
+    """Ragged contours of arcs, hollow ones among them: hull corners, arcs and lines that touch twice take turns."""
+    rng = np.random.default_rng(seed)
+    points = 25.0 * circle_points(count) * (1.0 + 0.1 * rng.uniform(-1, 1, (count, 1)))
+    contour = Contour.from_bulges(points, rng.uniform(-0.1, 0.3, count))
+    lift = lift_from_fourier(25.0, {3: 2.0}, {5: 0.3})
+    motion = FlatFace(lift).judge(contour, PHI).motion
+    theta = DENSE[::50]
+    error = reach(contour.sample(400), theta) - lift.derivatives(theta, 0)[0]
+    sag = (25.0 * 0.3 * 4 * np.pi / count / 400) ** 2
+    assert motion.max >= np.abs(error).max() - 1e-11 - sag
+    assert motion.max <= np.abs(error).max() + 80.0 * theta[1]
+    assert motion.rms == pytest.approx(
+        np.sqrt(np.mean((reach(contour.sample(400), PHI) - lift.derivatives(PHI, 0)[0]) ** 2)), abs=2e-3
+    )
