@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -30,6 +31,7 @@ CELLS_PER_TURN = 96  # proved bounds are kept for about this many stretches; mor
 CELLS_PER_STRETCH = 6  # and for at least this many between two breaks
 SHARP_ENOUGH = 4.0  # a cell is halved while its bound is this many times what its own ends and middle show
 HALVINGS = 7
+SHIFT = 1e-12  # relative and rad: far above the rounding by which parts of a turn are moved onto each other
 
 
 class CurveError(ValueError):
@@ -118,6 +120,11 @@ class Shape(Protocol):
     @property
     def breaks(self) -> Array:
         """Parameters in [0, period) at which speed or turn, or their derivatives, jump."""
+        ...
+
+    @property
+    def repeats(self) -> int:
+        """Equal parts that the turn is known to consist of, each the one before turned about the shaft."""
         ...
 
     @property
@@ -265,34 +272,16 @@ class Cells:
 
         Raises CurveError where no finite bound is found after `HALVINGS` halvings.
         """
-        lows, highs = [], []
-        for run in curve.runs:
-            for low, high in run.stretches:
-                share = int(np.ceil(CELLS_PER_TURN * (high - low) / curve.shape.period))
-                count = 1 if curve.steady((low, high)) else max(CELLS_PER_STRETCH, share)
-                knots = np.linspace(low, high, count + 1)
-                lows.append(knots[:-1])
-                highs.append(knots[1:])
-        low, high = np.concatenate(lows), np.concatenate(highs)
-        rows = curve.shape.bounds(low, high).rows()
-        for _ in range(HALVINGS):
-            loose = _loose(curve, low, high, rows)
-            if not loose.any():
-                break
-            middle = 0.5 * (low[loose] + high[loose])
-            new_low = np.concatenate([low[loose], middle])
-            new_high = np.concatenate([middle, high[loose]])
-            new_rows = curve.shape.bounds(new_low, new_high).rows()
-            low = np.concatenate([low[~loose], new_low])
-            high = np.concatenate([high[~loose], new_high])
-            rows = np.concatenate([rows[:, ~loose], new_rows], axis=1)
-            order = np.argsort(low, kind="stable")
-            low, high, rows = low[order], high[order], rows[:, order]
-        bad = ~np.isfinite(rows).all(axis=0)
-        if bad.any():
-            where = float(low[bad][0])
-            raise CurveError(f"no finite bound on the curvature can be proved near parameter {where:.9g}", where)
-        return Cells(low, high, rows)
+        stretches = [stretch for run in curve.runs for stretch in run.stretches]
+        period, repeats = curve.shape.period, curve.shape.repeats
+        if repeats > 1 and curve.closed:
+            if len(stretches) == 1:
+                knots = np.linspace(stretches[0][0], stretches[0][1], repeats + 1)
+                stretches = list(pairwise(knots))
+            if len(stretches) % repeats == 0:
+                first = _sharpened(curve, stretches[: len(stretches) // repeats], 2 * CELLS_PER_TURN / period)
+                return _repeated(first, np.array(stretches).reshape(repeats, -1, 2))
+        return _sharpened(curve, stretches, CELLS_PER_TURN / period)
 
     def over(self, low: Array, high: Array) -> Bounds:
         """Bounds over intervals (n,) that lie between two breaks: the worst of the cells each one touches."""
@@ -305,6 +294,52 @@ class Cells:
             worst[1:4:2] = np.maximum(worst[1:4:2], other[1:4:2])
             worst[4:] = np.maximum(worst[4:], other[4:])
         return Bounds(*worst)
+
+
+def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], density: float) -> Cells:
+    """Cells of some stretches that join, at first about `density` for each unit of parameter."""
+    lows, highs = [], []
+    for low, high in stretches:
+        count = 1 if curve.steady((low, high)) else max(CELLS_PER_STRETCH, int(np.ceil(density * (high - low))))
+        knots = np.linspace(low, high, count + 1)
+        lows.append(knots[:-1])
+        highs.append(knots[1:])
+    low, high = np.concatenate(lows), np.concatenate(highs)
+    rows = curve.shape.bounds(low, high).rows()
+    for _ in range(HALVINGS):
+        loose = _loose(curve, low, high, rows)
+        if not loose.any():
+            break
+        middle = 0.5 * (low[loose] + high[loose])
+        new_low = np.concatenate([low[loose], middle])
+        new_high = np.concatenate([middle, high[loose]])
+        new_rows = curve.shape.bounds(new_low, new_high).rows()
+        low = np.concatenate([low[~loose], new_low])
+        high = np.concatenate([high[~loose], new_high])
+        rows = np.concatenate([rows[:, ~loose], new_rows], axis=1)
+        order = np.argsort(low, kind="stable")
+        low, high, rows = low[order], high[order], rows[:, order]
+    bad = ~np.isfinite(rows).all(axis=0)
+    if bad.any():
+        where = float(low[bad][0])
+        raise CurveError(f"no finite bound on the curvature can be proved near parameter {where:.9g}", where)
+    return Cells(low, high, rows)
+
+
+def _repeated(part: Cells, stretches: Array) -> Cells:
+    """Cells of the whole turn from those of its first part, and the stretches (parts, m, 2) of all parts."""
+    owner = np.searchsorted(stretches[0, :, 0], part.low, side="right") - 1
+    low = part.low + (stretches[:, owner, 0] - stretches[0, owner, 0])
+    opens = np.flatnonzero(np.diff(owner, prepend=-1))
+    low[:, opens] = stretches[:, :, 0]
+    # the parts are one function folded, but their parameters are each rounded
+    rows = part.rows.copy()
+    rows[6:] *= 1.0 + SHIFT
+    rows[4:6] += SHIFT * rows[6:]
+    rows[0:4:2] -= SHIFT * rows[4:6]
+    rows[1:4:2] += SHIFT * rows[4:6]
+    low = low.ravel()
+    return Cells(low, np.append(low[1:], stretches[-1, -1, 1]), np.tile(rows, len(stretches)))
 
 
 def _loose(curve: Curve, low: Array, high: Array, rows: Array) -> NDArray[np.bool_]:

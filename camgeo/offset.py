@@ -35,6 +35,11 @@ class Parallel:
         return self.base.breaks
 
     @property
+    def repeats(self) -> int:
+        """Equal parts of the base curve."""
+        return self.base.repeats
+
+    @property
     def steady(self) -> Array:
         """Stretches of constant speed and turn (m, 2)."""
         table = self.base.steady

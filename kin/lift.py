@@ -60,6 +60,11 @@ class Circle:
     x: float = 0.0
     y: float = 0.0
 
+    @property
+    def first_harmonic(self) -> tuple[float, float, float]:
+        """Radius and centre."""
+        return self.radius, self.x, self.y
+
     def __call__(self, t: Series, /) -> Series:
         """Give the support function."""
         total = t.constant(self.radius)

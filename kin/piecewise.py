@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from functools import cached_property
+from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kin.ball import Ball, hull
 from kin.jet import BallJet, DomainError, Jet, cos, sin
+from kin.series import finite
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -36,11 +38,26 @@ class Stretch(Protocol):
         """Apply the function to a jet or ball jet."""
 
 
+@runtime_checkable
+class Round(Stretch, Protocol):
+    """A stretch mean + x cos t + y sin t; such stretches are worked out together."""
+
+    @property
+    def first_harmonic(self) -> tuple[float, float, float]:
+        """Mean, x and y."""
+        ...
+
+
 @dataclass(frozen=True)
 class Constant:
     """The same value everywhere."""
 
     value: float
+
+    @property
+    def first_harmonic(self) -> tuple[float, float, float]:
+        """The value, and nothing more."""
+        return self.value, 0.0, 0.0
 
     def __call__(self, t: Series, /) -> Series:
         """Give the value, constant over t."""
@@ -117,6 +134,58 @@ class Harmonics:
             c[order] = (power * (odd if order % 2 else even)).sum(axis=0) * (scale if order % 4 < 2 else -scale)
             power = power * k
         return Jet(c)
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Stretches that are one function moved in several ways: the way of each, rows of (offset, scale, start, 1/width).
+
+    `ways` is (4, m) over all the stretches of a piecewise function; None where the function stands as it is.
+    """
+
+    function: Stretch
+    ways: Array | None
+
+    @staticmethod
+    def of(function: Stretch, members: list[Stretch], places: list[int], count: int) -> _Group:
+        """Group stretches that share a function, at `places` among `count`."""
+        if not any(isinstance(member, Affine) for member in members):
+            return _Group(function, None)
+        ways = np.empty((4, count))
+        for place, member in zip(places, members, strict=True):
+            ways[:, place] = _AS_IS
+            if isinstance(member, Affine):
+                ways[:, place] = member.offset, member.scale, member.start, 1 / member.width
+        return _Group(function, ways)
+
+    def __call__(self, t: Jet, index: Indices) -> Jet:
+        """Apply the function to points t (n,), each in its stretch (n,)."""
+        if self.ways is None:
+            return self.function(t)
+        offset, scale, start, rate = self.ways[:, index]
+        c = t.c.copy()
+        with np.errstate(all="ignore"):
+            c[0] -= start
+            c *= rate
+            c = self.function(finite(c, "overflow")).c * scale
+            c[0] += offset
+            return finite(c, "overflow")
+
+
+_AS_IS = (0.0, 1.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Round:
+    """Stretches mean + x cos t + y sin t: rows (3, m) of mean, x and y over all the stretches."""
+
+    parts: Array
+
+    def __call__(self, t: Jet, index: Indices) -> Jet:
+        """Apply each stretch's function to its points t (n,), in stretches (n,)."""
+        mean, x, y = self.parts[:, index]
+        total = t.constant(mean)
+        return total + cos(t) * x + sin(t) * y if self.parts[1:].any() else total
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,15 +286,42 @@ class Piecewise:
         index = np.clip(index, 0, last)
         return index, np.where(on_knot, knots[near], x), turns
 
+    @cached_property
+    def _groups(self) -> tuple[Indices, tuple[_Group | _Round, ...]]:
+        """For each stretch its group, and the groups: stretches that are one function moved in several ways."""
+        found: dict[Stretch, list[int]] = {}
+        owner = np.zeros(len(self.functions), dtype=np.intp)
+        parts, arcs = np.zeros((3, owner.size)), []
+        for i, function in enumerate(self.functions):
+            if isinstance(function, Round):
+                parts[:, i] = function.first_harmonic
+                arcs.append(i)
+            else:
+                found.setdefault(function.function if isinstance(function, Affine) else function, []).append(i)
+        groups: list[_Group | _Round] = []
+        for number, (function, members) in enumerate(found.items()):
+            owner[members] = number
+            groups.append(_Group.of(function, [self.functions[i] for i in members], members, owner.size))
+        if arcs:
+            owner[arcs] = len(groups)
+            groups.append(_Round(parts))
+        return owner, tuple(groups)
+
     def _on_points(self, t: Jet, side: Side) -> Jet:
         index, x = self.locate(t.c[0], side)
+        owner, groups = self._groups
+        if len(groups) == 1:
+            c = t.c.copy()
+            c[0] = x
+            return groups[0](Jet(c), index)
         out = np.empty_like(t.c)
-        for i in np.flatnonzero(np.bincount(index)).tolist():
-            here = np.flatnonzero(index == i)
+        which = owner[index]
+        for number in np.flatnonzero(np.bincount(which)):
+            here = np.flatnonzero(which == number)
             c = t.c[:, here]
             c[0] = x[here]
             try:
-                out[:, here] = self.functions[i](Jet(c)).c
+                out[:, here] = groups[number](Jet(c), index[here]).c
             except DomainError as error:
                 raise DomainError(error.operation, here[error.indices]) from None
         return Jet(out)

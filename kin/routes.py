@@ -34,11 +34,11 @@ class FromDelta:
         value = self.delta(t)
         near, far = self._factors(t, value)
         if isinstance(t, Jet):
-            angle = -np.arctan2(value.c[0], np.sqrt(near.c[0] * far.c[0]))
+            room = Jet((near * far).c[: max(t.order, 1)])
+            angle = -np.arctan2(value.c[0], np.sqrt(room.c[0]))
             if not t.order:
                 return Jet(angle[None])
-            near, far = Jet(near.c[:-1]), Jet(far.c[:-1])
-            return (-value.derivative() * near**-0.5 * far**-0.5).integral(angle)
+            return (-value.derivative() * room**-0.5).integral(angle)
         start = -ball.asin(value.rows[0] / self.square)
         if not t.order:
             return BallJet(start.mid[None], start.rad[None])
@@ -50,6 +50,14 @@ class FromDelta:
         if any(b for _, _, b in self.delta.terms):
             return self.square - value, self.square + value
         rest, terms = self._apart()
+        if isinstance(t, Jet):
+            # all but the values are D's own derivatives
+            sense = math.copysign(1.0, math.fsum(a for _, a, _ in self.delta.terms))
+            rows = np.stack([-sense * value.c, sense * value.c])
+            k, a = np.array(terms).T[:, :, None]
+            rows[0, 0] = rest + (2 * a * np.sin(t.c[0] * (k / 2)) ** 2).sum(axis=0)
+            rows[1, 0] = rest + (2 * a * np.cos(t.c[0] * (k / 2)) ** 2).sum(axis=0)
+            return Jet(rows[0]), Jet(rows[1])
         near = far = t.constant(rest)
         for k, a in terms:
             near = near + sin(t * (k / 2)) ** 2 * (2 * a)

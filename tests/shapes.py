@@ -22,6 +22,7 @@ class Polar:
     radius: Callable
 
     period = 2.0 * np.pi
+    repeats = 1
 
     @property
     def breaks(self):
@@ -64,6 +65,7 @@ class Moved:
     origin: tuple[float, float]
 
     period = 2.0 * np.pi
+    repeats = 1
 
     @property
     def breaks(self):

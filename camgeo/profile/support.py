@@ -35,6 +35,11 @@ class SupportShape:
         return self.lift.breaks
 
     @property
+    def repeats(self) -> int:
+        """No equal parts are made use of."""
+        return 1
+
+    @property
     def steady(self) -> Array:
         """Radius of curvature and turn, (m, 2), on stretches that are circular arcs; nan on the others."""
         radius = np.where(self.lift.steady, self.lift.radius, np.nan)

@@ -59,6 +59,11 @@ class PitchShape:
         return self.law.breaks
 
     @property
+    def repeats(self) -> int:
+        """The law has period 2 pi/lam, and so has the curve but for a turn."""
+        return self.law.lam
+
+    @property
     def steady(self) -> Array:
         """Speed and turn (m, 2) where the follower rests and the pitch curve is a circle about the shaft."""
         return _steady(self, self.law)
@@ -77,9 +82,25 @@ class PitchShape:
         a, b = rows_phi[1], rows_phi[1] - rows_psi[1]
         velocity = np.column_stack([-a * np.sin(phi) - b * np.sin(chi), a * np.cos(phi) + b * np.cos(chi)])
         length = np.hypot(velocity[:, 0], velocity[:, 1])
-        speed, turn = self._rates(_jet(rows_phi), _jet(rows_psi))
-        sigma, omega = speed.derivatives(), turn.derivatives()
-        return Frame(point, velocity / length[:, None], sigma[0], omega[0], sigma[1], omega[1])
+        return Frame(point, velocity / length[:, None], *self._rates_at(rows_phi, rows_psi))
+
+    def _rates_at(self, phi: Array, psi: Array) -> tuple[Array, Array, Array, Array]:
+        """Speed, turn and their slopes (n,) from derivatives (4, n) of phi and psi: `_rates` by hand."""
+        (a, a1, a2), (s, s1, s2) = phi[1:], psi[1:]
+        b, b1 = a - s, a1 - s1
+        half = 0.5 * (psi[0] + self.law.alpha)
+        cosine, sine = np.cos(half), np.sin(half)
+        double, square = 2.0 * sine * cosine, 4.0 * cosine**2
+        lean, cross = s * s, a * s1 - a1 * s
+        # with q = (sigma/l)^2: omega = (a + b)/2 + part/q
+        q = lean + a * b * square
+        q1 = 2.0 * s * s1 + (a1 * b + a * b1) * square - 2.0 * a * b * s * double
+        part = 0.5 * (a + b) * lean + cross * double
+        part1 = 0.5 * (a1 + b1) * lean + (a + b) * s * s1 + (a * s2 - a2 * s) * double
+        part1 += cross * s * (0.5 * square - 1.0)
+        root, share = np.sqrt(q), part / q
+        turn_slope = 0.5 * (a1 + b1) + (part1 - share * q1) / q
+        return self.law.arm * root, 0.5 * (a + b) + share, 0.5 * self.law.arm * q1 / root, turn_slope
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
@@ -120,6 +141,11 @@ class FlatPairShape:
         return self.law.breaks
 
     @property
+    def repeats(self) -> int:
+        """The law has period 2 pi/lam, and so has the curve but for a turn."""
+        return self.law.lam
+
+    @property
     def steady(self) -> Array:
         """Speed and turn (m, 2) where the follower rests."""
         return _steady(self, self.law)
@@ -139,9 +165,21 @@ class FlatPairShape:
         slope = -self.law.arm * np.sin(half) * rows_psi[1] / (rows_phi[1] - 0.5 * rows_psi[1])
         cosine, sine = np.cos(normal), np.sin(normal)
         point = np.column_stack([r * cosine - slope * sine, r * sine + slope * cosine])
-        speed, turn = self._rates(_jet(rows_phi), _jet(rows_psi))
-        sigma, omega = speed.derivatives(), turn.derivatives()
-        return Frame(point, np.column_stack([-sine, cosine]), sigma[0], omega[0], sigma[1], omega[1])
+        return Frame(point, np.column_stack([-sine, cosine]), *self._rates_at(rows_phi, rows_psi))
+
+    def _rates_at(self, phi: Array, psi: Array) -> tuple[Array, Array, Array, Array]:
+        """Speed, turn and their slopes (n,) from derivatives (4, n) of phi and psi: `_rates` by hand."""
+        half = 0.5 * (psi[0] + self.law.alpha)
+        cosine, sine = np.cos(half), np.sin(half)
+        h, h1, h2 = 0.5 * psi[1:]
+        turn, turn1, turn2 = phi[1] - h, phi[2] - h1, phi[3] - h2
+        k = h / turn
+        k1 = (h1 - k * turn1) / turn
+        k2 = (h2 - k * turn2 - 2.0 * k1 * turn1) / turn
+        left = 1.0 - k * k
+        speed = turn * left * cosine - k1 * sine
+        slope = (turn1 * left - 2.0 * turn * k * k1 - k1 * h) * cosine - (turn * left * h + k2) * sine
+        return 2.0 * self.law.arm * speed, turn, 2.0 * self.law.arm * slope, turn1
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
@@ -182,12 +220,6 @@ def _cut(series: Series, order: int) -> Series:
     if isinstance(series, Jet):
         return Jet(series.c[: order + 1])
     return BallJet(series.mid[: order + 1], series.rad[: order + 1])
-
-
-def _jet(rows: Array) -> Jet:
-    """Taylor coefficients from derivatives (order + 1, n)."""
-    scale = np.array([math.factorial(k) for k in range(len(rows))], dtype=np.float64)
-    return Jet(rows / scale[:, None])
 
 
 def _bounds(law: Transmission, low: Array, high: Array, rates: _Rates) -> Bounds:
