@@ -3,37 +3,66 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 import sys
 import time
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from camgeo.recipe.model import Recipe
 
 OK, FAILED, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
 PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
+COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 PATIENCE = 1.0  # seconds before progress is shown
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status (DESIGN: 0 holds, 1 a check fails, 2 wrong, 3 surroundings, 130)."""
+    _open_streams()
     arguments = _parser().parse_args(argv)
     command: Callable[[argparse.Namespace], int] = arguments.run
     try:
-        status = command(arguments)
+        with _rare_collections():
+            status = command(arguments)
         sys.stdout.flush()
     except KeyboardInterrupt:
         _complain("interrupted")
         return INTERRUPTED
-    except BrokenPipeError:
-        # The reader of our output went away: nothing more can be said, and nothing is wrong with the recipe.
+    except OSError as error:
+        # Files are seen to where they are written, so this is our own output. Where its reader went away nothing more
+        # can be said; nothing is wrong with the recipe.
+        if not isinstance(error, BrokenPipeError):
+            _complain(f"{error.filename or 'the output cannot be written'}: {error.strerror}")
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return SURROUNDINGS
     return status
+
+
+@contextmanager
+def _rare_collections() -> Iterator[None]:
+    """Let Python's search for cycles wait until there is something to find.
+
+    By default it goes again and again over what the imports make, ezdxf's above all: a tenth of a short run.
+    """
+    usual = gc.get_threshold()
+    gc.set_threshold(COLLECT_AFTER)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*usual)
+
+
+def _open_streams() -> None:
+    """Let what is said go nowhere where the caller closed the stream (`>&-`), which Python shows as None."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115 - open while we run
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -72,10 +101,10 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument(
         "--only", action="append", default=[], choices=("dxf", "stl", "csv"), help="only files of this kind; repeatable"
     )
-    export.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: as many as pay)")
+    export.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
     check = command("check", _check, "Every check of a recipe; nothing is written.")
     recipes(check)
-    check.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: as many as pay)")
+    check.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
     verify = command("verify", _verify, "Judge DXF and STL files against a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
@@ -91,10 +120,21 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _length(text: str) -> float:
-    value = float(text)
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"a tolerance is a length above 0, not {text}")
+    from camgeo.recipe.spec import MOST
+
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value <= MOST:
+        raise argparse.ArgumentTypeError(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {text}")
     return value
+
+
+def _jobs(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and int(text[:9]) > 0):
+        raise argparse.ArgumentTypeError(f"a number of processes is a whole number from 1, not {text}")
+    return int(text[:9])
 
 
 def _complain(text: str) -> None:
@@ -163,6 +203,7 @@ def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs:
         return
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
 
     progress = _Progress(f"{len(recipes)} recipes")
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
@@ -171,7 +212,12 @@ def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs:
         try:
             for number, future in enumerate(futures):
                 progress(f"{number} of {len(futures)} done")
-                result = future.result()
+                try:
+                    result = future.result()
+                except BrokenProcessPool:
+                    # one process was killed, and takes with it what the others had in hand
+                    text = "a process was killed before this recipe was done, for want of memory perhaps; see --jobs"
+                    result = None, f"camgeo: {recipes[number].name}: {text}", SURROUNDINGS
                 progress.clear()
                 yield result
         except KeyboardInterrupt:
