@@ -21,6 +21,7 @@ from camgeo.fit.polygon import fit_polygon, least_vertices
 from camgeo.fit.spline import fit_spline
 from camgeo.offset import Parallel
 from camgeo.profile.wunderlich import FlatPairShape, PitchShape
+from kin.jet import Jet
 from kin.law import Segment, law, programme
 from kin.transmission import from_arc, from_delta, from_law
 
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from camgeo.curve import Shape
     from camgeo.fit.pieces import ArcSpline, BSpline, Polygon
 
-TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+TOLERANCES = (1e-1, 1e-3, 1e-5, 1e-6)
 ARM = 60.0
 
 
@@ -193,7 +194,7 @@ def test_spline_is_proved(case: Case, tolerance: float) -> None:
     check_proof(case, spline, spline_points(spline, some(spline.spans)), tolerance, 0.05)
 
 
-@pytest.mark.parametrize("tolerance", TOLERANCES[:3])
+@pytest.mark.parametrize("tolerance", TOLERANCES[:2])
 def test_curve_is_near_the_polygon_too(case: Case, tolerance: float) -> None:
     """The other half of the Hausdorff distance: no point of the contour is farther from every edge than promised."""
     polygon = fit_polygon(Curve.whole(case.shape), tolerance)
@@ -235,7 +236,7 @@ def test_every_rest_of_a_law_is_one_arc() -> None:
     radius = chord / (2 * np.sin(2 * np.arctan(arcs.bulges)))
     expected = [2 * ARM * math.cos((psi + transmission.alpha) / 2) - 8.0 for psi in np.radians([2.0, -2.0])]
     assert sum(int((np.abs(radius - r) < 1e-7).sum()) for r in expected) == rests
-    for tolerance in TOLERANCES:
+    for tolerance in (TOLERANCES[0], TOLERANCES[-1]):
         for fit in (fit_polygon, fit_arcs, fit_spline):
             assert fit(curve, tolerance).bound.worst <= tolerance
 
@@ -247,3 +248,38 @@ def test_a_moved_vertex_is_seen() -> None:
     vertices = polygon.vertices.copy()
     vertices[17] *= 1.0 + 2e-3 / np.hypot(*vertices[17])
     assert np.abs(outward(case, vertices)).max() > 2e-3
+
+
+@pytest.mark.parametrize("kind", [PitchShape, FlatPairShape])
+@pytest.mark.parametrize("route", ["cosines", "with sines", "arc"])
+def test_rates_by_hand_are_those_of_series(kind: type[PitchShape | FlatPairShape], route: str) -> None:
+    law = {
+        "cosines": from_delta(2, 1, ARM, {1: 0.8 * ARM**2}, {}),
+        "with sines": from_delta(4, 3, ARM, {1: 500.0, 3: 5.0}, {1: 60.0}),
+        "arc": from_arc(3, 1, ARM, 70.0),
+    }[route]
+    shape = kind(law)
+    t = np.linspace(0.01, 2 * np.pi, 83)
+    at = shape.sample(t)
+    speed, turn = (series.derivatives() for series in shape._rates(*law.jets(Jet.variable(t, 3))))
+    assert at.speed == pytest.approx(speed[0], rel=1e-13)
+    assert at.turn == pytest.approx(turn[0], rel=1e-13, abs=1e-13)
+    assert at.speed_slope == pytest.approx(speed[1], rel=1e-13, abs=1e-13 * np.abs(speed[1]).max())
+    assert at.turn_slope == pytest.approx(turn[1], rel=1e-13, abs=1e-13 * np.abs(turn[1]).max())
+
+
+def test_cells_of_one_period_hold_over_the_whole_turn(case: Case) -> None:
+    curve = Curve.whole(case.shape)
+    cells = curve.cells
+    assert np.array_equal(cells.low[1:], cells.high[:-1])
+    assert (cells.low[0], cells.high[-1]) == (curve.runs[0].low, curve.runs[0].high)
+    assert np.isin([low for low, _ in curve.runs[0].stretches], cells.low).all()
+    t = cells.low[:, None] + (cells.high - cells.low)[:, None] * np.linspace(0, 1, 7)[1:-1]
+    at = curve.sample(t.ravel())
+    bounds = curve.cells.over(t.ravel(), t.ravel())
+    assert (bounds.speed_low <= at.speed).all()
+    assert (at.speed <= bounds.speed_high).all()
+    assert (bounds.turn_low <= at.turn + 1e-12).all()
+    assert (at.turn <= bounds.turn_high + 1e-12).all()
+    assert (np.abs(at.speed_slope) <= bounds.speed_slope).all()
+    assert (np.abs(at.turn_slope) <= bounds.turn_slope + 1e-12).all()

@@ -22,11 +22,14 @@ if TYPE_CHECKING:
 
 USABLE = 0.985  # of the tolerance, that errors seen may use; the rest is left to the proof
 INSIDE = (0.3373, 0.6627)  # roots of the fourth-degree part that make the error's humps equal
-ORDER = 5.0  # power of the span's length with which the error falls, for sharing nodes
+ORDER = 5.0  # power of the span's length with which the error falls
+DAMPED = 8.0  # the same where nodes were shared before: spans about extrema, whose errors fall faster, come to rest
 TURN_ERROR = 4.9e-6  # error of an arc of unit radius and unit angle: a quarter circle has 2.7e-4 mm at 1 mm
-LOOKS = 12  # steps of a span at which its error is first seen
+LOOKS = 12  # steps of a span at which its error is seen
+PROOF_LOOKS = 24  # and at which it is first proved
 MOST_LOOKS = 384
-SLACK = 0.01  # of the tolerance: how far the proof may exceed what is seen before it is sharpened
+SLACK = 0.02  # of the tolerance: how far the proof may exceed what is seen before it is sharpened,
+OVER = 0.01  # and how far the tolerance, before that
 SHARINGS = 3  # of the nodes before there are more of them
 HANDLE_STEPS = 2  # of Newton's method for the handles: any will do, the proof takes them as they are
 NEWTON = 5  # steps that settle feet of normals to rounding
@@ -131,7 +134,7 @@ def _denser(nodes: Array, worst: Array, tolerance: float, shared: int) -> tuple[
         return np.sort(np.append(nodes, middle[~np.isfinite(worst)])), 0
     mean = float(np.mean(worst ** (1.0 / ORDER))) ** ORDER
     if shared < SHARINGS and mean < 0.9 * tolerance:
-        return reshared(nodes, worst, ORDER), shared + 1
+        return reshared(nodes, worst, DAMPED if shared else ORDER), shared + 1
     count = nodes.size - 1
     more = max(count + 1, math.ceil(count * (max(mean, tolerance) / tolerance) ** (1.0 / ORDER)))
     return reshared(nodes, worst, ORDER, more), 0
@@ -214,12 +217,13 @@ def _spline_range(curve: Curve, control: Array, low: Array, high: Array, toleran
     """Proved greatest outward and inward distance of each span from the curve (n,), infinite where unproved."""
     count = low.size
     out, into = np.full(count, np.inf), np.full(count, np.inf)
-    todo, looks = np.arange(count), LOOKS
+    todo, looks = np.arange(count), PROOF_LOOKS
     while todo.size and looks <= MOST_LOOKS:
         spans = control[todo], low[todo], high[todo]
         top, bottom, seen_top, seen_bottom = _against_arcs(curve, *spans, looks=looks, tolerance=tolerance)
         out[todo], into[todo] = top, bottom
         loose = np.maximum(top - seen_top, bottom - seen_bottom) > SLACK * tolerance
+        loose |= np.maximum(top, bottom) > (1.0 + OVER) * tolerance
         hopeless = np.maximum(seen_top, seen_bottom) > 1.02 * tolerance
         settled = np.where(hopeless & np.isfinite(seen_top), np.maximum(seen_top, seen_bottom), np.inf)
         out[todo] = np.where(hopeless, np.minimum(settled, out[todo]), out[todo])
