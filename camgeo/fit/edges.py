@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation
+from kin.distinct import distinct
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -99,7 +100,8 @@ def placed(curve: Curve, run: Run, nodes: Array, away: Array) -> Placed:
     span = run.high - run.low
     breaks = np.array(run.breaks)
     cuts = breaks if nodes[-1] <= run.high else np.concatenate([breaks, [run.high], breaks + span])
-    cuts = np.setdiff1d(cuts[(cuts > nodes[0]) & (cuts < nodes[-1])], nodes)
+    cuts = distinct(cuts[(cuts > nodes[0]) & (cuts < nodes[-1])])
+    cuts = cuts[nodes[np.searchsorted(nodes, cuts)] != cuts]
     low = np.sort(np.concatenate([nodes[:-1], cuts]))
     high = np.append(low[1:], nodes[-1])
     edge = np.clip(np.searchsorted(nodes, low, side="right") - 1, 0, nodes.size - 2)
