@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, cast
 
 from camgeo.curve import CurveError
@@ -102,30 +102,31 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     radius, at = least_radius(profile.curve)
     radius += profile.roller_radius
-    checks = [
-        Check(
-            "radius-of-curvature",
-            trim or radius > profile.roller_radius,
-            radius,
-            profile.roller_radius,
-            "mm",
-            _shaft_deg(intent, at),
-            "at_least",
-        )
-    ]
+    roomy, at_deg = radius > profile.roller_radius, _shaft_deg(intent, at)
+    bent = Check("radius-of-curvature", roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
     try:
         found = undercuts(profile.curve)
-        contour = _trimmed(profile.curve) if trim and found else profile.curve
     except UndercutError as error:
-        checks.append(Check("undercut-local", False, None, 0.0, "mm", None, detail=str(error)))
-        return checks, None
+        kind = "global" if roomy else "local"
+        return [bent, Check(f"undercut-{kind}", False, None, 0.0, "mm", None, detail=str(error))], None
+    outcome, contour = "", None if found else profile.curve
+    if trim and found:
+        try:
+            outcome, contour = "; trimmed", _trimmed(profile.curve)
+        except UndercutError as error:
+            outcome = f"; it cannot be trimmed: {error}"
+    if not (roomy or found):
+        contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
+    # of a trimmed contour the radius that was asked for is told, and held against nothing
+    checks = [replace(bent, ok=roomy or bool(found and contour))]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
     free_at = (min if profile.roller_radius else max)((cut.free_at for cut in found), default=0.0) / recipe.mm
-    free = (
-        f"a roller radius of {free_at:.6g} would be free of it"
-        if profile.roller_radius
-        else f"a base radius larger by {free_at:.6g} would be free of it"
-    )
+    if isinstance(recipe.cam, FlatPairCam):
+        free = "a smaller swing would be free of it"  # r + const closes no pair: there is no base radius to enlarge
+    elif profile.roller_radius:
+        free = f"a roller radius of {free_at:.6g} would be free of it"
+    else:
+        free = f"a base radius larger by {free_at:.6g} would be free of it"
     for kind in ("local", "global"):
         cuts = [cut for cut in found if cut.kind == kind]
         if kind == "global" and profile.roller_radius == 0.0 and not cuts:
@@ -135,11 +136,13 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
             checks.append(Check(f"undercut-{kind}", True, 0.0, 0.0, "mm"))
             continue
         first, last = _shaft_deg(intent, worst.start), _shaft_deg(intent, worst.end)
-        detail = f"from {first:.6g} to {last:.6g} deg; {free}" + ("; trimmed" if trim else "")
+        everywhere = worst.end - worst.start >= profile.curve.shape.period
+        where = "all round" if everywhere else f"from {first:.6g} to {last:.6g} deg"
+        detail = f"{where}; {free}{outcome}"
         depth = worst.depth if math.isfinite(worst.depth) else None
-        checks.append(Check(f"undercut-{kind}", trim, depth, 0.0, "mm", _shaft_deg(intent, worst.at), detail=detail))
-    sound = trim or not found
-    return checks, contour if sound else None
+        ok, at_deg = contour is not None, _shaft_deg(intent, worst.at)
+        checks.append(Check(f"undercut-{kind}", ok, depth, 0.0, "mm", at_deg, detail=detail))
+    return checks, contour
 
 
 def _trimmed(curve: Curve) -> Curve:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from camgeo.curve import CurveError
 from camgeo.design import Clock, Design, designed, intended, permitted
 from camgeo.fit.nodes import ToleranceError
 from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.curve import Curve
     from camgeo.files.dxf import Reference
     from camgeo.fit.pieces import Bound, Outline
+    from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.model import FileRequest, Recipe
     from kin.check import Check
 
@@ -104,6 +106,9 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
     files: list[FileResult] = []
     if design.contour is not None:
         outlines = _Outlines(design.contour, clock)
+        for request in requests:  # an STL that single precision cannot hold is refused before anything is fitted
+            if request.kind == "stl":
+                _aim(recipe, request, design.contour)
         for request in requests:
             path = folder / request.filename(recipe.name, recipe.export.files)
             if request.kind == "csv":
@@ -127,11 +132,13 @@ def _drawn(
     outlines: _Outlines,
 ) -> tuple[FileResult, list[Check]]:
     """Fit, write, read back and judge one DXF or STL."""
+    from camgeo.files.triangulate import RegionError
+
     clock = outlines.clock
     tolerance = request.tolerance or recipe.export.tolerance
-    field_path = f"export.files[{recipe.export.files.index(request)}]"
+    aim = _aim(recipe, request, outlines.contour)
     try:
-        outline = outlines.within(request.as_ or "polyline", _aim(request, outlines.contour, tolerance))
+        outline = outlines.within(request.as_ or "polyline", aim)
         drawn = outline.mirrored() if recipe.rotation == "ccw" else outline
         with clock.stage(f"write {request.kind}"):
             if request.kind == "stl":
@@ -140,9 +147,12 @@ def _drawn(
                 _write_dxf(recipe, design, drawn, request, path)
                 bound, pieces = outline.bound, outline.count
     except ToleranceError as error:
-        where = field_path if request.tolerance is not None else "export.tolerance"
-        reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
-        raise recipe.error(where, str(error), None, reached) from error
+        raise _refused(recipe, request, error) from error
+    except RegionError as error:
+        field_path = "cam" if recipe.part.bore is None else "part.bore"
+        raise recipe.error(field_path, f"within the tolerance, {error}") from error
+    except CurveError as error:
+        raise recipe.error("cam", str(error)) from error
     with clock.stage(f"judge {request.kind}"):
         from kin.check import about
         from kin.verify import verify
@@ -154,8 +164,20 @@ def _drawn(
     )
 
 
-def _aim(request: FileRequest, contour: Curve, tolerance: float) -> float:
-    """Tolerance left to the fit: all of it, or what rounding to single precision leaves of it."""
+def _refused(recipe: Recipe, request: FileRequest, error: ToleranceError) -> RecipeErrors:
+    """Turn a tolerance that cannot be held into an error at the field that asks for it."""
+    index = recipe.export.files.index(request)
+    where = f"export.files[{index}]" if request.tolerance is not None else "export.tolerance"
+    reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
+    return recipe.error(where, str(error), None, reached)
+
+
+def _aim(recipe: Recipe, request: FileRequest, contour: Curve) -> float:
+    """Tolerance left to the fit: all of it, or what rounding to single precision leaves of it.
+
+    Raises RecipeErrors where that is nothing.
+    """
+    tolerance = request.tolerance or recipe.export.tolerance
     if request.kind != "stl":
         return tolerance
     import numpy as np
@@ -164,7 +186,10 @@ def _aim(request: FileRequest, contour: Curve, tolerance: float) -> float:
 
     size = float(np.abs(contour.sample(contour.cells.low).point).max())
     # between two samples the contour reaches a little farther
-    return fit_tolerance(tolerance, 1.01 * size)
+    try:
+        return fit_tolerance(tolerance, 1.01 * size)
+    except ToleranceError as error:
+        raise _refused(recipe, request, error) from error
 
 
 @dataclass
@@ -244,7 +269,9 @@ def _reference(recipe: Recipe, design: Design) -> list[Reference]:
     if isinstance(cam, ConstantBreadthCam):
         found.append(Circle("base circle", (0.0, 0.0), cam.base_radius))
     elif isinstance(cam, SupportCam):
-        found.append(Circle("base circle", (0.0, 0.0), float(np.hypot(base[:, 0], base[:, 1]).min())))
+        radius = float(np.hypot(base[:, 0], base[:, 1]).min())
+        if radius > 0.0:  # the shaft may stand on the contour itself
+            found.append(Circle("base circle", (0.0, 0.0), radius))
     elif isinstance(cam, DoubleRollerCam):
         found.append(Circle("prime circle", (0.0, 0.0), float(np.hypot(base[:, 0], base[:, 1]).min())))
         pitch = fit_arcs(design.profile.base, COARSE)
