@@ -1,4 +1,4 @@
-"""A curve as tangent-continuous arcs: biarcs through points of the curve (THEORY section 3).
+"""A curve as tangent-continuous arcs: biarcs through points of the curve (docs/theory.md 3).
 
 Nodes take equal shares of the integral of ``(|kappa'| / (40.5 e))^(1/3) ds``, both arcs of a biarc about equally long.
 A stretch of constant curvature is one arc.
@@ -186,7 +186,7 @@ def _biarcs(curve: Curve, low: Array, high: Array) -> _Biarcs:
     other: there the arcs' lengths are to make their errors alike, ``|kappa'| s^3``.
     """
     a, b = curve.span(low, high)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio = np.abs(b.curvature_slope / a.curvature_slope) ** (1.0 / 6.0)
     ratio = np.where(np.isfinite(ratio), np.clip(ratio, 1.0 / MOST_RATIO, MOST_RATIO), 1.0)
     chord = b.point - a.point
