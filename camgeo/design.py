@@ -118,7 +118,8 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
     if not (roomy or found):
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
     # of a trimmed contour the radius that was asked for is told, and held against nothing
-    checks = [replace(bent, ok=roomy or bool(found and contour))]
+    cut_off = bool(found and contour)
+    checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
     free_at = (min if profile.roller_radius else max)((cut.free_at for cut in found), default=0.0) / recipe.mm
     if isinstance(recipe.cam, FlatPairCam):
@@ -141,7 +142,8 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
         detail = f"{where}; {free}{outcome}"
         depth = worst.depth if math.isfinite(worst.depth) else None
         ok, at_deg = contour is not None, _shaft_deg(intent, worst.at)
-        checks.append(Check(f"undercut-{kind}", ok, depth, 0.0, "mm", at_deg, detail=detail))
+        limit = None if cut_off else 0.0
+        checks.append(Check(f"undercut-{kind}", ok, depth, limit, "mm", at_deg, detail=detail))
     return checks, contour
 
 

@@ -43,7 +43,8 @@ def flat_face_checks(lift: Lift, *, yoke: bool) -> list[Check]:
     checks = []
     if yoke:
         mean, deviation, at = breadth_of(lift)
-        checks.append(Check("constant-breadth", True, deviation, SAME_BREADTH * mean, "mm", degrees(at)))
+        limit = SAME_BREADTH * abs(mean)
+        checks.append(Check("constant-breadth", deviation <= limit, deviation, limit, "mm", degrees(at)))
     t = _angles(lift.breaks, 2.0 * math.pi)
     slope = np.concatenate([lift.derivatives(t, 1, side)[1] for side in (1, -1)])
     worst = float(np.tile(t, 2)[int(np.argmax(np.abs(slope)))])

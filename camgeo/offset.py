@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Parallel:
-    """Parallel curve of `base` at `distance` inside it (negative: outside), along the normal (W section 2; THEORY 7).
+    """Parallel curve of `base` at `distance` inside it (negative: outside), along the normal (docs/theory.md 7).
 
     The tangent turns as on the base, so the speed is ``sigma - distance * omega`` exactly: it changes sign where the
     curve undercuts, which `camgeo.undercut` reports.

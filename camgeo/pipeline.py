@@ -75,7 +75,6 @@ def check(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> Outco
 def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
     """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does."""
     from camgeo.recipe.model import FileRequest
-    from kin.check import about
     from kin.verify import verify
 
     clock = Clock()
@@ -88,7 +87,7 @@ def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
         request = FileRequest("stl" if verdict.kind == "stl" else "dxf")
         measured = verdict.measured_error
         files.append(FileResult(path, request, tolerance, verdict.pieces, None, measured, verdict.motion))
-        checks += [about(check, path.name) for check in verdict.checks]
+        checks += verdict.checks
     return document(recipe, Findings(tuple(checks), tuple(files), tuple(clock.stages), (), design.follower))
 
 
@@ -154,13 +153,12 @@ def _drawn(
     except CurveError as error:
         raise recipe.error("cam", str(error)) from error
     with clock.stage(f"judge {request.kind}"):
-        from kin.check import about
         from kin.verify import verify
 
         verdict = verify(path, intended(recipe, design), recipe.verify.angles, permitted(recipe, tolerance))
     return (
         FileResult(path, request, tolerance, pieces, bound, verdict.measured_error, verdict.motion),
-        [about(check, path.name) for check in verdict.checks],
+        list(verdict.checks),
     )
 
 
@@ -304,11 +302,16 @@ def _skipped(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
         found.append(("files", "a check of the exact contour fails"))
     if recipe.part.bore is None:
         found.append(("bore", "part.bore is not given"))
+    swings = design.follower in {"double roller", "flat pair"}
     if design.follower == "flat face":
         found.append(("constant-breadth", "the breadth is not constant: a single flat face follows"))
-    if design.follower in {"flat face", "yoke"}:
-        found.append(("pressure-angle", "a flat face moves along its normal"))
+    if design.follower != "double roller":
+        found.append(("pressure-angle", "a flat face is pushed along its normal"))
         found.append(("undercut-global", "a convex profile meets itself nowhere else"))
+    if swings:
+        found.append(("face-length", "the follower has no plate that moves along its normal"))
     else:
-        found.append(("face-length", "the follower's faces are not parallel plates"))
+        found += [(name, "the follower does not swing") for name in ("closing-equation", "transmission")]
+    if design.trimmed and recipe.verify.motion_error is None:
+        found.append(("motion", "the contour is trimmed and verify.motion_error is not given: told, not judged"))
     return tuple(found)

@@ -1,4 +1,4 @@
-"""How large a disc can roll all round inside a pitch curve: necks between far-apart stretches (THEORY section 7).
+"""How large a disc can roll all round inside a pitch curve: necks between far-apart stretches (docs/theory.md 7).
 
 The disc that touches the curve from inside at x and passes through y has the radius
 

@@ -1,4 +1,4 @@
-"""Undercut: where the metal that a follower needs has been cut away by its own contact elsewhere (THEORY section 7).
+"""Undercut: where the metal that a follower needs has been cut away by its own contact elsewhere (docs/theory.md 7).
 
 Local undercut comes from bending: a radius of curvature below 0 for a flat face, below the roller's radius for a pitch
 curve. Global undercut comes from a neck of the pitch curve narrower than the roller, however gently it is bent. Whether

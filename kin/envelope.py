@@ -2,7 +2,7 @@
 
 A flat face whose intended support function is p(theta) must leave every point X of the cam with X.u(theta) <= p(theta):
 the excess of a point is the greatest X.u - p over theta, which for a convex contour is its signed distance, positive
-outside (THEORY section 2: the metal a face would feel). A roller of radius e whose centre runs on the pitch curve must
+outside (docs/theory.md 2: the metal a face would feel). A roller of radius e whose centre runs on the pitch curve must
 leave every point at least e away from it: the excess is e less the distance to the pitch curve. Both definitions are
 global, so they hold for a trimmed undercut as well. Nothing but the intent is used.
 """

@@ -103,10 +103,10 @@ def _placed(contour: Contour, scale: float, mirrored: bool) -> Contour:
 
 def _units_check(stated: float | None, expected: float) -> Check:
     if stated is None:
-        return failed("units", f"the drawing states no unit; {expected:.9g} mm is meant", unit="mm", limit=expected)
+        return failed("units", f"the drawing states no unit; {expected:.9g} mm is meant", limit=UNITS_SHARE)
     off = abs(stated / expected - 1.0)
     detail = f"a drawing unit is {stated:.9g} mm, {expected:.9g} mm is meant"
-    return Check("units", off <= UNITS_SHARE, stated, expected, "mm", detail=detail)
+    return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
 
 
 def _closed_check(drawing: Drawing, contour: Contour) -> Check:

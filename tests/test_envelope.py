@@ -171,7 +171,7 @@ def test_inverse_of_a_rising_function_over_many_turns():
 @pytest.mark.parametrize("name", ["hypocycloid", "rounded Reuleaux", "sharp Reuleaux", "Shu and Wu"])
 @pytest.mark.parametrize("count", [8, 40, 500])
 def test_deviation_of_convex_polygons_is_the_difference_of_support_functions(name, count):
-    """For convex bodies the Hausdorff distance is max |p1 - p2| (THEORY section 2)."""
+    """For convex bodies the Hausdorff distance is max |p1 - p2| (docs/theory.md 2)."""
     lift = LIFTS[name]
     rng = np.random.default_rng(count)
     t = np.sort(rng.uniform(0, 2 * np.pi, count))

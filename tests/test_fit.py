@@ -1,6 +1,6 @@
 """Fits against their promises: the deviation measured independently never exceeds what is proved, nor falls far below.
 
-For convex curves the Hausdorff distance is the greatest difference of the support functions (THEORY section 2), so the
+For convex curves the Hausdorff distance is the greatest difference of the support functions (docs/theory.md 2), so the
 oracle needs nothing of the fitters: it evaluates support functions at many directions.
 """
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from camgeo.curve import Curve
@@ -85,6 +85,30 @@ def arcs_gap(lift: Lift, arcs: ArcSpline) -> np.ndarray:
     return value + np.repeat(radius, 33) - lift.derivatives(theta, 0)[0]
 
 
+def distances(lift: Lift, arcs: ArcSpline) -> np.ndarray:
+    """Signed distance of 17 points of each arc from the convex curve: the greatest of x.u - p, hollow arcs or not."""
+    a, b = arcs.points, np.roll(arcs.points, -1, axis=0)
+    half = 2 * np.arctan(arcs.bulges)[:, None]
+    share = np.linspace(0, 1, 17)
+    # along the chord and across it, for an arc that turns by 2 half
+    small = np.abs(half) < 1e-9
+    sine = np.where(small, 1.0, np.sin(half))
+    along = np.where(small, share, 0.5 + np.sin(half * (2 * share - 1)) / (2 * sine))
+    across = np.where(small, 0.0, (np.cos(half * (2 * share - 1)) - np.cos(half)) / (2 * sine))
+    chord = (b - a)[:, None]
+    right = np.stack([chord[..., 1], -chord[..., 0]], axis=-1)
+    x = (a[:, None] + along[..., None] * chord + across[..., None] * right).reshape(-1, 2)
+    theta = np.linspace(0, 2 * np.pi, 1440, endpoint=False)
+    p = lift.derivatives(theta, 0)[0]
+    best = theta[np.argmax(x @ np.stack([np.cos(theta), np.sin(theta)]) - p, axis=1)]
+    for _ in range(6):
+        u, n = np.column_stack([np.cos(best), np.sin(best)]), np.column_stack([-np.sin(best), np.cos(best)])
+        rows = lift.derivatives(best, 2)
+        slope, bend = (x * n).sum(axis=1) - rows[1], -(x * u).sum(axis=1) - rows[2]
+        best = best + np.where(bend < 0, np.clip(-slope / np.where(bend < 0, bend, 1.0), -0.005, 0.005), 0.0)
+    return x[:, 0] * np.cos(best) + x[:, 1] * np.sin(best) - lift.derivatives(best, 0)[0]
+
+
 def spline_gap(lift: Lift, spline: BSpline, count: int = 300) -> np.ndarray:
     u = np.linspace(0, 1, count)
     basis = np.stack([(1 - u) ** 3, 3 * u * (1 - u) ** 2, 3 * u**2 * (1 - u), u**3], axis=1)
@@ -138,7 +162,7 @@ def test_spline_is_proved(lift: Lift, tolerance: float) -> None:
 
 
 def test_rabinowitz_vertex_count_is_the_published_one() -> None:
-    """THEORY section 3: p = 25 + 2 cos 3t at 0.001 mm needs 241.25 vertices by the formula; 242 were enough."""
+    """docs/theory.md 3: p = 25 + 2 cos 3t at 0.001 mm needs 241.25 vertices by the formula; 242 were enough."""
     curve = Curve.whole(SupportShape(lift_from_fourier(25.0, {3: 2.0}, {})))
     assert least_vertices(curve, 1e-3) == pytest.approx(241.25, abs=0.01)
     polygon = fit_polygon(curve, 1e-3)
@@ -192,6 +216,7 @@ def test_too_many_pieces_are_refused() -> None:
 
 
 @settings(max_examples=25, deadline=None)
+@example(1.0, 3, 0.96875, -2.0, (0.0, 0.0))
 @given(
     st.floats(0.05, 1e4),
     st.sampled_from([3, 5, 7, 9]),
@@ -206,7 +231,8 @@ def test_any_convex_fourier_curve(
     lift = lift_from_fourier(size, {k: share * size / (k * k - 1)}, {}, (pivot[0] * size, pivot[1] * size))
     curve = Curve.whole(SupportShape(lift))
     arcs = fit_arcs(curve, tolerance)
-    gap = arcs_gap(lift, arcs)
+    # where the curve is nearly a cusp and the tolerance wide an arc may be hollow: supports say nothing of it
+    gap = distances(lift, arcs)
     assert gap.max() <= arcs.bound.outward + 1e-13 * size
     assert -gap.min() <= arcs.bound.inward + 1e-13 * size
     assert arcs.bound.worst <= tolerance

@@ -1,6 +1,6 @@
 """Fits of Wunderlich's curves, convex and hollow, with breaks, against distances measured without the fitters.
 
-The pitch curve is written out from W's formulas in plain numpy (W section 5; THEORY section 6). The contour of a roller
+The pitch curve is written out from W's formulas in plain numpy (W section 5; docs/theory.md 6). The contour of a roller
 lies at the roller's radius inside it, so a point's distance from the contour is its distance from the pitch curve less
 that radius: found from a dense table and Newton's steps.
 """

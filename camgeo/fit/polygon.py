@@ -1,4 +1,4 @@
-"""A curve as a polygon that straddles it: as much outside at the vertices as inside between them (THEORY section 3).
+"""A curve as a polygon that straddles it: as much outside at the vertices as inside between them (docs/theory.md 3).
 
 Vertices stand off the curve by the tolerance, on its convex side. The curve is divided at its breaks, where a vertex
 stands, and at its inflections, which one edge crosses; in each part as few edges as will do are made equally high.
@@ -43,7 +43,7 @@ def polygon_density(frame: Frame) -> Array:
 
 
 def least_vertices(curve: Curve, tolerance: float) -> float:
-    """Leading-order count of a straddling polygon: integral of ``sqrt(|kappa|/(16 e)) ds`` (THEORY section 3)."""
+    """Leading-order count of a straddling polygon: integral of ``sqrt(|kappa|/(16 e)) ds`` (docs/theory.md 3)."""
     total = sum(part.total for run in curve.runs for part in Density.of(curve, run.stretches, polygon_density))
     return total / math.sqrt(tolerance)
 

@@ -19,7 +19,7 @@ class SupportShape:
     """The curve whose support function is a face's lift: ``c = p u + p' n``, ``sigma = p + p''``, ``omega = 1``.
 
     The parameter is the direction of the outward normal, which is the shaft angle. SW's second half turn with the
-    sign of [d - L] put right is the same formula (THEORY section 9).
+    sign of [d - L] put right is the same formula (docs/validation.md).
     """
 
     lift: Lift

@@ -71,8 +71,8 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
     }
 
 
-def encoded(report: dict[str, Any]) -> str:
-    """The report as JSON text; strict JSON, so an infinite figure is null."""
+def encoded(report: object) -> str:
+    """A report, or several, as JSON text; strict JSON, so an infinite figure is null."""
     return json.dumps(finite(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
