@@ -27,6 +27,7 @@ DAMPED = 4.0  # power of the length by which nodes are shared anew; the error's 
 MOST_RATIO = 1.5  # of the tangents' lengths of a biarc
 APART = 2.0  # arcs at least between extrema of curvature that are told apart
 WIDEST = 2.0  # radians that a biarc may turn through
+SLIP = 1e-5  # of the tolerance: how far along the curve the foot of a joint may be off
 USABLE = 0.995  # of the tolerance, that errors seen may use; the rest is left to the proof
 
 
@@ -96,6 +97,8 @@ def _fit_stretches(
     curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float
 ) -> list[tuple[Array, Array, float, float]]:
     """Points, bulges, outward and inward bound of each stretch: errors seen up to `aim`, proved up to `limit`."""
+    slip = _slip(curve, aim)
+    limit -= 2.0 * slip
     tolerance = min(aim, limit)
     done: dict[int, tuple[Array, Array, float, float]] = {}
     nodes: dict[int, Array] = {}
@@ -118,7 +121,7 @@ def _fit_stretches(
             return [done[i] for i in range(len(stretches))]
         low = np.concatenate([nodes[i][:-1] for i in todo])
         high = np.concatenate([nodes[i][1:] for i in todo])
-        biarcs = _biarcs(curve, low, high)
+        biarcs = _biarcs(curve, low, high, slip)
         worst = seen_deviation(curve, biarcs.chain, LOOKS).reshape(-1, 2).max(axis=1)
         if float(worst.max()) <= tolerance:
             deviation = chain_deviation(curve, biarcs.chain, tolerance, 2 * LOOKS)
@@ -135,8 +138,8 @@ def _fit_stretches(
             best = min(best, reached)
             if deviation is not None and reached <= limit:
                 # f is the curve's distance outside the arc: where it is positive the file lies inward
-                inward = max(float(deviation.outside[both].max()), 0.0)
-                outward = max(-float(deviation.inside[both].min()), 0.0)
+                inward = max(float(deviation.outside[both].max()), 0.0) + 2.0 * slip
+                outward = max(-float(deviation.inside[both].min()), 0.0) + 2.0 * slip
                 done[i] = (biarcs.points[both], biarcs.bulges[both], outward, inward)
             elif deviation is not None or reached > tolerance:
                 nodes[i], settled[i] = _denser(nodes[i], worst[mine], tolerance, settled[i])
@@ -179,8 +182,13 @@ def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> tupl
     return points, np.full(count, math.tan(0.25 * sweep / count)), 0.0, 0.0
 
 
-def _biarcs(curve: Curve, low: Array, high: Array) -> _Biarcs:
-    """Biarcs between the ends of each interval (n,).
+def _slip(curve: Curve, tolerance: float) -> float:
+    """How far along the curve, in mm, a joint's foot may be off; the bound is widened by it."""
+    return max(0.25 * rounding(curve.size), SLIP * tolerance)
+
+
+def _biarcs(curve: Curve, low: Array, high: Array, slip: float) -> _Biarcs:
+    """Biarcs between the ends of each interval (n,), the feet of their joints known to within `slip` mm.
 
     The tangents' lengths, which leave one freedom, are equal but where curvature changes faster at one end than at the
     other: there the arcs' lengths are to make their errors alike, ``|kappa'| s^3``.
@@ -202,10 +210,9 @@ def _biarcs(curve: Curve, low: Array, high: Array) -> _Biarcs:
     k1, bulge1, far = _arc_from(b.point, -b.tangent, joint)
     k1, bulge1 = -k1, -bulge1
     joint_tangent = -far
-    enough = 0.25 * rounding(curve.size)
-    middle, miss = foot(curve, low, high, joint, joint_tangent, enough=enough)
+    middle, miss = foot(curve, low, high, joint, joint_tangent, enough=slip)
     # a joint whose normal does not meet the curve at `middle` would leave part of the curve without its arc
-    lost = miss > 2.0 * enough
+    lost = miss > 2.0 * slip
     k0 = np.where(lost, np.nan, k0)
     chain = Chain(
         _interleave(a.point, b.point),
