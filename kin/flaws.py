@@ -26,7 +26,7 @@ TOUCHING = 1e-9
 SHORTEST_LOOP = 1e-7
 # Default precision of a dent's depth: mm, or share of the extent; and the least that may be asked for.
 DENT_TOLERANCE = 1e-7
-DENT_SHARE = 1e-9
+DENT_SHARE = 1e-8
 LEAST_SHARE = 1e-12
 # Boxes under one box of the next level.
 BRANCH = 4
@@ -55,7 +55,7 @@ def dents(contour: Contour, tolerance: float | None = None) -> Dents:
     """How far the contour lies inside its convex hull, one entry for each stretch that does; depths within `tolerance`.
 
     Depth is the distance to the hull's boundary. A contour that turns left throughout has none, without further work;
-    any other is replaced by chords within `tolerance` mm, by default 1e-7 or 1e-9 of its extent if that is more. Cost
+    any other is replaced by chords within `tolerance` mm, by default 1e-7 or 1e-8 of its extent if that is more. Cost
     grows as tolerance^(-1/2). Raises ValueError for less than 1e-12 of the extent.
     """
     extent = float(np.abs(contour.vertices).max())
