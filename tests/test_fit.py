@@ -15,6 +15,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from camgeo.curve import Curve
+from camgeo.fit import spline
 from camgeo.fit.arcs import arc_density, fit_arcs
 from camgeo.fit.nodes import Density, ToleranceError
 from camgeo.fit.polygon import fit_polygon, least_vertices
@@ -210,9 +211,15 @@ def test_no_tolerance_is_no_fallback(tolerance: float) -> None:
             fit(curve, tolerance)
 
 
-def test_too_many_pieces_are_refused() -> None:
-    with pytest.raises(ToleranceError, match="pieces"):
-        fit_polygon(Curve.whole(SupportShape(LIFTS["fourier"])), 1e-11)
+def test_too_many_pieces_are_refused_with_what_can_be_held() -> None:
+    curve = Curve.whole(SupportShape(LIFTS["fourier"]))
+    with pytest.raises(ToleranceError, match="pieces") as caught:
+        fit_polygon(curve, 1e-11)
+    assert least_vertices(curve, caught.value.reached) == pytest.approx(1e6, rel=0.01)
+
+
+def test_a_spline_span_that_is_given_up_cannot_pass() -> None:
+    assert spline.HOPELESS * spline.USABLE > 1.0
 
 
 @settings(max_examples=25, deadline=None)

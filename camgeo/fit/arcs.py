@@ -109,7 +109,7 @@ def _fit_stretches(
             done[i] = _circular(curve, stretch, radius)
     bent = [i for i in range(len(stretches)) if i not in done]
     densities = Density.of(curve, np.array([stretches[i] for i in bent]).reshape(-1, 2), arc_density)
-    check_count(sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance)
+    check_count(sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
     for i, density in zip(bent, densities, strict=True):
         nodes[i] = density.nodes(
             max(1, math.ceil(0.5 * density.total / math.cbrt(tolerance) - 1e-6), math.ceil(density.turning / WIDEST))

@@ -15,6 +15,8 @@ that is less than B, and likewise for F, neither can ever leave (continuity). Wi
 foot runs forward along the piece from where it starts to where it ends. So, where the first foot is the piece's own
 beginning and the last its end, every point of the curve has its foot on the piece and every point of the piece has a
 point of the curve over it: the range of f bounds both distances, from the curve to the piece and back.
+
+The curve is taken to run forward, sigma > 0; `camgeo.radius.reversals` proves that of a contour before it is fitted.
 """
 
 from __future__ import annotations

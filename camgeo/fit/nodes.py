@@ -47,11 +47,17 @@ def check_precision(size: float, tolerance: float) -> None:
         )
 
 
-def check_count(needed: float, form: str, tolerance: float) -> None:
-    """Refuse a fit that would need more than `MOST_PIECES` pieces; raises ToleranceError."""
+def check_count(needed: float, form: str, tolerance: float, order: float) -> None:
+    """Refuse a fit that would need more than `MOST_PIECES` pieces, whose error falls as their number to -`order`.
+
+    Raises ToleranceError with the tolerance that about so many pieces hold.
+    """
     if needed > MOST_PIECES:
+        reached = tolerance * (needed / MOST_PIECES) ** order
         raise ToleranceError(
-            f"{form} within {tolerance:.3g} mm need about {needed:.3g} pieces, more than {MOST_PIECES}", tolerance
+            f"{form} within {tolerance:.3g} mm need about {needed:.3g} pieces, more than {MOST_PIECES}; "
+            f"{reached:.3g} mm can be held",
+            reached,
         )
 
 

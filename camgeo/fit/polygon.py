@@ -91,7 +91,7 @@ def _fit_run(curve: Curve, run: Run, tolerance: float) -> Edges:
     """Edges of one run, proved to lie within the tolerance."""
     densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
-    check_count(needed, "straight edges", tolerance)
+    check_count(needed, "straight edges", tolerance, 2.0)
     bends, sense = inflections(curve, densities)
     best = math.inf
     for aim in AIMS:
@@ -209,7 +209,7 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
             if first.crossed:
                 over = float(seen.load[(owner < 0) & (nodes[:-1] == first.nodes[-1])].max(initial=0.0)) / allowed
                 busy |= over > SEEN and _shorter(first, second, over)
-        check_count(sum(part.count for part in parts), "straight edges", tolerance)
+        check_count(sum(part.count for part in parts), "straight edges", tolerance, 2.0)
         if not busy:
             break
     crossed = any(part.crossed for part in parts)

@@ -20,6 +20,7 @@ from camgeo.fit.pieces import Bound, BSpline
 if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame
 
+HOPELESS = 1.02  # times the aim: spans seen farther off are given up; more than 1/USABLE, so none of them can pass
 USABLE = 0.985  # of the tolerance, that errors seen may use; the rest is left to the proof
 INSIDE = (0.3373, 0.6627)  # roots of the fourth-degree part that make the error's humps equal
 ORDER = 5.0  # power of the span's length with which the error falls
@@ -93,7 +94,7 @@ def _fit_stretches(curve: Curve, stretches: Array, aim: float, limit: float) -> 
         middle = curve.cells.over(density.t[:1], density.t[-1:])
         radius = max(float(middle.speed_high[0]), tolerance)
         first = density.total * (TURN_ERROR * radius / tolerance) ** (1.0 / 6.0)
-        check_count(first, "spline spans", tolerance)
+        check_count(first, "spline spans", tolerance, ORDER)
         nodes.append(density.nodes(max(1, math.ceil(first))))
     done: dict[int, tuple[Array, float, float]] = {}
     shared = [0] * len(nodes)
@@ -103,7 +104,7 @@ def _fit_stretches(curve: Curve, stretches: Array, aim: float, limit: float) -> 
         if not todo:
             return [done[i] for i in range(len(nodes))]
         owner = np.repeat(todo, [nodes[i].size - 1 for i in todo])
-        check_count(2.0 * owner.size, "spline spans", tolerance)
+        check_count(2.0 * owner.size, "spline spans", tolerance, ORDER)
         low = np.concatenate([nodes[i][:-1] for i in todo])
         high = np.concatenate([nodes[i][1:] for i in todo])
         control = _handled(curve, low, high)
@@ -224,7 +225,7 @@ def _spline_range(curve: Curve, control: Array, low: Array, high: Array, toleran
         out[todo], into[todo] = top, bottom
         loose = np.maximum(top - seen_top, bottom - seen_bottom) > SLACK * tolerance
         loose |= np.maximum(top, bottom) > (1.0 + OVER) * tolerance
-        hopeless = np.maximum(seen_top, seen_bottom) > 1.02 * tolerance
+        hopeless = np.maximum(seen_top, seen_bottom) > HOPELESS * tolerance
         settled = np.where(hopeless & np.isfinite(seen_top), np.maximum(seen_top, seen_bottom), np.inf)
         out[todo] = np.where(hopeless, np.minimum(settled, out[todo]), out[todo])
         todo = todo[loose & ~hopeless]
