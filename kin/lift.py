@@ -201,8 +201,9 @@ def _demand_joined(law: Piecewise, field: str) -> None:
         worst = int(np.argmax(jump[row] > 0.999 * jump[row].max()))  # the first of equals
         if jump[row, worst] > allowed:
             at = math.degrees(knots[worst]) % 360
-            message = f"{what} jumps from {left[row, worst]:.9g} to {right[row, worst]:.9g} {unit} at {at:.6g} degrees"
-            raise IntentError(f"{message}: {harm}", field, at)
+            before, after = f"{left[row, worst]:.9g}", f"{right[row, worst]:.9g}"
+            step = f"from {before} to {after}" if before != after else f"by {jump[row, worst]:.3g}"
+            raise IntentError(f"{what} jumps {step} {unit} at {at:.6g} degrees: {harm}", field, at)
 
 
 def _about(function: Stretch, pivot: tuple[float, float], scale: float = 1.0) -> Stretch:
