@@ -74,9 +74,7 @@ def test_undercut_that_parts_the_metal_keeps_its_figures(tmp_path: Path, capsys:
     assert "undercut-local" not in said
 
 
-def test_a_step_too_small_for_nine_digits_is_told_as_a_step(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_step_too_small_for_nine_digits_is_told_as_a_step(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert exported(tmp_path, "cam: {kind: support, p: 25 + 1e-9*t}\n") == 2
     assert "p jumps by 6.28e-09 mm at 0 degrees" in capsys.readouterr().err
 
