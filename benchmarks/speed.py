@@ -173,7 +173,7 @@ def spent(command: list[str], environment: dict[str, str]) -> tuple[float, float
 
 
 if __name__ == "__main__":
-    chosen = sys.argv[1:] or ["fit", "stl", "judge", "cold"]
+    chosen = sys.argv[1:] or ["cold", "fit", "stl", "judge"]
     for name, part in (("fit", fits), ("stl", stl), ("judge", judge), ("cold", cold)):
         if name in chosen:
             part()
