@@ -166,6 +166,12 @@ def _several(arguments: argparse.Namespace, command: str) -> int:
             print(errors, file=sys.stderr)
             status = WRONG
             continue
+        only = getattr(arguments, "only", ())
+        if only and not any(request.kind in only for request in recipe.export.files):
+            line, column = recipe.locate("export.files")
+            _complain(f"{path}:{line}:{column}: export.files lists no {' or '.join(only)}, which --only asks for")
+            status = WRONG
+            continue
         if arguments.tolerance is not None:
             recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
         recipes.append(recipe)

@@ -167,3 +167,11 @@ def test_an_output_that_is_no_folder_exits_3(good: Path, tmp_path: Path, capsys:
     blocked.write_text("a file", encoding="utf-8")
     assert main(["export", str(good), "--out", str(blocked)]) == 3
     assert "blocked" in capsys.readouterr().err
+
+
+def test_only_of_what_the_recipe_does_not_list_exits_2(
+    good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["export", str(good), "--out", str(tmp_path / "out"), "--only", "csv"]) == 2
+    assert f"{good}:3:" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
