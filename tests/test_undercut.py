@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapes import PEAR, STAR, Moved, booth, waves
 
@@ -112,6 +112,7 @@ def test_the_smallest_base_radius():
     assert len(undercuts(breadth(5.0 + growth - 1e-9, "modified-sine"))) == 2
 
 
+@example(16.414588076454564, [(8, -0.7434620764152178, -0.966418004796425)])
 @given(
     st.floats(1.0, 30.0),
     st.lists(st.tuples(st.integers(2, 8), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=3),
@@ -130,7 +131,15 @@ def test_growing_by_free_at_just_frees_a_flat_face(mean, terms):
         growth = max(u.free_at for u in found)
         assert growth == pytest.approx(-least, abs=1e-10)
         assert undercuts(flat(mean + growth * (1.0 + 1e-9) + 1e-9, cos, sin)) == ()
-        assert undercuts(flat(mean + growth * (1.0 - 1e-9) - 1e-9, cos, sin))
+        assert undercuts_or_refuses(flat(mean + growth * (1.0 - 1e-9) - 1e-9, cos, sin))
+
+
+def undercuts_or_refuses(curve):
+    """Whether undercut is found, its extent told or refused: eight swallowtails of 1e-11 mm may not be told apart."""
+    try:
+        return bool(undercuts(curve))
+    except UndercutError:
+        return True
 
 
 @pytest.mark.parametrize("e", [4.0, 5.0, 8.0])
