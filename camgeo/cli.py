@@ -200,7 +200,7 @@ def _several(arguments: argparse.Namespace, command: str) -> int:
 Result = tuple["dict[str, Any] | None", str, int]
 
 
-def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs: int | None) -> Any:  # noqa: ANN401
+def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs: int | None) -> Iterator[Result]:
     """Result of each recipe in order, several processes at once where that pays."""
     workers = jobs or (min(os.cpu_count() or 1, len(recipes)) if len(recipes) >= PARALLEL_FROM else 1)
     if workers <= 1 or len(recipes) < 2:
