@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 Series = TypeVar("Series", Jet, BallJet)
 
+
 class _Rates(Protocol):
     """Speed and turn of a shape from jets of phi and psi."""
 
@@ -34,17 +35,8 @@ ROUNDING = 1e-10  # relative: what the rounding of a few dozen operations is far
 
 
 @dataclass(frozen=True)
-class PitchShape:
-    """Path of a roller's centre round the standing cam.
-
-    In the complex plane the centre is ``c = l (exp(i phi) + exp(i chi))``, ``chi = phi - psi - alpha``: the pivot and
-    the arm. That form keeps every digit and gives, with a = phi', b = chi' = a - psi', h = (psi + alpha)/2,
-
-        (sigma/l)^2 = psi'^2 + 4 a b cos^2 h,
-        omega = (a + b)/2 (1 + psi'^2 l^2/sigma^2) + (a psi'' - a' psi') sin 2h l^2/sigma^2,
-
-    sums in which nothing cancels: a and b are positive where the cam can be turned through.
-    """
+class _OfLaw:
+    """What a curve has of the transmission law alone, whose parameter it shares."""
 
     law: Transmission
 
@@ -62,6 +54,20 @@ class PitchShape:
     def repeats(self) -> int:
         """The law has period 2 pi/lam, and so has the curve but for a turn."""
         return self.law.lam
+
+
+@dataclass(frozen=True)
+class PitchShape(_OfLaw):
+    """Path of a roller's centre round the standing cam.
+
+    In the complex plane the centre is ``c = l (exp(i phi) + exp(i chi))``, ``chi = phi - psi - alpha``: the pivot and
+    the arm. That form keeps every digit and gives, with a = phi', b = chi' = a - psi', h = (psi + alpha)/2,
+
+        (sigma/l)^2 = psi'^2 + 4 a b cos^2 h,
+        omega = (a + b)/2 (1 + psi'^2 l^2/sigma^2) + (a psi'' - a' psi') sin 2h l^2/sigma^2,
+
+    sums in which nothing cancels: a and b are positive where the cam can be turned through.
+    """
 
     @property
     def steady(self) -> Array:
@@ -122,28 +128,11 @@ class PitchShape:
 
 
 @dataclass(frozen=True)
-class FlatPairShape:
+class FlatPairShape(_OfLaw):
     """Curve with an isoptic circle: r as the support function (W section 5).
 
     The parameter is the law's; the normal turns as ``t = phi - h`` does, and ``sigma = (r + d2r/dt2) t'``.
     """
-
-    law: Transmission
-
-    @property
-    def period(self) -> float:
-        """A full turn."""
-        return 2.0 * np.pi
-
-    @property
-    def breaks(self) -> Array:
-        """Breaks of the transmission law."""
-        return self.law.breaks
-
-    @property
-    def repeats(self) -> int:
-        """The law has period 2 pi/lam, and so has the curve but for a turn."""
-        return self.law.lam
 
     @property
     def steady(self) -> Array:
