@@ -161,9 +161,7 @@ def _shaft_deg(intent: Lift | Transmission, parameter: float) -> float:
     return 0.0 if found is None else found
 
 
-def _figures(
-    recipe: Recipe, intent: Lift | Transmission, profile: Profile
-) -> tuple[float | None, str, list[Check]]:
+def _figures(recipe: Recipe, intent: Lift | Transmission, profile: Profile) -> tuple[float | None, str, list[Check]]:
     """Breadth of the yoke if there is one, the follower's name, and the checks of the intended motion."""
     from camgeo.figures import breadth_of, flat_face_checks, is_constant_breadth, pressure_angle, transmission_checks
 

@@ -120,7 +120,6 @@ class Harmonics:
                 total = total + sin(angle) * b
         return total
 
-
     def _at_points(self, t: Jet) -> Jet:
         """Sum the series of t = t0 + t1 x: all terms at once, as d/dt turns (sin, cos) and multiplies by k."""
         k, a, b = np.array(self.terms)[:, :, None].transpose(1, 0, 2)

@@ -107,7 +107,7 @@ def test_powers_hold_every_result(exponent: float, a: float, wa: float, part: fl
     if p == 0 and exponent < 0:
         assert found.rad[0] == math.inf
     else:
-        assert holds(found, p**mpmath.mpf(exponent) if exponent else mpmath.mpf(1))
+        assert holds(found, p ** mpmath.mpf(exponent) if exponent else mpmath.mpf(1))
 
 
 @given(moderate, widths, parts)

@@ -184,9 +184,7 @@ def swings_by_hand(points, transmission, phi):
     pivot = 2 * transmission.arm * unit(phi)
     seen = points[None] - pivot[:, None]
     inward = -unit(phi)[:, None]
-    angle = np.arctan2(
-        inward[..., 0] * seen[..., 1] - inward[..., 1] * seen[..., 0], (inward * seen).sum(axis=2)
-    )
+    angle = np.arctan2(inward[..., 0] * seen[..., 1] - inward[..., 1] * seen[..., 0], (inward * seen).sum(axis=2))
     a = np.pi / 2 - angle.max(axis=1) - transmission.alpha / 2
     b = -np.pi / 2 - angle.min(axis=1) + transmission.alpha / 2
     return np.stack([a, b])

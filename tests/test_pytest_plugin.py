@@ -276,7 +276,6 @@ def test_a_fault_found_on_the_way_fails_once_but_never_passes(project: Pytester)
     alone.stdout.fnmatch_lines([r"motion*: not judged: cams/small.yaml:2:*: export.tolerance: *"])
 
 
-
 def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> None:
     add(project, "small", UNDERCUT)
     result = run(project)

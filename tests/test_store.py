@@ -157,9 +157,7 @@ class TestSurroundings:
         out = tmp_path / "out"
         out.mkdir()
         (out / NAME).symlink_to(outside)
-        self.refused(
-            out, f"{out / NAME}: is in the way: a file or a symbolic link where a folder of its own should be"
-        )
+        self.refused(out, f"{out / NAME}: is in the way: a file or a symbolic link where a folder of its own should be")
         assert not list(outside.iterdir())
 
     def test_a_file_where_the_folder_should_be(self, tmp_path):

@@ -32,9 +32,7 @@ def spline_file(path, points_at, count, layer="CUT"):
     """One closed cubic SPLINE through exact points, its slopes exact to the differences' sixth order."""
     t = np.linspace(0.0, 2 * np.pi, count + 1)
     h = 1e-3
-    slope = sum(
-        w * (points_at(t + k * h) - points_at(t - k * h)) / h for k, w in ((1, 0.75), (2, -0.15), (3, 1 / 60))
-    )
+    slope = sum(w * (points_at(t + k * h) - points_at(t - k * h)) / h for k, w in ((1, 0.75), (2, -0.15), (3, 1 / 60)))
     points = points_at(t)
     points[-1], slope[-1] = points[0], slope[0]
     step = t[1]

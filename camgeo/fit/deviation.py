@@ -197,9 +197,7 @@ def _peak(fa: Array, fb: Array, step: Array, bend: Array) -> Array:
     return top + np.where(0.5 * sag > rise, over, 0.0)
 
 
-def foot(
-    curve: Curve, low: Array, high: Array, point: Array, across: Array, *, enough: float
-) -> tuple[Array, Array]:
+def foot(curve: Curve, low: Array, high: Array, point: Array, across: Array, *, enough: float) -> tuple[Array, Array]:
     """Parameters in [low, high] where the curve meets the lines through `point` (n, 2) square to `across` (n, 2).
 
     Newton's method from the middle, each step kept inside what remains of its interval, until the distance along

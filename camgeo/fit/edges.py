@@ -154,8 +154,7 @@ def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
     best = order[last]
     u = np.clip(share[best] / chord, 0.0, 1.0)
     side = sides[:-1]
-    return Seen(load[best], -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1]
-    )
+    return Seen(load[best], -side * (1.0 - u) * edges.lean[:, 0], -side * u * edges.lean[:, 1])
 
 
 def proved(curve: Curve, edges: Placed, tolerance: float) -> Edges:

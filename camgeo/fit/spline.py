@@ -262,9 +262,7 @@ def _against_arcs(
     start, along = point[:, :-1], tangent[:, :-1]
     cross = along[..., 0] * chord[..., 1] - along[..., 1] * chord[..., 0]
     k = 2.0 * cross / np.sum(chord * chord, axis=2)
-    chain = Chain(
-        start.reshape(-1, 2), along.reshape(-1, 2), k.ravel(), t[:, :-1].ravel(), t[:, 1:].ravel()
-    )
+    chain = Chain(start.reshape(-1, 2), along.reshape(-1, 2), k.ravel(), t[:, :-1].ravel(), t[:, 1:].ravel())
     found = chain_deviation(curve, chain, tolerance, 2)
     a, b = u[:, :-1], u[:, 1:]
     whole = control[:, None]

@@ -64,8 +64,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "ok": found.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
         "checks": [_check(recipe, check) for check in found.checks],
-        "files": [_file(recipe, file) for file in found.files]
-        + [{"path": name, "stale": True} for name in found.kept],
+        "files": [_file(recipe, file) for file in found.files] + [{"path": name, "stale": True} for name in found.kept],
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in found.stages],
         "skipped": [{"what": what, "why": why} for what, why in found.skipped],
     }
