@@ -9,6 +9,7 @@ import numpy as np
 
 from kin.arcs import dot, left
 from kin.check import Check, at_most, failed
+from kin.contour import ARC_SHARE
 from kin.deviation import Deviation, convex_deviation, deviation
 from kin.extremes import extremes
 from kin.follower import ContactError, DoubleRoller, FlatPair, Follower, Judged, Yoke
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
 
 # The judge's own rounding, as a share of the contour's extent; a value this far above its limit still holds.
 ROUNDING = 1e-12
-# Splines are judged as arcs within this share of the tolerance, and never coarser than SPLINE_ERROR, mm.
+# Splines are judged as arcs within this share of the tolerance, and no coarser than SPLINE_ERROR, mm, as far as
+# rounding lets them be.
 SPLINE_SHARE, SPLINE_ERROR = 1e-3, 1e-9
 RESOLUTION = 1e-11  # mm
 
@@ -70,7 +72,10 @@ class Findings:
 
 def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) -> Findings:
     """Judge a contour at shaft angles phi (n,): checks contour, motion, and constant-breadth or form-closure."""
-    spline = min(SPLINE_ERROR, SPLINE_SHARE * limits.tolerance) if contour.beziers.count else 0.0
+    spline = 0.0
+    if contour.beziers.count:
+        fine = ARC_SHARE * float(np.abs(contour.vertices).max())  # on a part of many metres rounding is coarser
+        spline = max(min(SPLINE_ERROR, SPLINE_SHARE * limits.tolerance), fine)
     slack = spline + ROUNDING * float(np.abs(contour.vertices).max())
     judged, checks = None, []
     try:

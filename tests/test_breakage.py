@@ -130,3 +130,13 @@ def test_a_killed_process_is_told_for_each_recipe(
     said = capsys.readouterr().err.splitlines()
     assert [line.split(": ")[:2] for line in said] == [["camgeo", "one"], ["camgeo", "two"]]
     assert all("a process was killed" in line for line in said)
+
+
+def test_a_spline_of_many_metres_is_judged_as_finely_as_rounding_allows(tmp_path):
+    path = tmp_path / "big.yaml"
+    path.write_text(
+        "cam: {kind: flat-pair, ratio: 2, arm: 100000, delta: {cos: {1: 1.0e9}}}\n"
+        "part: {thickness: 5}\nexport: {tolerance: 1, files: [{dxf: {as: spline}}]}\n",
+        encoding="utf-8",
+    )
+    assert main(["export", str(path), "--out", str(tmp_path / "out")]) == 0
