@@ -35,20 +35,16 @@ SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in roundi
 
 
 @dataclass(frozen=True, eq=False)
-class FlatFace:
-    """A flat face moving along its own normal; its position is its distance p(theta) from the shaft, mm."""
+class _OfLift:
+    """What a face, alone or the first of two, has of its lift."""
 
     lift: Lift
     unit: ClassVar[Unit] = "mm"
 
     def intended(self, theta: Array) -> Array:
-        """Intended distance of the face from the shaft at shaft angles theta (n,), mm (n,)."""
+        """Intended distance of the face (of a yoke face 1) from the shaft at shaft angles theta (n,), mm (n,)."""
         p: Array = self.lift.derivatives(theta, 0)[0]
         return p
-
-    def contact(self, contour: Contour, theta: Array) -> Array:
-        """Distance from the shaft at which the face rests on the contour, mm (n,)."""
-        return contour.support(theta).q
 
     @cached_property
     def envelope(self) -> FlatEnvelope:
@@ -59,56 +55,45 @@ class FlatFace:
         """Shaft angle at which the envelope's point of that parameter is touched (n,)."""
         return parameter
 
-    def judge(self, contour: Contour, theta: Array) -> Judged:
-        """Motion error: its extremes over the whole turn, rms and increments from the shaft angles theta (n,)."""
-        bearing = bearing_of(contour)
-        reach = error_extremes(bearing, self.lift)
-        return Judged(_face_error(bearing, self.lift, theta, reach), None, reach)
-
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
         return tolerance
 
 
 @dataclass(frozen=True, eq=False)
-class Yoke:
+class FlatFace(_OfLift):
+    """A flat face moving along its own normal; its position is its distance p(theta) from the shaft, mm."""
+
+    def contact(self, contour: Contour, theta: Array) -> Array:
+        """Distance from the shaft at which the face rests on the contour, mm (n,)."""
+        return contour.support(theta).q
+
+    def judge(self, contour: Contour, theta: Array) -> Judged:
+        """Motion error: its extremes over the whole turn, rms and increments from the shaft angles theta (n,)."""
+        bearing = bearing_of(contour)
+        reach = error_extremes(bearing, self.lift)
+        return Judged(_face_error(bearing, self.lift, theta, reach), None, reach)
+
+
+@dataclass(frozen=True, eq=False)
+class Yoke(_OfLift):
     """Two parallel faces at a fixed `breadth` w, mm: a frame, which face 1 holds at p(theta) from the shaft.
 
     The intended p has p(theta) + p(theta + pi) = w, so face 2 makes the error that face 1 makes half a turn on.
     """
 
-    lift: Lift
     breadth: float
-    unit: ClassVar[Unit] = "mm"
-
-    def intended(self, theta: Array) -> Array:
-        """Intended distance of face 1 from the shaft at shaft angles theta (n,), mm (n,)."""
-        p: Array = self.lift.derivatives(theta, 0)[0]
-        return p
 
     def contact(self, contour: Contour, theta: Array) -> Array:
         """Distance of face 1 from the shaft, mm (2, n): with face 1 resting on the contour, and with face 2."""
         near, far = contour.support(theta).q, contour.support(theta + np.pi).q
         return np.stack([near, self.breadth - far])
 
-    @cached_property
-    def envelope(self) -> FlatEnvelope:
-        """The exact contour; its parameter is the shaft angle."""
-        return FlatEnvelope(self.lift)
-
-    def shaft_angle(self, parameter: Array) -> Array:
-        """Shaft angle at which face 1 touches the envelope's point of that parameter (n,)."""
-        return parameter
-
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error of either face, and the play of the contour in the frame; extremes over the whole turn."""
         bearing = bearing_of(contour)
         reach = error_extremes(bearing, self.lift)
         return Judged(_face_error(bearing, self.lift, theta, reach), self._play(bearing), reach)
-
-    def motion_limit(self, tolerance: float) -> float:
-        """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
-        return tolerance
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest play or interference of a contour within `tolerance` of the exact one, mm: both sides may be off."""

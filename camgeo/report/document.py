@@ -178,7 +178,9 @@ def summary(report: dict[str, Any]) -> str:
 
 def pieces_word(file: dict[str, Any]) -> str:
     """What the pieces of a file's contour are called."""
-    return {"arcs": "arcs", "polyline": "edges", "spline": "spans"}.get(file.get("as") or "", "edges")
+    if file["kind"] == "stl":
+        return "edges"
+    return {"arcs": "arcs", "polyline": "edges", "spline": "spans"}.get(file.get("as") or "", "pieces")
 
 
 def table(report: dict[str, Any]) -> str:
