@@ -38,10 +38,13 @@ FLOORS = {
         causes part report.document report.failure
         files.dxf fit.deviation fit.nodes offset profile.support profile.wunderlich radius reach
         recipe.model recipe.scalars recipe.schema recipe.source recipe.starter
-        curve files files.table files.triangulate fit fit.pieces profile recipe.errors recipe.spec report store
+        curve files files.table files.triangulate fit fit.pieces profile recipe.errors recipe.spec report store sweep
     """,
 }
-HEAVY = {"ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis"}
+HEAVY = {
+    *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis"),
+    *("pyarrow", "numba", "dask", "distributed"),
+}
 
 
 def modules(package: str) -> dict[str, Path]:
