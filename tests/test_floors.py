@@ -21,8 +21,8 @@ FLOORS = {
         lift transmission
         formula read
         possible read_dxf read_stl switches
-        bearing bounding flaws law nesting roots routes syntax transmission_law
-        contour expression piecewise
+        bearing bounding flaws law linkage nesting roots routes syntax transmission_law
+        contour expression loop piecewise
         biarc dxf_entities jet pieces
         bezier motion series
         bernstein chaining contact extremes foot hull nearest taylor triangles
