@@ -23,9 +23,12 @@ from kin.loop import (
     Triangle,
     Vector,
     bearing,
+    demand_lengths,
     demand_mobile,
     excess,
+    longer,
     lower,
+    side_of,
     total,
     triangle_margin,
     with_value,
@@ -65,7 +68,7 @@ class FourBar:
     unit: ClassVar[str] = "deg"
 
     def __post_init__(self) -> None:
-        _demand_lengths(self.assembly, ground=self.ground, coupler=self.coupler, rocker=self.rocker)
+        demand_lengths(self.assembly, ground=self.ground, coupler=self.coupler, rocker=self.rocker)
 
     def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:
         """How far AD is from |r1 - r4| and from r1 + r4, mm (n,): negative where the loop cannot close."""
@@ -80,7 +83,7 @@ class FourBar:
         AS 20 takes theta_4 from its sine, which loses the branch beyond 90 degrees; here it is 2 atan2 of the roots of
         AD^2 - (r1 - r4)^2 and (r1 + r4)^2 - AD^2, and 2 r1 r4 sin theta_4 theta_4' = (AD^2)'.
         """
-        r1, r4, side = self.ground, self.rocker, _side(self.assembly)
+        r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
         ad = _frame_vector(s, s1, w, self.coupler)
         abd = Triangle.of(r1, r4, ad)
         joint = abd.along / (2 * r1), abd.root * (side / (2 * r1))
@@ -102,7 +105,7 @@ class InvertedSliderCrank:
     unit: ClassVar[str] = "deg"
 
     def __post_init__(self) -> None:
-        _demand_lengths(self.assembly, ground=self.ground)
+        demand_lengths(self.assembly, ground=self.ground)
         if not (math.isfinite(self.rocker) and self.rocker >= 0):
             raise ValueError(f"the rocker must be 0 or longer, not {self.rocker!r} mm")
 
@@ -122,7 +125,7 @@ class InvertedSliderCrank:
 
         AS 30 has the wrong sign before r1 omega_4^2 cos theta_4; AS 31 is right.
         """
-        r1, r4, side = self.ground, self.rocker, _side(self.assembly)
+        r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
         near_value, far_value = self._room(s.c[0], w)
         demand_mobile(np.minimum(near_value, far_value), order=s.order)
         near, far = with_value(s, near_value), with_value(-s, far_value)
@@ -146,7 +149,7 @@ class SliderCrank:
     unit: ClassVar[str] = "mm"
 
     def __post_init__(self) -> None:
-        _demand_lengths(self.assembly, coupler=self.coupler)
+        demand_lengths(self.assembly, coupler=self.coupler)
         if not math.isfinite(self.offset):
             raise ValueError(f"the offset must be finite, not {self.offset!r} mm")
 
@@ -154,33 +157,21 @@ class SliderCrank:
         """How much AD is longer than the offset, mm (n,): negative out of reach."""
         x, y = _frame_terms(s, s1, w, self.coupler)
         q = np.atleast_1d(total(*x) ** 2 + total(*y) ** 2)
-        return _longer(q, excess(x, y, (self.offset,)), self.offset)
+        return longer(q, excess(x, y, (self.offset,)), self.offset)
 
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
         """Solve D_x^2 = AD^2 - offset^2, D_x D_x' = (AD^2)'/2. Raises BindingError."""
-        offset, side = self.offset + 0.0, _side(self.assembly)  # no -0, whose polar angle is -pi
+        offset, side = self.offset + 0.0, side_of(self.assembly)  # no -0, whose polar angle is -pi
         ad = _frame_vector(s, s1, w, self.coupler)
         q = ad.q
         square = excess(ad.x_terms, ad.y_terms, (offset,))
-        demand_mobile(_longer(q.c[0], square, offset), order=q.order, fixed=q.c[0] == 0)
+        demand_mobile(longer(q.c[0], square, offset), order=q.order, fixed=q.c[0] == 0)
         output = sqrt(with_value(q, square)) * side
         height = output.constant(offset)
         return Positions(bearing(output, height, q) - ad.bearing(), output, (output, height), None, ad.x)
 
 
 Linkage = FourBar | InvertedSliderCrank | SliderCrank
-
-
-def _side(assembly: Assembly) -> float:
-    return 1.0 if assembly == "open" else -1.0
-
-
-def _demand_lengths(assembly: str, **lengths: float) -> None:
-    if assembly not in {"open", "crossed"}:
-        raise ValueError(f"the assembly is open or crossed, not {assembly!r}")
-    for name, length in lengths.items():
-        if not (math.isfinite(length) and length > 0):
-            raise ValueError(f"the {name} must be longer than 0, not {length!r} mm")
 
 
 def _frame_terms(
@@ -192,10 +183,3 @@ def _frame_terms(
 
 def _frame_vector(s: Jet, s1: Jet, w: float, r3: float) -> Vector:
     return Vector.of(-s1, s, *_frame_terms(s.c[0], s1.c[0], w, r3))
-
-
-def _longer(q: Array, square: Array, offset: float) -> Array:
-    side = np.sqrt(q) + abs(offset)
-    with np.errstate(invalid="ignore"):
-        margin: Array = np.where(side > 0, square / side, 0.0)
-    return margin

@@ -7,6 +7,7 @@ rate of the given length, so that nothing is divided by the difference of two ro
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -191,3 +192,25 @@ def bearing(x: Jet, y: Jet, q: Jet, about: float = 0.0) -> Jet:
     if not x.order:
         return Jet(value[None])
     return ((lower(x) * y.derivative() - lower(y) * x.derivative()) / lower(q)).integral(value)
+
+
+def longer(q: Array, square: Array, offset: float) -> Array:
+    """How much the root of q is longer than the offset, mm (n,), from q - offset^2 = square."""
+    side = np.sqrt(q) + abs(offset)
+    with np.errstate(invalid="ignore"):
+        margin: Array = np.where(side > 0, square / side, 0.0)
+    return margin
+
+
+def side_of(assembly: Assembly) -> float:
+    """Sign of a root: 1 open, -1 crossed."""
+    return 1.0 if assembly == "open" else -1.0
+
+
+def demand_lengths(assembly: str, **lengths: float) -> None:
+    """Raise ValueError unless the assembly has one of its names and the lengths are positive and finite."""
+    if assembly not in {"open", "crossed"}:
+        raise ValueError(f"the assembly is open or crossed, not {assembly!r}")
+    for name, length in lengths.items():
+        if not (math.isfinite(length) and length > 0):
+            raise ValueError(f"the {name} must be longer than 0, not {length!r} mm")

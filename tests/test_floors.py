@@ -20,7 +20,7 @@ FLOORS = {
         envelope
         lift transmission
         formula read
-        possible read_dxf read_stl switches
+        dyad possible read_dxf read_stl switches
         bearing bounding flaws law linkage nesting roots routes syntax transmission_law
         contour expression loop piecewise
         biarc dxf_entities jet pieces
