@@ -62,6 +62,22 @@ class SurroundingsError(Exception):
 
 
 @dataclass(frozen=True)
+class Family:
+    """Which set of files a run replaces: several, of different reports, may stand in one recipe's folder.
+
+    `report` names the files of the set; `begins` is how their names may begin, empty for the recipe's own name; `role`
+    tells the private folders from those of the other sets.
+    """
+
+    report: str = REPORT
+    begins: tuple[str, ...] = ()
+    role: str = ""
+
+
+EXPORTED = Family()
+
+
+@dataclass(frozen=True)
 class _Swap:
     """Journal of a swap: the folder's name, files that come (the report last), that go, and that were there before."""
 
@@ -83,11 +99,13 @@ class Run:
     name is at work, and in place of any OSError; ValueError for a name that is none (the recipe's loader refuses it).
     """
 
-    def __init__(self, out: Path, name: str) -> None:
+    def __init__(self, out: Path, name: str, family: Family = EXPORTED) -> None:
         if not _plain(name) or name.lower().endswith(REJECTED):
             raise ValueError(f"{name!r} is not the name of an output folder")
         self._out = out
         self._name = name
+        self._family = family
+        self._report = family.report
         self._lock = -1
         self.folder = self._beside(f"partial-{os.getpid()}")
 
@@ -125,7 +143,7 @@ class Run:
             names = self._last(self._out / self._name)
         except OSError as error:
             raise _surroundings(error, self._out / self._name) from error
-        return tuple(name for name in names if name != REPORT and not (self.folder / name).exists())
+        return tuple(name for name in names if name != self._report and not (self.folder / name).exists())
 
     def commit(self, names: Iterable[str], *, keep: Iterable[str] = ()) -> Path:
         """Put the files `names` and the report of `folder` in the place of the last set; returns the folder.
@@ -141,7 +159,7 @@ class Run:
         `names` are its files, by default all that the run has written.
         """
         if names is None:
-            names = [path.name for path in sorted(self.folder.iterdir()) if path.name != REPORT]
+            names = [path.name for path in sorted(self.folder.iterdir()) if path.name != self._report]
         return self._replace(self._name + REJECTED, names, ())
 
     def _replace(self, target: str, names: Iterable[str], keep: Iterable[str]) -> Path:
@@ -165,7 +183,7 @@ class Run:
         for name in (*names, *keep):
             if not self._ours(name):
                 raise ValueError(f"{name!r} is not the name of a file of {self._name}")
-        come = (*dict.fromkeys(names), REPORT)
+        come = (*dict.fromkeys(names), self._report)
         missing = [name for name in come if not (self.folder / name).is_file()]
         if missing:
             raise ValueError(f"{', '.join(missing)} was not written into {self.folder}")
@@ -240,28 +258,29 @@ class Run:
             return ()
         _make_own(folder)
         try:
-            text = (folder / REPORT).read_bytes()
+            text = (folder / self._report).read_bytes()
         except FileNotFoundError:
             return ()
         try:
             entries = [entry["path"] for entry in json.loads(text)["files"]]
         except (ValueError, TypeError, KeyError, RecursionError) as error:
-            raise SurroundingsError("is not a report of camgeo; move it out of the way", folder / REPORT) from error
+            where = folder / self._report
+            raise SurroundingsError("is not a report of camgeo; move it out of the way", where) from error
         names = [name for name in dict.fromkeys(entries) if isinstance(name, str) and self._ours(name)]
-        return (*(name for name in names if _is_file(folder / name)), REPORT)
+        return (*(name for name in names if _is_file(folder / name)), self._report)
 
     def _ours(self, name: str) -> bool:
         """Whether a file can be one of this recipe's: a plain name that begins with the recipe's own or is a report.
 
         Anything else that a report may name, changed by hand, is not touched.
         """
-        return _plain(name) and name.startswith((self._name, "report.")) and name != self._name
+        return _plain(name) and name.startswith(self._family.begins or (self._name, "report.")) and name != self._name
 
     def _beside(self, role: str) -> Path:
-        return self._out / f".{self._name}.{role}"
+        return self._out / f".{self._name}.{self._family.role}{role}"
 
     def _partial(self) -> list[Path]:
-        pattern = re.compile(re.escape(f".{self._name}.partial-") + "[0-9]+")
+        pattern = re.compile(re.escape(self._beside("partial-").name) + "[0-9]+")
         return [path for path in sorted(self._out.iterdir()) if pattern.fullmatch(path.name)]
 
     def _unlock(self) -> None:
