@@ -6,25 +6,37 @@ from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.model import (
     ArcRoute,
+    Axis,
     Cam,
     ConstantBreadthCam,
     DeltaRoute,
     DoubleRollerCam,
+    DwellAsked,
+    Dyad,
     Export,
     FileRequest,
     FlatPairCam,
     FormulaShape,
+    FourBarLinkage,
     FourierShape,
     HypocycloidShape,
+    InvertedSliderCrankLinkage,
     LawRoute,
+    Limit,
+    Linkage,
     MotionSegment,
     Part,
     Recipe,
     ReuleauxShape,
     RosetteRoute,
     Route,
+    RPRDyad,
+    RRPDyad,
+    RRRDyad,
     Shape,
+    SliderCrankLinkage,
     SupportCam,
+    Sweep,
     Verify,
 )
 
@@ -37,9 +49,11 @@ if TYPE_CHECKING:
 
 TOLERANCE = 0.001  # mm
 ANGLES = 3600
+KEEP = 10  # designs of a sweep
+SAMPLES = 360  # angles at which a sweep looks at a design
 
 
-def build(values: Values, path: Path, marks: Mapping[str, Mark]) -> Recipe:
+def build(values: Values, path: Path, marks: Mapping[str, Mark], text: str) -> Recipe:
     """Make the recipe of values in which there is no fault."""
     export: Values = values.get("export", {})
     return Recipe(
@@ -53,7 +67,11 @@ def build(values: Values, path: Path, marks: Mapping[str, Mark]) -> Recipe:
         export=Export(export.get("tolerance", TOLERANCE), requests(export.get("files", [{"kind": "dxf"}]))),
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
         path=path,
+        linkage=_linkage(values["linkage"]) if "linkage" in values else None,
+        dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
+        sweep=_sweep(values["sweep"]) if "sweep" in values else None,
         marks=marks,
+        text=text,
     )
 
 
@@ -111,3 +129,48 @@ def _segment(segment: Values) -> MotionSegment:
         return MotionSegment("dwell", segment["dwell"])
     kind: Literal["rise", "return"] = "rise" if "rise" in segment else "return"
     return MotionSegment(kind, segment["over"], segment[kind], segment["law"])
+
+
+def _linkage(linkage: Values) -> Linkage:
+    given = {"assembly": "open", **{key: value for key, value in linkage.items() if key != "kind"}}
+    given["dyads"] = tuple(map(_dyad, given.get("dyads", [])))
+    match linkage["kind"]:
+        case "four-bar":
+            return FourBarLinkage(**given)
+        case "inverted-slider-crank":
+            return InvertedSliderCrankLinkage(**given)
+        case _:
+            return SliderCrankLinkage(**given)
+
+
+def _dyad(dyad: Values) -> Dyad:
+    given = {"on": "output", **{key: value for key, value in dyad.items() if key != "kind"}}
+    match dyad["kind"]:
+        case "rrr":
+            return RRRDyad(**{"assembly": "open", **given})
+        case "rrp":
+            return RRPDyad(**{"assembly": "open", **given})
+        case _:
+            return RPRDyad(**{"offset": 0.0, **given})
+
+
+def _sweep(sweep: Values) -> Sweep:
+    return Sweep(
+        vary=tuple(map(_axis, sweep["vary"])),
+        method=sweep.get("method", "grid"),
+        count=sweep.get("count"),
+        seed=sweep.get("seed", 0),
+        limits=tuple(
+            Limit(limit["figure"], limit.get("at_least"), limit.get("at_most")) for limit in sweep.get("limits", [])
+        ),
+        rank=sweep["rank"],
+        keep=sweep.get("keep", KEEP),
+        angles=sweep.get("angles", SAMPLES),
+        refine=sweep.get("refine", False),
+    )
+
+
+def _axis(axis: Values) -> Axis:
+    if "values" in axis:
+        return Axis(axis["path"], values=axis["values"])
+    return Axis(axis["path"], axis["from"], axis["to"], axis.get("steps"))

@@ -9,6 +9,7 @@ from camgeo.recipe.build import build
 from camgeo.recipe.checks import check
 from camgeo.recipe.errors import RecipeError, RecipeErrors
 from camgeo.recipe.reader import Reader
+from camgeo.recipe.readers import READERS
 from camgeo.recipe.scalars import NAME_RULE, Complaint, read_name
 from camgeo.recipe.source import MAX_BYTES, read_source
 
@@ -35,7 +36,7 @@ def load(path: str | PathLike[str]) -> Recipe:
 def read(data: bytes, path: str | PathLike[str]) -> Recipe:
     """Read a recipe from bytes; `path` names it in errors and gives its default name. Raises RecipeErrors."""
     source = read_source(data, str(path))
-    reader = Reader(source)
+    reader = Reader(source, READERS)
     values = reader.recipe()
     check(values, reader)
     if "name" not in reader.marks:
@@ -47,7 +48,12 @@ def read(data: bytes, path: str | PathLike[str]) -> Recipe:
             reader.fault(source.root.mark, "name", f"the file's stem is {complaint.problem}", repr(stem), remedy)
     if reader.errors:
         raise RecipeErrors(reader.errors)
-    return build(values, Path(path), reader.marks)
+    return build(values, Path(path), reader.marks, source.text)
+
+
+def load_text(text: str, path: str | PathLike[str]) -> Recipe:
+    """Read a recipe from a text, as `read` does from bytes. Raises RecipeErrors."""
+    return read(text.encode("utf-8", "surrogatepass"), path)
 
 
 def _whole(path: str | PathLike[str], problem: str) -> RecipeErrors:

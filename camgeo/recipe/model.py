@@ -7,7 +7,7 @@ are in the recipe's units, and `scale` (mm per unit) turns those into mm.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 from camgeo.recipe.errors import RecipeError, RecipeErrors
 
@@ -160,6 +160,149 @@ class FlatPairCam:
 Cam: TypeAlias = SupportCam | ConstantBreadthCam | DoubleRollerCam | FlatPairCam
 
 
+Assembly: TypeAlias = Literal["open", "crossed"]
+Carrier: TypeAlias = Literal["output", "coupler", "previous"]
+Pair: TypeAlias = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class RRRDyad:
+    """Two links, mm: the first from `point` on the link `on`, the second from there to the fixed pivot `ground`."""
+
+    on: Carrier
+    point: Pair
+    ground: Pair
+    links: Pair
+    assembly: Assembly
+
+    slides: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class RRPDyad:
+    """A link from `point` on the link `on` to a slide on the line through `through` in `direction` (rad); mm."""
+
+    on: Carrier
+    point: Pair
+    link: float
+    through: Pair
+    direction: float
+    assembly: Assembly
+
+    slides: ClassVar[bool] = True
+
+
+@dataclass(frozen=True)
+class RPRDyad:
+    """A block at `point` of the link `on`, in a slot that passes the fixed pivot `ground` at `offset`; mm."""
+
+    on: Carrier
+    point: Pair
+    ground: Pair
+    offset: float
+
+    slides: ClassVar[bool] = False
+
+
+Dyad: TypeAlias = RRRDyad | RRPDyad | RPRDyad
+
+
+@dataclass(frozen=True)
+class FourBarLinkage:
+    """The frame as the coupler of a four-bar (AS 2023, Figure 7), mm; its output is an angle."""
+
+    ground: float
+    coupler: float
+    rocker: float
+    assembly: Assembly
+    dyads: tuple[Dyad, ...] = ()
+
+    slides: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class InvertedSliderCrankLinkage:
+    """The frame sliding on a rocker (AS 2023, Figure 4b), mm; a rocker of 0 makes an oscillating yoke."""
+
+    ground: float
+    rocker: float
+    assembly: Assembly
+    dyads: tuple[Dyad, ...] = ()
+
+    slides: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class SliderCrankLinkage:
+    """The frame as the coupler of a slide on the line y = offset, mm; its output is a length."""
+
+    coupler: float
+    offset: float
+    assembly: Assembly
+    dyads: tuple[Dyad, ...] = ()
+
+    slides: ClassVar[bool] = True
+
+
+Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage
+
+
+def output_slides(linkage: Linkage) -> bool:
+    """Tell whether the output of a linkage, that of its last dyad if it has any, is a length and not an angle."""
+    return (linkage.dyads[-1] if linkage.dyads else linkage).slides
+
+
+@dataclass(frozen=True)
+class DwellAsked:
+    """Dwells of the output: within `band` (rad, or mm where it slides); `at_least` (rad) is a check, over one angle."""
+
+    band: float
+    at_least: float | None = None
+    over: Literal["shaft", "relative"] = "shaft"
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One number that a sweep varies, by its path in the recipe; all values as the recipe writes them.
+
+    `values` are those listed; where there are none the axis runs from `low` to `high`, over a grid in `steps` values.
+    """
+
+    path: str
+    low: float = 0.0
+    high: float = 0.0
+    steps: int | None = None
+    values: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Bounds of a figure, as figures are told: angles in degrees, lengths in mm, rates per radian of shaft angle."""
+
+    figure: str
+    at_least: float | None = None
+    at_most: float | None = None
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A search among designs: `count` of them, or of a grid (count None) every combination of the axes' values.
+
+    `rank` is the figure to be best in, `keep` the number of best designs that become recipes, `angles` the number of
+    angles at which a design is sampled, `refine` whether the best are polished.
+    """
+
+    vary: tuple[Axis, ...]
+    method: Literal["grid", "random", "sobol"]
+    count: int | None
+    seed: int
+    limits: tuple[Limit, ...]
+    rank: str
+    keep: int
+    angles: int
+    refine: bool
+
+
 @dataclass(frozen=True)
 class Part:
     """The plain part, mm: `thickness` along the shaft, `bore` a diameter."""
@@ -202,15 +345,23 @@ class Export:
 
 @dataclass(frozen=True)
 class Verify:
-    """How each file is judged: shaft angles, and the greatest motion error (mm or rad) or None for the implied one."""
+    """How each file is judged: shaft angles, and the greatest errors or None for the implied ones.
+
+    `motion_error` (mm, or rad where the follower swings) is that of follower or frame against the cam, `output_error`
+    (rad, or mm where it slides) that of the linkage's output.
+    """
 
     angles: int
     motion_error: float | None = None
+    output_error: float | None = None
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """A recipe, checked as far as no geometry is needed. `mm` is the length of its unit; `path` where it was read."""
+    """A recipe, checked as far as no geometry is needed.
+
+    `mm` is the length of its unit, `path` where it was read, `text` what stands there.
+    """
 
     name: str
     about: str
@@ -222,7 +373,11 @@ class Recipe:
     export: Export
     verify: Verify
     path: Path
+    linkage: Linkage | None = None
+    dwell: DwellAsked | None = None
+    sweep: Sweep | None = None
     marks: Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
+    text: str = field(default="", repr=False, compare=False)
 
     def locate(self, path: str) -> tuple[int, int]:
         """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""

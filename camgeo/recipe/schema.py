@@ -5,18 +5,23 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 from camgeo.recipe.spec import (
-    CAMS,
-    FILES,
     MOST,
+    MOST_AXES,
     MOST_COEFFICIENTS,
+    MOST_DYADS,
     MOST_FILES,
     MOST_SEGMENTS,
     MOST_TEXT,
-    RECIPE,
+    MOST_VALUES,
     Field,
     Kind,
     Table,
+    length,
 )
+from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_linkage import DYADS, LINKAGES
+from camgeo.recipe.table_sweep import FIGURES, RANGE, bounds
+from camgeo.recipe.tables import FILES, RECIPE
 
 Schema: TypeAlias = dict[str, Any]
 
@@ -77,6 +82,10 @@ def _kind(field: Field) -> Schema:
             return {"enum": list(field.choices)}
         case Kind.POINT:
             return {"type": "array", "items": _number(), "minItems": 2, "maxItems": 2}
+        case Kind.PAIR:
+            return {"type": "array", "items": _number(length("", "")), "minItems": 2, "maxItems": 2}
+        case Kind.TRUTH:
+            return {"type": "boolean"}
         case Kind.NUMBERS:
             return {"type": "array", "items": _number(), "minItems": 1, "maxItems": MOST_COEFFICIENTS}
         case Kind.HARMONICS:
@@ -92,7 +101,18 @@ def _kind(field: Field) -> Schema:
             items = {"anyOf": [{"enum": list(FILES)}, *(_table(Table((item,))) for item in formats)]}
             return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}
         case Kind.CAM:
-            return {"oneOf": [_cam(kind, table) for kind, table in CAMS.items()]}
+            return _one_of("cam", CAMS)
+        case Kind.LINKAGE:
+            return _one_of("linkage", LINKAGES)
+        case Kind.DYADS:
+            return {"type": "array", "items": _one_of("dyad", DYADS), "minItems": 1, "maxItems": MOST_DYADS}
+        case Kind.VARY:
+            values = {"type": "array", "items": _number(), "minItems": 1, "maxItems": MOST_VALUES}
+            axis = {"anyOf": [_table(RANGE), values]}
+            return {"type": "object", "additionalProperties": axis, "minProperties": 1, "maxProperties": MOST_AXES}
+        case Kind.LIMITS:
+            limits = {name: {**_table(bounds(figure)), "minProperties": 1} for name, figure in FIGURES.items()}
+            return {"type": "object", "properties": limits, "additionalProperties": False}
         case _:
             return _number(field)
 
@@ -111,11 +131,15 @@ def _number(field: Field | None = None) -> Schema:
     return {"anyOf": [number, {"type": "string", "pattern": _NUMBER_TEXT}]}
 
 
-def _cam(kind: str, table: Table) -> Schema:
-    found = _table(table)
-    found["properties"] = {"kind": {"const": kind, "description": "the kind of cam"}, **found["properties"]}
-    found["required"] = ["kind", *found.get("required", [])]
-    return found
+def _one_of(noun: str, tables: dict[str, Table]) -> Schema:
+    """Make the schema of a mapping whose `kind` says which of the tables is its own."""
+    kinds = []
+    for kind, table in tables.items():
+        found = _table(table)
+        found["properties"] = {"kind": {"const": kind, "description": f"the kind of {noun}"}, **found["properties"]}
+        found["required"] = ["kind", *found.get("required", [])]
+        kinds.append(found)
+    return {"oneOf": kinds}
 
 
 def _below(field: Field) -> Table:

@@ -76,6 +76,7 @@ class Source:
     """A recipe's file: its name for errors, its text, and the tree."""
 
     file: str
+    text: str
     lines: tuple[str, ...]
     root: Node
 
@@ -121,7 +122,7 @@ def read_source(data: bytes, file: str) -> Source:
         place = _place(text, text.index("%"))
         raise _fault(file, place, "a YAML directive", remedy="a recipe has none; leave the line out")
     lines = tuple(re.split(r"\r\n|\r|\n", text))
-    return Source(file, lines, _parse(text, lines, file))
+    return Source(file, text, lines, _parse(text, lines, file))
 
 
 def join(path: str, key: str | int) -> str:

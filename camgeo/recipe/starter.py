@@ -6,7 +6,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.recipe.errors import suggestion
-from camgeo.recipe.spec import CAMS, FILES, RECIPE, Field, Kind, Table, either
+from camgeo.recipe.spec import Field, Kind, Table, either
+from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.tables import FILES, RECIPE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

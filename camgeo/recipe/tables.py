@@ -1,0 +1,109 @@
+"""The schema of a recipe as data: one table that is read, checked, published and explained from."""
+
+from __future__ import annotations
+
+from camgeo.recipe.spec import MOST, Field, Kind, Table, either, length, mapping
+from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_linkage import DYADS, LINKAGES
+from camgeo.recipe.table_sweep import DWELL, SWEEP
+
+_TOLERANCE = length("tolerance", "greatest distance between this file's contour and the exact one", default="export's")
+FILES: dict[str, Table] = {
+    "dxf": Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of",
+                default="arcs",
+                choices=("arcs", "polyline", "spline"),
+            ),
+            Field(
+                "version",
+                Kind.CHOICE,
+                "version of the format; R12 has no splines",
+                default="R2010",
+                choices=("R12", "R2000", "R2010", "R2013"),
+            ),
+            _TOLERANCE,
+        ),
+    ),
+    "stl": Table((_TOLERANCE,)),
+    "csv": Table(()),
+}
+LATER_FILES = ("3mf", "step", "svg")
+
+RECIPE = Table(
+    (
+        Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
+        Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
+        Field("units", Kind.CHOICE, "unit of every length", default="mm", choices=("mm", "inch")),
+        Field(
+            "rotation",
+            Kind.CHOICE,
+            "sense in which the shaft turns, seen as drawn",
+            default="cw",
+            choices=("cw", "ccw"),
+        ),
+        Field("cam", Kind.CAM, "the cam, of exactly one kind", required=True),
+        Field("linkage", Kind.LINKAGE, "the linkage whose coupler is the square frame around the cam", default="none"),
+        mapping(
+            "part",
+            "the plain part",
+            length("thickness", "thickness along the shaft; STL needs it"),
+            length("bore", "diameter of the bore around the shaft", default="none"),
+            later=("keyway", "holes", "hub", "follower"),
+        ),
+        mapping(
+            "export",
+            "the files",
+            length("tolerance", "greatest distance between a file's contour and the exact one", default="0.001 mm"),
+            Field("files", Kind.FILES, "dxf, stl, csv, or mappings such as {dxf: {as: spline}}", default="[dxf]"),
+        ),
+        mapping(
+            "verify",
+            "how each file is judged",
+            Field(
+                "angles",
+                Kind.INTEGER,
+                "number of shaft angles at which each file is judged",
+                default="3600",
+                at_least=8,
+                at_most=1_000_000,
+            ),
+            Field(
+                "motion_error",
+                Kind.ERROR,
+                "greatest motion error permitted: a length, or degrees where the follower swings",
+                default="what the tolerance implies",
+                above=0,
+                at_most=MOST,
+            ),
+            Field(
+                "output_error",
+                Kind.OUTPUT,
+                "greatest error permitted of the linkage's output",
+                default="what the tolerance implies",
+                above=0,
+                at_most=MOST,
+            ),
+        ),
+        mapping("dwell", "dwells of the linkage's output", *DWELL),
+        mapping("sweep", "a search among designs", *SWEEP),
+    ),
+    later=("dynamics",),
+)
+
+
+def elsewhere(name: str, known: tuple[str, ...]) -> str:
+    """Say where a key belongs that stands in the wrong place, or else which keys there are."""
+    if name in RECIPE.keys:
+        return "it belongs at the top level"
+    groups = {"the file": FILES, "cam of kind": CAMS, "linkage of kind": LINKAGES, "a dyad of kind": DYADS}
+    places = [item.name for item in RECIPE.fields if item.table and name in item.table.keys]
+    places += [
+        f"{group} {kind}" for group, kinds in groups.items() for kind, found in kinds.items() if name in found.keys
+    ]
+    if places:
+        return f"it belongs under {either(tuple(places))}"
+    return f"the keys here are {either(known, 'and')}" if known else "there are no keys here"
