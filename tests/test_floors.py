@@ -36,9 +36,9 @@ FLOORS = {
         figures fit.polygon recipe.build trim
         crossing files.stl fit.arcs fit.edges fit.inflection fit.spline motion profile.build recipe.readers
         causes part report.document report.failure
-        recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
+        recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
         files.dxf fit.deviation fit.nodes offset profile.support profile.wunderlich radius reach
-        recipe.reader recipe.schema recipe.starter
+        recipe.edit recipe.reader recipe.schema recipe.starter
         recipe.model recipe.scalars recipe.source recipe.tables
         recipe.table_cam recipe.table_linkage recipe.table_sweep
         curve files files.table files.triangulate fit fit.pieces profile recipe.errors recipe.spec report store sweep

@@ -10,6 +10,8 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.build import requests
+from camgeo.recipe.check_sweep import check_sweep
+from camgeo.recipe.table_cam import SWINGING
 
 if TYPE_CHECKING:
     from camgeo.recipe.reader import Reader, Values
@@ -27,7 +29,10 @@ def check(values: Values, reader: Reader) -> None:
     if "law" in cam and "ratio" in cam:
         lam, _ = cam["ratio"]
         _filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader)
+    _linkage(values, reader)
     _files(values, reader)
+    if "sweep" in values:
+        check_sweep(values["sweep"], reader)
 
 
 def _corners(reuleaux: Values, reader: Reader) -> None:
@@ -50,6 +55,26 @@ def _filled(segments: list[Values], path: str, angle: float, wanted: str, reader
         value = f"{math.degrees(covered):.10g} degrees"
         remedy = f"let them cover {wanted}; an angle may be a fraction such as 180/7"
         reader.fault_at(path, "the segments do not fill their angle", value, remedy)
+
+
+def _linkage(values: Values, reader: Reader) -> None:
+    if "linkage" not in reader.marks:
+        for path in ("dwell", "verify.output_error"):
+            if path in reader.marks:
+                reader.fault_at(path, "needs a linkage", None, "give a linkage, or leave it out")
+        return
+    if reader.cam_kind in SWINGING:
+        remedy = "a frame around a cam of kind support or constant-breadth drives it"
+        reader.fault_at("linkage", f"cannot stand beside a cam of kind {reader.cam_kind}", None, remedy)
+    for part, harmonics in values.get("cam", {}).get("fourier", {}).items():
+        for j, value in harmonics if part in {"cos", "sin"} else ():
+            if j % 2 == 0 and value:
+                remedy = "a frame needs constant breadth: odd harmonics alone"
+                reader.fault_at(f"cam.fourier.{part}", "an even harmonic under a linkage", str(j), remedy)
+    dyads: list[Values] = values.get("linkage", {}).get("dyads", [])
+    if dyads and dyads[0].get("on") == "previous":
+        remedy = "give output or coupler"
+        reader.fault_at("linkage.dyads[0].on", "there is no dyad before the first", "'previous'", remedy)
 
 
 def _files(values: Values, reader: Reader) -> None:

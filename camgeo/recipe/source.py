@@ -50,20 +50,23 @@ class Scalar:
 
 @dataclass(frozen=True, slots=True)
 class Sequence:
-    """A list."""
+    """A list; `end` just behind it, or behind its last entry."""
 
     items: tuple[Node, ...]
     mark: Mark
+    end: Mark
     tag: str | None
     size: int
 
 
 @dataclass(frozen=True, slots=True)
 class Mapping:
-    """A mapping as written, keys that stand twice included."""
+    """A mapping as written, keys that stand twice included; `end` as of a list, `flow` where it stands in braces."""
 
     entries: tuple[tuple[Node, Node], ...]
+    flow: bool
     mark: Mark
+    end: Mark
     tag: str | None
     size: int
 
@@ -85,20 +88,22 @@ class Source:
 class _Frame:
     """A list or mapping that is still being read; a mapping's keys and values alternate in `children`.
 
-    `before` counts the nodes that came before it.
+    `before` counts the nodes that came before it, `last` is just behind the last child.
     """
 
     event: yaml.CollectionStartEvent
     mark: Mark
     before: int
+    last: Mark
     children: list[Node] = field(default_factory=list)
 
-    def close(self, nodes: int) -> Node:
-        size, tag = nodes - self.before, self.event.tag
+    def close(self, nodes: int, end: Mark) -> Node:
+        size, tag, flow = nodes - self.before, self.event.tag, bool(self.event.flow_style)
+        end = end if flow else self.last  # without brackets YAML's own end lies before whatever comes next
         if isinstance(self.event, yaml.SequenceStartEvent):
-            return Sequence(tuple(self.children), self.mark, tag, size)
+            return Sequence(tuple(self.children), self.mark, end, tag, size)
         pairs = tuple(zip(self.children[::2], self.children[1::2], strict=True))
-        return Mapping(pairs, self.mark, tag, size)
+        return Mapping(pairs, flow, self.mark, end, tag, size)
 
 
 class _BadEscapeError(yaml.YAMLError):
@@ -131,6 +136,18 @@ def join(path: str, key: str | int) -> str:
         return f"{path}[{key}]"
     name = key if _PLAIN_KEY.fullmatch(key) else shown(key)
     return f"{path}.{name}" if path else name
+
+
+def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:
+    """Give every scalar of a tree with its path; one that aliases share comes once for each."""
+    if isinstance(node, Scalar):
+        yield path, node
+    elif isinstance(node, Sequence):
+        for i, item in enumerate(node.items):
+            yield from scalars(item, join(path, i))
+    else:
+        for key, value in entries(node).items():
+            yield from scalars(value, join(path, key))
 
 
 def is_empty(node: Node) -> bool:
@@ -247,20 +264,22 @@ def _build(events: Iterator[yaml.Event], lines: tuple[str, ...], file: str) -> N
         if isinstance(event, yaml.CollectionStartEvent):
             if len(frames) == MAX_DEPTH:
                 raise _fault(file, mark, f"nested more than {MAX_DEPTH} deep", remedy="a recipe needs five levels")
-            frames.append(_Frame(event, mark, nodes))
+            frames.append(_Frame(event, mark, nodes, mark))
             nodes += 1
             continue
         node: Node
         anchor: str | None = None
+        end = _mark(event.end_mark)
         if isinstance(event, yaml.ScalarEvent):
             if not event.value and not event.style:
                 mark = _behind(mark, lines)
-            node = Scalar(event.value, not event.style, mark, _mark(event.end_mark), event.tag)
+            node = Scalar(event.value, not event.style, mark, end, event.tag)
             anchor = event.anchor
             nodes += 1
         elif isinstance(event, yaml.CollectionEndEvent):
             frame = frames.pop()
-            node = frame.close(nodes)
+            node = frame.close(nodes, end)
+            end = node.end
             anchor = frame.event.anchor
         elif isinstance(event, yaml.AliasEvent):
             aliases += 1
@@ -283,6 +302,7 @@ def _build(events: Iterator[yaml.Event], lines: tuple[str, ...], file: str) -> N
             anchors[anchor] = node
         if frames:
             frames[-1].children.append(node)
+            frames[-1].last = end
         else:
             root = node
     if root is None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from camgeo.recipe.spec import MOST, Field, Kind, Table, either, length, mapping
 from camgeo.recipe.table_cam import CAMS
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
@@ -93,6 +95,28 @@ RECIPE = Table(
     ),
     later=("dynamics",),
 )
+
+
+def is_known(path: str, cam_kind: str, linkage_kind: str) -> bool:
+    """Tell whether the schema has a field at a path such as `cam.pivot[0]`, whichever entry of a list it is in."""
+    table: Table | None = RECIPE
+    field: Field | None = None
+    for name in re.sub(r"\[[0-9]+\]", "", path).split("."):
+        if field is not None and field.kind is Kind.HARMONICS:
+            return name.isdecimal()
+        if table is None or name not in table.keys:
+            return False
+        field = table.field(name)
+        match field.kind:
+            case Kind.CAM:
+                table = CAMS.get(cam_kind)
+            case Kind.LINKAGE:
+                table = LINKAGES.get(linkage_kind)
+            case Kind.DYADS:
+                table = Table(tuple(item for dyad in DYADS.values() for item in dyad.fields))
+            case _:
+                table = field.table
+    return True
 
 
 def elsewhere(name: str, known: tuple[str, ...]) -> str:
