@@ -23,8 +23,8 @@ FLOORS = {
         dyad possible read_dxf read_stl switches
         bearing bounding flaws law linkage nesting roots routes syntax transmission_law
         contour expression loop piecewise
-        biarc dxf_entities jet pieces
-        bezier motion series
+        biarc dwell dxf_entities jet pieces
+        bezier monotone motion series
         bernstein chaining contact extremes foot hull nearest taylor triangles
         arcs ball check distinct read_error
     """,
