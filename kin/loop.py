@@ -25,8 +25,9 @@ Array = NDArray[np.float64]
 Term = float | Array
 Assembly = Literal["open", "crossed"]
 
-# A sum of squares worked out from rounded sums is good to a few units of rounding of its largest terms.
-_DOUBT = 16 * 2.0**-52
+# A difference of squares is good to a few roundings of the squares. Less than this part of them it would not be good to
+# 1e-10 of itself.
+_CLOSE = 2.0**-15
 
 
 class BindingError(ValueError):
@@ -71,20 +72,16 @@ def total(*terms: Term) -> Array:
 
 
 def excess(x: Sequence[Term], y: Sequence[Term], z: Sequence[Term]) -> Array:
-    """Give x^2 + y^2 - z^2, each of the three the sum of its terms (numbers or (n,)), with the right sign.
+    """Give x^2 + y^2 - z^2, each of the three the sum of its terms, numbers or (n,); its sign is right.
 
-    The difference of squares is taken as a product; what rounding leaves in doubt is settled in rational arithmetic.
+    The difference of squares is taken as a product; where little is left of the squares, in rational arithmetic.
     """
-    a, b, c = np.broadcast_arrays(total(*x), total(*y), total(*z))
+    a, b, c = total(*x), total(*y), total(*z)
     other = [-term for term in z]
-    less, more = total(*x, *other), total(*x, *z)
-    value = np.atleast_1d(less * more + b * b)
-    steep = np.abs(b) > np.abs(a)
-    if steep.any():
-        value = np.where(steep, total(*y, *other) * total(*y, *z) + a * a, value)
-    # The sums are compensated, so the doubt is that of the sum of two terms, one of which may be negative.
-    for i in np.flatnonzero(np.abs(value) <= _DOUBT * np.atleast_1d(a * a + b * b + c * c)):
-        squares = [sum(Fraction(float(np.broadcast_to(t, a.shape).flat[i])) for t in terms) ** 2 for terms in (x, y, z)]
+    wide, steep = total(*x, *other) * total(*x, *z) + b * b, total(*y, *other) * total(*y, *z) + a * a
+    value = np.atleast_1d(np.where(np.abs(a) >= np.abs(b), wide, steep))
+    for i in np.flatnonzero(np.abs(value) <= _CLOSE * np.atleast_1d(a * a + b * b + c * c)):
+        squares = [sum(Fraction(float(np.broadcast_to(t, value.shape)[i])) for t in terms) ** 2 for terms in (x, y, z)]
         value[i] = float(squares[0] + squares[1] - squares[2])
     return value
 
