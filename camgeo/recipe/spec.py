@@ -102,7 +102,7 @@ class Field:
             case Kind.LINKAGE:
                 return "a mapping with the kind of linkage and its fields"
             case Kind.DYADS:
-                return "a list of dyads such as [{kind: rrr, point: [60, 0], ground: [150, 0], links: [80, 50]}]"
+                return "a list of dyads such as [{kind: rrr, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
             case Kind.DYAD:
                 return "a mapping with the kind of dyad and its fields"
             case Kind.AXIS:
@@ -134,7 +134,9 @@ class Field:
     def _bounds(self) -> str:
         """Say the bounds, but not those against slips alone."""
         if self.at_least is not None and self.at_most is not None:
-            return f" from {self.at_least:.10g} to {self.at_most:.10g}" if self.at_most not in _SLIPS else ""
+            if self.at_most not in _SLIPS:
+                return f" from {self.at_least:.10g} to {self.at_most:.10g}"
+            return "" if self.at_least == -self.at_most else f" of at least {self.at_least:.10g}"
         low = f" above {self.above:.10g}" if self.above is not None else ""
         high = f" up to {self.at_most:.10g}" if self.at_most not in (None, *_SLIPS) else ""
         return low + high

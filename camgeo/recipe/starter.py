@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.recipe.errors import suggestion
 from camgeo.recipe.spec import Field, Kind, Table, either
-from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_cam import CAMS, SWINGING
+from camgeo.recipe.table_linkage import LINKAGES
 from camgeo.recipe.tables import FILES, RECIPE
 
 if TYPE_CHECKING:
@@ -21,11 +22,12 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 
 @dataclass(frozen=True)
 class _Starter:
-    """A title, the kind of cam, and the fields of the cam that are given."""
+    """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides."""
 
     title: str
     kind: str
     cam: Given
+    more: Given = field(default_factory=dict)
 
 
 def _roller(title: str, ratio: str, route: str, given: str | Given) -> _Starter:
@@ -33,6 +35,12 @@ def _roller(title: str, ratio: str, route: str, given: str | Given) -> _Starter:
 
 
 _PIVOT: Given = {"pivot": "[10, 4]"}
+# Figures 9a and 13a of AS 2023: what their outputs do around 3 pi/2 and pi no plain four-bar can
+_DWELLING = "25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)"
+_FOUR_BAR: Given = {
+    "linkage": {"kind": "four-bar", "ground": "80", "coupler": "70", "rocker": "105"},
+    "dwell": {"band": "0.1", "at_least": "36"},
+}
 _STARTERS = {
     "support": _Starter(
         "A cam from a formula for its support function.", "support", {"p": "25 + 2*cos(3*t)", **_PIVOT}
@@ -86,6 +94,44 @@ _STARTERS = {
         "flat-pair",
         {"ratio": "2", "arm": "30", "delta": {"cos": "{1: 252}"}},
     ),
+    "four-bar": _Starter(
+        "A cam in a square frame, the frame the coupler of a four-bar that dwells.",
+        "support",
+        {"p": _DWELLING, "pivot": "[18, 8.5]"},
+        _FOUR_BAR,
+    ),
+    "inverted-slider-crank": _Starter(
+        "A cam in a square frame that slides on a rocker, which dwells.",
+        "support",
+        {"p": _DWELLING, "pivot": "[18.5, 8.5]"},
+        {
+            "linkage": {"kind": "inverted-slider-crank", "ground": "130", "rocker": "70"},
+            "dwell": {"band": "0.1", "at_least": "35"},
+        },
+    ),
+    "slider-crank": _Starter(
+        "A cam in a square frame, the frame the coupler of a slider-crank.",
+        "support",
+        {"hypocycloid": {"cusps": "3", "size": "2", "breadth": "50"}, **_PIVOT},
+        {"linkage": {"kind": "slider-crank", "coupler": "75", "offset": "5"}, "dwell": {"band": "0.1"}},
+    ),
+    "sweep": _Starter(
+        "A search for a longer dwell of a four-bar.",
+        "support",
+        {"p": _DWELLING, "pivot": "[18, 8.5]"},
+        {
+            **_FOUR_BAR,
+            "sweep": {
+                "vary": (
+                    "\n    cam.pivot[0]: {from: 16, to: 20, steps: 9}"
+                    "\n    linkage.rocker: {from: 95, to: 110, steps: 16}"
+                ),
+                "limits": "{radius-of-curvature: {at_least: 3}, transmission-angle: {at_least: 30}}",
+                "rank": "dwell",
+                "keep": "5",
+            },
+        },
+    ),
 }
 
 KINDS = tuple(_STARTERS)
@@ -105,37 +151,60 @@ def starter(kind: str) -> str:
         hint = suggestion(kind, KINDS) or f"there is {either(KINDS, 'and')}"
         raise ValueError(f"no starter for {kind!r}; {hint}")
     chosen = _STARTERS[kind]
-    cam = Table((Field("kind", Kind.CHOICE, f"the kind of cam: {either(tuple(CAMS))}"), *CAMS[chosen.kind].fields))
-    cam = replace(cam, alternatives=CAMS[chosen.kind].alternatives)
-    recipe = Table(tuple(replace(field, table=cam) if field.name == "cam" else field for field in RECIPE.fields))
-    lines = _lines(recipe, {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}}, "")
+    given: Given = {**_REST, "cam": {"kind": chosen.kind, **chosen.cam}, **chosen.more}
+    lines = _lines(_recipe(chosen), given, "")
     return "\n".join([f"# {chosen.title} Lengths in mm, angles in degrees.", *lines, ""])
+
+
+def _recipe(chosen: _Starter) -> Table:
+    """Make the table of a recipe with this kind of cam and of linkage; if there is none, without what needs one."""
+    linkage = chosen.more.get("linkage")
+    kinds = {"cam": _kinded("the kind of cam", CAMS, chosen.kind)}
+    if isinstance(linkage, dict):
+        kinds["linkage"] = _kinded("the kind of linkage", LINKAGES, str(linkage["kind"]))
+    fields = (replace(item, table=kinds.get(item.name, item.table)) for item in RECIPE.fields)
+    if linkage:
+        return Table(tuple(fields))
+    unfit = {"dwell", "output_error", *(("linkage",) if chosen.kind in SWINGING else ())}
+    return Table(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
+
+
+def _leave_out(item: Field, unfit: set[str]) -> Field:
+    if item.name != "verify" or item.table is None:
+        return item
+    return replace(item, table=Table(tuple(one for one in item.table.fields if one.name not in unfit)))
+
+
+def _kinded(about: str, tables: dict[str, Table], kind: str) -> Table:
+    """Make the table of one kind with the field `kind` before the others."""
+    first = Field("kind", Kind.CHOICE, f"{about}: {either(tuple(tables))}")
+    return replace(tables[kind], fields=(first, *tables[kind].fields))
 
 
 def _lines(table: Table, given: Given, indent: str) -> Iterator[str]:
     """Write the fields of a table: those given, the others as comments, rival alternatives in one line."""
     rivals = tuple(name for name, _ in table.alternatives if name not in given)
     chosen = tuple(name for name, _ in table.alternatives if name in given)
-    for field in table.fields:
-        about, value = field.about + _note(field), given.get(field.name)
+    for item in table.fields:
+        about, value = item.about + _note(item), given.get(item.name)
         if isinstance(value, str):
-            yield _line(f"{indent}{field.name}", value, about)
-        elif value is not None and field.table is not None:
-            yield _line(f"{indent}{field.name}", "", about)
-            yield from _lines(field.table, value, f"{indent}  ")
-        elif field.name not in rivals:
-            yield _line(f"{indent}# {field.name}", "", f"{about}; default: {field.default or 'none'}")
+            yield _line(f"{indent}{item.name}", value, about)
+        elif value is not None and item.table is not None:
+            yield _line(f"{indent}{item.name}", "", about)
+            yield from _lines(item.table, value, f"{indent}  ")
+        elif item.name not in rivals:
+            yield _line(f"{indent}# {item.name}", "", f"{about}; default: {item.default or 'none'}")
     if rivals:
         yield f"{indent}# instead of {either(chosen)}: {either(rivals)}"
 
 
-def _note(field: Field) -> str:
-    if field.name != "kind" and field.choices:
-        return f": {either(field.choices)}"
-    return ", mm" if field.kind in {Kind.LENGTH, Kind.POINT} else ""
+def _note(item: Field) -> str:
+    if item.name != "kind" and item.choices:
+        return f": {either(item.choices)}"
+    return ", mm" if item.kind in {Kind.LENGTH, Kind.POINT} else ""
 
 
 def _line(key: str, text: str, comment: str) -> str:
     first, *more = text.split("\n")
     head = f"{key}: {first}".rstrip()
-    return "\n".join([f"{head:<{_COMMENT}}# {comment}", *more])
+    return "\n".join([f"{head:<{_COMMENT - 1}} # {comment}", *more])

@@ -54,7 +54,7 @@ _ON = Field(
     choices=("output", "coupler", "previous"),
 )
 _POINT = Field("point", Kind.POINT, "the first joint [x, y] in the axes of that link", required=True)
-_PIVOT = Field("ground", Kind.POINT, "the fixed pivot [x, y] in the drawn axes, the shaft at [0, 0]", required=True)
+_PIVOT = Field("ground", Kind.POINT, "the fixed pivot [x, y] in the fixed axes, the shaft at [0, 0]", required=True)
 
 DYADS: dict[str, Table] = {
     "rrr": Table(
@@ -85,7 +85,11 @@ DYADS: dict[str, Table] = {
             _ON,
             _POINT,
             _PIVOT,
-            coordinate("offset", "distance of the slot's line from the fixed pivot", default="0"),
+            coordinate(
+                "offset",
+                "distance of the slot's line from the fixed pivot, positive where the block lies to its left",
+                default="0",
+            ),
         )
     ),
 }

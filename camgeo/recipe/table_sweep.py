@@ -59,7 +59,14 @@ RANGE = Table(
 )
 
 DWELL = (
-    Field("band", Kind.OUTPUT, "greatest less least output within a dwell", required=True, above=0, at_most=MOST),
+    Field(
+        "band",
+        Kind.OUTPUT,
+        "greatest less least output within a dwell, in degrees, or a length where it slides",
+        required=True,
+        above=0,
+        at_most=MOST,
+    ),
     Field("at_least", Kind.ANGLE, "a check: least length of the longest dwell", default="none", above=0, at_most=360),
     Field(
         "over",

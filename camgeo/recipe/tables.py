@@ -84,7 +84,7 @@ RECIPE = Table(
             Field(
                 "output_error",
                 Kind.OUTPUT,
-                "greatest error permitted of the linkage's output",
+                "greatest error permitted of the linkage's output, in degrees, or a length where it slides",
                 default="what the tolerance implies",
                 above=0,
                 at_most=MOST,

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from camgeo.recipe.spec import CAMS, FILES, RECIPE, Kind
+from camgeo.recipe.spec import Kind
+from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_linkage import DYADS, LINKAGES
+from camgeo.recipe.table_sweep import FIGURES, RANGE, bounds
+from camgeo.recipe.tables import FILES, RECIPE
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "recipe.md"
@@ -12,10 +16,12 @@ HEAD = "| key | takes | unit | default | meaning |\n| --- | --- | --- | --- | --
 UNITS = {
     Kind.LENGTH: "length",
     Kind.POINT: "length",
+    Kind.PAIR: "length",
     Kind.FORMULA: "length",
     Kind.AREA: "length²",
     Kind.ANGLE: "deg",
     Kind.ERROR: "length; deg",
+    Kind.OUTPUT: "deg; length",
 }
 
 
@@ -47,27 +53,38 @@ def below(found, path):
             yield from below(field.table, name)
 
 
+def figures():
+    lines = ["| figure | unit | best | needs | meaning |", "| --- | --- | --- | --- | --- |"]
+    for name, figure in FIGURES.items():
+        row = f"| `{name}` | {UNITS.get(figure.kind, '')} | {figure.best} | {figure.needs} | {figure.about} |"
+        lines.append(row.replace("  ", " "))
+    return "\n".join(lines)
+
+
 def tables():
-    """Every table of the schema by the name that marks its place in the page."""
-    found = {"recipe": RECIPE, **dict(below(RECIPE, ""))}
-    for kind, cam in CAMS.items():
-        found[f"cam {kind}"] = cam
-        found.update(below(cam, f"cam {kind}"))
+    """Every table of the schema, written out, by the name that marks its place in the page."""
+    found = {"recipe": RECIPE, **dict(below(RECIPE, "")), "sweep.vary": RANGE}
+    found["sweep.limits"] = bounds(next(iter(FIGURES.values())))
+    for noun, kinds in (("cam", CAMS), ("linkage", LINKAGES), ("dyad", DYADS)):
+        for kind, one in kinds.items():
+            found[f"{noun} {kind}"] = one
+            found.update(below(one, f"{noun} {kind}"))
     found.update({f"file {kind}": file for kind, file in FILES.items()})
     # flat pair and double roller share their routes, csv has no keys
     first = {one: name for name, one in reversed(found.items()) if one.fields}
-    return {name: one for name, one in found.items() if first.get(one) == name}
+    written = {name: table(one) for name, one in found.items() if first.get(one) == name}
+    return {**written, "figures": figures()}
 
 
 def main():
     text = PAGE.read_text(encoding="utf-8")
-    for name, found in tables().items():
+    for name, written in tables().items():
         mark = f"<!-- {name} -->\n"
         if mark not in text:
             print(f"no place for {mark.strip()}")
             continue
         before, rest = text.split(mark)
-        text = f"{before}{mark}{table(found)}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}"
+        text = f"{before}{mark}{written}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}"
     PAGE.write_text(text, encoding="utf-8")
 
 
