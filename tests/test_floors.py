@@ -17,13 +17,13 @@ FLOORS = {
         follower
         roller
         deviation flat
-        envelope
+        envelope mechanism
         lift transmission
-        formula read
-        dyad possible read_dxf read_stl switches
+        chain formula read
+        dyad forces possible read_dxf read_stl switches
         bearing bounding flaws law linkage nesting roots routes syntax transmission_law
         contour expression loop piecewise
-        biarc dwell dxf_entities jet pieces
+        biarc dwell dxf_entities jet mobility pieces
         bezier monotone motion series
         bernstein chaining contact extremes foot hull nearest taylor triangles
         arcs ball check distinct read_error
