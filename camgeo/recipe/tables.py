@@ -99,13 +99,18 @@ RECIPE = Table(
 
 def is_known(path: str, cam_kind: str, linkage_kind: str) -> bool:
     """Tell whether the schema has a field at a path such as `cam.pivot[0]`, whichever entry of a list it is in."""
+    return field_at(path, cam_kind, linkage_kind) is not None
+
+
+def field_at(path: str, cam_kind: str, linkage_kind: str) -> Field | None:
+    """Find the field at a path, that of the whole list or mapping for an entry of points, numbers and harmonics."""
     table: Table | None = RECIPE
     field: Field | None = None
     for name in re.sub(r"\[[0-9]+\]", "", path).split("."):
         if field is not None and field.kind is Kind.HARMONICS:
-            return name.isdecimal()
+            return field if name.isdecimal() else None
         if table is None or name not in table.keys:
-            return False
+            return None
         field = table.field(name)
         match field.kind:
             case Kind.CAM:
@@ -116,7 +121,7 @@ def is_known(path: str, cam_kind: str, linkage_kind: str) -> bool:
                 table = Table(tuple(item for dyad in DYADS.values() for item in dyad.fields))
             case _:
                 table = field.table
-    return True
+    return field
 
 
 def elsewhere(name: str, known: tuple[str, ...]) -> str:
