@@ -16,7 +16,8 @@ import numpy as np
 
 from kin.chain import Chain, Solved
 from kin.distinct import distinct
-from kin.forces import force
+from kin.figures import Figures, Rows, figures
+from kin.forces import force, transmission
 from kin.jet import Jet
 from kin.law import IntentError
 from kin.loop import BindingError
@@ -143,10 +144,13 @@ class Mechanism:
         theta = np.atleast_1d(np.asarray(theta, dtype=float))
         s, s1 = self._lifts(theta, order, side)
         solved = self._solved(theta, s, s1)
+        return self._motion(theta, s, s1, solved)
+
+    def _motion(self, theta: Array, s: Jet, s1: Jet, solved: Solved) -> Motion:
         at, frame = solved.linkage, solved.linkage.frame
         shaft = -frame.derivatives()
         shaft[0] += theta + self.start
-        if order > 0:
+        if frame.order > 0:
             shaft[1] += 1.0
         return Motion(
             theta,
@@ -226,6 +230,33 @@ class Mechanism:
         """Tell where the mechanism binds or turns back, or how far it is from that."""
         return self._mobility
 
+    def figures(self) -> Figures:
+        """Give the extremes of the motion over a turn. PlaceError unless the mechanism turns."""
+        self._demand_turning()
+        return figures(self._rows, lambda theta: float(self.at(theta, 0).shaft[0, 0]), self.breaks)
+
+    def _rows(self, theta: Array) -> Rows:
+        s, s1 = self._lifts(theta, 2)
+        solved = self._solved(theta, s, s1)
+        at = solved.linkage
+        motion = self._motion(theta, s, s1, solved)
+        over = motion.over_shaft(motion.output)
+        sine, cosine = transmission(self.linkage, at)
+        force_sine, force_cosine = force(self.linkage, at, s.c[1], s1.c[1])
+        return Rows(
+            output=motion.output[0],
+            velocity_relative=motion.output[1],
+            acceleration_relative=motion.output[2],
+            velocity=over[1],
+            acceleration=over[2],
+            frame=motion.frame[0],
+            transmission_sine=sine,
+            transmission_cosine=cosine,
+            force_sine=force_sine,
+            force_cosine=force_cosine,
+            offset=s.c[0] - 0.5 * self.breadth,
+        )
+
     def _lifts(self, theta: Array, order: int, side: Side = 1) -> tuple[Jet, Jet]:
         t = Jet.variable(theta, order)
         return self.lift.law.on(t, side), self.lift.law.on(t + QUARTER, side)
@@ -269,16 +300,19 @@ class Mechanism:
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
         """Relative angles from 0 to 2 pi beyond, their shaft angles and the rate of these, (m,) each."""
+        self._demand_turning()
+        steps = np.linspace(-math.pi, 2 * TURN - math.pi, 2 * _TABLE + 1)
+        theta = distinct(np.concatenate([steps, self.breaks]))
+        at = self.at(theta, 1)
+        return theta, at.shaft[0], at.shaft[1]
+
+    def _demand_turning(self) -> None:
         mobile = self._mobility
         if not mobile.turns:
             what, place = "the shaft would have to turn back", mobile.rate_at
             if mobile.margin <= 0:
                 what, place = "a loop cannot be closed", mobile.margin_at
             raise PlaceError(what, place, np.zeros(0, dtype=np.intp))
-        steps = np.linspace(-math.pi, 2 * TURN - math.pi, 2 * _TABLE + 1)
-        theta = distinct(np.concatenate([steps, self.breaks]))
-        at = self.at(theta, 1)
-        return theta, at.shaft[0], at.shaft[1]
 
     def _demand_constant_breadth(self) -> None:
         law, places = self.lift.law, between(0.0, math.pi, [*self.lift.breaks, *(self.lift.breaks - math.pi)])

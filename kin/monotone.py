@@ -34,8 +34,8 @@ FIRST_CELLS = 32
 LEAST_CELL = 2.0**-34
 # More unresolved cells than this, and than twice the first ones, are not a corner or two: the function is rough.
 MOST_UNRESOLVED = 8192
-# Interpolation and the change of basis are good to about this many ulps of the greatest value.
-NOISE_ULPS = 64.0
+# Interpolation and the change of basis are good to about this part of the greatest value.
+NOISE = 64.0 * 2.0**-52
 # Cuts closer than this to an end of a cell, as a share of it, are the end.
 END_MARGIN = 1e-9
 # A run along a level no longer than this part of the whole is one point.
@@ -84,11 +84,11 @@ def _basis() -> _Basis:
     return _Basis(x, np.asarray(np.linalg.inv(table), dtype=float), last)
 
 
-def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array, *, ulps: float = NOISE_ULPS) -> Cells:
+def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array = 0.0, *, share: float = 0.0) -> Cells:
     """Interpolate r functions, f(x (n,)) -> (r, n), between places (m + 1,) that rise, breaks among them.
 
-    Each is resolved to `resolution` ((r,) or one for all), or to its own rounding where that is more: `ulps` units in
-    the last place of its greatest value. Raises RoughError.
+    Each is resolved to `resolution` ((r,) or one for all), or to a share of its greatest absolute value, or to its own
+    rounding, whichever is most. Raises RoughError.
     """
     basis = _basis()
     widest = (places[-1] - places[0]) / FIRST_CELLS
@@ -104,7 +104,7 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array,
         y = f(at.ravel())
         y = y.reshape(len(y), *at.shape)
         scale = np.maximum(scale, np.abs(y).max(axis=(1, 2)))
-        allowed = np.maximum(resolution, ulps / 4 * np.finfo(float).eps * scale)
+        allowed = np.maximum(resolution, max(share, 0.25 * NOISE) * scale)
         unresolved = (np.abs(y @ basis.last.T) > allowed[:, None, None]).any(axis=(0, 2)) & (high - low > least)
         done.append((low[~unresolved], high[~unresolved], y[:, ~unresolved]))
         low, high = low[unresolved], high[unresolved]
@@ -117,8 +117,7 @@ def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array,
     order = np.argsort(low)
     y = y[:, order]
     base = y[..., DEGREE // 2, None]  # rounding in the change of basis is then that of the change within the cell
-    noise = ulps * np.finfo(float).eps * scale
-    return Cells(low[order], high[order], base + (y - base) @ basis.bernstein.T, noise)
+    return Cells(low[order], high[order], base + (y - base) @ basis.bernstein.T, NOISE * scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,7 +159,7 @@ class Pieces:
         return self.x[piece] + np.clip(t, 0.0, 1.0) * self.width[piece]
 
     def crossings(self, level: float) -> Array:
-        """Every x at which the function passes or touches a level, rising; both ends of a run along it, within noise."""
+        """Every x at which the function passes or touches a level, rising; of a run along it the ends, within noise."""
         value = self.values - level
         zero = np.abs(value) <= self.noise
         through = np.flatnonzero((value[:-1] * value[1:] < 0) & ~zero[:-1] & ~zero[1:])

@@ -23,7 +23,7 @@ FLOORS = {
         dyad forces possible read_dxf read_stl switches
         bearing bounding flaws law linkage nesting roots routes syntax transmission_law
         contour expression loop piecewise
-        biarc dwell dxf_entities jet mobility pieces
+        biarc dwell dxf_entities figures jet mobility pieces
         bezier monotone motion series
         bernstein chaining contact extremes foot hull nearest taylor triangles
         arcs ball check distinct read_error
