@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 import yaml
@@ -12,9 +14,20 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from camgeo.recipe import Recipe, RecipeErrors, read
-from camgeo.recipe.spec import CAMS, FILES, RECIPE, Table
+from camgeo.recipe.edit import with_values, without
+from camgeo.recipe.starter import KINDS, starter
+from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_linkage import DYADS, LINKAGES
+from camgeo.recipe.table_sweep import FIGURES, RANGE, bounds
+from camgeo.recipe.tables import FILES, RECIPE
 
-SHIPPED = {path.name: path.read_bytes() for path in sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))}
+if TYPE_CHECKING:
+    from camgeo.recipe.spec import Table
+
+STARTERS = {f"new {kind}": starter(kind).encode() for kind in KINDS}
+SHIPPED = STARTERS | {
+    path.name: path.read_bytes() for path in sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
+}
 
 
 def reading(data: bytes) -> Recipe | RecipeErrors:
@@ -45,7 +58,23 @@ def outcome(data: bytes) -> Recipe | str:
     assert all((folder / name).resolve().parent == folder for name in names)
     assert found.export.tolerance > 0
     assert found == reading(data)
+    if found.sweep is not None:
+        edited(found)
     return found
+
+
+def edited(recipe: Recipe) -> None:
+    """Hold that what a sweep does to a recipe's text is what it says."""
+    assert recipe.sweep is not None
+    for axis in recipe.sweep.vary:
+        value = axis.values[0] if axis.values else axis.low
+        other = reading(with_values(recipe.text, {axis.path: value}).encode())
+        assert isinstance(other, RecipeErrors) or other.sweep == recipe.sweep
+    try:
+        left = without(recipe.text, "sweep")
+    except RecipeErrors:  # an alias, or YAML that cannot be cut
+        return
+    assert reading(left.encode()) == replace(recipe, sweep=None)
 
 
 def test_there_is_something_to_mutate() -> None:
@@ -83,10 +112,15 @@ def _keys(table: Table) -> set[str]:
     return {*table.keys, *table.later, *below}
 
 
-KEYS = sorted({"kind", *FILES, *_keys(RECIPE), *(key for table in CAMS.values() for key in _keys(table))})
+TABLES = [*CAMS.values(), *LINKAGES.values(), *DYADS.values(), RANGE, *map(bounds, FIGURES.values())]
+KEYS = sorted({"kind", *FILES, *FIGURES, *_keys(RECIPE), *(key for table in TABLES for key in _keys(table))})
 TEXTS = [
     *CAMS,
+    *LINKAGES,
+    *DYADS,
     *FILES,
+    *FIGURES,
+    *("crossed", "coupler", "previous", "relative", "grid", "sobol", "true"),
     *("inch", "ccw", "arcs", "spline", "R12", "trim", "convex", "cycloidal", "4/3", "25 + cos(3*t)", "8*sin(pi*x)"),
     *("NUL", "../up", "", "~", "1e-3", "180/7", "1/0", ".inf", "010", "1:30", "yes", "2020-01-01", "9" * 70, "1e999"),
     *("log(-1)", "1/0", "t**-199", "(" * 60, "a" * 1200, "sqrt(t", "\ud800", "é", "\x07", "a\nb"),
@@ -100,14 +134,39 @@ structures = st.recursive(
     ),
     max_leaves=20,
 )
-cams = st.sampled_from(sorted(CAMS)).flatmap(
-    lambda kind: st.fixed_dictionaries(
-        {"kind": st.just(kind)}, optional={field.name: structures for field in CAMS[kind].fields}
+
+
+def kinded(kinds: dict[str, Table]) -> st.SearchStrategy[object]:
+    return st.sampled_from(sorted(kinds)).flatmap(
+        lambda kind: st.fixed_dictionaries(
+            {"kind": st.just(kind)}, optional={field.name: structures for field in kinds[kind].fields}
+        )
     )
+
+
+def tabled(name: str, **known: st.SearchStrategy[object]) -> st.SearchStrategy[object]:
+    table = RECIPE.field(name).table
+    assert table
+    return st.fixed_dictionaries({}, optional={key: known.get(key, structures) for key in table.keys})
+
+
+numbers = st.integers(-5, 200) | st.floats(-5, 200)
+dyads = st.lists(kinded(DYADS) | structures, max_size=3)
+linkages = kinded(LINKAGES) | st.fixed_dictionaries(
+    {"kind": st.sampled_from(sorted(LINKAGES))},
+    optional={"ground": numbers, "coupler": numbers, "rocker": numbers, "offset": numbers, "dyads": dyads},
 )
-recipes = st.fixed_dictionaries(
-    {}, optional={"cam": cams, **{field.name: structures for field in RECIPE.fields if field.name != "cam"}}
-)
+PATHS = ["cam.pivot[0]", "cam.base_radius", "linkage.rocker", "linkage.dyads[0].point[1]", "part.bore", "cam", "x[", ""]
+ranges = st.fixed_dictionaries({"from": numbers, "to": numbers}, optional={"steps": st.integers(0, 9)})
+vary = st.dictionaries(st.sampled_from(PATHS), ranges | st.lists(numbers, max_size=3) | structures, max_size=4)
+known = {
+    "cam": kinded(CAMS),
+    "linkage": linkages,
+    "sweep": tabled("sweep", vary=vary),
+    "dwell": tabled("dwell"),
+    "verify": tabled("verify"),
+}
+recipes = st.fixed_dictionaries({}, optional={key: known.get(key, structures) for key in RECIPE.keys})
 
 
 @settings(max_examples=300, deadline=None)
