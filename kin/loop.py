@@ -28,6 +28,8 @@ Assembly = Literal["open", "crossed"]
 # A difference of squares is good to a few roundings of the squares. Less than this part of them it would not be good to
 # 1e-10 of itself.
 _CLOSE = 2.0**-15
+# Nearer to a limit position than this, mm, derivatives would overflow. Doubles of common size do not come so near.
+_STILL = 1e-30
 
 
 class BindingError(ValueError):
@@ -43,11 +45,11 @@ class BindingError(ValueError):
 
 
 def demand_mobile(margin: Array, *, order: int, fixed: NDArray[np.bool_] | None = None) -> None:
-    """Raise BindingError where the margin (n,), mm, is negative, or 0 and derivatives are asked for.
+    """Raise BindingError where the margin (n,), mm, is negative, or is 0 and derivatives are asked for.
 
     `fixed` (n,) marks the points whose direction is undefined, which are refused to any order.
     """
-    bound = margin < 0 if order == 0 else margin <= 0
+    bound = margin < 0 if order == 0 else margin <= _STILL
     if fixed is not None:
         bound = bound | fixed
     if bound.any():

@@ -23,6 +23,10 @@ def polynomial(derivatives):
 def three(path):
     """Value, first and second derivative of a vector-valued path(t) at 0, each a list."""
     before, here, after = path(-STEP), path(mp.mpf(0)), path(STEP)
+    before, after = (
+        [v - 2 * mp.pi * mp.nint((v - at) / (2 * mp.pi)) for v, at in zip(end, here, strict=True)]
+        for end in (before, after)
+    )  # an angle may pass its cut; nothing else moves so far in a step
     triples = list(zip(before, here, after, strict=True))
     return here, [(c - a) / (2 * STEP) for a, _, c in triples], [(a - 2 * b + c) / STEP**2 for a, b, c in triples]
 
