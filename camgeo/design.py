@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, cast
 
 from camgeo.curve import CurveError
 from camgeo.profile.build import Profile, intent_of, profile_of
-from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam
+from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, output_slides
 from kin.check import Check, degrees
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from camgeo.curve import Curve
+    from camgeo.linkage import Driven
     from camgeo.recipe.model import Recipe
     from kin.follower import Follower
     from kin.lift import Lift
@@ -52,6 +53,7 @@ class Design:
     """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file.
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
+    `driven` is the linkage, None without one.
     """
 
     intent: Lift | Transmission
@@ -61,6 +63,7 @@ class Design:
     follower: str
     yoke_breadth: float | None
     trimmed: bool
+    driven: Driven | None = None
 
 
 def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
@@ -83,13 +86,20 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         raise recipe.error("cam", str(error)) from error
     with clock.stage("figures"):
         breadth, follower, more = _figures(recipe, intent, profile)
+    driven = None
+    if recipe.linkage is not None:
+        from camgeo import linkage
+
+        with clock.stage("linkage"):
+            driven = linkage.driven(recipe, cast("Lift", intent), breadth)
+        more += driven.checks
     if contour is not None:
         wall = _wall(recipe, contour, intent)
         more += wall
         if not all(found.ok for found in wall):
             contour = None  # a bore through the contour leaves no part to draw
     trimmed = contour is not None and not contour.closed
-    return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed)
+    return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed, driven)
 
 
 def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
@@ -174,7 +184,8 @@ def _figures(recipe: Recipe, intent: Lift | Transmission, profile: Profile) -> t
     lift = cast("Lift", intent)
     yoke = isinstance(cam, ConstantBreadthCam) or is_constant_breadth(lift)
     breadth = breadth_of(lift)[0] if yoke else None
-    return breadth, "yoke" if yoke else "flat face", flat_face_checks(lift, yoke=yoke)
+    held = "square frame" if recipe.linkage is not None else "yoke" if yoke else "flat face"
+    return breadth, held, flat_face_checks(lift, yoke=yoke)
 
 
 def _wall(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> list[Check]:
@@ -191,6 +202,7 @@ def _wall(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> list[C
 def intended(recipe: Recipe, design: Design) -> Intent:
     """What kin is told of the part: the follower with its law, and how the part is drawn."""
     from kin import follower
+    from kin.judge import DwellAsked
     from kin.verify import Intent
 
     cam = recipe.cam
@@ -203,6 +215,8 @@ def intended(recipe: Recipe, design: Design) -> Intent:
         held = follower.Yoke(cast("Lift", design.intent), breadth=design.yoke_breadth)
     else:
         held = follower.FlatFace(cast("Lift", design.intent))
+    driven, asked = design.driven, recipe.dwell
+    turns = driven is not None and driven.turns
     return Intent(
         follower=held,
         mm=recipe.mm,
@@ -210,14 +224,18 @@ def intended(recipe: Recipe, design: Design) -> Intent:
         bore=recipe.part.bore,
         thickness=recipe.part.thickness,
         trimmed=design.trimmed,
+        mechanism=driven.mechanism if driven is not None and turns else None,
+        dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
     )
 
 
 def permitted(recipe: Recipe, tolerance: float) -> Limits:
-    """What kin permits: the tolerance, and the recipe's own limit of the motion error (degrees for a swing)."""
+    """What kin permits: the tolerance, and the recipe's own limits of motion and output (degrees for a swing)."""
     from kin.verify import Limits
 
-    motion = recipe.verify.motion_error
+    motion, output = recipe.verify.motion_error, recipe.verify.output_error
+    if output is not None and recipe.linkage is not None and not output_slides(recipe.linkage):
+        output = math.degrees(output)
     if motion is not None and isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
         motion = math.degrees(motion)
-    return Limits(tolerance, motion)
+    return Limits(tolerance, motion, output=output)

@@ -1,7 +1,8 @@
 """The checks that a run of a recipe is going to make, told without running it.
 
 Only the intended motion is built, which costs milliseconds, no curve and no file. A run may differ where an undercut
-decides: without a contour no file is judged, and a trimmed one only against a limit of the motion that is given.
+decides: without a contour no file is judged, and a trimmed one only against a limit of the motion that is given; and
+where a linkage does not turn, by which files are not judged then.
 """
 
 from __future__ import annotations
@@ -38,6 +39,10 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
         names += ["closing-equation", "transmission"]
     else:
         names += ["constant-breadth", "face-length"] if yoke else ["face-length"]
+    linkage = recipe.linkage is not None
+    dwell = ["dwell"] if recipe.dwell is not None and recipe.dwell.at_least is not None else []
+    if linkage:
+        names += ["mobility", "reversal", *dwell]
     bore = ["bore"] if recipe.part.bore is not None else []
     if bore:
         names.append("wall")
@@ -50,7 +55,8 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
             continue
         file = request.filename(recipe.name, recipe.export.files)
         own = ["watertight", *bore, "thickness", "volume"] if request.kind == "stl" else ["units", "closed", *bore]
-        found += [Foreseen(name, file) for name in (*own, "contour", "motion", *play)]
+        driven = ["linkage-error", *dwell] if linkage else []
+        found += [Foreseen(name, file) for name in (*own, "contour", "motion", *play, *driven)]
     return tuple(found)
 
 

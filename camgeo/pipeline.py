@@ -86,9 +86,11 @@ def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
             verdict = verify(path, intended(recipe, design), recipe.verify.angles, permitted(recipe, tolerance))
         request = FileRequest("stl" if verdict.kind == "stl" else "dxf")
         measured = verdict.measured_error
-        files.append(FileResult(path, request, tolerance, verdict.pieces, None, measured, verdict.motion))
+        files.append(
+            FileResult(path, request, tolerance, verdict.pieces, None, measured, verdict.motion, verdict.linkage)
+        )
         checks += verdict.checks
-    return document(recipe, Findings(tuple(checks), tuple(files), tuple(clock.stages), (), design.follower))
+    return document(recipe, _findings(recipe, design, checks, files, clock))
 
 
 def _tolerance_of(recipe: Recipe, path: Path) -> float:
@@ -111,6 +113,8 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
         for request in requests:
             path = folder / request.filename(recipe.name, recipe.export.files)
             if request.kind == "csv":
+                if design.driven is not None and not design.driven.turns:
+                    continue  # told as skipped: over the shaft angle there is no motion
                 with clock.stage("table"):
                     _write_table(recipe, design, path)
                 files.append(FileResult(path, request, None, None, None, None, None))
@@ -118,9 +122,26 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
             file, verdicts = _drawn(recipe, design, request, path, outlines)
             files.append(file)
             checks += verdicts
-    return Findings(
-        tuple(checks), tuple(files), tuple(clock.stages), _skipped(recipe, requests, design), design.follower
-    )
+    return _findings(recipe, design, checks, files, clock, skipped=_skipped(recipe, requests, design))
+
+
+def _findings(
+    recipe: Recipe,
+    design: Design,
+    checks: list[Check],
+    files: list[FileResult],
+    clock: Clock,
+    *,
+    skipped: tuple[tuple[str, str], ...] = (),
+) -> Findings:
+    """Everything that a run found."""
+    linkage = None
+    if design.driven is not None:
+        from camgeo.report.linkage import linkage_section
+
+        with clock.stage("figures of the linkage"):
+            linkage = linkage_section(recipe, design.driven, files)
+    return Findings(tuple(checks), tuple(files), tuple(clock.stages), skipped, design.follower, linkage=linkage)
 
 
 def _drawn(
@@ -157,7 +178,7 @@ def _drawn(
 
         verdict = verify(path, intended(recipe, design), recipe.verify.angles, permitted(recipe, tolerance))
     return (
-        FileResult(path, request, tolerance, pieces, bound, verdict.measured_error, verdict.motion),
+        FileResult(path, request, tolerance, pieces, bound, verdict.measured_error, verdict.motion, verdict.linkage),
         list(verdict.checks),
     )
 
@@ -282,9 +303,15 @@ def _reference(recipe: Recipe, design: Design) -> list[Reference]:
 
 def _write_table(recipe: Recipe, design: Design, path: Path) -> None:
     from camgeo.files.table import write_table
-    from camgeo.motion import motion_table
 
-    columns, rows = motion_table(recipe, design.intent)
+    if design.driven is not None:
+        from camgeo import linkage
+
+        columns, rows = linkage.motion_table(recipe, design.driven.mechanism)
+    else:
+        from camgeo.motion import motion_table
+
+        columns, rows = motion_table(recipe, design.intent)
     write_table(path, columns, rows)
 
 
@@ -312,6 +339,21 @@ def _skipped(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
         found.append(("face-length", "the follower has no plate that moves along its normal"))
     else:
         found += [(name, "the follower does not swing") for name in ("closing-equation", "transmission")]
+    found += _skipped_of_linkage(recipe, design)
     if design.trimmed and recipe.verify.motion_error is None:
         found.append(("motion", "the contour is trimmed and verify.motion_error is not given: told, not judged"))
     return tuple(found)
+
+
+def _skipped_of_linkage(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
+    """What was left out of a linkage's motion."""
+    if design.driven is None:
+        return [("linkage", "linkage is not given")]
+    if not design.driven.turns:
+        why = "the mechanism does not turn: it has no motion over the shaft angle"
+        asked = ["csv"] if any(request.kind == "csv" for request in recipe.export.files) else []
+        return [(what, why) for what in ("linkage-error", *asked)]
+    found = [("dwell", "dwell is not given")] if recipe.dwell is None else []
+    if design.trimmed and recipe.verify.output_error is None:
+        found.append(("linkage-error", "the contour is trimmed and verify.output_error is not given: told, not judged"))
+    return found

@@ -32,8 +32,8 @@ FLOORS = {
         cli pytest_plugin testing
         pipeline recipe
         design recipe.load
-        foreseen recipe.checks undercut
-        figures fit.polygon recipe.build trim
+        foreseen recipe.checks report.linkage undercut
+        figures fit.polygon linkage recipe.build trim
         crossing files.stl fit.arcs fit.edges fit.inflection fit.spline motion profile.build recipe.readers
         causes part report.document report.failure
         recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep

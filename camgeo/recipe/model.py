@@ -217,6 +217,7 @@ class FourBarLinkage:
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
 
+    kind: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
 
 
@@ -229,6 +230,7 @@ class InvertedSliderCrankLinkage:
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
 
+    kind: ClassVar[str] = "inverted-slider-crank"
     slides: ClassVar[bool] = False
 
 
@@ -241,6 +243,7 @@ class SliderCrankLinkage:
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
 
+    kind: ClassVar[str] = "slider-crank"
     slides: ClassVar[bool] = True
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Bound
     from camgeo.recipe.model import FileRequest, Recipe
     from kin.check import Check
+    from kin.frame import LinkageVerdict
     from kin.motion import MotionError
 
 UNIT_NAMES = {"mm": "mm", "inch": "in"}
@@ -33,11 +34,12 @@ class FileResult:
     bound: Bound | None
     measured_error: float | None
     motion: MotionError | None
+    linkage: LinkageVerdict | None = None
 
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything a run found, before it is put in the recipe's units."""
+    """Everything a run found, before it is put in the recipe's units; `linkage` already is."""
 
     checks: tuple[Check, ...]
     files: tuple[FileResult, ...]
@@ -45,6 +47,7 @@ class Findings:
     skipped: tuple[tuple[str, str], ...]
     follower: str
     kept: tuple[str, ...] = ()
+    linkage: dict[str, Any] | None = None
 
     @property
     def ok(self) -> bool:
@@ -54,6 +57,7 @@ class Findings:
 
 def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
     """The report as plain data, keys and units as the report contract fixes them."""
+    linkage = {} if found.linkage is None else {"linkage": found.linkage}
     return {
         "recipe": recipe.name,
         "about": recipe.about,
@@ -65,6 +69,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "tolerance": recipe.export.tolerance / recipe.mm,
         "checks": [_check(recipe, check) for check in found.checks],
         "files": [_file(recipe, file) for file in found.files] + [{"path": name, "stale": True} for name in found.kept],
+        **linkage,
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in found.stages],
         "skipped": [{"what": what, "why": why} for what, why in found.skipped],
     }

@@ -16,6 +16,9 @@ FIELDS = {
     "thickness": "part.thickness",
     "units": "units",
     "contour": "export.tolerance",
+    "mobility": "linkage",
+    "reversal": "linkage",
+    "dwell": "dwell.at_least",
 }
 """The recipe's field that a check hangs on most; of the others it is the cam as a whole."""
 INDENT = "\n  "
@@ -89,6 +92,8 @@ def _rounder(recipe: Recipe, value: float, limit: float, unit: str) -> str:
 def _field(check: dict[str, Any], recipe: Recipe) -> str:
     if check["name"] == "motion":
         return "export.tolerance" if recipe.verify.motion_error is None else "verify.motion_error"
+    if check["name"] == "linkage-error":
+        return "export.tolerance" if recipe.verify.output_error is None else "verify.output_error"
     return FIELDS.get(check["name"], "export.files" if check.get("file") else "cam")
 
 

@@ -1,0 +1,195 @@
+"""The linkage that a cam drives: the mechanism of a recipe, its checks before any file, its figures and its table.
+
+The cam is held in a square frame, the coupler (AS section 3). Angles of the recipe's checks are shaft angles, as
+everywhere; where the linkage binds, the shaft has no angle, and the relative angle between cam and frame is told.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from camgeo.recipe.model import FourBarLinkage, InvertedSliderCrankLinkage, RPRDyad, RRPDyad, RRRDyad
+from kin.check import Check, degrees, failed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from camgeo.curve import Array
+    from camgeo.recipe.model import DwellAsked, Dyad, Linkage, Recipe
+    from kin import dyad, linkage
+    from kin.dwell import Dwell
+    from kin.lift import Lift
+    from kin.mechanism import Mechanism
+
+Over: TypeAlias = Literal["shaft", "relative"]
+OVER: tuple[Over, ...] = ("shaft", "relative")
+MOST_DWELLS = 8
+TURN = 2.0 * math.pi
+DEGREES = 180.0 / math.pi
+
+
+def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
+    """Mechanism of a recipe that has a linkage; raises RecipeErrors where the shaft does not lie within the cam."""
+    from kin.law import IntentError
+    from kin.mechanism import Mechanism
+
+    asked = _linkage(recipe)
+    try:
+        return Mechanism(_loop(asked), lift, breadth, tuple(map(_dyad, asked.dyads)))
+    except IntentError as error:
+        field = f"cam.{error.field}"
+        raise recipe.error(field if field in recipe.marks else "cam", error.message) from error
+
+
+def _linkage(recipe: Recipe) -> Linkage:
+    if recipe.linkage is None:
+        raise ValueError(f"{recipe.name}: there is no linkage")
+    return recipe.linkage
+
+
+def _loop(asked: Linkage) -> linkage.Linkage:
+    from kin import linkage
+
+    if isinstance(asked, FourBarLinkage):
+        return linkage.FourBar(asked.ground, asked.coupler, asked.rocker, asked.assembly)
+    if isinstance(asked, InvertedSliderCrankLinkage):
+        return linkage.InvertedSliderCrank(asked.ground, asked.rocker, asked.assembly)
+    return linkage.SliderCrank(asked.coupler, asked.offset, asked.assembly)
+
+
+def _dyad(asked: Dyad) -> dyad.Dyad:
+    from kin import dyad
+
+    if isinstance(asked, RRRDyad):
+        return dyad.RRR(asked.on, asked.point, asked.ground, asked.links, asked.assembly)
+    if isinstance(asked, RRPDyad):
+        return dyad.RRP(asked.on, asked.point, asked.link, asked.through, asked.direction, asked.assembly)
+    if isinstance(asked, RPRDyad):
+        return dyad.RPR(asked.on, asked.point, asked.ground, asked.offset)
+    raise TypeError(f"no such dyad: {asked!r}")
+
+
+# --- checks before any file -------------------------------------------------------------------------------------------
+
+
+def mobility_checks(mechanism: Mechanism) -> list[Check]:
+    """That every loop closes all round (AS after eq. 18), and that the shaft never has to turn back.
+
+    Where the mechanism does not turn right round there is no shaft angle: the places are then told by the detail alone.
+    """
+    found = mechanism.mobility()
+    loop = "the linkage" if found.loop == 0 else f"dyad {found.loop}"
+    where = f"{loop} binds {_spans(found.binds)} of the relative angle" if found.binds else f"{loop} is the nearest"
+    back = f"the shaft would turn back {_spans(found.reverses)} of the relative angle" if found.reverses else ""
+
+    def above_zero(name: str, value: float | None, unit: str, at: float, detail: str) -> Check:
+        place = degrees(float(mechanism.at(at, 0).shaft[0, 0])) if found.turns else None
+        return Check(name, value is not None and value > 0.0, value, 0.0, unit, place, "at_least", detail=detail)
+
+    rate = None if math.isnan(found.least_rate) else found.least_rate
+    return [
+        above_zero("mobility", found.margin, "mm", found.margin_at, where),
+        above_zero("reversal", rate, "", found.rate_at, back or (where if rate is None else "")),
+    ]
+
+
+def _spans(spans: Sequence[tuple[float, float]]) -> str:
+    return " and ".join(f"from {math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in spans)
+
+
+def dwells_over(mechanism: Mechanism, band: float, over: str, most: int = MOST_DWELLS) -> tuple[Dwell, ...]:
+    """Dwells of the output of a mechanism that turns, over the shaft or the relative angle, rad; the longest first."""
+    from kin.dwell import dwells
+
+    if over == "relative":
+        return dwells(lambda x, order: mechanism.at(x, order).output, mechanism.breaks, band, most=most)
+
+    def over_shaft(x: Array, order: int) -> Array:
+        at = mechanism.at(mechanism.relative(x), order)
+        return at.over_shaft(at.output)
+
+    breaks = mechanism.at(mechanism.breaks, 0).shaft[0] if len(mechanism.breaks) else mechanism.breaks
+    return dwells(over_shaft, breaks, band, most=most)
+
+
+def _dwell_check(asked: DwellAsked, longest: Dwell) -> list[Check]:
+    """That the intended output dwells for as long as the recipe wants; nothing if it wants no certain length."""
+    if asked.at_least is None:
+        return []
+    length, wanted = math.degrees(longest.length), math.degrees(asked.at_least)
+    start = degrees(longest.start)
+    detail = f"from {start:.6g} over {length:.6g} deg of the {asked.over} angle"
+    at = start if asked.over == "shaft" else None
+    return [Check("dwell", length >= wanted, length, wanted, "deg", at, "at_least", detail=detail)]
+
+
+# --- the whole of it --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Driven:
+    """The linkage of a recipe: mechanism, checks, and dwells over the shaft and the relative angle, if asked for."""
+
+    mechanism: Mechanism
+    checks: tuple[Check, ...]
+    dwells: Mapping[Over, tuple[Dwell, ...]]
+
+    @property
+    def turns(self) -> bool:
+        """Whether the shaft can be turned right round; else the mechanism has no motion over the shaft angle."""
+        return self.mechanism.mobility().turns
+
+
+def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
+    """Mechanism of a recipe that has a linkage, with its checks; `breadth` (mm) is that of the cam, None if it varies.
+
+    Raises RecipeErrors where no square frame holds the cam, or the shaft does not lie within it.
+    """
+    if breadth is None:
+        raise recipe.error("linkage", "a square frame holds a cam of constant breadth alone, and this cam's varies")
+    mechanism = mechanism_of(recipe, lift, breadth)
+    checks = mobility_checks(mechanism)
+    found: dict[Over, tuple[Dwell, ...]] = {}
+    asked = recipe.dwell
+    if asked is not None and mechanism.mobility().turns:
+        try:
+            found = {over: dwells_over(mechanism, asked.band, over) for over in OVER}
+        except ValueError as error:
+            raise recipe.error("dwell.band", str(error)) from error
+        checks += _dwell_check(asked, found[asked.over][0])
+    elif asked is not None and asked.at_least is not None:
+        checks.append(failed("dwell", "the mechanism does not turn", unit="deg", limit=math.degrees(asked.at_least)))
+    return Driven(mechanism, tuple(checks), found)
+
+
+def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...], Array]:
+    """Column names and rows (angles + 1, k) over equal steps of the shaft, for a mechanism that turns.
+
+    Shaft, relative and frame angle and the output, each output's velocity and acceleration by radian of shaft, those of
+    the frame, and the output's by radian of the relative angle, which AS plot. Angles in degrees, lengths in the
+    recipe's unit. At a break the derivatives are those that follow, at the end of the turn those that precede.
+    """
+    count = recipe.verify.angles
+    shaft = np.linspace(0.0, TURN, count + 1)
+    theta = mechanism.relative(shaft)
+    parts = [mechanism.at(theta[:-1], 2), mechanism.at(theta[-1:], 2, -1)]
+
+    length = "in" if recipe.units == "inch" else "mm"
+    frame = DEGREES * np.concatenate([part.over_shaft(part.frame) for part in parts], axis=1)
+    columns = {"shaft_deg": np.linspace(0.0, 360.0, count + 1), "relative_deg": theta * DEGREES, "frame_deg": frame[0]}
+    units = [mechanism.linkage.unit, *(dyad.unit for dyad in mechanism.dyads)]
+    last = len(units) - 1
+    for index in (last, *range(last)):  # the output that counts comes first
+        mark = "" if index == last else f"_{index}"
+        unit, scale = ("deg", DEGREES) if units[index] == "deg" else (length, 1.0 / recipe.mm)
+        rows = scale * np.concatenate([part.over_shaft(part.outputs[index]) for part in parts], axis=1)
+        columns |= {f"output{mark}_{unit}": rows[0], f"velocity{mark}": rows[1], f"acceleration{mark}": rows[2]}
+        if index == last:
+            relative = scale * np.concatenate([part.output for part in parts], axis=1)
+    columns |= {"frame_velocity": frame[1], "frame_acceleration": frame[2]}
+    columns |= {"velocity_by_relative": relative[1], "acceleration_by_relative": relative[2]}
+    return tuple(columns), np.column_stack(list(columns.values()))

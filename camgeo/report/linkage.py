@@ -1,0 +1,155 @@
+"""The linkage in the report: mobility, figures of the intended motion, dwells, and what the files make of them.
+
+Angles in degrees, lengths in the recipe's unit, velocities and accelerations by radian of shaft or relative angle. A
+place has both angles: of the shaft, and the relative one between cam and frame, over which AS plot.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from camgeo.linkage import OVER
+from camgeo.report.document import in_units
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.linkage import Driven
+    from camgeo.recipe.model import Recipe
+    from camgeo.report.document import FileResult
+    from kin.figures import Figures, Place
+    from kin.frame import LinkageVerdict
+    from kin.motion import MotionError, Play
+
+
+def linkage_section(recipe: Recipe, driven: Driven, files: Sequence[FileResult]) -> dict[str, Any]:
+    """Everything about the linkage of a recipe, the worst of the files in `error`, as plain data."""
+    mechanism, mobility = driven.mechanism, driven.mechanism.mobility()
+    scale, unit = _output_unit(recipe, mechanism.unit)
+    judged = [(file.path.name, file.linkage) for file in files if file.linkage is not None]
+    section: dict[str, Any] = {
+        "kind": None if recipe.linkage is None else recipe.linkage.kind,
+        "margin": {"value": mobility.margin / recipe.mm, "unit": _length(recipe), "loop": mobility.loop},
+        "binds_at_deg": _spans(mobility.binds),
+        "reverses_at_deg": _spans(mobility.reverses),
+        "shaft_rate": {"min": mobility.least_rate, "relative_deg": math.degrees(mobility.rate_at)},
+        "dwells": [],
+    }
+    if not driven.turns:
+        return section
+    section |= _figures(mechanism.figures(), scale, unit)
+    section["dwells"] = _dwells(recipe, driven, judged, scale)
+    if judged:
+        name, worst = max(judged, key=lambda pair: pair[1].error.max)
+        limit = recipe.verify.output_error
+        permitted = worst.limit if limit is None else limit * (math.degrees(1.0) if mechanism.unit == "deg" else 1.0)
+        section["error"] = {**_error(recipe, worst.error), "limit": in_units(recipe, permitted, mechanism.unit)[0]}
+        section["error"]["file"] = name
+        section["files"] = [_file(recipe, name, verdict) for name, verdict in judged]
+    return section
+
+
+def _output_unit(recipe: Recipe, unit: str) -> tuple[float, str]:
+    """Factor from rad or mm to the unit of the report, and its name."""
+    return (math.degrees(1.0), "deg") if unit == "deg" else (1.0 / recipe.mm, _length(recipe))
+
+
+def _length(recipe: Recipe) -> str:
+    return in_units(recipe, None, "mm")[1]
+
+
+def _spans(spans: Sequence[tuple[float, float]]) -> list[list[float]]:
+    """Spans of the relative angle, degrees; one that runs through 0 ends beyond 360."""
+    return [[math.degrees(begin), math.degrees(end)] for begin, end in spans]
+
+
+def _place(place: Place, scale: float) -> dict[str, float]:
+    return {
+        "value": place.value * scale,
+        "shaft_deg": math.degrees(place.shaft),
+        "relative_deg": math.degrees(place.relative),
+    }
+
+
+def _figures(found: Figures, scale: float, unit: str) -> dict[str, Any]:
+    turn = math.degrees(1.0)
+    least, greatest = _place(found.least, scale), _place(found.greatest, scale)
+    return {
+        "output": {"unit": unit, "min": least["value"], "max": greatest["value"], "min_at": least, "max_at": greatest},
+        "swing": found.swing * scale,
+        "frame": {"unit": "deg", "min": found.frame_least.value * turn, "max": found.frame_greatest.value * turn},
+        "transmission_angle": {
+            "min": found.transmission_least.value * turn,
+            "max": found.transmission_greatest.value * turn,
+            "min_at_deg": math.degrees(found.transmission_least.shaft),
+        },
+        "force_angle": {
+            "min": found.force_least.value * turn,
+            "min_at_deg": math.degrees(found.force_least.shaft),
+        },
+        "dead_centres": [
+            {"shaft_deg": math.degrees(place.shaft), "relative_deg": math.degrees(place.relative)}
+            for place in found.dead_centres
+        ],
+        "peaks": {
+            "shaft": {
+                "velocity": _place(found.velocity, scale),
+                "acceleration": _place(found.acceleration, scale),
+            },
+            "relative": {
+                "velocity": _place(found.velocity_relative, scale),
+                "acceleration": _place(found.acceleration_relative, scale),
+            },
+        },
+    }
+
+
+def _dwells(
+    recipe: Recipe, driven: Driven, judged: Sequence[tuple[str, LinkageVerdict]], scale: float
+) -> list[dict[str, Any]]:
+    asked = recipe.dwell
+    if asked is None:
+        return []
+    band = asked.band * scale
+    rows: list[dict[str, Any]] = [
+        {
+            "over": over,
+            "band": band,
+            "start_deg": math.degrees(dwell.start),
+            "length_deg": math.degrees(dwell.length),
+            "from": "intended",
+        }
+        for over in OVER
+        for dwell in driven.dwells[over]
+    ]
+    # of the ways in which a frame with play can rest, that in which the dwell is shortest
+    rows += [
+        {"over": d.over, "band": band, "start_deg": d.start_deg, "length_deg": d.length_deg, "from": name}
+        for name, verdict in judged
+        for d in verdict.dwells[:1]
+    ]
+    return rows
+
+
+def _error(recipe: Recipe, error: MotionError) -> dict[str, Any]:
+    greatest, unit = in_units(recipe, error.max, error.unit)
+    rms, _ = in_units(recipe, error.rms, error.unit)
+    return {"max": greatest, "rms": rms, "unit": unit, "at_deg": error.at_deg}
+
+
+def _file(recipe: Recipe, name: str, verdict: LinkageVerdict) -> dict[str, Any]:
+    return {
+        "path": name,
+        "error": _error(recipe, verdict.error),
+        "centred": _error(recipe, verdict.centred),
+        "play_across": _play(recipe, verdict.play_across),
+        "play_along": _play(recipe, verdict.play_along),
+        "shaft_rate": verdict.least_rate,
+    }
+
+
+def _play(recipe: Recipe, play: Play) -> dict[str, Any]:
+    least, unit = in_units(recipe, play.least, play.unit)
+    most, _ = in_units(recipe, play.most, play.unit)
+    return {"min": least, "min_at_deg": play.least_at_deg, "max": most, "max_at_deg": play.most_at_deg, "unit": unit}
