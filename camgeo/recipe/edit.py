@@ -91,11 +91,10 @@ def _index(starts: list[int], mark: Mark) -> int:
 
 
 def _like(old: str, number: str) -> str:
-    """Write a number in the way of the text that it replaces: in its quotes, or with the line end of a block."""
+    """Write a number in the way of the text that it replaces: in its quotes, or with the line ends behind a block."""
     if old[0] in "'\"":
         return f"{old[0]}{number}{old[0]}"
-    ends = _LINE_END.findall(old)
-    return number + (ends[-1] if ends else "")
+    return number + old[len(old.rstrip()) :]
 
 
 def _without_entry(source: Source, root: Mapping, index: int) -> str:
@@ -116,9 +115,10 @@ def _without_lines(source: Source, root: Mapping, index: int) -> str:
     starts = [*_line_starts(source.text), len(source.text)]
     first, indent = key.mark
     line, column = value.mark if is_empty(value) else value.end
-    behind = max(
-        line - (column == 1), first
-    )  # the number of the last line, as of a block scalar the end is in the next
+    behind = line - (column == 1)  # the number of the last line; a block of text ends where the next line begins
+    while behind > first and not source.lines[behind - 1].strip():
+        behind -= 1
+    behind = max(behind, first)
     for number, text in enumerate(source.lines[behind:], behind + 1):
         if re.match(rf"[ \t]{{{indent},}}#", text):
             behind = number

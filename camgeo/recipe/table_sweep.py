@@ -91,7 +91,7 @@ SWEEP = (
         "number of angles at which a design is sampled",
         default="360",
         at_least=24,
-        at_most=100_000,
+        at_most=36_000,
     ),
     Field("refine", Kind.TRUTH, "whether the best designs are polished, off the grid", default="false"),
 )
