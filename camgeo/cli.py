@@ -6,10 +6,12 @@ import argparse
 import gc
 import os
 import sys
-import time
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+
+from camgeo.progress import Progress
+from camgeo.sweep import command as sweep_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -19,7 +21,6 @@ if TYPE_CHECKING:
 OK, FAILED, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
 PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
-PATIENCE = 1.0  # seconds before progress is shown
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -110,6 +111,8 @@ def _parser() -> argparse.ArgumentParser:
     verify.add_argument("files", nargs="+", metavar="FILE")
     tolerance(verify)
     output(verify)
+    sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
+    sweep_command.add_arguments(sweep, _jobs)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file.")
     new.add_argument("kind", metavar="KIND")
     new.add_argument("file", nargs="?", metavar="FILE")
@@ -205,13 +208,13 @@ def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs:
     workers = jobs or (min(os.cpu_count() or 1, len(recipes)) if len(recipes) >= PARALLEL_FROM else 1)
     if workers <= 1 or len(recipes) < 2:
         for recipe in recipes:
-            yield _one(recipe, command, options, _Progress(recipe.name))
+            yield _one(recipe, command, options, Progress(recipe.name))
         return
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
     from concurrent.futures.process import BrokenProcessPool
 
-    progress = _Progress(f"{len(recipes)} recipes")
+    progress = Progress(f"{len(recipes)} recipes")
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
     with ProcessPoolExecutor(workers, context) as pool:
         futures = [pool.submit(_one, recipe, command, options, None) for recipe in recipes]
@@ -231,7 +234,7 @@ def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs:
             raise
 
 
-def _one(recipe: Recipe, command: str, options: dict[str, Any], progress: _Progress | None) -> Result:
+def _one(recipe: Recipe, command: str, options: dict[str, Any], progress: Progress | None) -> Result:
     """Run one recipe; the report, a message for standard error, and the status."""
     from pathlib import Path
 
@@ -254,28 +257,6 @@ def _one(recipe: Recipe, command: str, options: dict[str, Any], progress: _Progr
         if progress is not None:
             progress.clear()
     return outcome.report, "", OK if outcome.ok else FAILED
-
-
-class _Progress:
-    """What is being done, on a terminal's last line, once it takes more than a second."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-        self._start = time.perf_counter()
-        self._shown = False
-
-    def __call__(self, stage: str) -> None:
-        if sys.stderr.isatty() and time.perf_counter() - self._start > PATIENCE:
-            sys.stderr.write(f"\r\x1b[K{self._name}: {stage} ...")
-            sys.stderr.flush()
-            self._shown = True
-
-    def clear(self) -> None:
-        """Take the line away again."""
-        if self._shown:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
-            self._shown = False
 
 
 def _show(report: dict[str, Any], *, verbose: bool) -> None:

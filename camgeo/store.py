@@ -61,6 +61,10 @@ class SurroundingsError(Exception):
         self.path = path
 
 
+class BusyError(SurroundingsError):
+    """Another run of the same name is at work."""
+
+
 @dataclass(frozen=True)
 class Family:
     """Which set of files a run replaces: several, of different reports, may stand in one recipe's folder.
@@ -312,7 +316,7 @@ def _locked(path: Path, folder: Path) -> int:
             os.close(lock)
             raise
         os.close(lock)
-        raise SurroundingsError(f"another run is at work here (it holds {path.name})", folder)
+        raise BusyError(f"another run is at work here (it holds {path.name})", folder)
 
 
 def _checked(lock: int, path: Path) -> int:

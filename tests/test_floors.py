@@ -15,14 +15,14 @@ FLOORS = {
         verify
         judge
         follower
-        roller
-        deviation flat
+        frame roller
+        deviation flat resting
         envelope mechanism
         lift transmission
         chain formula read
         dyad forces possible read_dxf read_stl switches
         bearing bounding flaws law linkage nesting roots routes syntax transmission_law
-        contour expression loop piecewise
+        contour expression frame_dwell loop piecewise
         biarc dwell dxf_entities figures jet mobility pieces
         bezier monotone motion series
         bernstein chaining contact extremes foot hull nearest taylor triangles
@@ -30,6 +30,13 @@ FLOORS = {
     """,
     "camgeo": """
         cli pytest_plugin testing
+        sweep.command
+        sweep.means sweep.search
+        sweep.outputs sweep.run
+        sweep.engines sweep.recipes sweep.table
+        sweep.ask sweep.job sweep.pictures
+        sweep.gather sweep.store
+        sweep.plan
         pipeline recipe
         design recipe.load
         foreseen recipe.checks report.linkage undercut
@@ -41,7 +48,8 @@ FLOORS = {
         recipe.edit recipe.reader recipe.schema recipe.starter
         recipe.model recipe.scalars recipe.source recipe.tables
         recipe.table_cam recipe.table_linkage recipe.table_sweep
-        curve files files.table files.triangulate fit fit.pieces profile recipe.errors recipe.spec report store sweep
+        curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
+        sweep
     """,
 }
 HEAVY = {

@@ -1,0 +1,130 @@
+"""What a recipe's `sweep` asks for, in the words of this package."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.model import Axis as Varied
+from camgeo.recipe.model import (
+    ConstantBreadthCam,
+    DoubleRollerCam,
+    Export,
+    FlatPairCam,
+    FourBarLinkage,
+    InvertedSliderCrankLinkage,
+    Part,
+    Recipe,
+    SliderCrankLinkage,
+    SupportCam,
+    Sweep,
+    Verify,
+    output_slides,
+)
+from camgeo.recipe.spec import Kind
+from camgeo.recipe.table_sweep import FIGURES
+from camgeo.recipe.tables import field_at
+from camgeo.sweep.gather import Ranking
+from camgeo.sweep.plan import Axis, Plan, steps
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_LENGTH = {"mm": "mm", "inch": "in"}
+_LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
+_KINDS = {
+    SupportCam: "support",
+    ConstantBreadthCam: "constant-breadth",
+    DoubleRollerCam: "double-roller",
+    FlatPairCam: "flat-pair",
+    FourBarLinkage: "four-bar",
+    InvertedSliderCrankLinkage: "inverted-slider-crank",
+    SliderCrankLinkage: "slider-crank",
+}
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Unit of a figure as told, and what its value in mm and degrees is divided by."""
+
+    name: str
+    divisor: float = 1.0
+
+
+@dataclass(frozen=True)
+class Ask:
+    """A recipe that has a sweep, and the parts of that sweep."""
+
+    recipe: Recipe
+    sweep: Sweep
+    plan: Plan
+    ranking: Ranking
+
+    @staticmethod
+    def of(recipe: Recipe) -> Ask:
+        """Take the sweep of a recipe; raises RecipeErrors where it has none."""
+        sweep = recipe.sweep
+        if sweep is None:
+            raise recipe.error("sweep", "this recipe has no sweep", None, "say what to vary: `sweep: {vary: ...}`")
+        axes = tuple(map(_axis, sweep.vary))
+        count = sweep.count
+        if count is None:
+            count = 1
+            for axis in axes:
+                count *= len(axis.values)
+        plan = Plan(axes, sweep.method, count, sweep.seed)
+        return Ask(recipe, sweep, plan, Ranking(sweep.rank, FIGURES[sweep.rank].best == "most", sweep.limits))
+
+    @property
+    def scene(self) -> Recipe:
+        """The recipe without all that has no bearing on a design's figures.
+
+        So a change of limits, ranking or files to export leaves what was computed as it is.
+        """
+        plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
+        return replace(
+            self.recipe,
+            name="",
+            about="",
+            part=Part(),
+            export=Export(1.0, ()),
+            verify=Verify(1),
+            path=Path("recipe.yaml"),
+            sweep=plain,
+        )
+
+    def units(self, figures: Iterable[str]) -> dict[str, Unit]:
+        """Unit of each figure, lengths in that of the recipe."""
+        length = Unit(_LENGTH[self.recipe.units], self.recipe.mm)
+        slides = self.recipe.linkage is not None and output_slides(self.recipe.linkage)
+        by_kind = {
+            Kind.ANGLE: Unit("deg"),
+            Kind.LENGTH: length,
+            Kind.OUTPUT: length if slides else Unit("deg"),
+            Kind.NUMBER: Unit(""),
+        }
+        over = {"peak-velocity": "/rad", "peak-acceleration": "/rad^2"}
+        found = {}
+        for name in figures:
+            unit = by_kind[FIGURES[name].kind]
+            found[name] = replace(unit, name=unit.name + over.get(name, ""))
+        return found
+
+    def axis_unit(self, path: str) -> str:
+        """Unit in which the recipe writes a field that is varied; empty for a plain number."""
+        linkage = "" if self.recipe.linkage is None else _KINDS[type(self.recipe.linkage)]
+        field = field_at(path, _KINDS[type(self.recipe.cam)], linkage)
+        length = _LENGTH[self.recipe.units]
+        if field is None:
+            return ""
+        if field.kind is Kind.HARMONICS:
+            return f"{length}^2" if path.startswith("cam.delta.") else length
+        return length if field.kind in _LENGTHS else "deg" if field.kind is Kind.ANGLE else ""
+
+
+def _axis(varied: Varied) -> Axis:
+    if varied.values:
+        return Axis(varied.path, min(varied.values), max(varied.values), varied.values)
+    values = steps(varied.low, varied.high, varied.steps) if varied.steps else ()
+    return Axis(varied.path, varied.low, varied.high, values)

@@ -1,0 +1,161 @@
+"""The command `camgeo sweep`: its options, what it prints, its exit status."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from camgeo.progress import Progress
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable
+
+    from camgeo.sweep.ask import Ask
+    from camgeo.sweep.run import Told
+    from camgeo.sweep.search import Means, Outcome
+
+FOUND, NOTHING, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
+_EXTRAS = {"distributed": "dask", "numba": "fast"}  # of packages that are not in the extra `sweep`
+_SAID = 5  # best designs that -v tells
+
+
+def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -> None:
+    """Give the command its options; `jobs` reads a number of processes."""
+    parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `sweep`")
+    parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    engine = parser.add_mutually_exclusive_group()
+    engine.add_argument("--jobs", type=jobs, metavar="N", help="processes at once (default: as many as pay)")
+    engine.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
+    parser.add_argument("--fresh", action="store_true", help="compute again what earlier runs have computed")
+    parser.add_argument("-v", "--verbose", action="store_true", help="the best designs and the counts")
+    parser.add_argument("--json", action="store_true", help="sweep.json, for machines")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.recipe.load import load
+    from camgeo.sweep.ask import Ask
+
+    try:
+        ask = Ask.of(load(arguments.recipe))
+        outcome, problem, status = _searched(ask, arguments)
+    except RecipeErrors as errors:
+        print(errors, file=sys.stderr)
+        return WRONG
+    if outcome is None:
+        _complain(ask, problem)
+        return status
+    report = outcome.report
+    if outcome.work.damaged:
+        _complain(ask, f"{outcome.work.damaged} damaged chunks were computed again")
+    for left_out in report["skipped"]:
+        _complain(ask, f"without {left_out['what']}: {left_out['why']}")
+    if arguments.json:
+        from camgeo.report.document import encoded
+
+        print(encoded(report), end="")
+    else:
+        print(_summary(report, outcome.folder))
+        if arguments.verbose:
+            print(_table(report))
+    return status
+
+
+def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
+    """Outcome, or what went wrong, and the exit status."""
+    from camgeo.store import SurroundingsError
+    from camgeo.sweep.engines import EngineError
+    from camgeo.sweep.job import VersionsError
+    from camgeo.sweep.run import How
+    from camgeo.sweep.search import search
+
+    progress = Progress(ask.recipe.name)
+    how = How(arguments.jobs, arguments.scheduler)
+    resume = "what was computed is kept, and the same command goes on from there"
+    try:
+        outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, told=_teller(progress))
+    except KeyboardInterrupt:
+        return None, f"interrupted; {resume}", INTERRUPTED
+    except ModuleNotFoundError as error:
+        extra = _EXTRAS.get(error.name or "", "sweep")
+        return None, f'the package {error.name} is missing: pip install "camgeo[{extra}]"', SURROUNDINGS
+    except (EngineError, VersionsError) as error:
+        return None, f"{error}; {resume}", SURROUNDINGS
+    except (SurroundingsError, OSError) as error:
+        return None, str(error), SURROUNDINGS
+    finally:
+        progress.clear()
+    return outcome, "", FOUND if outcome.report["ok"] else NOTHING
+
+
+def _means() -> Means:
+    from camgeo.sweep.means import REASONS, figures
+    from camgeo.sweep.refine import polish
+    from camgeo.sweep.search import Means
+
+    return Means(figures, polish, REASONS)
+
+
+def _complain(ask: Ask, text: str) -> None:
+    print(f"camgeo: {ask.recipe.name}: {text}", file=sys.stderr)
+
+
+def _teller(progress: Progress) -> Told:
+    """Progress with the time left, from the speed so far."""
+
+    def tell(done: int, wanted: int, seconds: float) -> None:
+        left = seconds / done * (wanted - done)
+        speed = f"{done / seconds:,.0f} a second, " if seconds > 0.0 else ""
+        progress(f"{done:,} of {wanted:,} designs, {speed}{duration(left)} left")
+
+    return tell
+
+
+def duration(seconds: float) -> str:
+    """Time left, as coarse as it is uncertain: 40 s, 12 min, 3 h 20 min."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def _summary(report: dict[str, Any], folder: Path) -> str:
+    """What was found, or why nothing was, in a line; `failing` overlap, as a design may break several limits."""
+    counts, rank, run = report["counts"], report["sweep"]["rank"], report["run"]
+    speed = f", {run['designs_per_second']:,.0f} a second" if run["designs_per_second"] else ""
+    looked = f"{counts['computed']:,} designs{speed}"
+    if report["ok"]:
+        best = report["best"][0]
+        value = _value(report, rank, best["figures"][rank])
+        return f"{report['recipe']}: {rank} {value}, the best of {counts['kept']:,} kept of {looked}; {folder}"
+    reasons = [_stuck(report)] if counts["not_turning"] else []
+    reasons += [f"{number:,} break the limit of {figure}" for figure, number in counts["failing"].items() if number]
+    return f"{report['recipe']}: no design will do, of {looked}: {', '.join(reasons)}; {folder}"
+
+
+def _stuck(report: dict[str, Any]) -> str:
+    """How many designs have no figures, and why."""
+    counts = report["counts"]
+    why = ", ".join(f"{reason} {number:,}" for reason, number in counts["reasons"].items())
+    return f"{counts['not_turning']:,} do not turn" + (f" ({why})" if why else "")
+
+
+def _value(report: dict[str, Any], figure: str, value: float) -> str:
+    return f"{value:.6g} {report['figures'][figure]['unit']}".rstrip()
+
+
+def _table(report: dict[str, Any]) -> str:
+    """The counts and the first of the best designs."""
+    counts = report["counts"]
+    lines = [f"  {_stuck(report)}"]
+    lines += [f"  {number:,} break the limit of {figure}" for figure, number in counts["failing"].items()]
+    if counts["rows"] < counts["kept"]:
+        lines.append(f"  the table holds the best {counts['rows']:,} of {counts['kept']:,}")
+    for design in report["best"][:_SAID]:
+        values = ", ".join(f"{path} {value:.6g}" for path, value in design["values"].items())
+        figures = ", ".join(f"{name} {_value(report, name, value)}" for name, value in design["figures"].items())
+        lines.append(f"  {design['file']}: {values}\n    {figures}")
+    return "\n".join(lines)

@@ -1,0 +1,149 @@
+"""A whole sweep: every chunk, what they come to, the best polished and written out, the files in their place."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, Protocol
+
+from camgeo.store import BusyError, Family, Run
+from camgeo.sweep.job import Job
+from camgeo.sweep.outputs import REPORT, outputs
+from camgeo.sweep.recipes import Best, recipe_text
+from camgeo.sweep.run import chunks_of, compute, gathered
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.sweep.ask import Ask
+    from camgeo.sweep.gather import Gathered
+    from camgeo.sweep.job import Compute
+    from camgeo.sweep.run import How, Told, Work
+
+FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
+_WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
+_AGAIN = 0.05
+_SAME = 1e-6  # of an axis's range: designs nearer than that in every value are one
+
+
+class Polish(Protocol):
+    """Makes a design better without breaking a limit."""
+
+    def __call__(self, ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+        """Values of a design that is as good or better, and its figures, in mm and degrees."""
+
+
+@dataclass(frozen=True)
+class Means:
+    """What computes the figures of designs, the words for why one has none, and what polishes the best."""
+
+    compute: Compute
+    polish: Polish
+    reasons: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a sweep: its report, and the folder of its files, a rejected one where no design is kept."""
+
+    report: dict[str, Any]
+    folder: Path
+    work: Work
+
+
+def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, told: Told | None = None) -> Outcome:
+    """Run the sweep of a recipe.
+
+    Raises RecipeErrors for a recipe whose sweep cannot be cut out; ModuleNotFoundError, EngineError, VersionsError and
+    SurroundingsError for what is missing around the run; OSError for a disk that refuses.
+    """
+    started = time.perf_counter()
+    demand_extras(ask, how)
+    recipe_text(ask, Best(1, 0, False, _by_path(ask, ask.plan.values(0, 1)[0]), {}))  # told now if it cannot be written
+    job = Job(ask.plan, ask.scene, means.compute)
+    chunks = chunks_of(job, out / ask.recipe.name)
+    work = compute(job, chunks, how, fresh=fresh, told=told)
+    found = gathered(job, chunks, ask.ranking)
+    best = best_of(ask, found, means.polish)
+    run = {
+        "engine": str(how),
+        "key": job.key,
+        "chunks": ask.plan.chunks,
+        "designs_computed": work.computed,
+        "designs_found": work.reused,
+        "chunks_damaged": work.damaged,
+        "computing_seconds": round(work.seconds, 3),
+        "designs_per_second": round(work.computed / work.seconds, 1) if work.computed else None,
+        "seconds": round(time.perf_counter() - started, 3),
+    }
+    files, report = outputs(ask, found, best, run, means.reasons)
+    return Outcome(report, put(out, ask.recipe.name, files, kept=bool(best)), work)
+
+
+def demand_extras(ask: Ask, how: How) -> None:
+    """Raise ModuleNotFoundError for a package without which the sweep would come to a halt halfway."""
+    needed = []
+    if ask.sweep.method == "sobol" or ask.sweep.refine:
+        needed.append("scipy")
+    if how.scheduler is not None:
+        needed.append("distributed")
+    for name in needed:
+        if find_spec(name) is None:
+            raise ModuleNotFoundError(name=name)
+
+
+def best_of(ask: Ask, found: Gathered, polish: Polish) -> list[Best]:
+    """The best designs, polished if asked for; those that polishing made the same are one."""
+    plain = [
+        Best(
+            place + 1,
+            int(found.index[place]),
+            False,
+            _by_path(ask, found.values[place]),
+            {name: float(values[place]) for name, values in found.figures.items()},
+        )
+        for place in range(min(ask.sweep.keep, found.rows))
+    ]
+    if not ask.sweep.refine:
+        return plain
+    polished = []
+    for design in plain:
+        values, figures = polish(ask, design.values)
+        polished.append(Best(design.place, design.index, values != design.values, values, figures))
+    sign = -1.0 if ask.ranking.most else 1.0
+    polished.sort(key=lambda design: (sign * design.figures[ask.sweep.rank], design.place))
+    apart: list[Best] = []
+    for design in polished:
+        if not any(_same(ask, design, other) for other in apart):
+            apart.append(Best(len(apart) + 1, design.index, design.polished, design.values, design.figures))
+    return apart
+
+
+def _by_path(ask: Ask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of an array
+    return {axis.path: float(value) for axis, value in zip(ask.plan.axes, row, strict=True)}
+
+
+def _same(ask: Ask, one: Best, other: Best) -> bool:
+    """Whether two designs are the same but for what polishing leaves open."""
+    return all(
+        abs(one.values[axis.path] - other.values[axis.path]) <= _SAME * abs(axis.high - axis.low)
+        for axis in ask.plan.axes
+    )
+
+
+def put(out: Path, name: str, files: dict[str, bytes], *, kept: bool) -> Path:
+    """Put all files in their place at once, or, where no design was kept, beside it as rejected."""
+    give_up = time.monotonic() + _WAIT
+    while True:
+        try:
+            with Run(out, name, FILES) as run:
+                for file, data in files.items():
+                    (run.folder / file).write_bytes(data)
+                names = [file for file in files if file != REPORT]
+                return run.commit(names) if kept else run.reject(names)
+        except BusyError:
+            if time.monotonic() > give_up:
+                raise
+            time.sleep(_AGAIN)
