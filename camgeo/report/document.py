@@ -171,6 +171,7 @@ def summary(report: dict[str, Any]) -> str:
         if motion and motion["max"] is not None:
             text += f", motion {motion['max']:.3g} {motion['unit']}"
         parts.append(text)
+    parts += _of_linkage(report.get("linkage"))
     failed = [_told(check) for check in report["checks"] if not check["ok"]]
     verdict = "ok" if report["ok"] else "FAILED"
     line = f"{report['recipe']}: {verdict}"
@@ -179,6 +180,20 @@ def summary(report: dict[str, Any]) -> str:
     if failed:
         line += "\n" + "\n".join(f"  {text}" for text in failed)
     return line
+
+
+def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:
+    """The linkage's worst output error, and the longest dwell that was asked for."""
+    if linkage is None:
+        return []
+    parts = []
+    error = linkage.get("error")
+    if error is not None:
+        parts.append(f"output {error['max']:.3g} {error['unit']}")
+    dwells = [dwell for dwell in linkage["dwells"] if dwell["from"] == "intended"]
+    if dwells:
+        parts.append(f"dwell {dwells[0]['length_deg']:.2f} deg")
+    return parts
 
 
 def pieces_word(file: dict[str, Any]) -> str:

@@ -1,0 +1,222 @@
+"""Recipes with a linkage from their text to judged files: checks, report, table, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from camgeo import pipeline
+from camgeo.foreseen import foreseen
+from camgeo.recipe.errors import RecipeErrors
+from camgeo.recipe.load import load, read
+
+if TYPE_CHECKING:
+    from camgeo.recipe.model import Recipe
+
+RECIPES = Path(__file__).parents[1] / "recipes"
+FOUR_BAR = """\
+name: four-bar
+cam:
+  kind: support
+  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25
+  pivot: [18, 8.5]
+linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
+dwell: {band: 0.1, at_least: 36}
+part: {thickness: 8, bore: 8}
+export: {files: [dxf, csv]}
+verify: {angles: 360}
+"""
+
+
+def recipe(old: str = "", new: str = "", text: str = FOUR_BAR) -> Recipe:
+    assert old in text
+    return read(text.replace(old, new).encode(), Path("four-bar.yaml"))
+
+
+def failed(report: dict) -> set[tuple[str, str | None]]:
+    return {(check["name"], check.get("file")) for check in report["checks"] if not check["ok"]}
+
+
+def table(path: Path) -> dict[str, np.ndarray]:
+    with path.open(encoding="ascii") as stream:
+        rows = list(csv.DictReader(stream))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
+    out = tmp_path_factory.mktemp("out")
+    outcome = pipeline.export(recipe(), out)
+    assert outcome.ok
+    return out / "four-bar", outcome.report
+
+
+def test_the_report_has_what_its_contract_names(exported: tuple[Path, dict]) -> None:
+    folder, report = exported
+    assert json.loads((folder / "report.json").read_text(encoding="utf-8")) == report
+    linkage = report["linkage"]
+    assert linkage["output"]["unit"] == "deg"
+    assert linkage["swing"] == pytest.approx(linkage["output"]["max"] - linkage["output"]["min"], abs=1e-9)
+    assert linkage["binds_at_deg"] == []
+    assert 0.0 < linkage["transmission_angle"]["min"] < linkage["transmission_angle"]["max"] <= 90.0
+    assert linkage["error"]["file"] == "four-bar.dxf"
+    assert 0.0 < linkage["error"]["rms"] < linkage["error"]["max"] <= linkage["error"]["limit"]
+    assert report["follower"] == "square frame"
+
+
+def test_the_paper_s_dwell_over_both_angles_and_from_the_file(exported: tuple[Path, dict]) -> None:
+    # AS after Figure 9: approximately 45 degrees around 3 pi/2 of the relative angle
+    dwells = exported[1]["linkage"]["dwells"]
+    longest = {}
+    for dwell in dwells:
+        longest.setdefault((dwell["over"], dwell["from"]), dwell)
+    assert longest["relative", "intended"]["length_deg"] == pytest.approx(45.174, abs=1e-3)
+    assert longest["relative", "intended"]["start_deg"] == pytest.approx(269.008, abs=1e-3)
+    assert longest["shaft", "intended"]["length_deg"] == pytest.approx(37.049, abs=1e-3)
+    measured = longest["shaft", "four-bar.dxf"]["length_deg"]
+    assert measured == pytest.approx(37.049, abs=0.05)
+    assert measured != longest["shaft", "intended"]["length_deg"]
+
+
+def test_the_table_holds_both_angles_and_true_derivatives(exported: tuple[Path, dict]) -> None:
+    folder, report = exported
+    found = table(folder / "four-bar.csv")
+    assert list(found)[:6] == ["shaft_deg", "relative_deg", "frame_deg", "output_deg", "velocity", "acceleration"]
+    shaft, relative, frame = found["shaft_deg"], found["relative_deg"], found["frame_deg"]
+    assert len(shaft) == 361
+    assert shaft == pytest.approx(relative - (frame - frame[0]), abs=1e-9)
+    output = found["output_deg"]
+    assert output[0] == pytest.approx(output[-1], abs=1e-9)
+    step = math.radians(1.0)
+    slope = (output[2:] - output[:-2]) / (2 * step)
+    assert found["velocity"][1:-1] == pytest.approx(slope, abs=0.02)
+    bend = (output[2:] - 2 * output[1:-1] + output[:-2]) / step**2
+    assert found["acceleration"][1:-1] == pytest.approx(bend, abs=0.05)
+    # d/d(shaft) = d/d(relative) * d(relative)/d(shaft), and relative = shaft + frame
+    turn = 1.0 + np.radians(found["frame_velocity"])
+    assert found["velocity"] == pytest.approx(found["velocity_by_relative"] * turn, rel=1e-9, abs=1e-9)
+    inside = report["linkage"]["output"]
+    assert inside["min"] <= output.min() <= inside["min"] + 0.01
+    assert inside["max"] - 0.01 <= output.max() <= inside["max"]
+
+
+def test_a_linkage_that_binds_fails_with_the_angles_and_keeps_the_last_good_set(tmp_path: Path) -> None:
+    # THEORY: discriminant edges at 73.4 and 151.5 degrees, reversal already from 59.8
+    assert pipeline.export(recipe(), tmp_path).ok
+    kept = sorted(path.name for path in (tmp_path / "four-bar").iterdir())
+    outcome = pipeline.export(recipe("rocker: 105", "rocker: 160"), tmp_path)
+    assert not outcome.ok
+    assert failed(outcome.report) == {("mobility", None), ("reversal", None), ("dwell", None)}
+    linkage = outcome.report["linkage"]
+    assert np.array(linkage["binds_at_deg"]) == pytest.approx(np.array([[73.4097, 151.494]]), abs=1e-3)
+    assert np.array(linkage["reverses_at_deg"]) == pytest.approx(np.array([[59.7884, 73.4097]]), abs=1e-3)
+    assert "error" not in linkage
+    skipped = {item["what"] for item in outcome.report["skipped"]}
+    assert {"csv", "linkage-error"} <= skipped
+    assert [file["kind"] for file in outcome.report["files"]] == ["dxf"]
+    assert sorted(path.name for path in (tmp_path / "four-bar").iterdir()) == kept
+
+
+def test_a_dwell_that_is_too_short_fails_the_intent_and_every_file(tmp_path: Path) -> None:
+    outcome = pipeline.export(recipe("at_least: 36", "at_least: 37.06"), tmp_path)
+    assert failed(outcome.report) == {("dwell", None), ("dwell", "four-bar.dxf")}
+
+
+def test_a_dwell_that_only_the_file_misses_fails_the_file(tmp_path: Path) -> None:
+    outcome = pipeline.export(recipe("at_least: 36", "at_least: 37.0485"), tmp_path)
+    assert failed(outcome.report) == {("dwell", "four-bar.dxf")}
+
+
+def test_a_limit_of_the_output_error_of_one_s_own(tmp_path: Path) -> None:
+    outcome = pipeline.export(recipe("{angles: 360}", "{angles: 360, output_error: 1.0e-5}"), tmp_path)
+    assert failed(outcome.report) == {("linkage-error", "four-bar.dxf")}
+    check = next(check for check in outcome.report["checks"] if check["name"] == "linkage-error")
+    assert check["limit"] == pytest.approx(1e-5)
+    assert check["unit"] == "deg"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[18, 8.5]", "[28, 8.5]", "four-bar.yaml:5:10: cam.pivot: the shaft lies outside the cam"),
+        ("p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25", "p: 40 + cos(2*t)", "four-bar.yaml:6:10: linkage: a square"),
+        ("band: 0.1", "band: 1.0e-13", "dwell.band"),
+    ],
+)
+def test_what_cannot_be_is_refused(old: str, new: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.export(recipe(old, new), tmp_path)
+    assert words in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["as-figure-9-2a", "six-bar", "slider-crank", "oscillating-yoke", "as-figure-13-2a"])
+def test_checks_are_foreseen(name: str, tmp_path: Path) -> None:
+    made = load(RECIPES / f"{name}.yaml")
+    outcome = pipeline.export(made, tmp_path)
+    assert outcome.ok
+    found = [(check["name"], check.get("file")) for check in outcome.report["checks"]]
+    assert sorted(map(str, found)) == sorted(str((item.name, item.file)) for item in foreseen(made))
+
+
+def test_an_inch_recipe_says_the_same_in_inches(tmp_path: Path) -> None:
+    slider = FOUR_BAR.replace("{kind: four-bar, ground: 80, coupler: 70, rocker: 105}", "{kind: slider-crank, %s}")
+    slider = slider.replace("band: 0.1, at_least: 36", "band: %s")
+    mm = slider % ("coupler: 70, offset: 12.7", "0.254")
+    inch = (slider % ("coupler: 2.755905511811024, offset: 0.5", "0.01")).replace("name: four-bar", "units: inch")
+    inch = inch.replace(
+        "p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25", "p: (sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25)/25.4"
+    )
+    inch = inch.replace("[18, 8.5]", "[0.7086614173228346, 0.3346456692913386]")
+    inch = inch.replace("{thickness: 8, bore: 8}", "{thickness: 0.3, bore: 0.3}")
+    first = pipeline.export(recipe(text=mm), tmp_path / "mm").report
+    second = pipeline.export(recipe(text=inch), tmp_path / "inch").report
+    a, b = first["linkage"], second["linkage"]
+    assert (a["output"]["unit"], b["output"]["unit"]) == ("mm", "in")
+    assert a["output"]["min"] == pytest.approx(25.4 * b["output"]["min"], rel=1e-9)
+    assert a["swing"] == pytest.approx(25.4 * b["swing"], rel=1e-9)
+    assert a["margin"]["value"] == pytest.approx(25.4 * b["margin"]["value"], rel=1e-9)
+    assert b["margin"]["unit"] == "in"
+    lengths = [[d["length_deg"] for d in part["dwells"] if d["from"] == "intended"] for part in (a, b)]
+    assert lengths[0] == pytest.approx(lengths[1], abs=1e-5)
+    assert b["error"]["unit"] == "in"
+    columns = table(tmp_path / "inch" / "four-bar" / "four-bar.csv")
+    assert "output_in" in columns
+
+
+def test_counter_clockwise_is_the_mirror_image_with_the_same_motion(tmp_path: Path) -> None:
+    cw = pipeline.export(recipe(), tmp_path / "cw").report
+    ccw = pipeline.export(recipe("name: four-bar", "name: four-bar\nrotation: ccw"), tmp_path / "ccw").report
+    assert ccw["ok"]
+    keys = ("output", "swing", "peaks")
+    assert {key: cw["linkage"][key] for key in keys} == {key: ccw["linkage"][key] for key in keys}
+    for a, b in zip(cw["linkage"]["dwells"], ccw["linkage"]["dwells"], strict=True):
+        assert a["length_deg"] == pytest.approx(b["length_deg"], abs=1e-9)
+    assert cw["linkage"]["error"]["max"] == pytest.approx(ccw["linkage"]["error"]["max"], rel=1e-9)
+
+
+def test_a_file_turned_by_a_fifth_of_a_degree_is_found_by_its_output_too(tmp_path: Path) -> None:
+    made = recipe()
+    pipeline.export(made, tmp_path)
+    path = tmp_path / "four-bar" / "four-bar.dxf"
+    import ezdxf
+
+    document = ezdxf.readfile(path)
+    contour = next(e for e in document.modelspace() if e.dxftype() == "LWPOLYLINE")
+    c, s = math.cos(math.radians(0.2)), math.sin(math.radians(0.2))
+    points = [(c * x - s * y, s * x + c * y, 0.0, 0.0, bulge) for x, y, _, _, bulge in contour.get_points()]
+    contour.set_points(points)
+    turned = tmp_path / "turned.dxf"
+    document.saveas(turned)
+    report = pipeline.judged(made, [turned])
+    assert ("linkage-error", "turned.dxf") in failed(report)
+    error = next(check for check in report["checks"] if check["name"] == "linkage-error")
+    # the output is where it was meant to be a fifth of a degree of shaft earlier or later
+    velocity = abs(report["linkage"]["peaks"]["shaft"]["velocity"]["value"])
+    assert error["value"] == pytest.approx(velocity * math.radians(0.2), rel=0.02)
