@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     from kin.arcs import Array, Indices
     from kin.contour import Contour
+    from kin.frame import DwellFound, LinkageVerdict
+    from kin.mechanism import Mechanism
 
 # The judge's own rounding, as a share of the contour's extent; a value this far above its limit still holds.
 ROUNDING = 1e-12
@@ -26,6 +28,16 @@ ROUNDING = 1e-12
 # rounding lets them be.
 SPLINE_SHARE, SPLINE_ERROR = 1e-3, 1e-9
 RESOLUTION = 1e-11  # mm
+DWELL_ROUNDING = 1e-7  # degrees; the ends of a dwell are found to this
+
+
+@dataclass(frozen=True)
+class DwellAsked:
+    """A dwell: the output stays within a range of `band`, rad or mm, for `at_least`, rad (None: it is only told)."""
+
+    band: float
+    at_least: float | None = None
+    over: Literal["shaft", "relative"] = "shaft"
 
 
 @dataclass(frozen=True)
@@ -38,6 +50,8 @@ class Intent:
     bore        diameter, mm; None for no hole at all
     thickness   of a solid, mm, z from 0; None where only contours are judged
     trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
+    mechanism   that the yoke's frame drives as a coupler; None for a plain follower
+    dwell       of the mechanism's output, which is found in each file and, if it must last, judged
     """
 
     follower: Follower
@@ -46,32 +60,43 @@ class Intent:
     bore: float | None = None
     thickness: float | None = None
     trimmed: bool = False
+    mechanism: Mechanism | None = None
+    dwell: DwellAsked | None = None
 
 
 @dataclass(frozen=True)
 class Limits:
     """What is permitted: `tolerance` of the contour, mm; greatest motion error, and greatest play or interference.
 
-    Motion and play are in mm or degrees as the follower has them; None is what the tolerance implies, see
-    `motion_limit` and `play_limit` of the followers.
+    Motion and play are in mm or degrees as the follower has them, `output`, the greatest error of a mechanism's output,
+    as the mechanism has it; None is what the tolerance implies, see `motion_limit` and `play_limit` of the followers
+    and `kin.frame.implied_limit`.
     """
 
     tolerance: float
     motion: float | None = None
     play: float | None = None
+    output: float | None = None
 
 
 @dataclass(frozen=True)
 class Findings:
-    """What was found on a contour; motion is None where the follower finds no contact."""
+    """What was found on a contour; motion is None where the follower finds no contact.
+
+    `linkage` is None without a mechanism, or where the contour does not drive it all round.
+    """
 
     judged: Judged | None
     deviation: Deviation
     checks: tuple[Check, ...]
+    linkage: LinkageVerdict | None = None
 
 
 def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) -> Findings:
-    """Judge a contour at shaft angles phi (n,): checks contour, motion, and constant-breadth or form-closure."""
+    """Judge a contour at shaft angles phi (n,): the checks from contour and motion to linkage-error and dwell.
+
+    With a mechanism phi are relative angles for the plain frame's checks, and shaft angles for the mechanism's.
+    """
     spline = 0.0
     if contour.beziers.count:
         fine = ARC_SHARE * float(np.abs(contour.vertices).max())  # on a part of many metres rounding is coarser
@@ -88,7 +113,11 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) 
         found = convex_deviation(judged.reach)
     else:
         found = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], envelope)
-    return Findings(judged, found, (_contour_check(found, intent.follower, limits.tolerance, slack), *checks))
+    linkage = None
+    if intent.mechanism is not None:
+        linkage, more = _judge_linkage(contour, intent, phi, limits, slack)
+        checks += more
+    return Findings(judged, found, (_contour_check(found, intent.follower, limits.tolerance, slack), *checks), linkage)
 
 
 def _contour_check(found: Deviation, follower: Follower, tolerance: float, slack: float) -> Check:
@@ -134,6 +163,60 @@ def _limit(
     by_tolerance = implied(tolerance)
     room = implied(tolerance + slack) - by_tolerance
     return (by_tolerance if given is None else given), room
+
+
+def _judge_linkage(
+    contour: Contour, intent: Intent, phi: Array, limits: Limits, slack: float
+) -> tuple[LinkageVerdict | None, list[Check]]:
+    """Judge how a contour drives the mechanism: checks linkage-error and, if the dwell must last, dwell."""
+    from kin.frame import FrameError, judge_frame  # a plain follower does without
+    from kin.loop import BindingError
+
+    mechanism, asked = intent.mechanism, intent.dwell
+    if mechanism is None:
+        return None, []
+    at_least = None if asked is None or asked.at_least is None else float(np.degrees(asked.at_least))
+    try:
+        if asked is None:
+            found = judge_frame(contour, mechanism, phi, limits.tolerance)
+        else:
+            found = judge_frame(contour, mechanism, phi, limits.tolerance, band=asked.band, over=asked.over)
+    except (FrameError, BindingError) as problem:
+        what = str(problem) if isinstance(problem, FrameError) else f"the intended mechanism: {problem}"
+        checks = [failed("linkage-error", what, unit=mechanism.unit, limit=limits.output)]
+        if at_least is not None:
+            checks.append(replace(failed("dwell", what, unit="deg", limit=at_least), sense="at_least"))
+        return None, checks
+    checks = []
+    if limits.output is not None or not intent.trimmed:
+        checks.append(_output_check(found, limits, slack))
+    if at_least is not None:
+        checks.append(_dwell_check(found.dwells[0], mechanism.unit, at_least))
+    return found, checks
+
+
+def _output_check(found: LinkageVerdict, limits: Limits, slack: float) -> Check:
+    error, across, along = found.error, found.play_across, found.play_along
+    detail = (
+        f"{found.centred.max:.3g} {error.unit} with the frame centred; play {across.least:.3g} to {across.most:.3g} mm "
+        f"across, {along.least:.3g} to {along.most:.3g} mm along the frame"
+    )
+    limit = found.limit if limits.output is None else limits.output
+    if limit is None:
+        detail = f"the mechanism binds within the tolerance, which thus implies no limit; {detail}"
+        return Check("linkage-error", ok=False, value=error.max, limit=None, unit=error.unit, detail=detail)
+    room = 0.0 if found.limit is None else found.limit * slack / limits.tolerance
+    at = np.radians(error.at_deg)
+    return at_most("linkage-error", error.max, limit, error.unit, at=at, detail=detail, slack=room)
+
+
+def _dwell_check(shortest: DwellFound, unit: str, at_least: float) -> Check:
+    """Check the longest dwell in that way of resting in which it is shortest."""
+    ok, over = shortest.length_deg >= at_least - DWELL_ROUNDING, shortest.over
+    at = shortest.start_deg if over == "shaft" else None
+    where = f"from {shortest.start_deg:.6g} degrees of the {over} angle"
+    detail = f"{where}, within {shortest.band:.6g} {unit}, {shortest.rest}"
+    return Check("dwell", ok, shortest.length_deg, at_least, "deg", at, "at_least", detail=detail)
 
 
 def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float) -> Check | None:

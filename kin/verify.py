@@ -13,7 +13,7 @@ import numpy as np
 
 from kin.check import Check, about, at_most, failed
 from kin.flaws import crossings
-from kin.judge import ROUNDING, Intent, Limits, bore_check, judge_contour, volume_check
+from kin.judge import ROUNDING, DwellAsked, Intent, Limits, bore_check, judge_contour, volume_check
 from kin.motion import TURN, MotionError, Play
 from kin.read_error import ReadError
 
@@ -21,10 +21,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kin.contour import Contour
+    from kin.frame import LinkageVerdict
     from kin.read_dxf import Drawing
     from kin.read_stl import Solid
 
-__all__ = ["Intent", "Limits", "Verdict", "verify"]
+__all__ = ["DwellAsked", "Intent", "Limits", "Verdict", "verify"]
 
 UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
@@ -40,6 +41,7 @@ class Verdict:
     motion, play    as the contour gives them by contact; None without contact, play also for one-sided followers
     measured_error  two-sided distance from the exact contour, mm
     pieces          of the outer contour, as the file counts them
+    linkage         what the contour makes of the mechanism; None without one, or where it does not drive it all round
     """
 
     kind: str
@@ -48,6 +50,7 @@ class Verdict:
     play: Play | None = None
     measured_error: float | None = None
     pieces: int | None = None
+    linkage: LinkageVerdict | None = None
 
     @property
     def ok(self) -> bool:
@@ -81,6 +84,7 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
         play=found.judged and found.judged.play,
         measured_error=found.deviation.worst[0],
         pieces=pieces,
+        linkage=found.linkage,
     )
 
 

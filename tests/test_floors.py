@@ -42,9 +42,9 @@ FLOORS = {
         foreseen recipe.checks report.linkage undercut
         figures fit.polygon linkage recipe.build trim
         crossing files.stl fit.arcs fit.edges fit.inflection fit.spline motion profile.build recipe.readers
-        causes part report.document report.failure
+        causes fit.free_arcs part report.document report.failure
         recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
-        files.dxf fit.deviation fit.nodes offset profile.support profile.wunderlich radius reach
+        files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius reach
         recipe.edit recipe.reader recipe.schema recipe.starter
         recipe.model recipe.scalars recipe.source recipe.tables
         recipe.table_cam recipe.table_linkage recipe.table_sweep
