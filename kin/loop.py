@@ -76,12 +76,10 @@ def total(*terms: Term) -> Array:
 def excess(x: Sequence[Term], y: Sequence[Term], z: Sequence[Term]) -> Array:
     """Give x^2 + y^2 - z^2, each of the three the sum of its terms, numbers or (n,); its sign is right.
 
-    The difference of squares is taken as a product; where little is left of the squares, in rational arithmetic.
+    x^2 - z^2 is taken as a product; where little is left of the squares, all is done in rational arithmetic.
     """
     a, b, c = total(*x), total(*y), total(*z)
-    other = [-term for term in z]
-    wide, steep = total(*x, *other) * total(*x, *z) + b * b, total(*y, *other) * total(*y, *z) + a * a
-    value = np.atleast_1d(np.where(np.abs(a) >= np.abs(b), wide, steep))
+    value = np.atleast_1d(total(*x, *(-term for term in z)) * total(*x, *z) + b * b)
     for i in np.flatnonzero(np.abs(value) <= _CLOSE * np.atleast_1d(a * a + b * b + c * c)):
         squares = [sum(Fraction(float(np.broadcast_to(t, value.shape)[i])) for t in terms) ** 2 for terms in (x, y, z)]
         value[i] = float(squares[0] + squares[1] - squares[2])

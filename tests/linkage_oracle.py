@@ -74,7 +74,7 @@ def discriminant(kind, lengths, w, lifts):
             return min(r1 - r4 + y, r1 + r4 - y) / r1
         q = (w + lengths[-2 if kind == "four" else 0] - s1) ** 2 + y**2
         if kind == "slider":
-            return (q - lengths[1] ** 2) / (q + lengths[1] ** 2)
+            return (q - lengths[1] ** 2) / (q + lengths[1] ** 2 or 1)
         r1, _, r4 = lengths
         return min(q - (r1 - r4) ** 2, (r1 + r4) ** 2 - q) / (r1 + r4) ** 2
 

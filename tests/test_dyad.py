@@ -236,6 +236,14 @@ def test_limit_positions_are_said_so(case):
             dyad.solve(*still)
 
 
+def test_rrp_loses_nothing_near_its_limit():
+    link, short = 30.0, 2.0**-40
+    y = np.array([[link - short], [0.25]])
+    reached = RRP("output", (0, 0), link, (0.0, 0.0), 0.0, "open").solve(Jet(0 * y), Jet(y))
+    root = math.sqrt(short * (2 * link - short))
+    assert reached.output.c[:, 0] == pytest.approx([root, -0.25 * (link - short) / root], rel=1e-15)
+
+
 def test_refusals():
     for make in (
         lambda: RRR("rocker", (0, 0), (0, 0), (1, 1), "open"),

@@ -39,9 +39,8 @@ def figures(case):
     return [*out, over_shaft.c[0, 0], again.c[0, 0], *frame]
 
 
-def hold(cases):
-    """Judge all cases; return the worst ratio of error to allowance for each figure."""
-    worst = dict.fromkeys(NAMES, 0.0)
+def hold(cases, outright=()):
+    """Judge all cases; the figures named outright must be good to 1e-10 of themselves whatever their condition."""
     judged = 0
     for case in cases:
         kind, _, lengths, w, lifts = case
@@ -51,11 +50,9 @@ def hold(cases):
             continue
         judged += 1
         for name, found, exact, condition in zip(NAMES, figures(case), *judged_linkage(*case), strict=True):
-            reached = ratio(found, exact, condition)
+            reached = ratio(found, exact, 0 if name in outright else condition)
             assert reached <= 1, (name, reached, case)
-            worst[name] = max(worst[name], reached)
     assert judged > len(cases) / 2
-    return worst
 
 
 def motion(rng, x=None, y=None, r3=70.0):
@@ -117,6 +114,7 @@ def test_transmission_angle_near_0(assembly, angle):
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
 @pytest.mark.parametrize("power", range(3, 16))
 def test_discriminant_down_to_1e_15(assembly, power):
+    """Over the relative angle nothing is lost near a limit, however ill-conditioned the figures are there."""
     rng = np.random.default_rng(4)
     e = 10.0**-power
     cases = []
@@ -135,7 +133,7 @@ def test_discriminant_down_to_1e_15(assembly, power):
         s, s1 = motion(rng)
         offset = rng.choice([-1, 1]) * math.sqrt(((W + 70 - s1[0]) ** 2 + (s[0] - W / 2) ** 2) * (1 - e))
         cases.append(("slider", assembly, (70.0, offset), W, (s, s1)))
-    hold(cases)
+    hold(cases, outright=("output", "velocity", "acceleration"))
 
 
 @pytest.mark.parametrize("assembly", ASSEMBLIES)
@@ -212,6 +210,7 @@ SINGULAR = {
     "yoke at its end": ("inverted", (32.0, 7.0), 50.0, (0.0, 10.0)),
     "yoke at its other end": ("inverted", (8.0, 7.0), 50.0, (40.0, 10.0)),
     "slide at the shaft": ("slider", (30.0, -40.0), 50.0, (57.0, 56.0)),
+    "D in A on the slide": ("slider", (1.0, 0.0), 50.0, (25.0, 51.0)),
 }
 
 
@@ -226,11 +225,18 @@ def test_singular_is_said_so(name, assembly):
     for order in (1, 2):
         with pytest.raises(BindingError, match="limit position"):
             solve((kind, assembly, lengths, w, ((s, 1.0, 1.0), (s1, 1.0, 1.0))), order)
-    if name == "D in A":
+    if name.startswith("D in A"):
         with pytest.raises(BindingError, match="limit position"):
             solve((kind, assembly, lengths, w, ((s,), (s1,))), 0)
     else:
         assert abs(solve((kind, assembly, lengths, w, ((s,), (s1,))), 0).output.c[0, 0]) in (0.0, math.pi)
+
+
+def test_short_coupler_on_a_shaft_at_the_edge():
+    """X = r3, though w + r3 rounds it off."""
+    w, r3 = 50.0, 1e-7
+    at = solve(("slider", "open", (r3, 0.0), w, ((25.0, 0.0, 0.0), (w, 1.0, 0.0))))
+    assert at.output.c[:2, 0] == pytest.approx([r3, -1.0], rel=1e-15)
 
 
 def test_one_ulp_from_a_limit_on_either_side():
