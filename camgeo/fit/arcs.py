@@ -1,7 +1,8 @@
-"""A curve as tangent-continuous arcs: biarcs through points of the curve (docs/theory.md 3).
+"""A curve as tangent-continuous arcs (docs/theory.md 3): joints free, or biarcs through points of the curve.
 
-Nodes take equal shares of the integral of ``(|kappa'| / (40.5 e))^(1/3) ds``, both arcs of a biarc about equally long.
-A stretch of constant curvature is one arc.
+Arcs with free joints are fewer (`camgeo.fit.free_arcs`); biarcs are what is left where those are not found, and serve
+where a stretch is so short beside the tolerance that two arcs do. Nodes of biarcs take equal shares of the integral of
+``(|kappa'| / (40.5 e))^(1/3) ds``, both arcs of a biarc about equally long. A stretch of constant curvature is one arc.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.fit import free_arcs
 from camgeo.fit.deviation import Chain, chain_deviation, foot, seen_deviation
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import ArcSpline, Bound
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame
 
 CONSTANT = 40.5  # error of a biarc of arcs of length s: |kappa'| s^3 / 40.5
+RATIO = math.cbrt(CONSTANT / free_arcs.CONSTANT)  # of arcs with free joints to arcs in biarcs
+MOST_FREE = 1.8  # times the arcs in biarcs, up to which arcs with free joints are tried
 LOOKS = 8  # places on an arc at which its error is seen while the nodes are being shared
 ROUNDS = 8  # of sharing the nodes anew before there are more of them
 DAMPED = 4.0  # power of the length by which nodes are shared anew; the error's own, 3, overshoots
@@ -47,60 +51,124 @@ class _Biarcs:
     chain: Chain
 
 
+@dataclass(frozen=True)
+class _Stretch:
+    """A stretch of the curve that is fitted by itself, arcs at its ends touching the curve.
+
+    `parts` lie between the extrema of curvature inside it; none where the curve is a circular arc. `biarcs` is the
+    number of arcs in biarcs that the theory has for it.
+    """
+
+    low: float
+    high: float
+    parts: tuple[free_arcs.Part, ...] = ()
+    biarcs: int = 0
+
+
+_Fit = tuple["Array", "Array", float, float]  # points, bulges, outward and inward bound of a stretch
+
+
 def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     """Tangent-continuous arcs within `tolerance` mm of a curve; corners of a trimmed curve stay corners.
 
-    The bound is proved by `chain_deviation`. Cost and number of arcs grow as tolerance^(-1/3). Raises ToleranceError
-    where the tolerance is below rounding, needs too many arcs, or is not reached.
+    Each stretch between breaks of the curve, and between extrema of its curvature where arcs enough lie between, takes
+    arcs with free joints or biarcs, whichever are fewer. Biarcs are made where arcs with free joints were not found, or
+    came out more than biarcs are expected to be. Both touch the curve at the stretch's ends, and the bound of either is
+    proved by `chain_deviation`. Cost and number of arcs grow as tolerance^(-1/3). Raises ToleranceError where the
+    tolerance is below rounding, needs too many arcs, or is not reached.
     """
     size = curve.size
     check_precision(size, tolerance)
+    aim, limit = USABLE * tolerance, tolerance - 2.0 * rounding(size)
     stretches = _between_extrema(curve, tolerance)
-    fits = _fit_stretches(curve, stretches, USABLE * tolerance, tolerance - 2.0 * rounding(size))
-    points = np.concatenate([fit[0] for fit in fits])
-    bulges = np.concatenate([fit[1] for fit in fits])
-    outward = max(fit[2] for fit in fits)
-    inward = max(fit[3] for fit in fits)
+    fits = _free_fits(curve, stretches, min(aim, limit), limit)
+    rest = [i for i, (s, fit) in enumerate(zip(stretches, fits, strict=True)) if fit is None or fit[1].size > s.biarcs]
+    biarcs = _fit_stretches(curve, [(stretches[i].low, stretches[i].high) for i in rest], aim, limit)
+    for i, biarc in zip(rest, biarcs, strict=True):
+        free = fits[i]
+        fits[i] = biarc if free is None or biarc[1].size <= free[1].size else free
+    chosen = [fit for fit in fits if fit is not None]
+    points = np.concatenate([fit[0] for fit in chosen])
+    bulges = np.concatenate([fit[1] for fit in chosen])
+    outward = max(fit[2] for fit in chosen)
+    inward = max(fit[3] for fit in chosen)
     return ArcSpline(points, bulges, Bound(outward, inward).widened(rounding(size)))
 
 
-def _between_extrema(curve: Curve, tolerance: float) -> list[tuple[float, float]]:
+def _between_extrema(curve: Curve, tolerance: float) -> list[_Stretch]:
     """Smooth stretches of the curve, divided where the curvature seems extreme and arcs enough lie between.
 
     Biarcs do not fit alike on the two sides of an extremum, so one that may or may not cross it never comes to rest.
     """
     stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
     bent = [stretch for stretch in stretches if curve.radius(stretch) is None]
-    found: dict[tuple[float, float], list[float]] = {}
     densities = Density.of(curve, np.array(bent).reshape(-1, 2), arc_density)
+    check_count(RATIO * sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
     at = curve.sample(np.concatenate([np.zeros(0), *(density.t[1:-1] for density in densities)]))
     slope = at.turn_slope * at.speed - at.turn * at.speed_slope
-    first = 0
-    for stretch, density in zip(bent, densities, strict=True):
-        mine = slope[first : first + density.t.size - 2]
-        first += mine.size
-        found[stretch] = []
-        last = 0.0
-        share = density.sum / math.cbrt(tolerance)
-        for i in np.flatnonzero(mine[1:] * mine[:-1] < 0.0):
-            low, high = density.t[i + 1], density.t[i + 2]
-            if share[i + 1] - last >= APART and share[-1] - share[i + 2] >= APART:
-                found[stretch].append(float(low + (high - low) * mine[i] / (mine[i] - mine[i + 1])))
-                last = float(share[i + 1])
-    out = []
-    for stretch in stretches:
-        out += list(pairwise([stretch[0], *found.get(stretch, []), stretch[1]]))
+    ends = np.cumsum([density.t.size - 2 for density in densities])
+    found = {
+        stretch: _divided(density, slope[end + 2 - density.t.size : end], tolerance)
+        for stretch, density, end in zip(bent, densities, ends, strict=True)
+    }
+    return [part for stretch in stretches for part in found.get(stretch, [_Stretch(*stretch)])]
+
+
+def _divided(density: Density, slope: Array, tolerance: float) -> list[_Stretch]:
+    """A smooth stretch divided at extrema of curvature; `slope` (m - 2,) is that of curvature on the inner grid."""
+    extrema = _sign_changes(density.t[1:-1], slope)
+    edges = [float(density.t[0]), *extrema, float(density.t[-1])]
+    share = np.interp(edges, density.t, density.sum) / math.cbrt(tolerance)
+    out: list[_Stretch] = []
+    parts: list[free_arcs.Part] = []
+    begin = 0
+    for i, (low, high) in enumerate(pairwise(edges)):
+        within = (density.t > low) & (density.t < high)
+        grid = np.concatenate([[low], density.t[within], [high]])
+        rising = 1.0 if float(np.sum(slope[within[1:-1]])) >= 0.0 else -1.0
+        parts.append(free_arcs.Part(grid, np.interp(grid, density.t, RATIO * density.sum), rising))
+        last = high == edges[-1]
+        if last or (share[i + 1] - share[begin] >= APART and share[-1] - share[i + 1] >= APART):
+            biarcs = math.ceil(0.5 * float(share[i + 1] - share[begin]))
+            out.append(_Stretch(edges[begin], high, tuple(parts), 2 * max(1, biarcs)))
+            parts, begin = [], i + 1
     return out
 
 
-def _fit_stretches(
-    curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float
-) -> list[tuple[Array, Array, float, float]]:
-    """Points, bulges, outward and inward bound of each stretch: errors seen up to `aim`, proved up to `limit`."""
+def _sign_changes(t: Array, value: Array) -> list[float]:
+    """Parameters at which values (n,) at `t` (n,) change sign, by interpolation; a zero belongs to what follows it."""
+    sign = np.sign(value)
+    known = np.maximum.accumulate(np.where(sign != 0.0, np.arange(sign.size), 0))
+    sign = sign[known]
+    i = np.flatnonzero(sign[1:] * sign[:-1] < 0.0)
+    changes: list[float] = (t[i] + (t[i + 1] - t[i]) * value[i] / (value[i] - value[i + 1])).tolist()
+    return changes
+
+
+def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float) -> list[_Fit | None]:
+    """Arcs with free joints of the stretches; None where some part has none, or far more are foreseen than biarcs."""
+    tried = [sum(part.count(aim) for part in s.parts) <= MOST_FREE * s.biarcs for s in stretches]
+    parts = [part for s, worth in zip(stretches, tried, strict=True) if worth for part in s.parts]
+    found = iter(free_arcs.free_arcs(curve, parts, aim, limit))
+    out: list[_Fit | None] = []
+    for stretch, worth in zip(stretches, tried, strict=True):
+        mine = [next(found) for _ in stretch.parts] if worth else []
+        whole = [part for part in mine if part is not None]
+        if not whole or len(whole) < len(mine):
+            out.append(None)
+            continue
+        points = np.concatenate([part.points for part in whole])
+        bulges = np.concatenate([part.bulges for part in whole])
+        out.append((points, bulges, max(part.outward for part in whole), max(part.inward for part in whole)))
+    return out
+
+
+def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float) -> list[_Fit]:
+    """Circular arcs and biarcs of each stretch: errors seen up to `aim`, proved up to `limit`."""
     slip = _slip(curve, aim)
     limit -= 2.0 * slip
     tolerance = min(aim, limit)
-    done: dict[int, tuple[Array, Array, float, float]] = {}
+    done: dict[int, _Fit] = {}
     nodes: dict[int, Array] = {}
     best = math.inf
     for i, stretch in enumerate(stretches):
@@ -162,7 +230,7 @@ def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[A
     return spread, 0
 
 
-def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> tuple[Array, Array, float, float]:
+def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> _Fit:
     """One arc for a stretch that is a circular arc, two for more than a half turn."""
     steady = curve.steady(stretch)
     ends = curve.span(np.array([stretch[0]]), np.array([stretch[1]]))

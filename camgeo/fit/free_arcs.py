@@ -1,0 +1,369 @@
+"""Tangent-continuous arcs whose joints lie where they serve best, not on the curve (docs/theory.md 3).
+
+Where curvature rises or falls steadily an arc of length L that fits best crosses the curve at both its ends, leaning by
+``kappa' L^2 / 12``, and in the middle. It strays by ``|kappa'| L^3 / 124.7`` to either side, so that the count is the
+integral of ``(|kappa'| / (124.7 e))^(1/3) ds``, 0.69 of that of biarcs.
+
+A part of the curve between two extrema of its curvature, at which arcs touch the curve, takes n arcs: n - 1 joints of
+three unknowns each (where, how far off, at what angle); one condition for each arc, that it joins in tangent; and two
+extremes of the deviation for each arc but one for the first and the last, all as large as a level that is unknown too.
+That is as many equations as unknowns. They are solved by Newton's method, for all parts at once.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.deviation import Chain, chain_deviation, radial
+from camgeo.fit.staircase import solve_chains
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from camgeo.curve import Array, Curve, Frame
+
+CONSTANT = 124.7  # error of an arc of length s with free joints: |kappa'| s^3 / 124.7 (12 sqrt 108)
+END = 0.687  # length, in those of the others, of the arc that touches the curve where its part begins or ends
+ENDS = 2.0 * (1.0 - END)
+LEVEL = 1.02  # times the level foreseen: a part so near to it has settled
+ALONG = 0.03  # of an arc's length that a joint has moved when its neighbours' deviations change by about the tolerance
+DOUBT = 0.3  # of what a deviation is extrapolated by, so far it is taken to be off
+STEPS = 12  # of Newton's method
+MOST_MOVE = 0.25  # of an arc's length, by which a joint moves along the curve in one step
+INNER = 0.5 - math.sqrt(1.0 / 12.0)  # where along an arc it strays farthest, and as far from its other end
+OUTER = 2.0 / 3.0  # the same for a part's first arc
+RAISED = 4  # times that a part may take more arcs than foreseen
+MOST_RAISED = 1.5  # times as many, at once
+JOINED = 8.0  # units in the last place of the curve's size: how far they may be then
+CLOSING = 12  # rounds of that
+PROOF_LOOKS = 8
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a curve on which curvature rises or falls: `grid` (m,) and `share` (m,), the integral of arcs up to it.
+
+    `share` is of ``(|kappa'| / 124.7)^(1/3) ds``: arcs at a tolerance of 1 mm. `rising` is 1 or -1.
+    """
+
+    grid: Array
+    share: Array
+    rising: float
+
+    @property
+    def total(self) -> float:
+        """The whole integral."""
+        return float(self.share[-1] - self.share[0])
+
+    def count(self, tolerance: float) -> int:
+        """Arcs foreseen within a tolerance."""
+        return max(2, math.ceil(self.total / math.cbrt(tolerance) + ENDS))
+
+    def nodes(self, count: int) -> Array:
+        """Joints of `count` arcs (count + 1,)."""
+        place = np.concatenate([[0.0], END + np.arange(count - 1), [count - ENDS]])
+        nodes: Array = np.interp(self.share[0] + place * (self.total / place[-1]), self.share, self.grid)
+        nodes[0], nodes[-1] = self.grid[0], self.grid[-1]
+        return nodes
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """Arcs of one part, proved: points where each begins (n, 2), bulges (n,), greatest distance outward and inward."""
+
+    points: Array
+    bulges: Array
+    outward: float
+    inward: float
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Arcs of all parts in order: `part` (n,) of each, `left` (n,) its first joint; `ends` (m,) marks joints that stay.
+
+    `right_end` (m,) marks those at which a part ends. `sign` (n, 2) tells on which side of an arc, 1 for outside, the
+    curve lies at its two extremes; 0 for the one that a part's first and last arc do not have.
+    """
+
+    part: NDArray[np.intp]
+    left: NDArray[np.intp]
+    ends: NDArray[np.bool_]
+    right_end: NDArray[np.bool_]
+    sign: Array
+
+    @property
+    def part_of_joint(self) -> NDArray[np.intp]:
+        """The part of each joint (m,)."""
+        return np.cumsum(self.right_end) - self.right_end
+
+    @staticmethod
+    def of(counts: Sequence[int], rising: Sequence[float]) -> _Layout:
+        """Arcs and joints of parts that take so many arcs each."""
+        part = np.repeat(np.arange(len(counts)), counts)
+        left = np.arange(part.size) + part
+        last = np.cumsum(np.array(counts) + 1) - 1
+        first = np.append(0, last[:-1] + 1)
+        right_end = np.zeros(part.size + len(counts), dtype=bool)
+        right_end[last] = True
+        ends = right_end.copy()
+        ends[first] = True
+        sense = np.array(rising)[part]
+        sign = np.column_stack([np.where(ends[left], 0.0, -sense), np.where(ends[left + 1], 0.0, sense)])
+        return _Layout(part, left, ends, right_end, sign)
+
+
+@dataclass(frozen=True)
+class _Joints:
+    """Where arcs meet (m,): `off` outside the curve's point at `t` along the arcs' normal.
+
+    Their tangent is the curve's turned left by `lean`.
+    """
+
+    t: Array
+    off: Array
+    lean: Array
+
+
+@dataclass(frozen=True)
+class _Arcs:
+    """Arcs between joints, and the curve's `frame` (m,) below these.
+
+    Each has its chord (n, 2), the chord's length, and `miss`, by how many mm it does not end in its joint's tangent.
+    """
+
+    frame: Frame
+    chain: Chain
+    chord: Array
+    length: Array
+    miss: Array
+
+
+@dataclass(frozen=True)
+class _Peaks:
+    """Extremes of each arc's deviation (n, 2): how high, by how much of that extrapolated, and how far on they are.
+
+    `foot` (n, 2, 2) is the foot on the arc, from where the arc starts.
+    """
+
+    height: Array
+    doubt: Array
+    move: Array
+    foot: Array
+
+
+def free_arcs(curve: Curve, parts: Sequence[Part], aim: float, limit: float) -> list[Fitted | None]:
+    """Arcs with free joints along parts of a curve, their errors seen up to `aim` and proved up to `limit` mm.
+
+    Each part's arcs begin and end on the curve, in its direction. None stands for a part of which none were found.
+    """
+    done: list[Fitted | None] = [None] * len(parts)
+    enough = JOINED * float(np.finfo(np.float64).eps) * curve.size
+    counts = {i: part.count(aim) for i, part in enumerate(parts)}
+    for _ in range(RAISED):
+        if not counts:
+            break
+        todo = list(counts)
+        layout = _Layout.of([counts[i] for i in todo], [parts[i].rising for i in todo])
+        t = np.concatenate([parts[i].nodes(counts[i]) for i in todo])
+        joints, frame, level = _levelled(curve, layout, t, aim)
+        arcs = _closed(layout, joints, frame, enough)
+        holds = (level <= aim)[layout.part] & (np.abs(arcs.miss) <= enough)
+        inside, outside = np.full(holds.size, -np.inf), np.full(holds.size, np.inf)
+        if holds.any():
+            chain = arcs.chain
+            rows = (chain.start, chain.tangent, chain.curvature, chain.low, chain.high)
+            found = chain_deviation(curve, Chain(*(row[holds] for row in rows)), limit, PROOF_LOOKS)
+            inside[holds], outside[holds] = found.inside, found.outside
+        bulges = _bulges(arcs)
+        for place, i in enumerate(todo):
+            mine = layout.part == place
+            # where the curve lies outside an arc the file lies inward of the curve
+            outward, inward = max(-float(inside[mine].min()), 0.0), max(float(outside[mine].max()), 0.0)
+            if max(outward, inward) <= limit:
+                done[i] = Fitted(arcs.chain.start[mine], bulges[mine], outward, inward)
+                del counts[i]
+                continue
+            more = counts[i] + 1.0
+            if math.isfinite(level[place]):
+                more = max(more, (counts[i] - ENDS) * math.cbrt(float(level[place]) / aim) + ENDS)
+            counts[i] = math.ceil(min(more, MOST_RAISED * counts[i]))
+    return done
+
+
+def _levelled(curve: Curve, layout: _Layout, t: Array, aim: float) -> tuple[_Joints, Frame, Array]:
+    """Joints of arcs whose deviations level out, the frames below them, and the greatest deviation seen of each part.
+
+    What arcs miss each other by counts as deviation, and what is extrapolated. Parts that hold `aim` stay as they are.
+    """
+    left, right = layout.left, layout.left + 1
+    side = np.where(layout.right_end, -1, 1)
+    places = np.tile([INNER, 1.0 - INNER], (left.size, 1))
+    places[layout.ends[left], 1] = OUTER
+    places[layout.ends[right], 0] = 1.0 - OUTER
+    joints = _started(curve, layout, t, side)
+    begin = np.flatnonzero(np.diff(layout.part, prepend=-1))
+    foreseen = np.zeros(begin.size)
+    for step in range(STEPS + 1):
+        span = (joints.t[right] - joints.t[left])[:, None]
+        looks = (joints.t[left][:, None] + places * span).ravel()
+        both = curve.sample(np.append(joints.t, looks), np.append(side, np.ones(looks.size, dtype=np.intp)))
+        frame, at = both.split(side.size)
+        arcs = _arcs(layout, joints, frame)
+        peaks = _peaks(layout, arcs, at)
+        places = np.clip(places + np.clip(peaks.move / span, -0.1, 0.1), 0.02, 0.98)
+        unsure = np.abs(arcs.miss) + DOUBT * np.abs(peaks.doubt).max(axis=1)
+        level = np.maximum.reduceat(np.abs(peaks.height).max(axis=1) + unsure, begin)
+        settled = (level <= aim) | ((level <= LEVEL * foreseen) & (foreseen > aim))
+        if settled.all() or step == STEPS:
+            break
+        change, foreseen = _newton(layout, joints, arcs, peaks, aim)
+        change[settled[layout.part_of_joint]] = 0.0
+        joints = _stepped(layout, joints, arcs, change)
+    return joints, frame, level
+
+
+def _started(curve: Curve, layout: _Layout, t: Array, side: NDArray[np.intp]) -> _Joints:
+    """Joints on the curve at `t` (m,), arcs leaning as the theory has it."""
+    frame = curve.sample(t, side)
+    chord = frame.point[layout.left + 1] - frame.point[layout.left]
+    square = _around(layout, np.sum(chord * chord, axis=1))
+    lean = np.where(layout.ends, 0.0, frame.curvature_slope * square / -12.0)
+    return _Joints(t, np.zeros_like(t), lean)
+
+
+def _around(layout: _Layout, value: Array) -> Array:
+    """The lesser of the two arcs' values (n,) at each joint (m,)."""
+    least = np.full(layout.ends.size, np.inf)
+    least[layout.left] = value
+    least[layout.left + 1] = np.minimum(least[layout.left + 1], value)
+    return least
+
+
+def _arcs(layout: _Layout, joints: _Joints, frame: Frame) -> _Arcs:
+    """Arcs that leave each joint along its direction and reach the next one."""
+    sine, cosine = np.sin(joints.lean)[:, None], np.cos(joints.lean)[:, None]
+    tangent = cosine * frame.tangent - sine * frame.normal
+    point = frame.point + joints.off[:, None] * (cosine * frame.normal + sine * frame.tangent)
+    left, right = layout.left, layout.left + 1
+    start, along = point[left], tangent[left]
+    chord = point[right] - start
+    square = np.sum(chord * chord, axis=1)
+    curvature = 2.0 * _cross(along, chord) / square
+    mean = along + tangent[right]
+    mean /= np.hypot(mean[:, 0], mean[:, 1])[:, None]
+    chain = Chain(start, along, curvature, joints.t[left], joints.t[right])
+    return _Arcs(frame, chain, chord, np.sqrt(square), _cross(chord, mean))
+
+
+def _peaks(layout: _Layout, arcs: _Arcs, at: Frame) -> _Peaks:
+    """Extremes of the curve's distance outside the arcs, from a frame near each (2n)."""
+    chain = arcs.chain
+    point = at.point.reshape(-1, 2, 2)
+    f, away = radial(chain.start[:, None], chain.tangent[:, None], chain.curvature[:, None], point)
+    angle = -np.sum(at.tangent.reshape(-1, 2, 2) * away, axis=2)
+    speed, turn = at.speed.reshape(-1, 2), at.turn.reshape(-1, 2)
+    # f' = -sigma angle, f'' = -sigma bend
+    bend = turn - chain.curvature[:, None] * speed
+    sharp = layout.sign * bend > 0.0
+    move = np.where(sharp, -angle / np.where(sharp, bend, 1.0), 0.0)
+    doubt = np.where(layout.sign != 0.0, -0.5 * speed * angle * move, 0.0)
+    height = np.where(layout.sign != 0.0, f + doubt, 0.0)
+    foot = point - f[..., None] * away - chain.start[:, None]
+    return _Peaks(height, doubt, move, foot)
+
+
+def _newton(layout: _Layout, joints: _Joints, arcs: _Arcs, peaks: _Peaks, aim: float) -> tuple[Array, Array]:
+    """One step of Newton's method: how far each joint is to go along the curve and off it, and to turn (m, 3).
+
+    Also the level that is foreseen for each part. An arc through its two joints and along the direction of the first
+    moves, seen from the curve, as their heights h0, h1 and the direction g0 do: by ``(1 - w) h0 + w h1 + (x - s w) g0``
+    at a foot ahead by x. A joint that moves along the curve is left behind by its lean, and turns as curvatures differ.
+    """
+    chain, left, right = arcs.chain, layout.left, layout.left + 1
+    curvature = arcs.frame.curvature
+    reach = _around(layout, arcs.length)
+    scale = np.column_stack([ALONG * reach, np.full(reach.size, aim), aim / reach])
+    half = np.sum(chain.tangent * arcs.chord, axis=1) / arcs.length
+    ahead = arcs.length * half
+    lever = 0.5 * arcs.length / half
+    bend0, bend1 = curvature[left] - chain.curvature, curvature[right] - chain.curvature
+    lean0, lean1 = joints.lean[left], joints.lean[right]
+    one, kink = np.ones_like(lean0), arcs.miss / arcs.length
+    rows = np.zeros((left.size, 3, 8))
+    rows[:, 0, 0:3] = np.column_stack([lever * bend0 - lean0 - kink, -one, lever])
+    rows[:, 0, 3:6] = np.column_stack([lever * bend1 + lean1 - kink, one, lever])
+    rows[:, 0, 7] = -arcs.miss / half
+    w = np.sum(peaks.foot**2, axis=2) / (arcs.length**2)[:, None]
+    x = np.sum(peaks.foot * chain.tangent[:, None], axis=2) - ahead[:, None] * w
+    rows[:, 1:, 0] = x * bend0[:, None] - (1.0 - w) * lean0[:, None]
+    rows[:, 1:, 1] = w - 1.0
+    rows[:, 1:, 2] = x
+    rows[:, 1:, 3] = -w * (lean1 - 2.0 * kink)[:, None]
+    rows[:, 1:, 4] = -w
+    rows[:, 1:, 6] = -layout.sign * aim
+    rows[:, 1:, 7] = -peaks.height
+    rows[:, 1:][layout.sign == 0.0] = 0.0
+    rows[:, :, 0:3] *= scale[left][:, None]
+    rows[:, :, 3:6] *= scale[right][:, None]
+    change, level = solve_chains(rows / aim, layout.part)
+    return change * scale, level * aim
+
+
+def _stepped(layout: _Layout, joints: _Joints, arcs: _Arcs, change: Array) -> _Joints:
+    """Joints moved: in a part by a share of it where one would go too far, not at all where one has nowhere to go."""
+    move = change[:, 0] / arcs.frame.speed
+    reach = MOST_MOVE * _around(layout, arcs.chain.high - arcs.chain.low)
+    share = np.where(np.isfinite(change).all(axis=1), reach / np.maximum(np.abs(move), reach), 0.0)
+    begin = np.flatnonzero(np.diff(layout.part_of_joint, prepend=-1))
+    share = np.minimum.reduceat(share, begin)[layout.part_of_joint]
+    move, off, lean = np.where(share > 0.0, share * np.stack([move, change[:, 1], change[:, 2]]), 0.0)
+    return _Joints(joints.t + move, joints.off + off, joints.lean + lean)
+
+
+def _closed(layout: _Layout, joints: _Joints, frame: Frame, enough: float) -> _Arcs:
+    """Arcs that join in tangent to within `enough` mm, their joints where they were along the curve.
+
+    Of all changes of offsets and leans that do it the least is taken, leans weighed so that what one arc asks of a
+    joint is nothing to the next: for levers a, b of the arcs on its two sides ``lean^2 a b + off^2`` is to be least.
+    """
+    left, right = layout.left, layout.left + 1
+    free = np.where(layout.ends, 0.0, 1.0)
+    arcs = _arcs(layout, joints, frame)
+    for _ in range(CLOSING):
+        if not float(np.abs(arcs.miss).max()) > enough:
+            break
+        half = np.sum(arcs.chain.tangent * arcs.chord, axis=1) / arcs.length
+        lever = 0.5 * arcs.length / half
+        product = np.ones_like(free)
+        product[left] *= lever
+        product[right] *= lever
+        lightness = free / product
+        share = free[left] + free[right] + lever**2 * (lightness[left] + lightness[right])
+        pull = arcs.miss / (half * share)
+        off, lean = joints.off.copy(), joints.lean.copy()
+        off[left] += free[left] * pull
+        off[right] -= free[right] * pull
+        lean[left] -= lightness[left] * lever * pull
+        lean[right] -= lightness[right] * lever * pull
+        joints = _Joints(joints.t, off, lean)
+        arcs = _arcs(layout, joints, frame)
+    return arcs
+
+
+def _bulges(arcs: _Arcs) -> Array:
+    """Tangents of a quarter of each arc's angle (n,)."""
+    along = arcs.chain.tangent
+    cosine = np.sum(along * arcs.chord, axis=1) / arcs.length
+    bulges: Array = (_cross(along, arcs.chord) / arcs.length) / (1.0 + cosine)
+    return bulges
+
+
+def _cross(a: Array, b: Array) -> Array:
+    cross: Array = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return cross
