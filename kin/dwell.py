@@ -36,6 +36,7 @@ __all__ = ["Dwell", "dwells"]
 TURN = 2.0 * math.pi
 # Output that differs by less than this part of the band is resolved no further; ends are then found from f itself.
 _RESOLUTION = 1e-9
+_JUMP = 1e-6
 # Starts and ends closer than this part of the period are one.
 _SAME = 1e-12
 # Lengths, and gains of length, that differ by less than this part of the period are equal.
@@ -88,6 +89,7 @@ def dwells(
     of = pieces(cells(lambda x: f(x, 0)[:1], places, _RESOLUTION * band))
     if band <= 4.0 * of.noise:
         raise ValueError(f"a band of {band:.3g} is lost in the rounding of the output, {of.noise:.3g}")
+    _demand_continuous(of, band)
     (least, _), (greatest, _) = of.least(), of.greatest()
     if greatest - least <= band + of.noise:
         return (Dwell(0.0, period, least, greatest),)
@@ -96,6 +98,14 @@ def dwells(
     longest = at_nodes.take(search.is_longest(at_nodes)).joined(search.balanced_windows(at_nodes.a))
     chosen = _disjoint(longest, period, most)
     return _polished(chosen, lambda x: f(np.mod(x, period), 0)[0], search)
+
+
+def _demand_continuous(of: Pieces, band: float) -> None:
+    """Refuse jumps between pieces or over the seam; less than this of the band is a matter of resolution."""
+    jump = np.abs(np.roll(of.coefficients[:, 0], -1) - of.coefficients[:, -1])
+    worst = int(np.argmax(jump))
+    if jump[worst] > _JUMP * band + 4.0 * of.noise:
+        raise ValueError(f"the output jumps by {jump[worst]:.6g} at {of.x[worst + 1]:.9g}")
 
 
 class _Windows(NamedTuple):

@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from kin.chain import Chain, Solved
 from kin.distinct import distinct
+from kin.dwell import Dwell, dwells
 from kin.figures import Figures, Rows, figures
 from kin.forces import force, transmission
 from kin.jet import Jet
@@ -234,6 +235,20 @@ class Mechanism:
         """Give the extremes of the motion over a turn. PlaceError unless the mechanism turns."""
         self._demand_turning()
         return figures(self._rows, lambda theta: float(self.at(theta, 0).shaft[0, 0]), self.breaks)
+
+    def dwells(self, band: float, over: Literal["shaft", "relative"] = "shaft", most: int = 8) -> tuple[Dwell, ...]:
+        """Find the longest dwells of the output, band in rad or mm, over either angle, as `kin.dwell.dwells` does.
+
+        PlaceError unless the mechanism turns (over the relative angle: unless its loops can be closed all round).
+        """
+        if over == "relative":
+            return dwells(lambda theta, order: self.at(theta, order).output, self.breaks, band, TURN, most)
+
+        def output(shaft: Array, order: int) -> Array:
+            at = self.at(self.relative(shaft), order)
+            return at.over_shaft(at.output)
+
+        return dwells(output, self.at(self.breaks, 0).shaft[0], band, TURN, most)
 
     def _rows(self, theta: Array) -> Rows:
         s, s1 = self._lifts(theta, 2)
