@@ -31,12 +31,17 @@ FLOORS = {
     "camgeo": """
         cli pytest_plugin testing
         sweep.command
-        sweep.means sweep.search
+        sweep.means sweep.refine sweep.search
         sweep.outputs sweep.run
         sweep.engines sweep.recipes sweep.table
         sweep.ask sweep.job sweep.pictures
         sweep.gather sweep.store
         sweep.plan
+        sweep.figures
+        sweep.rebuilt
+        sweep.cams
+        sweep.ends sweep.linkages
+        sweep.windows
         pipeline recipe
         design recipe.load
         foreseen recipe.checks report.linkage undercut

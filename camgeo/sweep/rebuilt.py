@@ -1,0 +1,113 @@
+"""Designs one by one, each a recipe of its own: recipes without a linkage, and linkages with dyads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camgeo.recipe.edit import with_values
+from camgeo.recipe.errors import RecipeErrors
+from camgeo.recipe.load import load_text
+from camgeo.sweep.cams import FINE, IMPOSSIBLE, UNDERCUT
+from camgeo.sweep.linkages import angles
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.recipe.model import Recipe
+
+Array: TypeAlias = NDArray[np.float64]
+Codes: TypeAlias = NDArray[np.uint8]
+
+_POINTS = 4096  # of each run of a contour, among which the farthest from the shaft is taken
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """What `camgeo.sweep.linkages.Loop` knows of m mechanisms at n relative angles, (m, n) each."""
+
+    output: Array
+    rate: Array
+    second: Array
+    frame: Array
+    frame_rate: Array
+    frame_second: Array
+    transmission: Array
+    force: Array
+
+    def part(self, rows: NDArray[np.bool_]) -> Rows:
+        """Return some of them."""
+        return Rows(*(column[rows] for column in vars(self).values()))
+
+
+def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | Array) -> Recipe:
+    """Give the recipe with values put in at paths. RecipeErrors where it is none; ValueError for a wrong path."""
+    given = {path: float(value) for path, value in zip(paths, values, strict=True)}
+    return load_text(with_values(recipe.text, given), recipe.path)
+
+
+def plain(recipe: Recipe, paths: Sequence[str], values: Array) -> tuple[Array, Array, Codes]:
+    """Least radius of curvature and greatest distance of a contour from the shaft, mm, and what is wrong, (m,) each."""
+    from camgeo.design import designed
+
+    m = len(values)
+    radius, size, fault = np.full(m, np.nan), np.full(m, np.nan), np.full(m, IMPOSSIBLE, dtype=np.uint8)
+    for i, row in enumerate(values):
+        try:
+            design = designed(recipe_with(recipe, paths, row))
+        except RecipeErrors:
+            continue
+        contour = design.contour
+        if contour is None:
+            fault[i] = UNDERCUT
+            continue
+        bent = next(check.value for check in design.checks if check.name == "radius-of-curvature")
+        t = np.concatenate([np.linspace(run.low, run.high, _POINTS) for run in contour.runs])
+        points = contour.sample(t).point
+        radius[i], size[i] = np.nan if bent is None else bent, np.hypot(points[:, 0], points[:, 1]).max()
+        fault[i] = FINE
+    return radius, size, fault
+
+
+def chains(recipe: Recipe, paths: Sequence[str], values: Array, count: int) -> tuple[Array, Rows]:
+    """Sample mechanisms with dyads: least margin of any loop (m,), mm, and their motion, nan where a loop binds."""
+    m = len(values)
+    margin = np.full(m, -np.inf)
+    rows = Rows(*(np.full((m, count), np.nan) for _ in range(8)))
+    for i, row in enumerate(values):
+        margin[i] = _chain(recipe_with(recipe, paths, row), count, [column[i] for column in vars(rows).values()])
+    return margin, rows
+
+
+def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
+    """Fill in the rows (n,) of one mechanism, and return its least margin: -inf where it binds."""
+    from camgeo.figures import breadth_of
+    from camgeo.linkage import mechanism_of
+    from camgeo.profile.build import intent_of
+    from kin.forces import force, transmission
+    from kin.jet import Jet
+    from kin.lift import Lift
+    from kin.loop import BindingError
+
+    lift = intent_of(recipe.cam)
+    if not isinstance(lift, Lift):
+        raise TypeError("a linkage is driven by the lift of a frame")
+    mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])
+    theta = angles(count)
+    try:
+        at = mechanism.at(theta, 2)
+        s, s1 = (Jet(at.faces[k, :1]) for k in (0, 1))
+        margin = min(
+            float(mechanism.chain.margin(loop, s.c[0], s1.c[0], mechanism.about).min())
+            for loop in range(mechanism.outputs)
+        )
+    except BindingError:
+        return -np.inf
+    place = mechanism.linkage.solve(s, s1, mechanism.breadth)
+    sines = transmission(mechanism.linkage, place)[0], np.abs(force(mechanism.linkage, place, *at.faces[:, 1])[0])
+    for row, values in zip(rows, (*at.output, *at.frame, *sines), strict=True):
+        row[:] = values
+    return margin

@@ -1,0 +1,273 @@
+"""The longest stretch of samples whose values stay within a band: which samples, found alike by two engines.
+
+A function of period n samples is known by its nodes and by its greatest and least value over each cell, cell i lying
+between nodes i and i + 1. A window (start i, c cells) is a run of whole cells within the band that no further cell on
+either side fits into. Of all windows the one is taken that reaches farthest along the abscissa, its ends drawn out
+into the cells beside it as if the function ran straight there.
+
+The engines are numpy, and the plain function `_scan` compiled by numba. Both only compare, and do the same arithmetic
+on the same numbers in the same order, so they find the same windows bit for bit.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["Engine", "Samples", "Windows", "best_engine", "longest"]
+
+Array: TypeAlias = NDArray[np.float64]
+Indices: TypeAlias = NDArray[np.intp]
+Engine: TypeAlias = Literal["numpy", "compiled"]
+
+_TURN = 2 * math.pi
+_SLACK = 1e-9  # rad: windows shorter than the best by more than this are left out unmeasured
+
+
+class Samples(NamedTuple):
+    """m functions at n nodes: value (m, n); bounds over the cells, low and high (m, n), which hold their nodes' values.
+
+    `abscissa` (m, n) or (1, n) rises, by 2 pi a turn.
+    """
+
+    value: Array
+    low: Array
+    high: Array
+    abscissa: Array
+
+
+class Windows(NamedTuple):
+    """For each of m designs the window: first node, and whole cells behind it."""
+
+    start: Indices
+    cells: Indices
+
+
+@lru_cache(maxsize=1)
+def best_engine() -> Engine:
+    """Name the engine that is used unless another is asked for: compiled where numba is installed."""
+    from importlib.util import find_spec
+
+    return "compiled" if find_spec("numba") else "numpy"
+
+
+def longest(samples: Samples, band: float, engine: Engine | None = None) -> Windows:
+    """Find the longest window of each function, of those equally long the first; band above 0.
+
+    Raises ModuleNotFoundError for `compiled` without numba.
+    """
+    if (engine or best_engine()) == "numpy":
+        return _by_levels(samples, band)
+    m, n = samples.value.shape
+    found = Windows(np.empty(m, dtype=np.intp), np.empty(m, dtype=np.intp))
+    _compiled()(samples, band, np.empty((2, n + 1), dtype=np.intp), found.start, found.cells)
+    return found
+
+
+@lru_cache(maxsize=1)
+def _compiled() -> Callable[..., None]:
+    from numba import njit
+
+    # no fastmath: sums in another order, or fused, would be other numbers
+    compiled: Callable[..., None] = njit(cache=True, nogil=True, error_model="numpy")(_scan)
+    return compiled
+
+
+def _scan(samples: Samples, band: float, queue: Indices, start: Indices, cells: Indices) -> None:
+    """Run two pointers round each design, the window's extremes at the heads of two monotone queues."""
+    value, low, high, abscissa = samples
+    m, n = value.shape
+    for row in range(m):
+        at = row if abscissa.shape[0] > 1 else 0
+        best = -1.0
+        # queues of cells, in a ring: least values rising, greatest falling
+        head_low, tail_low, head_high, tail_high = 0, 0, 0, 0
+        last = 0  # nodes i .. last are in the window
+        for i in range(n):
+            if last < i:
+                last = i
+                head_low = tail_low
+                head_high = tail_high
+            while head_low < tail_low and queue[0, head_low % (n + 1)] < i:
+                head_low += 1
+            while head_high < tail_high and queue[1, head_high % (n + 1)] < i:
+                head_high += 1
+            while last < i + n:
+                cell = last % n
+                least, most = low[row, cell], high[row, cell]
+                if head_low < tail_low:
+                    least = min(least, low[row, queue[0, head_low % (n + 1)] % n])
+                    most = max(most, high[row, queue[1, head_high % (n + 1)] % n])
+                if not most - least <= band:
+                    break
+                while head_low < tail_low and low[row, queue[0, (tail_low - 1) % (n + 1)] % n] >= low[row, cell]:
+                    tail_low -= 1
+                queue[0, tail_low % (n + 1)] = last
+                tail_low += 1
+                while head_high < tail_high and high[row, queue[1, (tail_high - 1) % (n + 1)] % n] <= high[row, cell]:
+                    tail_high -= 1
+                queue[1, tail_high % (n + 1)] = last
+                tail_high += 1
+                last += 1
+            if last > i:
+                least, most = low[row, queue[0, head_low % (n + 1)] % n], high[row, queue[1, head_high % (n + 1)] % n]
+            else:
+                least = most = value[row, i]
+            if last == i + n:
+                start[row], cells[row] = 0, n
+                break
+            before, j, after = (i - 1) % n, last % n, (last + 1) % n
+            if max(most, high[row, before]) - min(least, low[row, before]) <= band:
+                continue  # a window from the node before holds this one
+            x_i, x_j, x_before, x_after = abscissa[at, i], abscissa[at, j], abscissa[at, before], abscissa[at, after]
+            if before > i:
+                x_before -= 2.0 * math.pi
+            if last >= n:
+                x_j += 2.0 * math.pi
+            if last + 1 >= n:
+                x_after += 2.0 * math.pi
+            if (x_after - x_before) + 1e-9 < best:
+                continue
+            floor, ceiling = most - band, least + band
+            f_i, f_j, f_before, f_after = value[row, i], value[row, j], value[row, before], value[row, after]
+            left, right = 1.0, 1.0
+            left_side, right_side = 0, 0
+            if f_before > ceiling:
+                left, left_side = (ceiling - f_i) / (f_before - f_i), 1
+            elif f_before < floor:
+                left, left_side = (f_i - floor) / (f_i - f_before), -1
+            if f_after > ceiling:
+                right, right_side = (ceiling - f_j) / (f_after - f_j), 1
+            elif f_after < floor:
+                right, right_side = (f_j - floor) / (f_j - f_after), -1
+            left = left * (x_i - x_before)
+            right = right * (x_after - x_j)
+            more = max(left, right) if left_side * right_side < 0 else left + right
+            reach = (x_j - x_i) + more
+            if reach > best:
+                best = reach
+                start[row], cells[row] = i, last - i
+
+
+def _by_levels(samples: Samples, band: float) -> Windows:
+    """Find the windows by extremes over 1, 2, 4, ... cells from each node.
+
+    Levels that fit tell how long the longest window is at least, and so from which nodes on none can be; from the nodes
+    left over the count of cells is put together from powers of two.
+    """
+    value, low, high, abscissa = samples
+    m, n = value.shape
+    lows, highs, fits = [low], [high], [high - low <= band]
+    while 2 ** len(fits) <= n and fits[-1].any():
+        step = 2 ** (len(fits) - 1)
+        lows.append(_pairwise(np.minimum, lows[-1], step))
+        highs.append(_pairwise(np.maximum, highs[-1], step))
+        fits.append(highs[-1] - lows[-1] <= band)
+    if not fits[-1].any():
+        lows, highs, fits = lows[:-1], highs[:-1], fits[:-1]
+    row, i = _promising(fits, abscissa, (m, n))
+    cells = np.zeros(len(row), dtype=np.intp)
+    bottom = value[row, i]
+    top = bottom.copy()
+    flat = row * n
+    for level in range(len(fits) - 1, -1, -1):
+        at = flat + (i + cells) % n
+        least, most = lows[level].ravel()[at], highs[level].ravel()[at]
+        more = cells > 0
+        least, most = np.where(more, np.minimum(least, bottom), least), np.where(more, np.maximum(most, top), most)
+        fit = (most - least <= band) & (cells + 2**level <= n)
+        bottom, top = np.where(fit, least, bottom), np.where(fit, most, top)
+        cells += fit * 2**level
+    before = flat + (i - 1) % n
+    held = np.maximum(top, high.ravel()[before]) - np.minimum(bottom, low.ravel()[before]) <= band
+    held &= cells < n  # a window from the node before holds this one
+    row, i, cells, bottom, top = row[~held], i[~held], cells[~held], bottom[~held], top[~held]
+    reach = _reach(samples, (row, i, cells), (bottom, top), band)
+    # the best of each row, the first of equals; every row has at least one
+    first = np.searchsorted(row, np.arange(m))
+    best = np.maximum.reduceat(reach, first)
+    hits = np.flatnonzero(reach == best[row])
+    chosen = hits[np.searchsorted(row[hits], np.arange(m))]
+    whole = cells[chosen] == n
+    return Windows(np.where(whole, 0, i[chosen]), cells[chosen])
+
+
+def _pairwise(extreme: np.ufunc, values: Array, step: int) -> Array:
+    """Extreme of each value and the one `step` behind it, round the turn."""
+    found = np.empty_like(values)
+    flat = values.ravel()
+    # as one long row, which is faster; what that takes from the next row is then set right
+    extreme(flat[:-step], flat[step:], out=found.ravel()[:-step])
+    extreme(values[:, -step:], values[:, :step], out=found[:, -step:])
+    return found
+
+
+def _promising(fits: list[NDArray[np.bool_]], abscissa: Array, shape: tuple[int, int]) -> tuple[Indices, Indices]:
+    """Rows and nodes from which a row's longest window may start, by rows."""
+    m, n = shape
+    if not fits:
+        row, i = np.divmod(np.arange(m * n), n)
+        return row, i
+    widest = np.maximum(np.diff(abscissa, axis=1).max(axis=1), abscissa[:, 0] + _TURN - abscissa[:, -1])  # of a cell
+    top = np.sum([fit.any(axis=1) for fit in fits], axis=0) - 1
+    least = np.zeros(m)
+    for level in range(len(fits)):
+        rows = np.flatnonzero(top == level)
+        if rows.size:
+            x = abscissa[rows] if len(abscissa) > 1 else abscissa
+            span = np.empty((len(x), n))
+            step = 2**level % n  # 0 where the window is the whole turn
+            np.subtract(x[:, step:], x[:, : n - step], out=span[:, : n - step])
+            np.subtract(x[:, :step] + _TURN, x[:, n - step :], out=span[:, n - step :])
+            least[rows] = _TURN if step == 0 else np.where(fits[level][rows], span, 0.0).max(axis=1)
+    # A window of fewer than 2^k whole cells reaches over less than 2^k + 1 cells.
+    counts = 2.0 ** np.arange(len(fits))
+    needed = ((widest[:, None] * (counts + 1.0) + _SLACK) < least[:, None]).sum(axis=1) - 1
+    chosen = np.ones(shape, dtype=np.bool_)
+    for level, fit in enumerate(fits):
+        rows = np.flatnonzero(needed == level)
+        chosen[rows] = fit[rows]
+    row, i = np.nonzero(chosen)
+    return row, i
+
+
+def _reach(
+    samples: Samples, window: tuple[Indices, Indices, Indices], limits: tuple[Array, Array], band: float
+) -> Array:
+    """Length of each window with its ends drawn out straight; the arithmetic of `_scan`."""
+    value, _, _, abscissa = samples
+    row, i, cells = window
+    bottom, top = limits
+    n = value.shape[1]
+    at = row if len(abscissa) > 1 else np.zeros_like(row)
+    last = i + cells
+    before, j, after = (i - 1) % n, last % n, (last + 1) % n
+    x_i, x_before = abscissa[at, i], abscissa[at, before]
+    x_j, x_after = abscissa[at, j], abscissa[at, after]
+    x_before = np.where(before > i, x_before - _TURN, x_before)
+    x_j = np.where(last >= n, x_j + _TURN, x_j)
+    x_after = np.where(last + 1 >= n, x_after + _TURN, x_after)
+    floor, ceiling = top - band, bottom + band
+    left, left_side = _straight(value[row, i], value[row, before], floor, ceiling)
+    right, right_side = _straight(value[row, j], value[row, after], floor, ceiling)
+    left = left * (x_i - x_before)
+    right = right * (x_after - x_j)
+    more = np.where(left_side * right_side < 0, np.maximum(left, right), left + right)
+    reach: Array = np.where(cells == n, np.inf, (x_j - x_i) + more)
+    return reach
+
+
+def _straight(inside: Array, outside: Array, floor: Array, ceiling: Array) -> tuple[Array, NDArray[np.int8]]:
+    """Share of a cell that a straight line from `inside` stays between the limits, and which it leaves by."""
+    up, down = outside > ceiling, outside < floor
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(up, (ceiling - inside) / (outside - inside), 1.0)
+        share = np.where(down, (inside - floor) / (inside - outside), share)
+    return share, np.where(up, 1, np.where(down, -1, 0)).astype(np.int8)
