@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -84,13 +85,15 @@ def _map(ask: Ask, found: Gathered, best: Sequence[Best]) -> list[bytes]:
     paths = [axis.path for axis in ask.plan.axes]
     flat = len(paths) > 1
     counts = found.counts
-    notes = f"{counts.kept} of {counts.computed} designs kept"
+    notes = f"{counts.kept:,} of {counts.computed:,} designs kept"
+    if FIGURES[rank].needs == "dwell":
+        notes += f"; band of {_band(ask)}"
     if len(paths) > 2:
         notes += f"; each cell shows the best over {_and(paths[2:])}"
     cells = found.cells.scaled(1.0 / unit.divisor)
     places = [[b.values[paths[0]], b.values[paths[1]] if flat else b.figures[rank] / unit.divisor] for b in best]
     pictures = draw_map(
-        f"{ask.recipe.name}: {FIGURES[rank].about}",
+        f"{ask.recipe.name}: {FIGURES[rank].about.split(',')[0]}",
         cells,
         _named(rank, unit.name),
         [_named(path, ask.axis_unit(path)) for path in paths[:2]],
@@ -98,6 +101,15 @@ def _map(ask: Ask, found: Gathered, best: Sequence[Best]) -> list[bytes]:
         notes=notes,
     )
     return [pictures["png"], pictures["svg"]]
+
+
+def _band(ask: Ask) -> str:
+    """Band of the recipe's dwells, in words."""
+    if ask.recipe.dwell is None:
+        raise ValueError(f"{ask.recipe.name} has no dwell")
+    unit = ask.units(["swing"])["swing"]
+    band = ask.recipe.dwell.band
+    return f"{(math.degrees(band) if unit.name == 'deg' else band / unit.divisor):.6g} {unit.name}"
 
 
 def _and(paths: Sequence[str]) -> str:
@@ -114,7 +126,7 @@ def _curves(ask: Ask, best: Sequence[Best], made: dict[str, bytes]) -> list[byte
         value = f"{design.figures[rank] / unit.divisor:.5g} {unit.name}".rstrip()
         curve, name = curve_of(recipe, f"best-{design.place}: {rank} {value}")
         curves.append(curve)
-    notes = "the longest dwell of best-1 is shaded" if curves[0].dwell is not None else ""
+    notes = f"shaded: the longest dwell of best-1, band of {_band(ask)}" if curves[0].dwell is not None else ""
     count = "the best design" if len(curves) == 1 else f"the best {len(curves)} designs"
     pictures = draw_best(f"{ask.recipe.name}: {count}", curves, name, notes=notes)
     return [pictures["png"], pictures["svg"]]

@@ -31,7 +31,7 @@ _SAME = 1e-6  # of an axis's range: designs nearer than that in every value are 
 class Polish(Protocol):
     """Makes a design better without breaking a limit."""
 
-    def __call__(self, ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+    def __call__(self, ask: Ask, values: dict[str, float], /) -> tuple[dict[str, float], dict[str, float]]:
         """Values of a design that is as good or better, and its figures, in mm and degrees."""
 
 
