@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from camgeo.progress import Progress
+from camgeo.study import command as study_command
 from camgeo.sweep import command as sweep_command
 
 if TYPE_CHECKING:
@@ -116,6 +117,8 @@ def _parser() -> argparse.ArgumentParser:
     new = command("new", _new, "A starter recipe, on the terminal or in a new file.")
     new.add_argument("kind", metavar="KIND")
     new.add_argument("file", nargs="?", metavar="FILE")
+    study = command("study", study_command.run, "Error against run time of each output form; a recipe's margins.")
+    study_command.add_arguments(study)
     laws = command("laws", _laws, "The motion laws with their peak velocity, acceleration and jerk.")
     laws.add_argument("--json", action="store_true", help="as JSON, for machines")
     command("schema", _schema, "The recipe's JSON schema.")

@@ -106,7 +106,7 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
     checks = list(design.checks)
     files: list[FileResult] = []
     if design.contour is not None:
-        outlines = _Outlines(design.contour, clock)
+        outlines = Outlines(design.contour, clock)
         for request in requests:  # an STL that single precision cannot hold is refused before anything is fitted
             if request.kind == "stl":
                 _aim(recipe, request, design.contour)
@@ -119,7 +119,7 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
                     _write_table(recipe, design, path)
                 files.append(FileResult(path, request, None, None, None, None, None))
                 continue
-            file, verdicts = _drawn(recipe, design, request, path, outlines)
+            file, verdicts = drawn(recipe, design, request, path, outlines)
             files.append(file)
             checks += verdicts
     return _findings(recipe, design, checks, files, clock, skipped=_skipped(recipe, requests, design))
@@ -144,12 +144,12 @@ def _findings(
     return Findings(tuple(checks), tuple(files), tuple(clock.stages), skipped, design.follower, linkage=linkage)
 
 
-def _drawn(
+def drawn(
     recipe: Recipe,
     design: Design,
     request: FileRequest,
     path: Path,
-    outlines: _Outlines,
+    outlines: Outlines,
 ) -> tuple[FileResult, list[Check]]:
     """Fit, write, read back and judge one DXF or STL."""
     from camgeo.files.triangulate import RegionError
@@ -212,7 +212,7 @@ def _aim(recipe: Recipe, request: FileRequest, contour: Curve) -> float:
 
 
 @dataclass
-class _Outlines:
+class Outlines:
     """The fits of one contour; files that ask for the same one share it."""
 
     contour: Curve

@@ -30,9 +30,9 @@ FLOORS = {
     """,
     "camgeo": """
         cli pytest_plugin testing
-        sweep.command
-        sweep.means sweep.refine sweep.search
-        sweep.outputs sweep.run
+        study.command sweep.command
+        study.document sweep.means sweep.refine sweep.search
+        study.ladder study.margins sweep.outputs sweep.run
         sweep.engines sweep.recipes sweep.table
         sweep.ask sweep.job sweep.pictures
         sweep.gather sweep.store
@@ -44,7 +44,7 @@ FLOORS = {
         sweep.windows
         pipeline recipe
         design recipe.load
-        foreseen recipe.checks report.linkage undercut
+        foreseen recipe.checks report.linkage study.least undercut
         figures fit.polygon linkage recipe.build trim
         crossing files.stl fit.arcs fit.edges fit.inflection fit.spline motion profile.build recipe.readers
         causes fit.free_arcs part report.document report.failure
@@ -54,7 +54,7 @@ FLOORS = {
         recipe.model recipe.scalars recipe.source recipe.tables
         recipe.table_cam recipe.table_linkage recipe.table_sweep
         curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
-        sweep
+        study study.picture sweep
     """,
 }
 HEAVY = {

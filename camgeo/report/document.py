@@ -219,7 +219,7 @@ def table(report: dict[str, Any]) -> str:
                 check.get("file", ""),
             )
         )
-    text = _aligned(rows)
+    text = aligned(rows)
     rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
     for file in report["files"]:
         motion = file.get("motion") or {}
@@ -236,7 +236,7 @@ def table(report: dict[str, Any]) -> str:
                 "" if motion.get("at_deg") is None else f"{motion['at_deg']:.2f} deg",
             )
         )
-    text += "\n\n" + _aligned(rows)
+    text += "\n\n" + aligned(rows)
     if report["skipped"]:
         text += "\n\n" + "\n".join(f"skipped {item['what']}: {item['why']}" for item in report["skipped"])
     seconds = sum(stage["seconds"] for stage in report["stages"])
@@ -265,7 +265,8 @@ def _number(value: float | None) -> str:
     return "" if value is None else f"{value:.6g}"
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> str:
+def aligned(rows: Sequence[Sequence[str]]) -> str:
+    """Rows of cells as text in columns."""
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     padded = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
     return "\n".join(line.rstrip() for line in padded)

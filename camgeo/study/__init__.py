@@ -1,0 +1,1 @@
+"""Error against run time: what each output form costs at each tolerance, and how far a recipe is from trouble."""

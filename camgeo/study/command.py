@@ -1,0 +1,117 @@
+"""The command `camgeo study`: its options, what it prints, its exit status."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from camgeo.progress import Progress
+
+if TYPE_CHECKING:
+    import argparse
+
+    from camgeo.design import Design
+    from camgeo.recipe.model import Recipe
+    from camgeo.study.ladder import Ended, Rung
+
+OK, FAILED, WRONG, SURROUNDINGS = 0, 1, 2, 3
+REPORT, PICTURE = "study.json", "study.png"
+PATIENCE = 2.0  # seconds of a run after which a ladder goes no further
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Give the command its options."""
+    from camgeo.study.ladder import FORMS
+
+    parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file")
+    parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    parser.add_argument("--form", action="append", default=[], choices=FORMS, help="this form only; repeatable")
+    text = "seconds of a run after which a form's ladder goes no further (default: %(default)s)"
+    parser.add_argument("--patience", type=_seconds, default=PATIENCE, metavar="S", help=text)
+    parser.add_argument("--json", action="store_true", help="study.json, for machines")
+
+
+def _seconds(text: str) -> float:
+    import argparse
+
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value <= 1e5:
+        raise argparse.ArgumentTypeError(f"a number of seconds above 0, not {text}")
+    return value
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Study one recipe: 0 every rung's file holds, 1 one does not or there is no contour, 2 wrong, 3 surroundings."""
+    from camgeo.design import designed
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.recipe.load import load
+    from camgeo.store import SurroundingsError
+    from camgeo.study.document import document, table
+    from camgeo.study.margins import margins
+
+    try:
+        recipe = load(arguments.recipe)
+        design = designed(recipe)
+        progress = Progress(recipe.name)
+        try:
+            found = _climbed(recipe, design, arguments, progress)
+        finally:
+            progress.clear()
+        skipped = [] if design.contour is not None else [("files", "a check of the exact contour fails")]
+        if recipe.part.thickness is None:
+            skipped.append(("stl", "part.thickness is not given"))
+        study = document(recipe, found, margins(recipe, design), skipped)
+        _write(recipe, study, Path(arguments.out))
+    except RecipeErrors as errors:
+        print(errors, file=sys.stderr)
+        return WRONG
+    except (SurroundingsError, OSError) as error:
+        print(f"camgeo: {error}", file=sys.stderr)
+        return SURROUNDINGS
+    if arguments.json:
+        from camgeo.report.document import encoded
+
+        print(encoded(study), end="")
+    else:
+        print(f"{recipe.name}\n{table(study)}")
+    return OK if design.contour is not None and all(row["ok"] for row in study["rows"]) else FAILED
+
+
+def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | Ended]:
+    """All rungs of all forms."""
+    from camgeo.study.ladder import FORMS, climb
+
+    if design.contour is None:
+        return []
+    forms = [form for form in arguments.form or FORMS if form != "stl" or recipe.part.thickness is not None]
+    found: list[Rung | Ended] = []
+    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+        for form in forms:
+            found += climb(recipe, design, form, Path(folder), patience=arguments.patience, told=progress)
+    return found
+
+
+def _write(recipe: Recipe, study: dict[str, Any], out: Path) -> None:
+    """Write study.json and its picture beside the recipe's files, both or neither; a missing package is told."""
+    from camgeo.report.document import encoded
+    from camgeo.store import Family, Run
+
+    names = []
+    with Run(out, recipe.name, Family(REPORT, ("study",), "study")) as run:
+        try:
+            from camgeo.study.picture import picture
+
+            if study["rows"]:
+                (run.folder / PICTURE).write_bytes(picture(study))
+                names.append(PICTURE)
+        except ModuleNotFoundError as error:
+            why = f'the package {error.name} is missing: pip install "camgeo[study]"'
+            study["skipped"].append({"what": PICTURE, "why": why})
+        study["files"] = [{"path": name} for name in names]
+        (run.folder / REPORT).write_text(encoded(study), encoding="utf-8")
+        run.commit(names)

@@ -1,0 +1,134 @@
+"""`camgeo study`: the rungs of its ladders against the files' own figures, where they end, and the margins."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from camgeo import cli
+from camgeo.design import designed
+from camgeo.recipe.load import load, read
+from camgeo.study.ladder import Ended, Rung, climb
+from camgeo.study.least import least_pieces
+from camgeo.study.margins import Margin, margins
+
+RECIPES = Path(__file__).parents[1] / "recipes"
+
+
+def named(recipe_name: str) -> dict[str, Margin]:
+    recipe = load(RECIPES / f"{recipe_name}.yaml")
+    return {margin.name: margin for margin in margins(recipe, designed(recipe))}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, Path]:
+    out = tmp_path_factory.mktemp("out")
+    recipe = out / "cam.yaml"
+    recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 8}\nverify: {angles: 90}\n")
+    assert cli.main(["study", str(recipe), "--out", str(out), "--patience", "0.5", "--json"]) == 0
+    return json.loads((out / "cam" / "study.json").read_text(encoding="utf-8")), out / "cam"
+
+
+def test_every_form_climbs_until_it_cannot_hold_the_tolerance(study: tuple[dict, Path]) -> None:
+    found, folder = study
+    assert (folder / "study.png").stat().st_size > 10_000
+    assert {end["form"] for end in found["ended"]} == {"polyline", "arcs", "spline", "stl"}
+    stl = next(end for end in found["ended"] if end["form"] == "stl")
+    assert stl["tolerance"] == pytest.approx(1e-6)
+    assert "single precision" in stl["why"]
+    for form in ("polyline", "arcs", "spline", "stl"):
+        rows = [row for row in found["rows"] if row["form"] == form]
+        assert len(rows) >= 3
+        assert [row["tolerance"] for row in rows] == pytest.approx([10.0 ** -(k + 1) for k in range(len(rows))])
+        for row in rows:
+            assert row["ok"]
+            # with many pieces the tolerance is used, with few a whole number of them may leave some of it
+            least = 0.9 if row["pieces"] > 100 and form != "spline" else 0.2
+            assert least * row["tolerance"] <= row["geometry_error"] <= row["tolerance"] * (1 + 1e-6)
+            assert row["geometry_error"] <= row["proved"] + 1e-10
+            assert row["seconds"] == pytest.approx(math.fsum(row["stages"].values()))
+            assert set(row["stages"]) == {"fit", "write", "judge"}
+        assert [row["pieces"] for row in rows] == sorted(row["pieces"] for row in rows)
+
+
+def test_pieces_against_theory(study: tuple[dict, Path]) -> None:
+    rows = {(row["form"], round(-math.log10(row["tolerance"]))): row for row in study[0]["rows"]}
+    # 241.25 vertices for p = 25 + 2 cos 3t at 0.001 mm, 242 of them reached (docs/validation.md)
+    assert rows["polyline", 3]["least_pieces"] == pytest.approx(241.25, abs=0.01)
+    assert rows["polyline", 3]["pieces"] == 242
+    assert rows["spline", 3]["least_pieces"] is None
+
+
+def test_least_arcs_against_the_closed_form_of_a_three_lobed_cam() -> None:
+    # kappa = 1/rho, ds = rho dt, rho = 25 - 16 cos 3t: the integral of (|rho'|/124.7 e)^(1/3) dt over a turn
+    recipe = read(b"cam: {kind: support, p: 25 + 2*cos(3*t)}", Path("cam.yaml"))
+    contour = designed(recipe).contour
+    assert contour is not None
+    steps = 200_000
+    sine = [abs(math.sin(3.0 * 2.0 * math.pi * (k + 0.5) / steps)) for k in range(steps)]
+    integral = math.fsum((48.0 * s / (124.7 * 1e-6)) ** (1 / 3) for s in sine) * 2.0 * math.pi / steps
+    # the trapezoids of Density see the cube root's vertical tangent at the six extrema of curvature to a part in 400
+    assert least_pieces("arcs", contour, 1e-6) == pytest.approx(integral, rel=2.5e-3)
+
+
+def test_a_dwell_counts_as_one_arc_at_least() -> None:
+    recipe = load(RECIPES / "reuleaux.yaml")
+    contour = designed(recipe).contour
+    assert contour is not None
+    assert least_pieces("arcs", contour, 1e-3) == 6.0
+    assert least_pieces("exact", contour, 1e-3) is None
+
+
+def test_a_run_that_takes_too_long_ends_the_ladder(tmp_path: Path) -> None:
+    recipe = read(b"cam: {kind: support, p: 25 + 2*cos(3*t)}\nverify: {angles: 8}", Path("cam.yaml"))
+    found = list(climb(recipe, designed(recipe), "arcs", tmp_path, patience=1e-9))
+    assert [type(item) for item in found] == [Rung, Ended]
+    assert isinstance(found[1], Ended)
+    assert "longer than" in found[1].why
+
+
+def test_margins_of_a_four_bar() -> None:
+    found = named("as-figure-9-2a")
+    assert found["binding"].value == pytest.approx(51.5953, abs=1e-3)
+    assert found["reversal"].value == pytest.approx(0.7446, abs=1e-4)
+    assert found["motion-condition"].value == pytest.approx(1.0, rel=1e-6)
+    assert found["output-condition"].value == pytest.approx(1.0346, abs=1e-3)
+    assert found["output-condition"].grows
+
+
+def test_margins_of_an_ellipse_under_a_flat_pair() -> None:
+    # lambda = 2: D = m^2 cos 2t, sin psi = D/l^2, so the square root's edge is acos(m^2/l^2) away
+    found = named("w-ellipse")
+    recipe = load(RECIPES / "w-ellipse.yaml")
+    ratio = max(abs(c) for _, c in recipe.cam.route.cos) / recipe.cam.arm**2
+    assert found["square-root"].value == pytest.approx(math.degrees(math.acos(ratio)), abs=1e-6)
+    assert found["turning-through"].value > 0.0
+
+
+def test_a_cam_at_the_brink_of_undercut_has_hardly_any_margin() -> None:
+    recipe = read(b"cam: {kind: support, p: 16.000001 + 2*cos(3*t)}", Path("cam.yaml"))
+    found = {margin.name: margin for margin in margins(recipe, designed(recipe))}
+    assert found["undercut"].value == pytest.approx(1e-6, rel=1e-3)
+
+
+def test_an_undercut_recipe_is_told_and_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text("cam: {kind: support, p: 10 + 2*cos(3*t)}\n")
+    assert cli.main(["study", str(recipe), "--out", str(tmp_path)]) == 1
+    text = capsys.readouterr().out
+    assert "a check of the exact contour fails" in text
+    assert "undercut" in text
+
+
+def test_a_wrong_call_and_a_wrong_recipe(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text("cam: {kind: support, q: 10}\n")
+    assert cli.main(["study", str(recipe), "--out", str(tmp_path)]) == 2
+    assert "cam.yaml:1:" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["study", str(recipe), "--patience", "0"])
+    assert caught.value.code == 2
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cam.yaml"]
