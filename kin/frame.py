@@ -17,14 +17,12 @@ from kin.check import degrees
 from kin.contour import apart
 from kin.distinct import distinct
 from kin.dwell import dwells
-from kin.extremes import extremes
-from kin.frame_dwell import Samples, longest_dwell
+from kin.extremes import Extremes, extremes
+from kin.frame_dwell import Output, longest_dwell
 from kin.motion import MotionError, Play, Unit, motion_error, with_steps
 from kin.resting import CENTRED, TURN, WAYS, FrameError, Resting, driven
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
 
     from kin.arcs import Array, Indices
@@ -157,7 +155,7 @@ def judge_frame(
     meant = intended.rows(mechanism.relative(angles))[1, 0]
     errors = [intended.alike(way.over_shaft(angles, 0)[0] - meant) for way in every]
     window = None if band is None else _intended_dwell(intended, band)
-    flat = [] if window is None else [_range(way, *window) for way in every]
+    flat = [] if window is None else [_extremes(way, *way.relative(window)).span for way in every]
     across, along = _plays(centred)
     return LinkageVerdict(
         error=motion_error(max(worst), np.stack(errors), max(flat, default=None), unit),
@@ -243,58 +241,62 @@ def _plays(centred: Resting) -> tuple[Play, Play]:
     return play(0.0), play(0.5 * np.pi)
 
 
-def _range(way: Resting, begin: float, end: float) -> float:
-    """Range of the output while the shaft turns from `begin` to `end`, less than a turn."""
-    theta, interval = way.relative(np.array([begin, end]))
+def _extremes(way: Resting, theta: Array, interval: Indices) -> Extremes:
+    """Extremes of the output from one relative angle to another (2,), less than a turn on, in the given intervals."""
     count = len(way.nodes) - 1
-    between = (interval[1] - interval[0]) % count
-    if between == 0 and theta[1] < theta[0]:
-        between = count - 1
-    of = (interval[0] + np.arange(between + 1)) % count
+    further = int(interval[1] - interval[0]) % count
+    if further == 0 and theta[1] < theta[0]:
+        further = count - 1
+    of = (interval[0] + np.arange(further + 1)) % count
     low, high = way.nodes[of], way.nodes[of + 1]
     at_low, at_high = way.low[1][:, of], way.high[1][:, of]
-    ends = way.rows(theta, interval)[1]
-    if between < count - 1:
+    if further < count - 1:
+        ends = way.rows(theta, interval)[1]
         low[0], at_low[:, 0], high[-1], at_high[:, -1] = theta[0], ends[:, 0], theta[1], ends[:, 1]
 
     def output(x: Array, i: Indices) -> Array:
         rows: Array = way.rows(x, of[i])[1]
         return rows
 
-    return extremes(low, high, at_low, at_high, output, resolution=_resolution(way.mechanism)).span
+    return extremes(low, high, at_low, at_high, output, resolution=_resolution(way.mechanism))
 
 
-def _intended_dwell(intended: _Intended, band: float) -> tuple[float, float]:
-    """Shaft angles between which the intended output dwells longest."""
+def _intended_dwell(intended: _Intended, band: float) -> Array:
+    """Shaft angles (2,) between which the intended output dwells longest."""
     mechanism = intended.mechanism
     breaks = np.mod(intended.rows(mechanism.breaks)[0, 0], TURN) if len(mechanism.breaks) else mechanism.breaks
     found = dwells(lambda shaft, _: intended.rows(mechanism.relative(shaft))[1, :1], breaks, band, TURN, 1)[0]
-    return found.start, found.start + min(found.length, TURN * (1.0 - 1e-12))
+    return found.start + np.array([0.0, min(found.length, TURN * (1.0 - 1e-12))])
 
 
 def _dwells(ways: list[Resting], band: float, over: Over) -> tuple[DwellFound, ...]:
     """Return the longest dwell of each way, the shortest of them first."""
     found = []
     for way in ways:
-        dwell = longest_dwell(*_output(way, over), band)
+        dwell = longest_dwell(_output(way, over), band)
         degree = way.mechanism.unit == "deg"
         told = float(np.degrees(band)) if degree else band
         found.append(DwellFound(over, told, degrees(dwell.start), float(np.degrees(dwell.length)), way.rest.name))
     return tuple(sorted(found, key=lambda dwell: dwell.length_deg))
 
 
-def _output(way: Resting, over: Over) -> tuple[Callable[[Array], Array], Samples]:
-    """Output of a way over the shaft angle or the relative one, and what it is at the nodes."""
+def _output(way: Resting, over: Over) -> Output:
+    """Output of a way over the shaft angle or over the relative one."""
     value = np.append(way.low[1, 0], way.high[1, 0, -1])
-    bend = np.stack([way.low[1, 2], way.high[1, 2]])
-    if over == "relative":
-        return lambda theta: way.over_relative(theta, 0)[0], Samples(way.nodes, value, _slack(way.nodes, bend))
-    (_, rate, turn), (_, slope, _) = np.stack([way.low, way.high], axis=2)
-    bend = (bend - slope / rate * turn) / rate**2
-    return lambda shaft: way.over_shaft(shaft, 0)[0], Samples(way.shaft, value, _slack(way.shaft, bend))
+    (phi_low, low), (phi_high, high) = way.low, way.high
+
+    def between(a: float, b: float) -> tuple[float, float]:
+        at = np.array([a, b])
+        found = _extremes(way, *(way.relative(at) if over == "shaft" else way.place(at)))
+        return found.least, found.greatest
+
+    if over == "shaft":
+        bends = [(y[2] - y[1] / phi[1] * phi[2]) / phi[1] ** 2 for phi, y in ((phi_low, low), (phi_high, high))]
+        return Output(lambda x: way.over_shaft(x, 0)[0], between, way.shaft, value, _slack(way.shaft, *bends))
+    return Output(lambda x: way.over_relative(x, 0)[0], between, way.nodes, value, _slack(way.nodes, low[2], high[2]))
 
 
-def _slack(x: Array, bend: Array) -> float:
-    """How far a function strays from its range at the nodes x (m + 1,), by its second derivatives (2, m), doubled."""
-    slack: Array = 0.25 * np.diff(x) ** 2 * np.abs(bend).max(axis=0)
+def _slack(x: Array, low: Array, high: Array) -> float:
+    """How far a function strays from its range at the nodes x (m + 1,), by its second derivatives (m,), doubled."""
+    slack: Array = 0.25 * np.diff(x) ** 2 * np.maximum(np.abs(low), np.abs(high))
     return float(slack.max())

@@ -113,7 +113,7 @@ class Resting:
         return float(rate[k, i]), float(self.nodes[i] + (0.0, 1.0, s[i])[k] * h[i])
 
     def relative(self, shaft: Array, side: int = 1) -> tuple[Array, Indices]:
-        """Relative angles, in [0, 2 pi], at any shaft angles (n,), and their intervals; at a node as `side` has it."""
+        """Relative angles, in [0, 2 pi], at any shaft angles (n,), and their intervals; at a node those on a side."""
         interval, reduced = _place(self.shaft, shaft, side)
         low, high = self.nodes[interval], self.nodes[interval + 1]
         share = (reduced - self.shaft[interval]) / (self.shaft[interval + 1] - self.shaft[interval])
@@ -133,11 +133,15 @@ class Resting:
 
     def shaft_at(self, theta: float) -> float:
         """Shaft angle at any relative angle, to whole turns."""
-        interval, at = _place(self.nodes, np.array([theta]), 1)
-        return float(self.rows(at, interval)[0, 0, 0])
+        return float(self.rows(*self.place(np.array([theta])))[0, 0, 0])
+
+    def place(self, theta: Array, side: int = 1) -> tuple[Array, Indices]:
+        """Return relative angles (n,), any, brought to [0, 2 pi], and their intervals; at a node as `relative` does."""
+        interval, reduced = _place(self.nodes, theta, side)
+        return reduced, interval
 
     def over_shaft(self, shaft: Array, order: int, side: int = 1) -> Array:
-        """Output at shaft angles (n,) and up to two derivatives by them, (order + 1, n); at a node as above."""
+        """Output at shaft angles (n,) and up to two derivatives by them, (order + 1, n); at a node as `relative`."""
         phi, output = self.rows(*self.relative(shaft, side))
         rows = [output[0]]
         if order > 0:
@@ -148,8 +152,7 @@ class Resting:
 
     def over_relative(self, theta: Array, order: int, side: int = 1) -> Array:
         """Output at relative angles (n,) and up to two derivatives by them, likewise."""
-        interval, reduced = _place(self.nodes, theta, side)
-        rows: Array = self.rows(reduced, interval)[1, : order + 1]
+        rows: Array = self.rows(*self.place(theta, side))[1, : order + 1]
         return rows
 
 
