@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame
 
 CONSTANT = 124.7  # error of an arc of length s with free joints: |kappa'| s^3 / 124.7 (12 sqrt 108)
-END = 0.687  # length, in those of the others, of the arc that touches the curve where its part begins or ends
+END = 0.687  # length, in those of the others, of the arc that touches the curve at its part's end: 3 (1.5/124.7)^(1/3)
 ENDS = 2.0 * (1.0 - END)
 LEVEL = 1.02  # times the level foreseen: a part so near to it has settled
 ALONG = 0.03  # of an arc's length that a joint has moved when its neighbours' deviations change by about the tolerance
@@ -40,9 +40,9 @@ INNER = 0.5 - math.sqrt(1.0 / 12.0)  # where along an arc it strays farthest, an
 OUTER = 2.0 / 3.0  # the same for a part's first arc
 RAISED = 4  # times that a part may take more arcs than foreseen
 MOST_RAISED = 1.5  # times as many, at once
-JOINED = 8.0  # units in the last place of the curve's size: how far they may be then
-CLOSING = 12  # rounds of that
-PROOF_LOOKS = 8
+JOINED = 8.0  # units in the last place of the curve's size, by which an arc may miss the tangent of its end
+CLOSING = 12  # steps that bring it there
+PROOF_LOOKS = 16  # steps of an arc at which its deviation is first proved
 
 
 @dataclass(frozen=True)
