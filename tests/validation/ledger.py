@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
@@ -28,6 +29,7 @@ TOPICS = (
     "test_motion_laws",
     "test_shu_wu",
     "test_wunderlich",
+    "test_linkages",
 )
 HEAD = "| quantity | source | published | ours | differs by |\n| --- | --- | --- | --- | --- |"
 MISPRINT_HEAD = "| where | printed | right | measured | printed is off by |\n| --- | --- | --- | --- | --- |"
@@ -155,6 +157,7 @@ def misprints(workshop):
 
 
 def main():
+    sys.path.append(str(ROOT / "tests"))  # as pytest has it
     with TemporaryDirectory() as folder:
         workshop = Workshop(folder)
         found = topics(workshop)
