@@ -151,7 +151,7 @@ def killed(scene, values):
 def test_a_worker_that_is_killed_ends_the_run_and_what_landed_stays(tmp_path: Path) -> None:
     deadly = Job(GRID, Aside(), killed)
     chunks = chunks_of(deadly, tmp_path)
-    with pytest.raises(engines.EngineError, match="a process was killed before its chunk was done"):
+    with pytest.raises(engines.EngineError, match="a process was killed before it was done"):
         compute(deadly, chunks, How(2))
     missing, damaged = chunks.sort_out()
     assert missing

@@ -208,12 +208,27 @@ def test_lengths_are_told_in_the_recipes_unit(tmp_path: Path) -> None:
     assert b"margin_in" in (tmp_path / "four-bar" / "sweep.csv").read_bytes()
 
 
-def test_polished_designs_take_the_place_of_theirs_and_equal_ones_are_one(tmp_path: Path) -> None:
-    outcome = search(ask(refine="true"), tmp_path, How(1), MEANS)
+def apart_by_hand(count: int) -> list[int]:
+    """Indices of the best designs that lie 15 percent of a range or more from each better one taken."""
+    taken: list[int] = []
+    for _, index in by_hand(RANKING):
+        here = GRID.values(index, index + 1)[0] / (10.0, 15.0)
+        if all(np.abs(here - GRID.values(i, i + 1)[0] / (10.0, 15.0)).max() > 0.15 for i in taken):
+            taken.append(index)
+    return taken[:count]
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, tmp_path: Path) -> None:
+    text = ask(refine="true").recipe.text.replace("keep: 3", "keep: 20")
+    outcome = search(Ask.of(read(text.encode(), "x.yaml")), tmp_path, How(jobs), MEANS)
     best = outcome.report["best"]
     # the stand-in sends every design to one place of the first variable: those of one rocker become one design
-    rockers = [GRID.values(index, index + 1)[0, 1] for _, index in by_hand(RANKING)[:3]]
-    assert [design["values"]["linkage.rocker"] for design in best] == sorted(set(rockers), reverse=True)
+    rockers = [GRID.values(index, index + 1)[0, 1] for index in apart_by_hand(20)]
+    assert [design["values"]["linkage.rocker"] for design in best] == sorted(
+        dict.fromkeys(rockers), key=lambda rocker: (-round(rocker), rockers.index(rocker))
+    )
+    assert 1 < len(best) < len(rockers)
     assert all(design["polished"] and design["values"]["cam.pivot[0]"] == 15.0 for design in best)
     assert [design["file"] for design in best] == [f"best-{place}.yaml" for place in range(1, len(best) + 1)]
     assert load(outcome.folder / "best-1.yaml").about.startswith(f"polished from design {best[0]['index']} of 825")

@@ -106,10 +106,10 @@ def _complain(ask: Ask, text: str) -> None:
 def _teller(progress: Progress) -> Told:
     """Progress with the time left, from the speed so far."""
 
-    def tell(done: int, wanted: int, seconds: float) -> None:
-        left = seconds / done * (wanted - done)
-        speed = f"{done / seconds:,.0f} a second, " if seconds > 0.0 else ""
-        progress(f"{done:,} of {wanted:,} designs, {speed}{duration(left)} left")
+    def tell(what: str, done: int, wanted: int, seconds: float) -> None:
+        left = f", {duration(seconds / done * (wanted - done))} left" if done else ""
+        speed = f", {done / seconds:,.0f} a second" if done > seconds > 0.0 else ""
+        progress(f"{done:,} of {wanted:,} {what}{speed}{left}")
 
     return tell
 

@@ -10,16 +10,20 @@ import os
 import sys
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeAlias
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from camgeo.sweep.job import result
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator, Sequence
+    from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 
     from camgeo.sweep.job import Job
 
 Results: TypeAlias = "Generator[tuple[int, bytes], None, None]"
+
+T = TypeVar("T")
+R = TypeVar("R")
 
 AHEAD = 2  # chunks handed out for each worker: one at work, one waiting
 _TRIED = 0.5  # seconds of work after which it is clear how long the rest takes
@@ -41,25 +45,31 @@ def serial(job: Job, numbers: Sequence[int]) -> Results:
 
 def processes(job: Job, numbers: Sequence[int], workers: int) -> Results:
     """Compute `workers` chunks at once, each in a process of this machine; raises EngineError where one is killed."""
+    key = job.key
+    return at_once(partial(result, job, key=key), numbers, workers)
+
+
+def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Generator[tuple[T, R], None, None]:
+    """Give each item, as it is done, with what a function of a module makes of it, `workers` at once."""
     import multiprocessing
     from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
     from concurrent.futures.process import BrokenProcessPool
 
     # not fork: this process may have threads, of a linear algebra library or a compiler
     clean = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
-    key, left = job.key, list(reversed(numbers))
+    left = list(items)[::-1]
     with ProcessPoolExecutor(workers, multiprocessing.get_context(clean), _be_a_worker) as pool:
-        running: dict[Future[bytes], int] = {}
+        running: dict[Future[R], T] = {}
         try:
             while left or running:
                 while left and len(running) < AHEAD * workers:
-                    number = left.pop()
-                    running[pool.submit(result, job, number, key)] = number
+                    item = left.pop()
+                    running[pool.submit(function, item)] = item
                 done, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in done:
                     yield running.pop(future), future.result()
         except BrokenProcessPool as error:
-            text = "a process was killed before its chunk was done, for want of memory perhaps; see --jobs"
+            text = "a process was killed before it was done, for want of memory perhaps; see --jobs"
             raise EngineError(text) from error
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
@@ -82,10 +92,15 @@ def _be_a_worker() -> None:
     threading.Thread(target=watch, daemon=True).start()
 
 
+def available() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
+
+
 def as_pays(job: Job, numbers: Sequence[int]) -> Results:
     """Begin here, and go on with a process for each core where what is left takes longer than starting them."""
-    cores = len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
     started, key = time.perf_counter(), job.key
+    cores = available()
     for done, number in enumerate(numbers):
         spent = time.perf_counter() - started
         if cores > 1 and done and spent > _TRIED and spent / done * (len(numbers) - done) > _PAYS:

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from camgeo.sweep.gather import Gathered, Ranking
 
-# hears how far a sweep is: designs done of all those wanted now, and the seconds they took
-Told: TypeAlias = "Callable[[int, int, float], None]"
+# hears how far a sweep is: what is counted, how many are done, of how many, and the seconds they took
+Told: TypeAlias = "Callable[[str, int, int, float], None]"
 
 FOLDER = "sweep"  # of a recipe's output folder, with a folder for each job in it
 _SHORT = 16  # digits of the key that name the folder
@@ -52,7 +52,14 @@ class How:
     def __str__(self) -> str:
         if self.scheduler is not None:
             return f"dask at {self.scheduler}"
-        return "as many processes as pay" if self.jobs is None else f"{self.jobs} processes"
+        if self.jobs is None:
+            return "as many processes as pay"
+        return "1 process" if self.jobs == 1 else f"{self.jobs} processes"
+
+    @property
+    def processes(self) -> int:
+        """Processes of this machine for what is left to do here in the end."""
+        return self.jobs or engines.available()
 
 
 @dataclass(frozen=True)
@@ -87,7 +94,7 @@ def compute(job: Job, chunks: Chunks, how: How, *, fresh: bool = False, told: To
                 chunks.write(number, data)
                 done += sizes[number]
                 if told is not None:
-                    told(done, wanted, time.perf_counter() - started)
+                    told("designs", done, wanted, time.perf_counter() - started)
     return Work(done, job.plan.count - wanted, damaged, time.perf_counter() - started)
 
 

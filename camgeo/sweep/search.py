@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Protocol
 
+import numpy as np
+
 from camgeo.store import BusyError, Family, Run
+from camgeo.sweep.engines import at_once
 from camgeo.sweep.job import Job
 from camgeo.sweep.outputs import REPORT, outputs
 from camgeo.sweep.recipes import Best, recipe_text
@@ -25,6 +29,7 @@ if TYPE_CHECKING:
 FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
 _AGAIN = 0.05
+_NEAR = 0.15  # of an axis's range in every value: polishing would lead designs nearer than that to one place
 _SAME = 1e-6  # of an axis's range: designs nearer than that in every value are one
 
 
@@ -66,7 +71,7 @@ def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, 
     chunks = chunks_of(job, out / ask.recipe.name)
     work = compute(job, chunks, how, fresh=fresh, told=told)
     found = gathered(job, chunks, ask.ranking)
-    best = best_of(ask, found, means.polish)
+    best = best_of(ask, found, means.polish, how, told)
     run = {
         "engine": str(how),
         "key": job.key,
@@ -94,31 +99,65 @@ def demand_extras(ask: Ask, how: How) -> None:
             raise ModuleNotFoundError(name=name)
 
 
-def best_of(ask: Ask, found: Gathered, polish: Polish) -> list[Best]:
-    """The best designs, polished if asked for; those that polishing made the same are one."""
+def best_of(ask: Ask, found: Gathered, polish: Polish, how: How, told: Told | None = None) -> list[Best]:
+    """The best designs; if asked for, the best that lie apart, polished, those that have become the same as one."""
+    places = _apart(ask, found) if ask.sweep.refine else range(min(ask.sweep.keep, found.rows))
     plain = [
         Best(
-            place + 1,
+            number,
             int(found.index[place]),
             False,
             _by_path(ask, found.values[place]),
             {name: float(values[place]) for name, values in found.figures.items()},
         )
-        for place in range(min(ask.sweep.keep, found.rows))
+        for number, place in enumerate(places, 1)
     ]
     if not ask.sweep.refine:
         return plain
-    polished = []
-    for design in plain:
-        values, figures = polish(ask, design.values)
-        polished.append(Best(design.place, design.index, values != design.values, values, figures))
-    sign = -1.0 if ask.ranking.most else 1.0
-    polished.sort(key=lambda design: (sign * design.figures[ask.sweep.rank], design.place))
-    apart: list[Best] = []
+    polished = sorted(_polished(ask, plain, polish, how, told), key=lambda design: _order(ask, design))
+    best: list[Best] = []
     for design in polished:
-        if not any(_same(ask, design, other) for other in apart):
-            apart.append(Best(len(apart) + 1, design.index, design.polished, design.values, design.figures))
-    return apart
+        if not any(_same(ask, design, other) for other in best):
+            best.append(replace(design, place=len(best) + 1))
+    return best
+
+
+def _order(ask: Ask, design: Best) -> tuple[float, int]:
+    figure = design.figures[ask.sweep.rank]
+    return (-figure if ask.ranking.most else figure), design.place
+
+
+def _apart(ask: Ask, found: Gathered) -> list[int]:
+    """Places in the table of the best designs from which polishing is likely to lead to different ones."""
+    ranges = np.array([abs(axis.high - axis.low) or 1.0 for axis in ask.plan.axes])
+    left = np.arange(found.rows)
+    places: list[int] = []
+    while len(left) and len(places) < ask.sweep.keep:
+        places.append(int(left[0]))
+        distance = np.abs((found.values[left] - found.values[left[0]]) / ranges).max(axis=1)
+        left = left[distance > _NEAR]
+    return places
+
+
+def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, told: Told | None) -> list[Best]:
+    """Each design polished, several at once where there are processes for it; in the same order."""
+    started = time.perf_counter()
+    if told is not None:
+        told("polished", 0, len(plain), 0.0)
+    workers = min(how.processes, len(plain))
+    work = partial(_polish, polish, ask)
+    results = at_once(work, plain, workers) if workers > 1 else ((design, work(design)) for design in plain)
+    done: dict[int, Best] = {}
+    for design, result in results:
+        done[design.place] = result
+        if told is not None:
+            told("polished", len(done), len(plain), time.perf_counter() - started)
+    return [done[design.place] for design in plain]
+
+
+def _polish(polish: Polish, ask: Ask, design: Best) -> Best:
+    values, figures = polish(ask, design.values)
+    return replace(design, polished=values != design.values, values=values, figures=figures)
 
 
 def _by_path(ask: Ask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of an array
