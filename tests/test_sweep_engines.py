@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import signal
 import subprocess
@@ -9,15 +11,20 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from distributed import LocalCluster
 from sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
 
+from camgeo.recipe.load import read
 from camgeo.sweep import engines
+from camgeo.sweep.ask import Ask
 from camgeo.sweep.job import Job, VersionsError, result
+from camgeo.sweep.means import figures
 from camgeo.sweep.plan import Axis, Plan
 from camgeo.sweep.run import How, chunks_of, compute
 from camgeo.sweep.search import search
+from camgeo.sweep.store import decode
 
 RUN = """\
 import sys
@@ -77,6 +84,26 @@ def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster:
     how = {"serial": How(1), "processes": How(2), "dask": How(scheduler=cluster.scheduler_address)}[engine]
     landed = dict(how.results(slow, numbers))
     assert landed == {number: result(slow, number, slow.key) for number in numbers}
+
+
+@pytest.mark.parametrize("engine", ["processes", "dask"])
+def test_figures_of_linkages_are_the_same_bytes_from_every_engine(engine: str, cluster: LocalCluster) -> None:
+    text = ask().recipe.text
+    for old, new in (
+        (", steps: 25", ""),
+        (", steps: 33", ""),
+        ("rank: dwell", "rank: dwell\n  method: sobol\n  count: 300"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    asked = Ask.of(read(text.encode(), "four-bar.yaml"))
+    real = Job(asked.plan, asked.scene, figures)
+    how = {"processes": How(2), "dask": How(scheduler=cluster.scheduler_address)}[engine]
+    numbers = range(real.plan.chunks)
+    landed = dict(how.results(real, numbers))
+    assert landed == {number: result(real, number, real.key) for number in numbers}
+    dwells = np.concatenate([decode(landed[n], real.key, *real.plan.span(n))["dwell"] for n in numbers])
+    assert len(np.unique(dwells)) > 250
 
 
 def test_more_processes_are_started_only_where_they_pay(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -171,6 +198,14 @@ def first_values(names: set[str]) -> set[str]:
     return {repr(GRID.values(*GRID.span(number))[0].tolist()) for number in numbers}
 
 
+def assert_whole(folder: Path) -> None:
+    """No file of a set without its report, and every one that the report names as it says."""
+    report = folder / "sweep.json"
+    if report.exists():
+        for file in json.loads(report.read_text(encoding="utf-8"))["files"]:
+            assert hashlib.sha256((folder / file["path"]).read_bytes()).hexdigest() == file["sha256"]
+
+
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
     jobs: int, plain: dict[str, bytes], tmp_path: Path
@@ -180,7 +215,7 @@ def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
     script.write_text(RUN)
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
     # killed once so many chunks are there, and after them at some moments of what follows
-    moments = [(1, 0.0), (5, 0.004), (9, 0.013), (GRID.chunks, 0.01), (GRID.chunks, 0.5), (GRID.chunks, 1.0)]
+    moments = [(1, 0.0), (5, 0.004), (9, 0.013), *((GRID.chunks, delay) for delay in (0.01, 0.7, 1.1, 1.5))]
     for run, (chunks, delay) in enumerate(moments):
         told = tmp_path / f"calls-{run}"
         told.mkdir()
@@ -192,6 +227,7 @@ def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
             time.sleep(delay)
             process.send_signal(signal.SIGKILL)
         assert before <= finished(out)
+        assert_whole(out / "four-bar")
         assert not first_values(before) & set(calls(told))  # nothing that was finished is computed again
     told = tmp_path / "calls"
     told.mkdir()
