@@ -8,7 +8,7 @@ either angle. Derivatives are exact (`kin.jet`), extremes and roots those of mon
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -95,8 +95,9 @@ class Motion:
 class Mechanism:
     """A linkage whose frame holds the cam of a lift, and further links.
 
-    `breadth` is that of the frame and the cam, mm. IntentError if p(theta) + p(theta + pi) is not the breadth all round
-    (field "p"), or if the shaft is not within the cam (field "pivot"): on its edge is allowed.
+    `breadth` is that of the frame and the cam, mm; `chain` is all the links. ValueError if the first dyad hangs on a
+    previous one. IntentError if p(theta) + p(theta + pi) is not the breadth all round (field "p"), or if the shaft is
+    not within the cam (field "pivot"): on its edge is allowed.
     """
 
     linkage: Linkage
@@ -104,14 +105,12 @@ class Mechanism:
     breadth: float
     dyads: tuple[Dyad, ...] = ()
 
+    chain: Chain = field(init=False)
+
     def __post_init__(self) -> None:
+        object.__setattr__(self, "chain", Chain(self.linkage, self.breadth, self.dyads))
         self._demand_constant_breadth()
         self._demand_shaft_within()
-
-    @property
-    def chain(self) -> Chain:
-        """The links."""
-        return Chain(self.linkage, self.breadth, self.dyads)
 
     @property
     def unit(self) -> str:

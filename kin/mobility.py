@@ -97,7 +97,9 @@ def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) ->
 
 def _below(of: Pieces, level: float) -> tuple[Span, ...]:
     """Spans of a turn in which a function is at or below a level."""
-    places = [x for x in of.crossings(level).tolist() if 0 < x < TURN]
+    places = of.crossings(level).tolist()
+    if len(places) > 1 and places[0] + TURN - places[-1] <= _BESIDE:
+        places.pop()  # 0, found again at 2 pi
     if not places:
         return ((0.0, TURN),) if of.values[0] <= level else ()
     ends = np.array([*places, places[0] + TURN])
