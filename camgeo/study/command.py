@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.progress import Progress
+from camgeo.study import FORMS
 
 if TYPE_CHECKING:
     import argparse
@@ -23,8 +24,6 @@ PATIENCE = 2.0  # seconds of a run after which a ladder goes no further
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Give the command its options."""
-    from camgeo.study.ladder import FORMS
-
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file")
     parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
     parser.add_argument("--form", action="append", default=[], choices=FORMS, help="this form only; repeatable")
@@ -84,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | Ended]:
     """All rungs of all forms."""
-    from camgeo.study.ladder import FORMS, climb
+    from camgeo.study.ladder import climb
 
     if design.contour is None:
         return []

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
     from camgeo.report.document import FileResult
 
-FORMS = ("polyline", "arcs", "spline", "stl")
 FIRST_EXPONENT, LAST_EXPONENT = -1, -12  # of ten: the rungs, in the recipe's unit
 REPEATS = 5
 QUICK = 0.3  # seconds: longer runs are repeated twice only, and runs above SLOW once, as the first run is cold
