@@ -1,0 +1,224 @@
+"""Error over run time and size against what a user would pick instead: `python benchmarks/peers.py [--python PYTHON]`.
+
+Every peer (`benchmarks/peer.py`) and camgeo make the same two cams at a ladder of point counts or tolerances, and every
+file is judged by the same judge, `kin.verify`, in the same run. Warm seconds are the least of repeats within one
+process, cold seconds those of the whole process. PYTHON runs the peers, and may have CadQuery; a peer that cannot run
+is told. Writes docs/pictures/peers.png (matplotlib) and prints the tables of docs/performance.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from peer import PEERS
+
+from camgeo.design import designed, intended
+from camgeo.recipe.load import load
+from camgeo.study.ladder import Rung, climb
+from kin.verify import Limits, verify
+
+ROOT = Path(__file__).parents[1]
+CAMS = {"yoke": "as-figure-2a", "roller": "w-figure-9"}
+COUNTS = [round(32 * 2 ** (k / 2)) for k in range(25)]
+PATIENCE = 8.0  # seconds for one file
+FINE = 1e-6  # mm: no peer is taken farther
+LEVELS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+OURS = {"arcs": "camgeo arcs", "spline": "camgeo spline", "polyline": "camgeo polyline", "stl": "camgeo STL"}
+RIVALS = {".dxf": ("camgeo arcs", "camgeo spline", "camgeo polyline"), ".stl": ("camgeo STL",)}
+
+
+@dataclass(frozen=True)
+class Point:
+    """One file: error of its contour (mm) as judged, seconds to make it, warm and cold, pieces, bytes."""
+
+    tool: str
+    kind: str
+    error: float
+    warm: float
+    cold: float
+    pieces: int
+    bytes: int
+
+
+def of_peer(name: str, cam: str, python: str, folder: Path) -> list[Point]:
+    """Climb one peer's ladder until it is fine enough, too slow, gets no better or fails."""
+    recipe = load(ROOT / "recipes" / f"{CAMS[cam]}.yaml")
+    intent, limits = intended(recipe, designed(recipe)), Limits(1.0)
+    suffix = PEERS[name][1]
+    path = folder / f"peer{suffix}"
+    found: list[Point] = []
+    for count in COUNTS:
+        command = [python, str(ROOT / "benchmarks" / "peer.py"), name, cam, str(count), str(path), "5"]
+        path.unlink(missing_ok=True)
+        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        if ran.returncode or not path.is_file():
+            print(f"  {name}, {cam}, {count} points: {(ran.stderr.strip().splitlines() or ['no file'])[-1]}")
+            if not found:
+                return found
+            continue
+        seconds = json.loads(ran.stdout.splitlines()[-1])
+        cold = timed([*command[:-1], "0"])
+        verdict = verify(path, intent, 360, limits)
+        if verdict.measured_error is None:
+            print(f"  {name}, {cam}, {count} points: {verdict.checks[0].detail}")
+            continue
+        error, pieces = verdict.measured_error, verdict.pieces or 0
+        found.append(Point(name, suffix, error, min(seconds[1:]), cold, pieces, path.stat().st_size))
+        if error < FINE or seconds[1] > PATIENCE or (len(found) > 8 and error > 0.7 * found[-5].error):
+            break
+    return found
+
+
+def timed(command: list[str]) -> float:
+    start = time.perf_counter()
+    subprocess.run(command, capture_output=True, check=False)
+    return time.perf_counter() - start
+
+
+def of_ours(cam: str, folder: Path) -> list[Point]:
+    """Every form of ours at every tolerance; judging is not counted, as no peer does it."""
+    path = ROOT / "recipes" / f"{CAMS[cam]}.yaml"
+    recipe = load(path)
+    recipe = replace(recipe, part=replace(recipe.part, bore=None))
+    found = []
+    for form, tool in OURS.items():
+        for rung in climb(recipe, designed(recipe), form, folder, patience=PATIENCE):
+            if not isinstance(rung, Rung) or rung.geometry_error is None or rung.tolerance < 0.99 * FINE:
+                break
+            warm = rung.stages["fit"] + rung.stages["write"] + design_seconds(recipe)
+            text = path.read_text(encoding="utf-8")
+            kind = "stl" if form == "stl" else "dxf"
+            asked = "stl" if form == "stl" else f"{{dxf: {{as: {form}}}}}"
+            text = text.split("export:")[0] + f"export: {{tolerance: {rung.tolerance:g}, files: [{asked}]}}\n"
+            own = folder / "own.yaml"
+            own.write_text(text.replace("bore: 6", "").replace(", bore: 15", "").replace(", }", "}"), encoding="utf-8")
+            command = [sys.executable, "-m", "camgeo.cli", "export", str(own), "--out", str(folder / "out")]
+            cold = timed(command)
+            size = (folder / "out" / "own" / f"own.{kind}").stat().st_size
+            found.append(Point(tool, f".{kind}", rung.geometry_error, warm, cold, rung.pieces or 0, size))
+    return found
+
+
+def design_seconds(recipe: object) -> float:
+    """Least seconds to make the exact curve with its checks, which every export begins with."""
+    seconds = []
+    for _ in range(3):
+        start = time.perf_counter()
+        designed(recipe)
+        seconds.append(time.perf_counter() - start)
+    return min(seconds)
+
+
+def at_level(points: list[Point], tool: str, level: float) -> dict[str, float] | None:
+    """Least cost of any file of a tool that is at least as good as a level; None if it makes none."""
+    good = [point for point in points if point.tool == tool and point.error <= level * 1.000001]
+    if not good:
+        return None
+    return {key: min(getattr(point, key) for point in good) for key in ("warm", "cold", "pieces", "bytes")}
+
+
+def tables(cam: str, points: list[Point]) -> str:
+    """Ratios of each peer to the best of ours of its kind, level by level; above 1 ours is the better."""
+    lines = [f"\n{cam}: peer over ours (best of ours of that kind of file), warm | cold | pieces | bytes", ""]
+    lines += [
+        "| peer | " + " | ".join(f"{level:.0e} mm" for level in LEVELS) + " |",
+        "| --- |" + " --- |" * len(LEVELS),
+    ]
+    for name, (_, suffix) in PEERS.items():
+        cells = []
+        for level in LEVELS:
+            theirs = at_level(points, name, level)
+            ours = [found for tool in RIVALS[suffix] if (found := at_level(points, tool, level))]
+            if theirs is None or not ours:
+                cells.append("not reached" if ours else "ours not either")
+                continue
+            best = {key: min(found[key] for found in ours) for key in theirs}
+            cells.append(" | ".join(f"{theirs[key] / best[key]:.2g}" for key in theirs).replace(" | ", " · "))
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    lines += ["", "| tool | " + " | ".join(f"{level:.0e} mm: ms warm, ms cold, pieces, KB" for level in LEVELS) + " |"]
+    lines.append("| --- |" + " --- |" * len(LEVELS))
+    for tool in (*OURS.values(), *PEERS):
+        cells = []
+        for level in LEVELS:
+            found = at_level(points, tool, level)
+            if found is None:
+                cells.append("-")
+                continue
+            warm, cold = 1e3 * found["warm"], 1e3 * found["cold"]
+            cells.append(f"{warm:.3g}, {cold:.3g}, {found['pieces']}, {found['bytes'] / 1e3:.3g}")
+        lines.append(f"| {tool} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def picture(found: dict[str, list[Point]], path: Path) -> None:
+    """Error over warm time, cold time and size, ours drawn solid."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, rows = plt.subplots(len(found), 3, figsize=(13, 4.1 * len(found)), layout="constrained", sharey=True)
+    colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999"]
+    tools = [*OURS.values(), *PEERS]
+    for row, (cam, points) in zip(np.atleast_2d(rows), found.items(), strict=True):
+        for axes, (key, label, scale) in zip(
+            row, (("warm", "warm, ms", 1e3), ("cold", "whole process, ms", 1e3), ("bytes", "bytes", 1)), strict=True
+        ):
+            for i, tool in enumerate(tools):
+                mine = [point for point in points if point.tool == tool]
+                if not mine:
+                    continue
+                own = tool in OURS.values()
+                style = {"color": colours[i % 4 if own else (i - 4) % 8], "linewidth": 1.8 if own else 0.9}
+                axes.plot(
+                    [scale * getattr(point, key) for point in mine],
+                    [point.error for point in mine],
+                    "-o" if own else "--x",
+                    markersize=4,
+                    label=tool,
+                    **style,
+                )
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.set_xlabel(f"{cam}: {label}")
+            axes.grid(visible=True, color="#e0e0e0")
+        row[0].set_ylabel("error of the file, mm")
+    handles, labels = np.atleast_2d(rows)[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
+    figure.savefig(path, dpi=90)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--python", default=sys.executable, help="interpreter that runs the peers")
+    parser.add_argument("--picture", type=Path, default=ROOT / "docs" / "pictures" / "peers.png")
+    parser.add_argument("--cam", action="append", choices=tuple(CAMS))
+    arguments = parser.parse_args()
+    print(f"{platform.machine()}, Python {platform.python_version()}, numpy {np.__version__}")
+    found = {}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for cam in arguments.cam or CAMS:
+            points = of_ours(cam, folder)
+            for peer in PEERS:
+                if peer == "OpenSCAD" and shutil.which("openscad") is None:
+                    print("  OpenSCAD is not installed")
+                    continue
+                points += of_peer(peer, cam, arguments.python, folder)
+            found[cam] = points
+            print(tables(cam, points), flush=True)
+    picture(found, arguments.picture)
+
+
+if __name__ == "__main__":
+    main()
