@@ -30,10 +30,11 @@ _EDGE = 1e-12  # of the breadth: how far outside the cam rounding may put a shaf
 
 
 class Sampled(NamedTuple):
-    """m cams: their supports about the shaft, least radii of curvature (m,) in mm, and what is wrong with them (m,)."""
+    """m cams: supports about the shaft, least radii of curvature in mm, whether p'' is continuous, what is wrong."""
 
     support: Support
     radius: Array
+    smooth: NDArray[np.bool_]
     fault: Codes
 
 
@@ -52,8 +53,8 @@ class Cams:
     """Where the cams of a sweep come from.
 
     `terms` are the harmonics that vary: order (0 for the mean radius), whether of a sine, column of the values, mm per
-    unit; they are 0 in `base`. `pivot` are the columns of the shaft's place, or None with its value in mm. `others` are
-    the columns of all else in the cam, which a cam is made anew for.
+    unit; they are 0 in `base`, but for the mean radius. `pivot` are the columns of the shaft's place, or None with its
+    value in mm. `others` are the columns of all else in the cam, which a cam is made anew for.
     """
 
     recipe: Recipe
@@ -91,13 +92,13 @@ class Cams:
         shape = (m, self.count)
         if self.base is not None:
             breadth, radius = np.full((m, 1), self.base.breadth), np.full(m, self.base.radius)
-            fault = np.full(m, self.base.fault, dtype=np.uint8)
+            fault, smooth = np.full(m, self.base.fault, dtype=np.uint8), np.full(m, self.base.smooth)
             rows = tuple(self.base.rows[:, None, :])
         else:
-            breadth, radius, fault, rows = self._made(values)
+            breadth, radius, fault, smooth, rows = self._made(values)
         if self.terms:
             rows = self._harmonics(values, breadth, fault, rows)
-            radius = least(rows[0] + rows[2], smooth=True)
+            radius = least(rows[0] + rows[2])
         x, y = (
             (np.full((m, 1), fixed) if column is None else values[:, column : column + 1] * self.recipe.mm)
             for column, fixed in self.pivot
@@ -111,12 +112,8 @@ class Cams:
         if self.recipe.cam.undercut == "refuse":
             fault[(fault == FINE) & ~(radius > 0.0)] = UNDERCUT
         fault[(fault == FINE) & (p.min(axis=1) < -_EDGE * breadth[:, 0])] = OUTSIDE
-        return Sampled(Support(breadth, *(np.broadcast_to(row, shape) for row in (p, dp, ddp))), radius, fault)
-
-    @property
-    def smooth(self) -> bool:
-        """Whether p'' is known to be continuous, so that extremes may be sought between the samples."""
-        return self.base is not None and self.base.smooth
+        support = Support(breadth, *(np.broadcast_to(row, shape) for row in (p, dp, ddp)))
+        return Sampled(support, radius, smooth, fault)
 
     def _harmonics(
         self, values: Array, breadth: Array, fault: Codes, rows: tuple[Array, ...]
@@ -127,6 +124,7 @@ class Cams:
         for order, is_sine, column, scale in self.terms:
             size = values[:, column : column + 1] * scale
             if order == 0:
+                size = size - 0.5 * breadth
                 p += size
                 breadth += 2.0 * size
                 continue
@@ -139,7 +137,7 @@ class Cams:
             ddp -= size * (value * order**2)
         return p, dp, ddp
 
-    def _made(self, values: Array) -> tuple[Array, Array, Codes, tuple[Array, ...]]:
+    def _made(self, values: Array) -> tuple[Array, Array, Codes, NDArray[np.bool_], tuple[Array, ...]]:
         """Make each distinct cam anew."""
         own = values[:, self.others]
         distinct, which = np.unique(own, axis=0, return_inverse=True)
@@ -155,6 +153,7 @@ class Cams:
             np.array([base.breadth for base in found])[which, None],
             np.array([base.radius for base in found])[which],
             np.array([base.fault for base in found], dtype=np.uint8)[which],
+            np.array([base.smooth for base in found])[which],
             tuple(np.stack([base.rows[i] for base in found])[which] for i in range(3)),
         )
 
@@ -170,7 +169,7 @@ def _term(shape: FourierShape | HypocycloidShape, path: str) -> tuple[int, bool,
 
 
 def _silent(recipe: Recipe, terms: Sequence[tuple[int, bool, int, float]]) -> Recipe:
-    """The recipe without the harmonics that vary."""
+    """The recipe without the harmonics that vary, but for the mean radius."""
     cam = recipe.cam
     if not terms or not isinstance(cam, SupportCam):
         return recipe
@@ -178,16 +177,12 @@ def _silent(recipe: Recipe, terms: Sequence[tuple[int, bool, int, float]]) -> Re
     orders = {(order, is_sine) for order, is_sine, _, _ in terms}
     if isinstance(shape, FourierShape):
         shape = FourierShape(
-            0.0 if (0, False) in orders else shape.mean,
+            shape.mean,
             tuple((k, 0.0 if (k, False) in orders else a) for k, a in shape.cos),
             tuple((k, 0.0 if (k, True) in orders else a) for k, a in shape.sin),
         )
     elif isinstance(shape, HypocycloidShape):
-        shape = HypocycloidShape(
-            shape.cusps,
-            0.0 if (shape.cusps, False) in orders else shape.size,
-            0.0 if (0, False) in orders else shape.breadth,
-        )
+        shape = replace(shape, size=0.0 if (shape.cusps, False) in orders else shape.size)
     return replace(recipe, cam=replace(cam, shape=shape))
 
 

@@ -7,13 +7,10 @@ through both values and slopes stands for the function, wrong by h^4/384 of its 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from camgeo.sweep.windows import Windows
 
 Array: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.intp]
@@ -23,25 +20,25 @@ _BISECTIONS = 12
 _STEPS = 7  # of Newton's method, kept within a bracket
 
 
-def greatest(values: Array, *, smooth: bool) -> Array:
-    """Greatest value of each row (m,), between the samples by a parabola where the function is smooth."""
-    n = values.shape[1]
-    i = values.argmax(axis=1)
+def greatest(values: Array, smooth: NDArray[np.bool_] | bool = True) -> Array:
+    """Greatest value of each row (m,), between the samples by a parabola in the rows that are smooth."""
+    return _extreme(values, values.argmax(axis=1), smooth)
+
+
+def _extreme(values: Array, i: Indices, smooth: NDArray[np.bool_] | bool) -> Array:
     rows = np.arange(len(values))
     middle: Array = values[rows, i]
-    if not smooth:
-        return middle
-    before, after = values[rows, i - 1], values[rows, (i + 1) % n]
-    # at the greatest of three the bend is downward, or all three are equal
+    before, after = values[rows, i - 1], values[rows, (i + 1) % values.shape[1]]
+    # at the extreme of three the bend points one way, or all three are equal
     bend = (middle - before) + (middle - after)
     slope = after - before
-    top: Array = middle + np.divide(slope * slope, 8.0 * bend, out=np.zeros_like(middle), where=bend > 0.0)
+    top: Array = middle + np.divide(slope * slope, 8.0 * bend, out=np.zeros_like(middle), where=(bend != 0.0) & smooth)
     return top
 
 
-def least(values: Array, *, smooth: bool) -> Array:
+def least(values: Array, smooth: NDArray[np.bool_] | bool = True) -> Array:
     """Least value of each row (m,); see `greatest`."""
-    return -greatest(-values, smooth=smooth)
+    return _extreme(values, values.argmin(axis=1), smooth)
 
 
 def cell_bounds(value: Array, slope: Array) -> tuple[Array, Array]:
@@ -114,24 +111,28 @@ class Ends(NamedTuple):
 
 
 def ends(
-    windows: Windows, output: tuple[Array, Array], abscissa: tuple[Array, Array], bounds: tuple[Array, Array]
+    window: tuple[Indices, Indices],
+    output: tuple[Array, Array],
+    abscissa: tuple[Array, Array],
+    bounds: tuple[Array, Array],
 ) -> Ends:
     """Take from the samples what `lengths` needs of each window.
 
-    `output` and `abscissa` are values and slopes by the angle, (m, n), the abscissa's also (1, n); it rises, by 2 pi a
-    turn. `bounds` are those of the output over each cell. The first and the last cell of a window are left out of its
-    core, as what is given up at one end may be less than what that gains at the other.
+    `window` are first node and whole cells, (m,) each. `output` and `abscissa` are values and slopes by the angle,
+    (m, n); the abscissa rises, by 2 pi a turn. `bounds` are those of the output over each cell. The first and the last
+    cell of a window are left out of its core, as what is given up at one end may be less than what that gains at the
+    other.
     """
-    m, n = output[0].shape
-    start, cells = windows.start, windows.cells
+    start, cells = window
+    n = output[0].shape[1]
     spare = cells >= 2
     first, count = start + spare, cells - 2 * spare
-    index, stop = np.arange(n), (first + count)[:, None]
-    inside = ((index >= first[:, None]) & (index < stop)) | (index < stop - n)
-    rows, first, last = np.arange(m), first % n, (first + count) % n
-    at_first = output[0][rows, first]
-    low = np.minimum(np.where(inside, bounds[0], np.inf).min(axis=1), at_first)
-    high = np.maximum(np.where(inside, bounds[1], -np.inf).max(axis=1), at_first)
+    first, last = first % n, (first + count) % n
+    inner = (first[:, None] + np.minimum(np.arange(max(int(count.max(initial=0)), 1)), count[:, None] - 1)) % n
+    at_first = _of(output[0], first[:, None])[:, 0]
+    # where there is no cell in the core it is a node; else its cells' bounds hold its nodes' values
+    low = np.where(count > 0, _of(bounds[0], inner).min(axis=1), at_first)
+    high = np.where(count > 0, _of(bounds[1], inner).max(axis=1), at_first)
     sides = []
     for node, step in ((first, -1), (last, 1)):
         nodes = (node[:, None] + step * np.arange(3)) % n
@@ -145,8 +146,9 @@ def ends(
 
 
 def _of(values: Array, nodes: Indices) -> Array:
-    """Values (m, n) or (1, n) at nodes (m, k) of each row."""
-    found: Array = values[0][nodes] if len(values) == 1 else np.take_along_axis(values, nodes, axis=1)
+    """Values (m, n) at nodes (m, k) of each row."""
+    m, n = values.shape
+    found: Array = values.ravel()[nodes + np.arange(0, m * n, n)[:, None]]
     return found
 
 
@@ -230,16 +232,23 @@ def _exit(cell: _Cubic, floor: Array, ceiling: Array) -> tuple[Array, NDArray[np
         end = np.where(out != 0, place, end)
         open_ &= out == 0
         begin = np.where(there & open_, place, begin)
-    # in [begin, end] it passes the level once
-    level = np.where(side > 0, ceiling, np.where(side < 0, floor, cell.f))
-    low, high = begin, end
+    x = np.ones_like(cell.f)
+    rows = np.flatnonzero(side)
+    part, sense = _Cubic(*(column[rows] for column in cell)), side[rows]
+    level = np.where(sense > 0, ceiling[rows], floor[rows])
+    x[rows] = _passed(part, sense, level, begin[rows], end[rows])
+    return x, side
+
+
+def _passed(cell: _Cubic, sense: NDArray[np.int8], level: Array, low: Array, high: Array) -> Array:
+    """Where a cubic that is monotone in [low, high] passes a level, upward where `sense` is 1, else downward."""
     x = 0.5 * (low + high)
     for step in range(_STEPS):
-        miss = (cell(x) - level) * side
+        miss = (cell(x) - level) * sense
         low, high = np.where(miss < 0.0, x, low), np.where(miss < 0.0, high, x)
         with np.errstate(divide="ignore", invalid="ignore"):
-            newton = x - miss / (cell.slope(x) * side)
+            newton = x - miss / (cell.slope(x) * sense)
         # beyond its bracket it is held at the end, which from a bent side it then leaves for good, or in the middle
         beyond = np.clip(newton, low, high) if step % 2 == 0 else 0.5 * (low + high)
         x = np.where((newton >= low) & (newton <= high), newton, beyond)
-    return np.where(side == 0, 1.0, x), side
+    return x

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from camgeo.recipe.edit import with_values
 from camgeo.recipe.model import FourBarLinkage, InvertedSliderCrankLinkage, output_slides
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.sweep import rebuilt
@@ -125,11 +126,12 @@ class Evaluator:
         samples: int | None = None,
         engine: Engine | None = None,
     ) -> Evaluator:
-        """See `evaluate`."""
+        """See `evaluate`. Raises ValueError for a path at which no number stands."""
         sweep = recipe.sweep
         limits = sweep.limits if sweep else ()
         wanted = tuple(dict.fromkeys((*(figures or asked_of(recipe)), *(limit.figure for limit in limits))))
         count = samples or (sweep.angles if sweep else _SAMPLES)
+        with_values(recipe.text, dict.fromkeys(paths, 1.0))  # raises where no number stands
         return Evaluator(recipe, tuple(paths), wanted, limits, -(-count // 4) * 4, engine)
 
     @cached_property
@@ -204,14 +206,13 @@ class Evaluator:
         """Fill in figures and reasons (m,) of a block; and give what the dwells of some designs (k,) are made of."""
         cams = self.cams.sampled(values)
         reason[:] = cams.fault
-        smooth = self.cams.smooth
         alive = reason == FINE
         if "radius-of-curvature" in figures:
             figures["radius-of-curvature"][:] = cams.radius
         if "size" in figures:
             square = cams.support.p * cams.support.p
             square += cams.support.dp * cams.support.dp
-            figures["size"][:] = np.sqrt(greatest(square, smooth=smooth))
+            figures["size"][:] = np.sqrt(greatest(square, cams.smooth))
         alive = self._keep(alive, figures, reason)
         index = np.flatnonzero(alive)
         if not index.size:
@@ -222,23 +223,25 @@ class Evaluator:
         else:
             support = cams.support if alive.all() else cams.support.part(alive)
             loop = Loop.of(self._kind, self._side, support, self._lengths(values[index]))
-            margin, motion = loop.margin(lambda rows: least(rows, smooth=smooth)), loop
+            smooth = cams.smooth[index]
+            margin, motion = loop.margin(lambda rows: least(rows, smooth)), loop
         if "margin" in figures:
             figures["margin"][index] = margin
         reason[index[~(margin > 0.0)]] = BINDS
         index, motion = self._still(index, motion, margin > 0.0, figures, reason)
         if index.size:
-            rate = least(1.0 - motion.frame_rate, smooth=smooth)
+            smooth = cams.smooth[index]
+            rate = least(1.0 - motion.frame_rate, smooth)
             if "shaft-rate" in figures:
                 figures["shaft-rate"][index] = rate
             reason[index[~(rate > 0.0)]] = REVERSES
             if "transmission-angle" in figures:
-                figures["transmission-angle"][index] = _acute(motion.transmission, len(index), smooth=smooth)
+                figures["transmission-angle"][index] = _acute(motion.transmission, len(index), smooth)
             if "force-angle" in figures:
-                figures["force-angle"][index] = _acute(motion.force, len(index), smooth=smooth)
+                figures["force-angle"][index] = _acute(motion.force, len(index), smooth)
             index, motion = self._still(index, motion, rate > 0.0, figures, reason)
         if index.size:
-            self._moving(index, motion, figures, smooth=smooth)
+            self._moving(index, motion, figures, cams.smooth[index])
             index, motion = self._still(index, motion, np.ones(len(index), dtype=np.bool_), figures, reason)
         return index, self._windows(motion) if index.size else {}
 
@@ -260,37 +263,37 @@ class Evaluator:
         reason[index] = part
         return (index, motion) if alive.all() else (index[alive], motion.part(alive))
 
-    def _moving(self, index: NDArray[np.intp], motion: _Motion, figures: dict[str, Array], *, smooth: bool) -> None:
+    def _moving(
+        self, index: NDArray[np.intp], motion: _Motion, figures: dict[str, Array], smooth: NDArray[np.bool_]
+    ) -> None:
         """Fill in the figures of the output."""
         turn = 1.0 - motion.frame_rate
         if "swing" in figures:
             output = motion.output
-            figures["swing"][index] = self.scale * (greatest(output, smooth=smooth) - least(output, smooth=smooth))
+            figures["swing"][index] = self.scale * (greatest(output, smooth) - least(output, smooth))
         if "peak-velocity" in figures:
-            figures["peak-velocity"][index] = self.scale * greatest(np.abs(motion.rate / turn), smooth=smooth)
+            figures["peak-velocity"][index] = self.scale * greatest(np.abs(motion.rate / turn), smooth)
         if "peak-acceleration" in figures:
             # (f'/phi')'/phi' with phi'' = -theta_3''
             bent = motion.second * turn
             bent += motion.rate * motion.frame_second
             bent /= turn * turn * turn
-            figures["peak-acceleration"][index] = self.scale * greatest(np.abs(bent), smooth=smooth)
+            figures["peak-acceleration"][index] = self.scale * greatest(np.abs(bent), smooth)
 
     def _windows(self, motion: _Motion) -> dict[str, Ends]:
         names = [name for name in _DWELLS if name in self.wanted]
         if not names:
             return {}
         output = motion.output, motion.rate
-        low, high = cell_bounds(*output)
-        theta = angles(self.count)
-        found = {}
-        for name in names:
-            if name == "dwell":
-                abscissa = theta - motion.frame, 1.0 - motion.frame_rate
-            else:
-                abscissa = theta[None], np.ones((1, self.count))
-            window = longest(Samples(output[0], low, high, abscissa[0]), self._band, self.engine)
-            found[name] = ends(window, output, abscissa, (low, high))
-        return found
+        bounds = cell_bounds(*output)
+        theta = np.broadcast_to(angles(self.count), output[0].shape)
+        over = {
+            "dwell": (theta - motion.frame, 1.0 - motion.frame_rate),
+            "dwell-relative": (theta, np.ones_like(theta)),
+        }
+        abscissae = np.stack([over[name][0] for name in names])
+        start, cells = longest(Samples(output[0], *bounds, abscissae), self._band, self.engine)
+        return {name: ends((start[k], cells[k]), output, over[name], bounds) for k, name in enumerate(names)}
 
     @property
     def _kind(self) -> Kind:
@@ -315,11 +318,11 @@ class Evaluator:
         return Lengths(*columns)
 
 
-def _acute(sine: Array | None, count: int, *, smooth: bool) -> Array:
+def _acute(sine: Array | None, count: int, smooth: NDArray[np.bool_]) -> Array:
     """Least angle, degrees (m,), of which the signed sine (m, n) is given; 90 degrees where there is none."""
     if sine is None:
         return np.full(count, 90.0)
-    smallest = np.maximum(least(np.abs(sine), smooth=smooth), 0.0)
+    smallest = np.maximum(least(np.abs(sine), smooth), 0.0)
     smallest[(sine.min(axis=1) < 0.0) & (sine.max(axis=1) > 0.0)] = 0.0
     found: Array = np.degrees(np.arcsin(np.minimum(smallest, 1.0)))
     return found

@@ -85,7 +85,7 @@ def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[s
         designs = np.stack([start, found, _rounded(goal, found)])
     loss, figures = goal.loss(designs)
     best = 0
-    if len(designs) > 1 and loss[1] < loss[0]:
+    if len(designs) > 1 and loss[1] < min(loss[0], _FAR):
         # written with no more digits than it is worth, unless that costs a part of what was gained
         best = 2 if loss[2] - loss[1] <= _WORTH * (loss[0] - loss[1]) else 1
     return (

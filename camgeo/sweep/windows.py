@@ -34,17 +34,17 @@ _SLACK = 1e-9  # rad: windows shorter than the best by more than this are left o
 class Samples(NamedTuple):
     """m functions at n nodes: value (m, n); bounds over the cells, low and high (m, n), which hold their nodes' values.
 
-    `abscissa` (m, n) or (1, n) rises, by 2 pi a turn.
+    `abscissae` (a, m, n) rise, by 2 pi a turn; windows are found over each of them.
     """
 
     value: Array
     low: Array
     high: Array
-    abscissa: Array
+    abscissae: Array
 
 
 class Windows(NamedTuple):
-    """For each of m designs the window: first node, and whole cells behind it."""
+    """For each abscissa and each of m functions the window, (a, m): first node, and whole cells behind it."""
 
     start: Indices
     cells: Indices
@@ -65,9 +65,10 @@ def longest(samples: Samples, band: float, engine: Engine | None = None) -> Wind
     """
     if (engine or best_engine()) == "numpy":
         return _by_levels(samples, band)
-    m, n = samples.value.shape
-    found = Windows(np.empty(m, dtype=np.intp), np.empty(m, dtype=np.intp))
-    _compiled()(samples, band, np.empty((2, n + 1), dtype=np.intp), found.start, found.cells)
+    _, m, n = shape = samples.abscissae.shape
+    found = Windows(np.empty(shape[:2], dtype=np.intp), np.empty(shape[:2], dtype=np.intp))
+    if m:
+        _compiled()(samples, band, np.empty((2, 2 * n), dtype=np.intp), found.start, found.cells)
     return found
 
 
@@ -81,79 +82,86 @@ def _compiled() -> Callable[..., None]:
 
 
 def _scan(samples: Samples, band: float, queue: Indices, start: Indices, cells: Indices) -> None:
-    """Run two pointers round each design, the window's extremes at the heads of two monotone queues."""
-    value, low, high, abscissa = samples
-    m, n = value.shape
+    """Run two pointers round each function, the window's extremes at the heads of two monotone queues."""
+    value, low, high, abscissae = samples
+    count, m, n = abscissae.shape
+    best = np.empty(count)
     for row in range(m):
-        at = row if abscissa.shape[0] > 1 else 0
-        best = -1.0
-        # queues of cells, in a ring: least values rising, greatest falling
+        best[:] = -1.0
+        # queues of cells: least values rising, greatest falling
         head_low, tail_low, head_high, tail_high = 0, 0, 0, 0
         last = 0  # nodes i .. last are in the window
         for i in range(n):
-            if last < i:
-                last = i
-                head_low = tail_low
-                head_high = tail_high
-            while head_low < tail_low and queue[0, head_low % (n + 1)] < i:
+            last = max(last, i)
+            while head_low < tail_low and queue[0, head_low] < i:
                 head_low += 1
-            while head_high < tail_high and queue[1, head_high % (n + 1)] < i:
+            while head_high < tail_high and queue[1, head_high] < i:
                 head_high += 1
+            least = most = value[row, i]
+            if head_low < tail_low:
+                cell = queue[0, head_low]
+                least = low[row, cell if cell < n else cell - n]
+                cell = queue[1, head_high]
+                most = high[row, cell if cell < n else cell - n]
             while last < i + n:
-                cell = last % n
-                least, most = low[row, cell], high[row, cell]
-                if head_low < tail_low:
-                    least = min(least, low[row, queue[0, head_low % (n + 1)] % n])
-                    most = max(most, high[row, queue[1, head_high % (n + 1)] % n])
-                if not most - least <= band:
+                cell = last if last < n else last - n
+                bottom, top = min(least, low[row, cell]), max(most, high[row, cell])
+                if not top - bottom <= band:
                     break
-                while head_low < tail_low and low[row, queue[0, (tail_low - 1) % (n + 1)] % n] >= low[row, cell]:
+                least, most = bottom, top
+                while head_low < tail_low:
+                    cell_before = queue[0, tail_low - 1]
+                    if low[row, cell_before if cell_before < n else cell_before - n] < low[row, cell]:
+                        break
                     tail_low -= 1
-                queue[0, tail_low % (n + 1)] = last
+                queue[0, tail_low] = last
                 tail_low += 1
-                while head_high < tail_high and high[row, queue[1, (tail_high - 1) % (n + 1)] % n] <= high[row, cell]:
+                while head_high < tail_high:
+                    cell_before = queue[1, tail_high - 1]
+                    if high[row, cell_before if cell_before < n else cell_before - n] > high[row, cell]:
+                        break
                     tail_high -= 1
-                queue[1, tail_high % (n + 1)] = last
+                queue[1, tail_high] = last
                 tail_high += 1
                 last += 1
-            if last > i:
-                least, most = low[row, queue[0, head_low % (n + 1)] % n], high[row, queue[1, head_high % (n + 1)] % n]
-            else:
-                least = most = value[row, i]
             if last == i + n:
-                start[row], cells[row] = 0, n
+                start[:, row] = 0
+                cells[:, row] = n
                 break
-            before, j, after = (i - 1) % n, last % n, (last + 1) % n
+            before, j = i - 1 if i else n - 1, last if last < n else last - n
             if max(most, high[row, before]) - min(least, low[row, before]) <= band:
                 continue  # a window from the node before holds this one
-            x_i, x_j, x_before, x_after = abscissa[at, i], abscissa[at, j], abscissa[at, before], abscissa[at, after]
-            if before > i:
-                x_before -= 2.0 * math.pi
-            if last >= n:
-                x_j += 2.0 * math.pi
-            if last + 1 >= n:
-                x_after += 2.0 * math.pi
-            if (x_after - x_before) + 1e-9 < best:
-                continue
+            after = j + 1 if j + 1 < n else 0
             floor, ceiling = most - band, least + band
             f_i, f_j, f_before, f_after = value[row, i], value[row, j], value[row, before], value[row, after]
-            left, right = 1.0, 1.0
-            left_side, right_side = 0, 0
-            if f_before > ceiling:
-                left, left_side = (ceiling - f_i) / (f_before - f_i), 1
-            elif f_before < floor:
-                left, left_side = (f_i - floor) / (f_i - f_before), -1
-            if f_after > ceiling:
-                right, right_side = (ceiling - f_j) / (f_after - f_j), 1
-            elif f_after < floor:
-                right, right_side = (f_j - floor) / (f_j - f_after), -1
-            left = left * (x_i - x_before)
-            right = right * (x_after - x_j)
-            more = max(left, right) if left_side * right_side < 0 else left + right
-            reach = (x_j - x_i) + more
-            if reach > best:
-                best = reach
-                start[row], cells[row] = i, last - i
+            for k in range(count):
+                x_i, x_j = abscissae[k, row, i], abscissae[k, row, j]
+                x_before, x_after = abscissae[k, row, before], abscissae[k, row, after]
+                if before > i:
+                    x_before -= 2.0 * math.pi
+                if last >= n:
+                    x_j += 2.0 * math.pi
+                if last + 1 >= n:
+                    x_after += 2.0 * math.pi
+                if (x_after - x_before) + 1e-9 < best[k]:
+                    continue
+                left, right = 1.0, 1.0
+                left_side, right_side = 0, 0
+                if f_before > ceiling:
+                    left, left_side = (ceiling - f_i) / (f_before - f_i), 1
+                elif f_before < floor:
+                    left, left_side = (f_i - floor) / (f_i - f_before), -1
+                if f_after > ceiling:
+                    right, right_side = (ceiling - f_j) / (f_after - f_j), 1
+                elif f_after < floor:
+                    right, right_side = (f_j - floor) / (f_j - f_after), -1
+                left = left * (x_i - x_before)
+                right = right * (x_after - x_j)
+                more = max(left, right) if left_side * right_side < 0 else left + right
+                reach = (x_j - x_i) + more
+                if reach > best[k]:
+                    best[k] = reach
+                    start[k, row], cells[k, row] = i, last - i
 
 
 def _by_levels(samples: Samples, band: float) -> Windows:
@@ -162,7 +170,7 @@ def _by_levels(samples: Samples, band: float) -> Windows:
     Levels that fit tell how long the longest window is at least, and so from which nodes on none can be; from the nodes
     left over the count of cells is put together from powers of two.
     """
-    value, low, high, abscissa = samples
+    value, low, high, abscissae = samples
     m, n = value.shape
     lows, highs, fits = [low], [high], [high - low <= band]
     while 2 ** len(fits) <= n and fits[-1].any():
@@ -172,16 +180,17 @@ def _by_levels(samples: Samples, band: float) -> Windows:
         fits.append(highs[-1] - lows[-1] <= band)
     if not fits[-1].any():
         lows, highs, fits = lows[:-1], highs[:-1], fits[:-1]
-    row, i = _promising(fits, abscissa, (m, n))
+    chosen = np.zeros((m, n), dtype=np.bool_)
+    for abscissa in abscissae:
+        chosen |= _promising(fits, abscissa)
+    row, i = np.nonzero(chosen)
     cells = np.zeros(len(row), dtype=np.intp)
     bottom = value[row, i]
     top = bottom.copy()
     flat = row * n
     for level in range(len(fits) - 1, -1, -1):
         at = flat + (i + cells) % n
-        least, most = lows[level].ravel()[at], highs[level].ravel()[at]
-        more = cells > 0
-        least, most = np.where(more, np.minimum(least, bottom), least), np.where(more, np.maximum(most, top), most)
+        least, most = np.minimum(lows[level].ravel()[at], bottom), np.maximum(highs[level].ravel()[at], top)
         fit = (most - least <= band) & (cells + 2**level <= n)
         bottom, top = np.where(fit, least, bottom), np.where(fit, most, top)
         cells += fit * 2**level
@@ -189,14 +198,16 @@ def _by_levels(samples: Samples, band: float) -> Windows:
     held = np.maximum(top, high.ravel()[before]) - np.minimum(bottom, low.ravel()[before]) <= band
     held &= cells < n  # a window from the node before holds this one
     row, i, cells, bottom, top = row[~held], i[~held], cells[~held], bottom[~held], top[~held]
-    reach = _reach(samples, (row, i, cells), (bottom, top), band)
-    # the best of each row, the first of equals; every row has at least one
-    first = np.searchsorted(row, np.arange(m))
-    best = np.maximum.reduceat(reach, first)
-    hits = np.flatnonzero(reach == best[row])
-    chosen = hits[np.searchsorted(row[hits], np.arange(m))]
-    whole = cells[chosen] == n
-    return Windows(np.where(whole, 0, i[chosen]), cells[chosen])
+    first = np.searchsorted(row, np.arange(m))  # every row has at least one
+    found = Windows(np.zeros(abscissae.shape[:2], dtype=np.intp), np.zeros(abscissae.shape[:2], dtype=np.intp))
+    for k, abscissa in enumerate(abscissae if m else ()):
+        reach = _reach((value, abscissa), (row, i, cells), (bottom, top), band)
+        # the best of each row, the first of equals
+        best = np.maximum.reduceat(reach, first)
+        hits = np.flatnonzero(reach == best[row])
+        at = hits[np.searchsorted(row[hits], np.arange(m))]
+        found.start[k], found.cells[k] = np.where(cells[at] == n, 0, i[at]), cells[at]
+    return found
 
 
 def _pairwise(extreme: np.ufunc, values: Array, step: int) -> Array:
@@ -209,19 +220,18 @@ def _pairwise(extreme: np.ufunc, values: Array, step: int) -> Array:
     return found
 
 
-def _promising(fits: list[NDArray[np.bool_]], abscissa: Array, shape: tuple[int, int]) -> tuple[Indices, Indices]:
-    """Rows and nodes from which a row's longest window may start, by rows."""
-    m, n = shape
+def _promising(fits: list[NDArray[np.bool_]], abscissa: Array) -> NDArray[np.bool_]:
+    """Nodes (m, n) from which a row's longest window may start."""
+    m, n = abscissa.shape
     if not fits:
-        row, i = np.divmod(np.arange(m * n), n)
-        return row, i
+        return np.ones((m, n), dtype=np.bool_)
     widest = np.maximum(np.diff(abscissa, axis=1).max(axis=1), abscissa[:, 0] + _TURN - abscissa[:, -1])  # of a cell
     top = np.sum([fit.any(axis=1) for fit in fits], axis=0) - 1
     least = np.zeros(m)
     for level in range(len(fits)):
         rows = np.flatnonzero(top == level)
         if rows.size:
-            x = abscissa[rows] if len(abscissa) > 1 else abscissa
+            x = abscissa[rows]
             span = np.empty((len(x), n))
             step = 2**level % n  # 0 where the window is the whole turn
             np.subtract(x[:, step:], x[:, : n - step], out=span[:, : n - step])
@@ -230,27 +240,25 @@ def _promising(fits: list[NDArray[np.bool_]], abscissa: Array, shape: tuple[int,
     # A window of fewer than 2^k whole cells reaches over less than 2^k + 1 cells.
     counts = 2.0 ** np.arange(len(fits))
     needed = ((widest[:, None] * (counts + 1.0) + _SLACK) < least[:, None]).sum(axis=1) - 1
-    chosen = np.ones(shape, dtype=np.bool_)
+    chosen = np.ones((m, n), dtype=np.bool_)
     for level, fit in enumerate(fits):
         rows = np.flatnonzero(needed == level)
         chosen[rows] = fit[rows]
-    row, i = np.nonzero(chosen)
-    return row, i
+    return chosen
 
 
 def _reach(
-    samples: Samples, window: tuple[Indices, Indices, Indices], limits: tuple[Array, Array], band: float
+    rows: tuple[Array, Array], window: tuple[Indices, Indices, Indices], limits: tuple[Array, Array], band: float
 ) -> Array:
     """Length of each window with its ends drawn out straight; the arithmetic of `_scan`."""
-    value, _, _, abscissa = samples
+    value, abscissa = rows
     row, i, cells = window
     bottom, top = limits
     n = value.shape[1]
-    at = row if len(abscissa) > 1 else np.zeros_like(row)
     last = i + cells
     before, j, after = (i - 1) % n, last % n, (last + 1) % n
-    x_i, x_before = abscissa[at, i], abscissa[at, before]
-    x_j, x_after = abscissa[at, j], abscissa[at, after]
+    x_i, x_before = abscissa[row, i], abscissa[row, before]
+    x_j, x_after = abscissa[row, j], abscissa[row, after]
     x_before = np.where(before > i, x_before - _TURN, x_before)
     x_j = np.where(last >= n, x_j + _TURN, x_j)
     x_after = np.where(last + 1 >= n, x_after + _TURN, x_after)

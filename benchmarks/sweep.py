@@ -1,0 +1,143 @@
+"""Designs a second on one core, and what the samples are worth: `python benchmarks/sweep.py [speed] [accuracy]`.
+
+Speed is processor time, the least of several repeats, as a ratio too: to bare kinematics, the plain numpy expressions
+for the angles and positions of the same four-bars at as many samples, with nothing found from them. Take one core:
+OMP_NUM_THREADS=1, and nothing beside it.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from dataclasses import replace
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.figures import breadth_of
+from camgeo.linkage import dwells_over, mechanism_of
+from camgeo.profile.build import intent_of
+from camgeo.recipe.load import load_text
+from camgeo.recipe.model import Limit
+from camgeo.sweep.figures import Evaluator
+from camgeo.sweep.rebuilt import recipe_with
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+DESIGNS, ANGLES, REPEATS = 4096, 360, 7
+TEXT = """
+cam:
+  kind: support
+  {shape}
+  pivot: [18, 8.5]
+linkage: {{kind: four-bar, ground: 80, coupler: 70, rocker: 105}}
+dwell: {{band: 0.1}}
+sweep:
+  vary: {{linkage.rocker: {{from: 95, to: 115}}}}
+  method: random
+  count: 1
+  rank: dwell
+"""
+CAM_2A = load_text(TEXT.format(shape="p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25"), "cam-2a.yaml")
+FOURIER = load_text(
+    TEXT.format(shape="fourier: {mean: 25, cos: {3: 1, 5: 0.1, 7: 0.1}, sin: {3: 1, 5: 0.1, 7: 0.1}}"), "fourier.yaml"
+)
+PLACES = {"cam.pivot[0]": (12, 20), "cam.pivot[1]": (3, 12), "linkage.ground": (70, 90), "linkage.rocker": (95, 115)}
+HARMONICS = {f"cam.fourier.{kind}.{order}": (-1 / order, 1 / order) for order in (3, 5, 7) for kind in ("cos", "sin")}
+
+
+def least(*functions: Callable[[], object]) -> list[float]:
+    """Least processor seconds of each, taken in turn."""
+    best = [math.inf] * len(functions)
+    for _ in range(REPEATS):
+        for i, function in enumerate(functions):
+            start = time.process_time()
+            function()
+            best[i] = min(best[i], time.process_time() - start)
+    return best
+
+
+def drawn(ranges: dict[str, tuple[float, float]], count: int = DESIGNS) -> np.ndarray:
+    low, high = np.array(list(ranges.values()), dtype=float).T
+    return np.random.default_rng(1).uniform(low, high, (count, len(ranges)))
+
+
+def bare(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """theta_3 and theta_4 as one would write them down, for all designs at once."""
+    t = np.arange(ANGLES) * 2 * np.pi / ANGLES
+    x, y, r1, r4 = (values[:, i : i + 1] for i in range(4))
+    p = np.sin(3 * t) + 13 / 15 * np.sin(3 * t) * np.cos(2 * t) + 25
+    s = p - x * np.cos(t) - y * np.sin(t)
+    s1 = np.roll(p, -ANGLES // 4) + x * np.sin(t) - y * np.cos(t)
+    along, across = 50 + 70 - s1, s - 25
+    q = along**2 + across**2
+    theta_4 = np.arccos((r1**2 + r4**2 - q) / (2 * r1 * r4))
+    theta_3 = np.arctan2(r4 * np.sin(theta_4), r1 - r4 * np.cos(theta_4)) - np.arctan2(across, along)
+    return theta_3, theta_4
+
+
+def speed() -> None:
+    print(f"\n{DESIGNS} four-bars at {ANGLES} relative angles, designs a second of processor time; target 20,000")
+    places, both = drawn(PLACES), drawn({**PLACES, **HARMONICS})
+    limited = replace(
+        CAM_2A, sweep=replace(CAM_2A.sweep, limits=(Limit("transmission-angle", 39.0), Limit("size", None, 40.0)))
+    )
+    cases = [
+        ("dwell alone", CAM_2A, PLACES, places, ("dwell",)),
+        ("dwell, with margin, shaft rate, transmission, swing", CAM_2A, PLACES, places, SOME),
+        ("all eleven figures", CAM_2A, PLACES, places, None),
+        ("all eleven, two limits that few keep", limited, PLACES, places, None),
+        ("all eleven, six harmonics vary too", FOURIER, {**PLACES, **HARMONICS}, both, None),
+    ]
+    base = least(lambda: bare(places))[0]
+    print(f"{'bare kinematics, whole arrays':52} {DESIGNS / base:9.0f}")
+    for engine in ("numpy", "compiled"):
+        if engine == "compiled" and not find_spec("numba"):
+            continue
+        for name, recipe, ranges, values, figures in cases:
+            evaluator = Evaluator.of(recipe, tuple(ranges), figures=figures, samples=ANGLES, engine=engine)
+            evaluator.found(values[:64])  # what is compiled is compiled
+            seconds, base = least(lambda e=evaluator, v=values: e.found(v), lambda: bare(places))
+            print(f"{engine:9} {name:52} {DESIGNS / seconds:9.0f}, {base / seconds:5.2f} times bare kinematics")
+
+
+SOME = ("dwell", "margin", "shaft-rate", "transmission-angle", "swing")
+
+
+def accuracy() -> None:
+    print("\ndwell over the shaft and other figures of 60 four-bars against kin.dwell and kin.mechanism")
+    values = drawn(PLACES, 60)
+    wanted: dict[str, list[float]] = {}
+    for row in values:
+        made = recipe_with(CAM_2A, tuple(PLACES), row)
+        lift = intent_of(made.cam)
+        mechanism = mechanism_of(made, lift, breadth_of(lift)[0])
+        told = mechanism.figures()
+        one = {
+            "dwell": dwells_over(mechanism, made.dwell.band, "shaft")[0].length,
+            "dwell-relative": dwells_over(mechanism, made.dwell.band, "relative")[0].length,
+            "swing": told.swing,
+            "peak-velocity": abs(told.velocity.value),
+            "peak-acceleration": abs(told.acceleration.value),
+            "transmission-angle": told.transmission_least.value,
+            "force-angle": told.force_least.value,
+        }
+        for name, value in one.items():
+            wanted.setdefault(name, []).append(math.degrees(value))
+    print(f"{'greatest error, deg':20}" + "".join(f"{n:>9} angles" for n in COUNTS))
+    found = [Evaluator.of(CAM_2A, tuple(PLACES), samples=n).found(values).figures for n in COUNTS]
+    for name, exact in wanted.items():
+        print(f"{name:20}" + "".join(f"{np.abs(figures[name] - exact).max():16.1e}" for figures in found))
+    print(f"{'dwell, median':20}" + "".join(f"{np.median(np.abs(f['dwell'] - wanted['dwell'])):16.1e}" for f in found))
+
+
+COUNTS = (120, 180, 360, 720, 1440)
+
+if __name__ == "__main__":
+    chosen = sys.argv[1:] or ["speed", "accuracy"]
+    for name, part in (("speed", speed), ("accuracy", accuracy)):
+        if name in chosen:
+            part()
