@@ -159,19 +159,19 @@ def lengths(found: Ends, band: float) -> Array:
     floor inward and ends on its ceiling outward, each by 1/slope. So the best y is the lowest, the highest, or where
     the slopes balance, which is found by bisection.
     """
-    bottom, top = found.high - band, found.low
-    least, gain = _length(found, bottom, band)
-    most, gain_most = _length(found, top, band)
-    best = np.maximum(least, most)
-    inner = (gain > 0.0) & (gain_most < 0.0)
-    if inner.any():
-        part = found.part(inner)
-        below, above = bottom[inner], top[inner]
+    best, gain = _length(found, found.high - band, band)
+    rising = gain > 0.0  # of most windows both ends lie on the floor, and the lowest band is the best
+    if rising.any():
+        part = found.part(rising)
+        below, above = part.high - band, part.low
+        longest, _ = _length(part, above, band)
+        longest = np.maximum(longest, best[rising])
         for _ in range(_BISECTIONS):
             y = 0.5 * (below + above)
             length, gain = _length(part, y, band)
-            best[inner] = np.maximum(best[inner], length)
+            longest = np.maximum(longest, length)
             below, above = np.where(gain > 0.0, y, below), np.where(gain > 0.0, above, y)
+        best[rising] = longest
     return np.where(found.whole, _TURN, np.minimum(best, _TURN))
 
 
