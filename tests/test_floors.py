@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[1]
 FLOORS = {
     "kin": """
         verify
-        judge
+        driven judge
         follower
         frame roller
         deviation flat resting
@@ -21,12 +21,12 @@ FLOORS = {
         lift transmission
         chain formula read
         dyad forces possible read_dxf read_stl switches
-        bearing bounding flaws law linkage nesting roots routes syntax transmission_law
-        contour expression frame_dwell loop piecewise
-        biarc dwell dxf_entities figures jet mobility pieces
-        bezier monotone motion series
-        bernstein chaining contact extremes foot hull nearest taylor triangles
-        arcs ball check distinct read_error
+        bearing bouncing bounding flaws floating integrated law linkage nesting roots routes syntax transmission_law
+        contour dynamics expression frame_dwell loop piecewise
+        biarc dwell dxf_entities figures jet mobility peaks pieces
+        bezier monotone motion response series
+        bernstein chaining contact drive extremes foot hull nearest taylor triangles
+        arcs ball check chebyshev distinct oscillator read_error
     """,
     "camgeo": """
         cli pytest_plugin testing

@@ -1,0 +1,112 @@
+"""Greatest and least values of a contact force, or of any figure linear in the state, over stretches of a response."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kin.chebyshev import evaluated
+from kin.response import Response, Samples
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+_NEAR = 0.03  # of the range: samples a quarter of a radian apart miss less of a peak
+_MOST_NEAR = 256
+_GRID, _ROUNDS = 17, 8  # places between two neighbours, of which each round keeps an eighth
+_AT_ONCE = 400_000  # samples, which bounds the memory
+
+
+class Peaks(NamedTuple):
+    """Greatest and least value, each with the shaft angle (radians) at which it is reached."""
+
+    greatest: float
+    greatest_at: float
+    least: float
+    least_at: float
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """A figure w0 z + w1 z' + q over a response, q a polynomial on each stretch.
+
+    `series` (m, DEGREE + 1) is that of w0 p + w1 p' + q, `z` and `v` are w0 and w1, which the free motion takes.
+    """
+
+    response: Response
+    series: Array
+    z: float
+    v: float
+
+    @staticmethod
+    def of(response: Response, z: float, v: float, more: Array | float = 0.0) -> Figure:
+        """Make the figure z * z + v * z' + more, `more` (m, DEGREE + 1) a series or a constant."""
+        series = z * response.p + v * response.v
+        if isinstance(more, float):
+            series[:, 0] += more
+        else:
+            series = series + more
+        return Figure(response, series, z, v)
+
+    def at(self, starts: Array, at: Samples, since: Array | None = None) -> Array:
+        """Values (n,) from the states at the starts (2, m), or at times `since` (m,) in the stretches."""
+        response = self.response
+        free_z, free_v = response.free(starts, at, since)
+        x = at.time / response.drive.half[at.stretch] - 1.0
+        found: Array = evaluated(self.series, at.stretch, x) + self.z * free_z + self.v * free_v
+        return found
+
+    def peaks(self, starts: Array, stretches: Indices, *, rough: bool = False) -> Peaks:
+        """Extremes over the given stretches, ends included, from the states at their starts.
+
+        Found by sampling every swing, and closer and closer between the neighbours of each sample that may be the
+        highest; `rough` stops at the samples, which miss less than a hundredth of the range.
+        """
+        parts: list[tuple[Samples, Array]] = []
+        for chosen in np.array_split(stretches, max(1, len(stretches) * 64 // _AT_ONCE)):
+            at = self.response.samples(starts, chosen)
+            for first in range(0, len(at.time), _AT_ONCE):
+                part = Samples(at.stretch[first : first + _AT_ONCE + 2], at.time[first : first + _AT_ONCE + 2])
+                parts.append((part, self.at(starts, part)))
+        high = self._highest(starts, parts, 1.0, 0 if rough else _ROUNDS)
+        low = self._highest(starts, parts, -1.0, 0 if rough else _ROUNDS)
+        return Peaks(*high, *low)
+
+    def _highest(
+        self, starts: Array, parts: list[tuple[Samples, Array]], sign: float, rounds: int
+    ) -> tuple[float, float]:
+        """Greatest value times sign, and where."""
+        best = max(float((sign * values).max()) for _, values in parts)
+        spread = best + max(float((-sign * values).max()) for _, values in parts)
+        least = best - _NEAR * spread
+        found: list[tuple[float, int, float]] = []
+        brackets: list[tuple[int, float, float]] = []
+        for at, values in parts:
+            near = np.flatnonzero(sign * values >= least)
+            top = int(near[np.argmax(sign * values[near])]) if len(near) else -1
+            if top >= 0:
+                found.append((float(values[top]), int(at.stretch[top]), float(at.time[top])))
+            inner = near[(near > 0) & (near < len(values) - 1)]
+            inner = inner[(at.stretch[inner - 1] == at.stretch[inner]) & (at.stretch[inner + 1] == at.stretch[inner])]
+            peak = (sign * values[inner] >= sign * values[inner - 1]) & (
+                sign * values[inner] >= sign * values[inner + 1]
+            )
+            inner = inner[peak]
+            inner = inner[np.argsort(-sign * values[inner], kind="stable")[:_MOST_NEAR]]
+            brackets += zip(
+                at.stretch[inner].tolist(), at.time[inner - 1].tolist(), at.time[inner + 1].tolist(), strict=True
+            )
+        if brackets and rounds:
+            stretch, low, high = (np.array(column) for column in zip(*brackets, strict=True))
+            grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))
+            for _ in range(rounds):
+                time = low[:, None] + (high - low)[:, None] * grid
+                values = self.at(starts, Samples(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
+                top = np.argmax(sign * values, axis=1)
+                low, high = time[rows, np.maximum(top - 1, 0)], time[rows, np.minimum(top + 1, _GRID - 1)]
+            found += zip(values[rows, top].tolist(), stretch.tolist(), time[rows, top].tolist(), strict=True)
+        value, which, time = max(found, key=lambda one: sign * one[0])
+        return value, float(self.response.drive.knots[which]) + time

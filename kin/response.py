@@ -1,0 +1,255 @@
+"""The exact response of a damped oscillator to a drive: z'' + 2 a z' + r^2 z = g, stretch by stretch.
+
+z = x - s is the follower's place relative to the cam, so g = -s'' - kappa s - f and nothing of s itself is lost in
+rounding where the train is stiff. On each stretch z = p + h: p is a polynomial that depends on the drive alone, h the
+free motion that takes up the difference to the state at the start, known in closed form. A jump of s' is one of z'.
+
+p is found in one of two ways.
+
+slow      where a stretch lasts long against the free motion: the polynomial solution itself, by back substitution in
+          1 + (2 a/r^2) d + (1/r^2) d^2, whose matrix over Chebyshev coefficients is upper triangular with diagonal 1.
+at rest   elsewhere, on parts of at most LONGEST radians of free motion to each side: the solution with p = p' = 0 at
+          the start, from the integral equation for p'' (Greengard 1991), which is well conditioned.
+
+Neither has a time step: their number is that of the drive's stretches, times a bounded number of parts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kin.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated
+
+if TYPE_CHECKING:
+    from kin.drive import Drive
+    from kin.oscillator import Oscillator
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+LONGEST = 4.0  # radians of free motion in half a stretch, see kin.chebyshev
+_ROOM = 0.25  # times the degree squared: half a stretch's radians from which the slow solution loses no digits
+_LEAST_SLOW = 8.0
+_NOISE = 2e-16  # coefficients below this share of the greatest are rounding
+_MOST_PARTS = 100_000
+_PASSES = 3
+_STEP = 0.25  # radians of free motion between samples
+_SAMPLES = 33  # of a stretch, at least
+_SILENT = 1e-11  # a free motion below this share of all else is not sampled for
+
+
+class StiffnessError(ValueError):
+    """More parts than can be held: the damping is so strong that one rate of decay lies far below the other."""
+
+
+class Samples(NamedTuple):
+    """Places in time order: stretch (n,) and time since its start (n,)."""
+
+    stretch: Indices
+    time: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Forcing:
+    """g = -s'' - kappa s - f; kappa the preload spring's own square frequency, f its force by the mass."""
+
+    kappa: float = 0.0
+    constant: float = 0.0
+
+    def series(self, drive: Drive) -> Array:
+        """Chebyshev coefficients of g (m, DEGREE + 1)."""
+        found: Array = -drive.acceleration
+        if self.kappa:
+            found = found - self.kappa * drive.position
+        found[:, 0] -= self.constant
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Response to a drive; `drive` is already cut as the oscillator needs it, `p` and `v` are the series of p and p'.
+
+    Each (m, DEGREE + 1). States are (2,) or (2, n): z and z'.
+    """
+
+    oscillator: Oscillator
+    drive: Drive
+    p: Array
+    v: Array
+    slow: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.p)
+
+    @cached_property
+    def _steps(self) -> tuple[Array, Array, Array]:
+        """Of each stretch: p, p' at its start (m, 2) and end (m, 2), and the matrix of the free motion (m, 4)."""
+        at_start = np.stack([self.p @ AT_START, self.v @ AT_START], axis=1)
+        at_end = np.stack([self.p.sum(axis=1), self.v.sum(axis=1)], axis=1)
+        matrix = np.stack(self.oscillator.propagator(np.diff(self.drive.knots)), axis=1)
+        return at_start, at_end, matrix
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """Values of p and p' at the start and at the end of each stretch, (m, 2) each."""
+        return self._steps[:2]
+
+    def starts(self, state: Array, first: int, count: int) -> Array:
+        """States (2, count) at the starts of stretches first, first + 1, ..., from that at the end of the one before.
+
+        `state` (2,) is taken before the jump of the drive's velocity at the first of them.
+        """
+        return self._run(state, first, count)[0]
+
+    def end(self, state: Array, first: int, count: int) -> Array:
+        """State (2,) at the end of `count` stretches, from that before the first."""
+        return self._run(state, first, count)[1]
+
+    def _run(self, state: Array, first: int, count: int) -> tuple[Array, Array]:
+        at_start, at_end, matrix = (part[first : first + count].tolist() for part in self._steps)
+        jumps = self.drive.jumps[first : first + count].tolist()
+        z, v = float(state[0]), float(state[1])
+        found = []
+        for (p0, v0), (p1, v1), (zz, zv, vz, vv), jump in zip(at_start, at_end, matrix, jumps, strict=True):
+            v -= jump
+            found.append((z, v))
+            z, v = z - p0, v - v0
+            z, v = p1 + zz * z + zv * v, v1 + vz * z + vv * v
+        return np.array(found).T.reshape(2, -1), np.array([z, v])
+
+    def after(self, stretch: int, time: float, state: Array) -> Array:
+        """State (2,) at the end of a stretch, from that at a time since its start."""
+        one = np.array([stretch])
+        left = np.array([2.0 * self.drive.half[stretch] - time])
+        free = self.oscillator.moved(state - self.particular(Samples(one, np.array([time])))[:, 0], left)[:, :1]
+        at_end: Array = self._steps[1][stretch] + free[:, 0]
+        return at_end
+
+    def periodic(self) -> Array:
+        """State (2,) at the end of the turn that a turn brings back to itself; ValueError at exact resonance.
+
+        The second and third pass start where free motion is small already, so that its phase, good to r eps, is not
+        what limits the result.
+        """
+        state = np.zeros(2)
+        for _ in range(_PASSES):
+            state = state + self.oscillator.periodic(self.end(state, 0, len(self)) - state)
+        return state
+
+    def particular(self, at: Samples) -> Array:
+        """Values of p and p' (2, n)."""
+        x = at.time / self.drive.half[at.stretch] - 1.0
+        return np.stack([evaluated(self.p, at.stretch, x), evaluated(self.v, at.stretch, x)])
+
+    def states(self, starts: Array, at: Samples, since: Array | None = None) -> Array:
+        """Values z and z' (2, n), from the states (2, m) at all starts, or at times `since` (m,) in them."""
+        found: Array = self.particular(at) + self.free(starts, at, since)
+        return found
+
+    def free(self, starts: Array, at: Samples, since: Array | None = None) -> Array:
+        """The free part of z and z' (2, n), as `states`."""
+        used, index = np.unique(at.stretch, return_inverse=True)
+        begun = np.zeros(len(used)) if since is None else since[used]
+        free = starts[:, used] - self.particular(Samples(used, begun))
+        return self.oscillator.moved(free[:, index], at.time - begun[index])
+
+    def samples(self, starts: Array, stretches: Indices, since: Array | None = None) -> Samples:
+        """Places that show every swing of z on the given stretches, ends included, from the states at the starts."""
+        begun = np.zeros(len(self)) if since is None else since
+        left = 2.0 * self.drive.half[stretches] - begun[stretches]
+        count = np.full(len(stretches), _SAMPLES)
+        at_start = self.particular(Samples(stretches, begun[stretches]))
+        bound = self.oscillator.bound(starts[:, stretches] - at_start)
+        size = np.abs(self.p[stretches]).sum(axis=1).max(initial=0.0) + bound.max(initial=0.0)
+        fine = np.zeros(len(stretches), dtype=np.intp)
+        alive = self.slow[stretches] & (bound > _SILENT * size)
+        lasting = left.copy()
+        if alive.any() and self.oscillator.fading > 0.0:
+            lasting[alive] = np.log(bound[alive] / (_SILENT * size)) / self.oscillator.fading
+            lasting = np.minimum(lasting, left)
+        fine[alive] = np.ceil(lasting[alive] * self.oscillator.fast / _STEP).astype(np.intp) + 1
+        owner = np.repeat(np.arange(len(stretches)), count + fine)
+        number = np.arange(len(owner)) - np.repeat(np.cumsum(count + fine) - count - fine, count + fine)
+        coarse = number < count[owner]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            time = np.where(
+                coarse,
+                left[owner] * number / (count[owner] - 1),
+                lasting[owner] * (number - count[owner] + 1) / (fine[owner] + 1.0),
+            )
+        if fine.any():
+            order = np.lexsort((time, owner))
+            time = time[order]
+        return Samples(stretches[owner], begun[stretches[owner]] + time)
+
+
+def response(oscillator: Oscillator, drive: Drive, forcing: Forcing) -> Response:
+    """Cut the drive as the oscillator needs it and find p on every stretch.
+
+    Raises StiffnessError where that takes more than 100 000 parts.
+    """
+    half = drive.half
+    series = forcing.series(drive)
+    noise = _NOISE * float(np.abs(series).max(initial=0.0))
+    degree = degrees(series, noise)
+    slow = oscillator.slow * half >= np.maximum(_LEAST_SLOW, _ROOM * degree**2)
+    parts = np.where(slow, 1, np.ceil(oscillator.fast * half / LONGEST)).astype(np.int64)
+    parts = np.maximum(parts, 1)
+    if parts.sum() > _MOST_PARTS:
+        raise StiffnessError(
+            f"{int(parts.sum())} parts of a turn are needed: the rates of decay, {oscillator.slow:.3g} and "
+            f"{oscillator.fast:.3g} by radian, lie too far apart"
+        )
+    parts = parts.astype(np.intp)
+    drive = drive.split(parts)
+    owner = np.repeat(np.arange(len(parts)), parts)
+    slow = slow[owner]
+    g = forcing.series(drive)
+    half = drive.half
+    p, v = np.zeros_like(g), np.zeros_like(g)
+    g[slow] = np.where(np.abs(g[slow]) > noise, g[slow], 0.0)
+    if slow.any():
+        p[slow], v[slow] = _slow(oscillator, g[slow], half[slow])
+    if not slow.all():
+        p[~slow], v[~slow] = _from_rest(oscillator, g[~slow], half[~slow], owner[~slow])
+    return Response(oscillator, drive, p, v, slow)
+
+
+_EYE = np.eye(DEGREE + 1)
+
+
+def _slow(oscillator: Oscillator, g: Array, half: Array) -> tuple[Array, Array]:
+    """Polynomial solution p and p' of the forces g (k, n); half widths (k,)."""
+    first = (2.0 * oscillator.decay / oscillator.square / half)[:, None, None]
+    second = (1.0 / oscillator.square / half**2)[:, None, None]
+    matrix = _EYE + first * DERIVATIVE + second * (DERIVATIVE @ DERIVATIVE)
+    p: Array = np.linalg.solve(matrix, g[:, :, None] / oscillator.square)[:, :, 0]
+    v: Array = (p @ DERIVATIVE.T) / half[:, None]
+    return p, v
+
+
+def _from_rest(oscillator: Oscillator, g: Array, half: Array, owner: Indices) -> tuple[Array, Array]:
+    """Solution p and p', both 0 at the start, of the forces g (k, n); half widths (k,), alike for one owner (k,)."""
+    once, twice = INTEGRAL, INTEGRAL @ INTEGRAL
+    first = np.flatnonzero(np.diff(owner, prepend=-1))
+    scale = half[first]
+    matrix = (
+        _EYE
+        + (2.0 * oscillator.decay * scale)[:, None, None] * once
+        + (oscillator.square * scale**2)[:, None, None] * twice
+    )
+    ends = np.append(first[1:], len(owner))
+    bend = np.empty_like(g)
+    alone = ends - first == 1
+    bend[first[alone]] = np.linalg.solve(matrix[alone], g[first[alone], :, None])[:, :, 0]
+    for i in np.flatnonzero(~alone).tolist():
+        rows = slice(first[i], ends[i])
+        bend[rows] = np.linalg.solve(matrix[i], g[rows].T).T
+    p: Array = (bend @ twice.T) * half[:, None] ** 2
+    v: Array = (bend @ once.T) * half[:, None]
+    return p, v
