@@ -200,15 +200,15 @@ class FlatPair:
 
         ContactError if the contour reaches the pivot.
         """
-        return self._swings(self._held(contour), phi)
+        return self._swings(self.held(contour), phi)
 
     def _swings(self, bearing: Bearing, phi: Array) -> Array:
         half = 0.5 * self.transmission.alpha
-        return np.stack([phi - side * half - self._touch(bearing, phi, side)[0] for side in (1, -1)])
+        return np.stack([phi - side * half - self.touch(bearing, phi, side)[0] for side in (1, -1)])
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
         """Motion error of either face and the play between them; extremes over the whole turn."""
-        bearing = self._held(contour)
+        bearing = self.held(contour)
         found = [self._error_extremes(bearing, side) for side in (1, -1)]
         worst = max((extreme.worst for extreme in found), key=lambda pair: pair[0])
         angle = with_steps(phi)
@@ -242,7 +242,8 @@ class FlatPair:
         first: Array = tolerance / distance
         return theta, first + 0.5 * np.abs(r + bend) / distance * first**2
 
-    def _held(self, contour: Contour) -> Bearing:
+    def held(self, contour: Contour) -> Bearing:
+        """Where a contour bears all round; ContactError if it reaches the pivot."""
         bearing = bearing_of(contour)
         q = bearing.derivatives(bearing.breaks, np.arange(len(bearing.breaks)))
         out = np.hypot(q[0], q[1]) >= self._pivot
@@ -250,7 +251,7 @@ class FlatPair:
             raise ContactError("the contour reaches the pivot", float(bearing.breaks[int(np.argmax(out))]))
         return bearing
 
-    def _starts(self, bearing: Bearing, side: int) -> Array:
+    def starts(self, bearing: Bearing, side: int) -> Array:
         """Shaft angle at which each stretch of the contour begins to bear on the face of that side, rising (m,).
 
         phi = theta + side acos(q/2l) rises with theta as long as the contour stays within the pivot's circle.
@@ -259,12 +260,12 @@ class FlatPair:
         start: Array = _shaft(bearing.breaks, q, self._pivot, side)[0]
         return start
 
-    def _touch(self, bearing: Bearing, phi: Array, side: int, middle: Array | None = None) -> Array:
+    def touch(self, bearing: Bearing, phi: Array, side: int, middle: Array | None = None) -> Array:
         """Face normal theta and its two derivatives by phi (3, n), for the face of that side held in contact.
 
         `middle` (n,) are shaft angles that tell which stretch is meant where phi is the end of one.
         """
-        start = self._starts(bearing, side)
+        start = self.starts(bearing, side)
         turns = np.floor(((phi if middle is None else middle) - start[0]) / TURN)
         reduced = phi - turns * TURN
         within = np.maximum(reduced if middle is None else middle - turns * TURN, start[0])
@@ -327,13 +328,13 @@ class FlatPair:
         return replace(found, greatest_at=shaft(found.greatest_at), least_at=shaft(found.least_at))
 
     def _play(self, bearing: Bearing) -> Play:
-        ends = np.concatenate([self._starts(bearing, side) for side in (1, -1)])
+        ends = np.concatenate([self.starts(bearing, side) for side in (1, -1)])
         nodes = distinct(np.concatenate([[0.0], np.mod(ends, TURN), [TURN]]))
         low, high = nodes[:-1], nodes[1:]
         middle = 0.5 * (low + high)
 
         def play(phi: Array, of: Indices) -> Array:
-            wide = self._touch(bearing, phi, -1, middle[of]) - self._touch(bearing, phi, 1, middle[of])
+            wide = self.touch(bearing, phi, -1, middle[of]) - self.touch(bearing, phi, 1, middle[of])
             wide[0] -= self.transmission.alpha
             return wide
 
