@@ -173,7 +173,7 @@ def _shaft_deg(intent: Lift | Transmission, parameter: float) -> float:
 
 def _figures(recipe: Recipe, intent: Lift | Transmission, profile: Profile) -> tuple[float | None, str, list[Check]]:
     """Breadth of the yoke if there is one, the follower's name, and the checks of the intended motion."""
-    from camgeo.figures import breadth_of, flat_face_checks, is_constant_breadth, pressure_angle, transmission_checks
+    from camgeo.figures import breadth_of, flat_face_checks, is_constant, pressure_angle, transmission_checks
 
     cam = recipe.cam
     if isinstance(cam, DoubleRollerCam | FlatPairCam):
@@ -182,10 +182,10 @@ def _figures(recipe: Recipe, intent: Lift | Transmission, profile: Profile) -> t
             return None, "flat pair", transmission_checks(law)
         return None, "double roller", [*transmission_checks(law), pressure_angle(profile, law)]
     lift = cast("Lift", intent)
-    yoke = isinstance(cam, ConstantBreadthCam) or is_constant_breadth(lift)
-    breadth = breadth_of(lift)[0] if yoke else None
+    breadth = breadth_of(lift)
+    yoke = isinstance(cam, ConstantBreadthCam) or is_constant(*breadth[:2])
     held = "square frame" if recipe.linkage is not None else "yoke" if yoke else "flat face"
-    return breadth, held, flat_face_checks(lift, yoke=yoke)
+    return breadth[0] if yoke else None, held, flat_face_checks(lift, breadth if yoke else None)
 
 
 def _wall(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> list[Check]:

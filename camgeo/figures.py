@@ -23,31 +23,37 @@ EXACT = 1e-9  # of the arm: to this the closing equation must hold
 
 def breadth_of(lift: Lift) -> tuple[float, float, float]:
     """Mean breadth p(t) + p(t + pi) in mm, the greatest deviation from it, and where in radians."""
-    t = _angles(lift.breaks, math.pi)
-    # both sides of a break: there the breadth may step as well
-    each = [lift.derivatives(t, 0, side)[0] + lift.derivatives(t + math.pi, 0, side)[0] for side in (1, -1)]
-    breadth = np.concatenate(each)
+    t = _angles(np.mod(lift.breaks, math.pi), math.pi)
+    p = lift.derivatives(np.concatenate([t, t + math.pi]), 0)[0]  # continuous: one side of a break will do
+    breadth = p[: len(t)] + p[len(t) :]
     mean = 0.5 * float(breadth.max() + breadth.min())
     worst = int(np.argmax(np.abs(breadth - mean)))
-    return mean, float(np.abs(breadth[worst] - mean)), float(np.tile(t, 2)[worst])
+    return mean, float(np.abs(breadth[worst] - mean)), float(t[worst])
 
 
 def is_constant_breadth(lift: Lift) -> bool:
     """Whether a yoke of two parallel faces fits the cam; else it works a single flat face."""
-    mean, deviation, _ = breadth_of(lift)
+    return is_constant(*breadth_of(lift)[:2])
+
+
+def is_constant(mean: float, deviation: float) -> bool:
+    """Whether a breadth that deviates from its mean by so much is constant."""
     return deviation <= SAME_BREADTH * abs(mean)
 
 
-def flat_face_checks(lift: Lift, *, yoke: bool) -> list[Check]:
-    """Constancy of the breadth (AS eq. 4, for a yoke) and the face's length: how far the contact travels along it."""
+def flat_face_checks(lift: Lift, breadth: tuple[float, float, float] | None) -> list[Check]:
+    """Constancy of the breadth (AS eq. 4, for a yoke) and the face's length: how far the contact travels along it.
+
+    `breadth` is what `breadth_of` gives, None where a single face follows.
+    """
     checks = []
-    if yoke:
-        mean, deviation, at = breadth_of(lift)
+    if breadth is not None:
+        mean, deviation, at = breadth
         limit = SAME_BREADTH * abs(mean)
         checks.append(Check("constant-breadth", deviation <= limit, deviation, limit, "mm", degrees(at)))
     t = _angles(lift.breaks, 2.0 * math.pi)
-    slope = np.concatenate([lift.derivatives(t, 1, side)[1] for side in (1, -1)])
-    worst = float(np.tile(t, 2)[int(np.argmax(np.abs(slope)))])
+    slope = lift.derivatives(t, 1)[1]  # continuous too
+    worst = float(t[int(np.argmax(np.abs(slope)))])
     length = float(slope.max() - slope.min())
     checks.append(Check("face-length", True, length, None, "mm", degrees(worst), "at_least"))
     return checks
