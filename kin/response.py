@@ -228,7 +228,7 @@ def _slow(oscillator: Oscillator, g: Array, half: Array) -> tuple[Array, Array]:
     first = (2.0 * oscillator.decay / oscillator.square / half)[:, None, None]
     second = (1.0 / oscillator.square / half**2)[:, None, None]
     matrix = _EYE + first * DERIVATIVE + second * (DERIVATIVE @ DERIVATIVE)
-    p: Array = np.linalg.solve(matrix, g[:, :, None] / oscillator.square)[:, :, 0]
+    p = np.asarray(np.linalg.solve(matrix, g[:, :, None] / oscillator.square)[:, :, 0], dtype=np.float64)
     v: Array = (p @ DERIVATIVE.T) / half[:, None]
     return p, v
 

@@ -52,7 +52,7 @@ FLOORS = {
         files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius reach
         recipe.edit recipe.reader recipe.schema recipe.starter
         recipe.model recipe.scalars recipe.source recipe.tables
-        recipe.table_cam recipe.table_linkage recipe.table_sweep
+        recipe.model_dynamics recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_sweep
         curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
         study study.picture sweep
     """,

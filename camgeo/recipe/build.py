@@ -13,6 +13,7 @@ from camgeo.recipe.model import (
     DoubleRollerCam,
     DwellAsked,
     Dyad,
+    Dynamics,
     Export,
     FileRequest,
     FlatPairCam,
@@ -70,6 +71,7 @@ def build(values: Values, path: Path, marks: Mapping[str, Mark], text: str) -> R
         linkage=_linkage(values["linkage"]) if "linkage" in values else None,
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         sweep=_sweep(values["sweep"]) if "sweep" in values else None,
+        dynamics=Dynamics(**values["dynamics"]) if "dynamics" in values else None,
         marks=marks,
         text=text,
     )

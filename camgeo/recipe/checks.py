@@ -16,6 +16,7 @@ from camgeo.recipe.table_cam import SWINGING
 if TYPE_CHECKING:
     from camgeo.recipe.reader import Reader, Values
 
+MOST_DAMPING = 10.0  # times critical, as in kin.dynamics
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law)
 
 
@@ -31,6 +32,7 @@ def check(values: Values, reader: Reader) -> None:
         _filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader)
     _linkage(values, reader)
     _files(values, reader)
+    _train(values.get("dynamics", {}), reader)
     if "sweep" in values:
         check_sweep(values["sweep"], reader)
 
@@ -75,6 +77,19 @@ def _linkage(values: Values, reader: Reader) -> None:
     if dyads and dyads[0].get("on") == "previous":
         remedy = "give output or coupler"
         reader.fault_at("linkage.dyads[0].on", "there is no dyad before the first", "'previous'", remedy)
+
+
+def _train(train: Values, reader: Reader) -> None:
+    if "play" in train and "rate" in train:
+        reader.fault_at("dynamics.rate", "a spring's rate beside play", None, "give preload instead of play, or leave it out")
+    if "play" in train and "linkage" in reader.marks:
+        remedy = "give preload: what the joints have of play is not the cam's"
+        reader.fault_at("dynamics.play", "play at the cam under a linkage", None, remedy)
+    if {"mass", "stiffness"} <= train.keys() and "damping" in train:
+        ratio = train["damping"] / math.sqrt((train["stiffness"] + train.get("rate", 0.0)) * train["mass"]) / 2
+        if ratio > MOST_DAMPING:
+            remedy = f"give at most {train['damping'] * MOST_DAMPING / ratio:.6g}"
+            reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
 
 
 def _files(values: Values, reader: Reader) -> None:

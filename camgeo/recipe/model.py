@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 from camgeo.recipe.errors import RecipeError, RecipeErrors
+from camgeo.recipe.model_dynamics import Dynamics
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -379,6 +380,7 @@ class Recipe:
     linkage: Linkage | None = None
     dwell: DwellAsked | None = None
     sweep: Sweep | None = None
+    dynamics: Dynamics | None = None
     marks: Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
 

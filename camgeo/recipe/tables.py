@@ -6,6 +6,7 @@ import re
 
 from camgeo.recipe.spec import MOST, Field, Kind, Table, either, length, mapping
 from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_dynamics import DYNAMICS
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
 from camgeo.recipe.table_sweep import DWELL, SWEEP
 
@@ -92,8 +93,14 @@ RECIPE = Table(
         ),
         mapping("dwell", "dwells of the linkage's output", *DWELL),
         mapping("sweep", "a search among designs", *SWEEP),
+        Field(
+            "dynamics",
+            Kind.TABLE,
+            "the follower train, whose forces, float and impacts at a speed are found",
+            default="none",
+            table=DYNAMICS,
+        ),
     ),
-    later=("dynamics",),
 )
 
 
