@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+from camgeo.recipe.build_part import build_part
 from camgeo.recipe.model import (
     ArcRoute,
     Axis,
@@ -26,7 +27,6 @@ from camgeo.recipe.model import (
     Limit,
     Linkage,
     MotionSegment,
-    Part,
     Recipe,
     ReuleauxShape,
     RosetteRoute,
@@ -64,7 +64,7 @@ def build(values: Values, path: Path, marks: Mapping[str, Mark], text: str) -> R
         mm=values["mm"],
         rotation=values.get("rotation", "cw"),
         cam=_cam(values["cam"], values["mm"]),
-        part=Part(**values.get("part", {})),
+        part=build_part(values.get("part", {})),
         export=Export(export.get("tolerance", TOLERANCE), requests(export.get("files", [{"kind": "dxf"}]))),
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
         path=path,

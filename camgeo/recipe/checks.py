@@ -10,6 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.build import requests
+from camgeo.recipe.check_part import check_part
 from camgeo.recipe.check_sweep import check_sweep
 from camgeo.recipe.table_cam import SWINGING
 
@@ -31,6 +32,7 @@ def check(values: Values, reader: Reader) -> None:
         lam, _ = cam["ratio"]
         _filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader)
     _linkage(values, reader)
+    check_part(values.get("part", {}), reader)
     _files(values, reader)
     _train(values.get("dynamics", {}), reader)
     if "sweep" in values:
@@ -81,7 +83,9 @@ def _linkage(values: Values, reader: Reader) -> None:
 
 def _train(train: Values, reader: Reader) -> None:
     if "play" in train and "rate" in train:
-        reader.fault_at("dynamics.rate", "a spring's rate beside play", None, "give preload instead of play, or leave it out")
+        reader.fault_at(
+            "dynamics.rate", "a spring's rate beside play", None, "give preload instead of play, or leave it out"
+        )
     if "play" in train and "linkage" in reader.marks:
         remedy = "give preload: what the joints have of play is not the cam's"
         reader.fault_at("dynamics.play", "play at the cam under a linkage", None, remedy)

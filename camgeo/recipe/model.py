@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     import kin.law
+    from camgeo.recipe.model_part import Part
 
 Undercut: TypeAlias = Literal["refuse", "trim"]
 Harmonics: TypeAlias = tuple[tuple[int, float], ...]  # (harmonic, coefficient), rising
@@ -305,14 +306,6 @@ class Sweep:
     keep: int
     angles: int
     refine: bool
-
-
-@dataclass(frozen=True)
-class Part:
-    """The plain part, mm: `thickness` along the shaft, `bore` a diameter."""
-
-    thickness: float | None = None
-    bore: float | None = None
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from camgeo.recipe.read_list import (
     read_point,
     read_segments,
 )
+from camgeo.recipe.read_part import read_bore, read_keyway
 from camgeo.recipe.read_scalar import read_choice, read_formula, read_numeric, read_text, read_truth
 from camgeo.recipe.read_sweep import read_limits, read_vary
 from camgeo.recipe.reader import Reader
@@ -49,4 +50,6 @@ READERS: Readers = {
     Kind.DYADS: read_dyads,
     Kind.VARY: read_vary,
     Kind.LIMITS: read_limits,
+    Kind.BORE: read_bore,
+    Kind.KEYWAY: read_keyway,
 }

@@ -20,6 +20,7 @@ from camgeo.recipe.spec import (
 )
 from camgeo.recipe.table_cam import CAMS
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
+from camgeo.recipe.table_part import STANDARD
 from camgeo.recipe.table_sweep import FIGURES, RANGE, bounds
 from camgeo.recipe.tables import FILES, RECIPE
 
@@ -90,6 +91,10 @@ def _kind(field: Field) -> Schema:
             return {"type": "array", "items": _number(), "minItems": 1, "maxItems": MOST_COEFFICIENTS}
         case Kind.HARMONICS:
             return {"type": "object", "additionalProperties": _number()}
+        case Kind.BORE:
+            return {"anyOf": [_number(length("", "")), _table(_below(field))]}
+        case Kind.KEYWAY:
+            return {"anyOf": [{"const": STANDARD}, _table(_below(field))]}
         case Kind.LAW:
             return {"anyOf": [{"enum": list(_laws())}, _table(_below(field))]}
         case Kind.TABLE:

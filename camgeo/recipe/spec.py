@@ -62,6 +62,8 @@ class Kind(Enum):
     VARY = "what varies"
     AXIS = "a range"
     LIMITS = "limits"
+    BORE = "a bore"
+    KEYWAY = "a keyway"
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,10 @@ class Field:
                 return "a range such as {from: 95, to: 110, steps: 16}, or a list of values"
             case Kind.VARY:
                 return "a mapping from paths to ranges, such as {linkage.rocker: {from: 95, to: 110, steps: 16}}"
+            case Kind.BORE:
+                return "a diameter above 0, or a form such as {square: 10} or {hexagon: 10}"
+            case Kind.KEYWAY:
+                return "din6885, or a mapping such as {width: 4, depth: 1.8}"
             case Kind.LIMITS:
                 return "a mapping from figures to bounds, such as {transmission-angle: {at_least: 40}}"
             case Kind.SEGMENTS:

@@ -8,6 +8,7 @@ from camgeo.recipe.spec import MOST, Field, Kind, Table, either, length, mapping
 from camgeo.recipe.table_cam import CAMS
 from camgeo.recipe.table_dynamics import DYNAMICS
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
+from camgeo.recipe.table_part import PART
 from camgeo.recipe.table_sweep import DWELL, SWEEP
 
 _TOLERANCE = length("tolerance", "greatest distance between this file's contour and the exact one", default="export's")
@@ -50,13 +51,7 @@ RECIPE = Table(
         ),
         Field("cam", Kind.CAM, "the cam, of exactly one kind", required=True),
         Field("linkage", Kind.LINKAGE, "the linkage whose coupler is the square frame around the cam", default="none"),
-        mapping(
-            "part",
-            "the plain part",
-            length("thickness", "thickness along the shaft; STL needs it"),
-            length("bore", "diameter of the bore around the shaft", default="none"),
-            later=("keyway", "holes", "hub", "follower"),
-        ),
+        PART,
         mapping(
             "export",
             "the files",
