@@ -14,7 +14,6 @@ from camgeo.recipe.model import (
     FlatPairCam,
     FourBarLinkage,
     InvertedSliderCrankLinkage,
-    Part,
     Recipe,
     SliderCrankLinkage,
     SupportCam,
@@ -22,6 +21,7 @@ from camgeo.recipe.model import (
     Verify,
     output_slides,
 )
+from camgeo.recipe.model_part import Part
 from camgeo.recipe.spec import Kind
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.recipe.tables import field_at
@@ -90,6 +90,7 @@ class Ask:
             part=Part(),
             export=Export(1.0, ()),
             verify=Verify(1),
+            dynamics=None,
             path=Path("recipe.yaml"),
             sweep=plain,
         )
