@@ -43,6 +43,7 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     dwell = ["dwell"] if recipe.dwell is not None and recipe.dwell.at_least is not None else []
     if linkage:
         names += ["mobility", "reversal", *dwell]
+    train = [] if recipe.dynamics is None else ["float" if recipe.dynamics.play is None else "play"]
     bore = ["bore"] if recipe.part.bore is not None else []
     if bore:
         names.append("wall")
@@ -57,7 +58,16 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
         own = ["watertight", *bore, "thickness", "volume"] if request.kind == "stl" else ["units", "closed", *bore]
         driven = ["linkage-error", *dwell] if linkage else []
         found += [Foreseen(name, file) for name in (*own, "contour", "motion", *play, *driven)]
+    found += [Foreseen(name) for name in train]
+    if not linkage:  # of a linkage the intended output alone drives
+        found += [Foreseen(name, file) for name in train for file in _judged(recipe)]
     return tuple(found)
+
+
+def _judged(recipe: Recipe) -> list[str]:
+    """Names of the files that have a contour."""
+    files = recipe.export.files
+    return [request.filename(recipe.name, files) for request in files if request.kind != "csv"]
 
 
 def _in_a_yoke(recipe: Recipe) -> bool:

@@ -141,7 +141,22 @@ def _findings(
 
         with clock.stage("figures of the linkage"):
             linkage = linkage_section(recipe, design.driven, files)
-    return Findings(tuple(checks), tuple(files), tuple(clock.stages), skipped, design.follower, linkage=linkage)
+    train = None
+    if recipe.dynamics is not None:
+        from camgeo.dynamics import dynamics_of
+
+        with clock.stage("dynamics"):
+            train = dynamics_of(recipe, design, [file.path for file in files])
+        checks = [*checks, *train.checks]
+    return Findings(
+        tuple(checks),
+        tuple(files),
+        tuple(clock.stages),
+        skipped,
+        design.follower,
+        linkage=linkage,
+        dynamics=None if train is None else train.section,
+    )
 
 
 def drawn(
@@ -332,6 +347,8 @@ def _skipped(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     swings = design.follower in {"double roller", "flat pair"}
     if design.follower == "flat face":
         found.append(("constant-breadth", "the breadth is not constant: a single flat face follows"))
+    if recipe.dynamics is None:
+        found.append(("dynamics", "dynamics is not given"))
     if design.follower != "double roller":
         found.append(("pressure-angle", "a flat face is pushed along its normal"))
         found.append(("undercut-global", "a convex profile meets itself nowhere else"))

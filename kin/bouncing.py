@@ -86,6 +86,15 @@ def course(
     return _Course(train.at(rpm), faces).run(turns, start)
 
 
+def least_gap(lower: Drive, upper: Drive) -> tuple[float, float]:
+    """Least distance from the lower to the upper face, at the best of nine angles a stretch, and where."""
+    every = np.repeat(np.arange(len(lower)), 9)
+    phi = lower.knots[every] + np.tile(np.linspace(0.0, 2.0, 9), len(lower)) * lower.half[every]
+    gap = upper.rows(every, phi)[0] - lower.rows(every, phi)[0]
+    worst = int(np.argmin(gap))
+    return float(gap[worst]), float(phi[worst])
+
+
 class _Course:
     """The three responses, and the search for events in them."""
 
@@ -93,7 +102,10 @@ class _Course:
         self.running = running
         self.lower, self.upper = faces
         if self.upper is not None:
-            self._demand_play(self.lower, self.upper)
+            least, at = least_gap(self.lower, self.upper)
+            if least <= 0.0:
+                where = math.degrees(at) % 360.0
+                raise DynamicsError(f"no play is left at {where:.6g} degrees: {least:.3g} m or rad")
         self.found = {
             LOWER: running.response(self.lower),
             FREE: response(running.loose, self.lower, running.forcing),
@@ -104,18 +116,6 @@ class _Course:
         self.c = running.train.damping * running.speed
         scale = running.inertia * float(np.abs(self.lower.acceleration).sum(axis=1).max())
         self.level = _LEVEL * (scale + running.train.preload)
-
-    @staticmethod
-    def _demand_play(lower: Drive, upper: Drive) -> None:
-        every = np.repeat(np.arange(len(lower)), 9)
-        phi = lower.knots[every] + np.tile(np.linspace(0.0, 2.0, 9), len(lower)) * lower.half[every]
-        gap = upper.rows(every, phi)[0] - lower.rows(every, phi)[0]
-        worst = int(np.argmin(gap))
-        if gap[worst] <= 0.0:
-            raise DynamicsError(
-                f"no play is left at {math.degrees(phi[worst]) % 360.0:.6g} degrees: the faces are "
-                f"{gap[worst]:.3g} (m or rad) apart"
-            )
 
     def run(self, turns: int, start: State | None) -> Course:
         state = start or self._rest()

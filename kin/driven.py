@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from kin.arcs import cross, dot, left, right, unit
 from kin.bearing import bearing_of
 from kin.contact import LEADING, TRAILING, Arm, dilated, first_contact
+from kin.flat import dwells
 from kin.follower import DoubleRoller, FlatFace, FlatPair, Follower, Roller, Yoke
 from kin.motion import ContactError
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from kin.contour import Contour
     from kin.drive import Motion
     from kin.lift import Lift
+    from kin.mechanism import Mechanism
     from kin.piecewise import Piecewise
     from kin.transmission import Transmission
 
@@ -244,6 +246,41 @@ class OfRoller:
         bend = hollow - ((dot(d, hollow) + dot(rate, rate)) / along)[:, None] * tangent
         square = arm.length**2
         return np.stack([lean, side * (1.0 - cross(d, rate) / square), -side * cross(d, bend) / square])
+
+
+@dataclass(frozen=True, eq=False)
+class OfMechanism(_Smooth):
+    """The intended output of a mechanism over its shaft angle."""
+
+    mechanism: Mechanism
+
+    @property
+    def _unit(self) -> float:
+        return METRE if self.mechanism.unit == "mm" else 1.0
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Shaft angles of the lift's breaks at either face that drives the frame."""
+        shaft: Array = self.mechanism.at(self.mechanism.breaks, 0).shaft[0]
+        return shaft
+
+    def rows(self, phi: Array) -> Array:
+        """See `kin.drive.Motion`."""
+        at = self.mechanism.at(self.mechanism.relative(phi), 2)
+        rows: Array = self._unit * at.over_shaft(at.output)
+        return rows
+
+
+def rests(follower: Follower) -> tuple[tuple[float, float], ...]:
+    """Dwells of a follower's intended motion: from, to, as shaft angles in radians, to > from."""
+    if isinstance(follower, FlatFace | Yoke):
+        return tuple(dwells(follower.lift))
+    if isinstance(follower, Roller):
+        return ()
+    law = follower.transmission
+    ends = law.breaks if len(law.breaks) else np.zeros(1)
+    shaft = law.at(np.append(ends, ends[0] + TURN), 0)[0][0].tolist()
+    return tuple((a, b) for a, b, steady in zip(shaft[:-1], shaft[1:], law.steady, strict=True) if steady)
 
 
 def intended_faces(follower: Follower, play: float | None) -> Faces:

@@ -29,9 +29,13 @@ Array = NDArray[np.float64]
 
 TURN = 2.0 * math.pi
 
-_LADDER = 1.04  # ratio of the speeds at which the bound is taken
+_LADDER = 1.08  # ratio of the speeds at which the bound is taken
 _MOST_STEPS = 2_000
 _HALVINGS = 48
+_RESOLUTION = 1e-11
+_CORNER = 1e-9  # of the greatest velocity: a lesser leap is a tangent's rounding
+_GOLDEN = 16  # steps towards the bottom of a dip
+_DOUBT = 0.05  # of the preload
 _MISSED = 0.02  # of the range of the force: samples of it miss less of a dip
 _NARROW, _BROAD = 0.25, 3.0  # damping ratio times b: half width of a peak
 _LEAST_RATIO = 0.5  # natural frequency in turns of the shaft, below which nobody asks
@@ -44,7 +48,7 @@ class FloatSpeed:
     rpm       least speed at which the contact force of the steady state falls to 0; None where that is not reached
               while the natural frequency is above half the shaft's
     at        shaft angle at which contact is lost there, radians
-    rigid_rpm the same for a follower without compliance, None where it never floats
+    rigid_rpm the same for a follower without compliance; None where it never floats, and where the motion has corners
     """
 
     rpm: float | None
@@ -53,7 +57,7 @@ class FloatSpeed:
 
 
 def float_speed(train: Train, drive: Drive) -> FloatSpeed:
-    """Find the speed at which float begins, to 1e-12 of itself; without preload or damping raises DynamicsError.
+    """Find the speed at which float begins, to 1e-11 of itself; without preload or damping raises DynamicsError.
 
     (Without damping every speed at which a harmonic of the drive resonates floats, and these have no least one.)
     """
@@ -62,46 +66,70 @@ def float_speed(train: Train, drive: Drive) -> FloatSpeed:
     if train.damping <= 0.0:
         raise DynamicsError("without damping contact is lost wherever a harmonic resonates, at however low a speed")
     rigid = _rigid(train, drive)
-    below: float | None = None
+    passed: list[tuple[float, float]] = []  # up to three speeds, each with its least force
     for rpm in _speeds(train, drive):
-        if _floats(train, drive, rpm):
-            if below is None:
-                below = rpm / _LADDER
-                while _floats(train, drive, below):
-                    below /= _LADDER
-            return _begins(train, drive, below, rpm, rigid)
-        below = rpm
+        passed = [*passed[-2:], (rpm, _least(train, drive, rpm))]
+        dip = _dip(train, drive, passed)
+        if dip is not None:
+            return _begins(train, drive, passed[-3][0], dip, rigid)
+        if passed[-1][1] < 0.0:
+            low = passed[-2][0] if len(passed) > 1 else rpm / _LADDER
+            while _least(train, drive, low) < 0.0:
+                low /= _LADDER
+            return _begins(train, drive, low, rpm, rigid)
     return FloatSpeed(None, None, rigid)
+
+
+def _dip(train: Train, drive: Drive, passed: list[tuple[float, float]]) -> float | None:
+    """A speed that floats between the first and the last of three of which the middle one has the least force."""
+    if len(passed) < 3 or not passed[0][1] >= passed[1][1] <= passed[2][1]:
+        return None
+    low, high = passed[0][0], passed[2][0]
+    # a dip is no deeper below its samples than it is deep at them
+    if passed[1][1] > max(passed[0][1], passed[2][1]) - passed[1][1] + _DOUBT * train.preload:
+        return None
+    share = 0.5 * (3.0 - math.sqrt(5.0))
+    left, right = low + share * (high - low), high - share * (high - low)
+    at_left, at_right = _least(train, drive, left), _least(train, drive, right)
+    for _ in range(_GOLDEN):
+        if min(at_left, at_right) < 0.0:
+            return left if at_left < 0.0 else right
+        if at_left < at_right:
+            high, right, at_right = right, left, at_left
+            left = low + share * (high - low)
+            at_left = _least(train, drive, left)
+        else:
+            low, left, at_left = left, right, at_right
+            right = high - share * (high - low)
+            at_right = _least(train, drive, right)
+    return None
 
 
 def _begins(train: Train, drive: Drive, low: float, high: float, rigid: float | None) -> FloatSpeed:
     """Halve between a speed that holds and one that floats."""
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        if _floats(train, drive, middle):
+        if _least(train, drive, middle) < 0.0:
             high = middle
         else:
             low = middle
-        if high - low <= 1e-12 * high:
+        if high - low <= _RESOLUTION * high:
             break
     return FloatSpeed(high, steady(train, drive, high).force.least_at, rigid)
 
 
-def _floats(train: Train, drive: Drive, rpm: float) -> bool:
-    """Whether the steady state loses contact."""
+def _least(train: Train, drive: Drive, rpm: float) -> float:
+    """Least contact force of the steady state: exact where it is close to 0, else at samples."""
     force = steady(train, drive, rpm, rough=True).force
     if force.least < 0.0 or force.least > _MISSED * (force.greatest - force.least):
-        return force.least < 0.0
-    return steady(train, drive, rpm).force.least < 0.0
+        return force.least
+    return steady(train, drive, rpm).force.least
 
 
 def _rigid(train: Train, drive: Drive) -> float | None:
-    """Speed at which F + k_p s + m W^2 s'' first falls to 0, on a grid of 33 points a stretch.
-
-    0 where a corner of the motion throws the follower off at any speed.
-    """
-    if (drive.jumps < 0.0).any():
-        return 0.0
+    """Speed at which F + k_p s + m W^2 s'' first falls to 0, on a grid of 33 points a stretch; None with corners."""
+    if (np.abs(drive.jumps) > _CORNER * float(np.abs(drive.velocity).sum(axis=1).max())).any():
+        return None
     every = np.repeat(np.arange(len(drive)), 33)
     phi = drive.knots[every] + np.tile(np.linspace(0.0, 2.0, 33), len(drive)) * drive.half[every]
     position, _, bend = drive.rows(every, phi)

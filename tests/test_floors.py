@@ -43,6 +43,7 @@ FLOORS = {
         sweep.ends sweep.linkages
         sweep.windows
         pipeline recipe
+        dynamics
         design recipe.load
         foreseen recipe.checks report.linkage study.least undercut
         figures fit.polygon linkage recipe.build trim

@@ -39,7 +39,7 @@ class FileResult:
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything a run found, before it is put in the recipe's units; `linkage` already is."""
+    """Everything a run found, before it is put in the recipe's units; `linkage` and `dynamics` already are."""
 
     checks: tuple[Check, ...]
     files: tuple[FileResult, ...]
@@ -48,6 +48,7 @@ class Findings:
     follower: str
     kept: tuple[str, ...] = ()
     linkage: dict[str, Any] | None = None
+    dynamics: dict[str, Any] | None = None
 
     @property
     def ok(self) -> bool:
@@ -58,6 +59,7 @@ class Findings:
 def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
     """The report as plain data, keys and units as the report contract fixes them."""
     linkage = {} if found.linkage is None else {"linkage": found.linkage}
+    dynamics = {} if found.dynamics is None else {"dynamics": found.dynamics}
     return {
         "recipe": recipe.name,
         "about": recipe.about,
@@ -70,6 +72,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "checks": [_check(recipe, check) for check in found.checks],
         "files": [_file(recipe, file) for file in found.files] + [{"path": name, "stale": True} for name in found.kept],
         **linkage,
+        **dynamics,
         "stages": [{"name": name, "seconds": round(seconds, 6)} for name, seconds in found.stages],
         "skipped": [{"what": what, "why": why} for what, why in found.skipped],
     }

@@ -1,0 +1,253 @@
+"""Dynamics of a recipe's follower train: as intended, and with each file's cam; the report's section and its checks.
+
+Forces in N and figures in SI as the recipe gives them, lengths of the follower's motion in the recipe's unit, degrees
+where it swings.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from kin.check import Check, about, degrees, failed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.design import Design
+    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.model_dynamics import Dynamics
+    from kin.bouncing import Course, Turn
+    from kin.contour import Contour
+    from kin.drive import Drive
+    from kin.driven import Faces
+    from kin.dynamics import Steady, Train
+
+TURNS = 20  # that are followed from rest, unless one repeats the one before
+MOST_FOR_FLOAT = 150  # stretches of a drive for which the speed at which float begins is searched
+
+
+class Found(NamedTuple):
+    """The report's section, and the checks."""
+
+    section: dict[str, Any]
+    checks: tuple[Check, ...]
+
+
+class _Scene(NamedTuple):
+    """What all runs of a recipe have in common. `unit` turns metres or radians into the report's, `name` names it."""
+
+    recipe: Recipe
+    asked: Dynamics
+    train: Train
+    rests: tuple[tuple[float, float], ...]
+    unit: float
+    name: str
+
+
+def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
+    """Find the dynamics of a recipe that asks for them, as intended and with each DXF and STL file.
+
+    Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
+    play `play`, that some is left. Raises RecipeErrors where the train has no steady state, ValueError for a recipe that
+    asks for no dynamics.
+    """
+    from kin.drive import DriveError
+    from kin.dynamics import DynamicsError
+    from kin.motion import ContactError
+
+    asked = recipe.dynamics
+    if asked is None:
+        raise ValueError("the recipe has no dynamics")
+    scene = _scene(recipe, asked, design)
+    entries: list[dict[str, Any]] = []
+    checks: list[Check] = []
+    sources: list[Path | None] = [None]
+    if recipe.linkage is None:
+        sources += [path for path in files if path.suffix in {".dxf", ".stl"}]
+    for path in sources:
+        try:
+            entry, check = _one(scene, design, path)
+        except DynamicsError as error:
+            raise recipe.error("dynamics", str(error)) from error
+        except (ContactError, DriveError) as error:
+            if path is None:
+                raise recipe.error("dynamics", str(error)) from error
+            entry = {"from": path.name}
+            check = failed("float" if asked.play is None else "play", str(error), unit="N", limit=0.0)
+        entries.append(entry)
+        checks.append(check if path is None else about(check, path.name))
+    train = scene.train
+    section = {
+        "rpm": asked.rpm,
+        "natural_ratio": train.ratio(asked.rpm),
+        "natural_rpm": train.natural * 30.0 / math.pi,
+        "damping_ratio": train.damping_ratio,
+        "unit": scene.name,
+        "force_unit": "N" if scene.name != "deg" else "N m",
+        "runs": entries,
+    }
+    return Found(section, tuple(checks))
+
+
+def _scene(recipe: Recipe, asked: Dynamics, design: Design) -> _Scene:
+    from camgeo.design import intended
+    from kin.driven import METRE, rests
+    from kin.dynamics import Train
+
+    train = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
+    if design.driven is None:
+        follower = intended(recipe, design).follower
+        swings, found = follower.unit == "deg", rests(follower)
+    else:
+        if not design.driven.turns:
+            raise recipe.error("dynamics", "the mechanism does not turn: it has no motion over the shaft angle")
+        swings = design.driven.mechanism.unit == "deg"
+        found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
+    if asked.play is not None and design.yoke_breadth is None and not swings:
+        raise recipe.error("dynamics.play", "a single flat face has no play", None, "give preload")
+    name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
+    unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
+    return _Scene(recipe, asked, train, found, unit, name)
+
+
+def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
+    """What drives the follower, as intended or as a file's contour gives it."""
+    from camgeo.design import intended
+    from kin.driven import METRE, Faces, OfMechanism, intended_faces, measured_faces
+    from kin.follower import DoubleRoller, FlatPair
+
+    if design.driven is not None:
+        return Faces(OfMechanism(design.driven.mechanism), None)
+    intent = intended(scene.recipe, design)
+    play = scene.asked.play
+    if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
+        follower = intent.follower
+        turns = isinstance(follower, DoubleRoller | FlatPair)
+        play = play / follower.transmission.arm if turns else METRE * play
+    if path is None:
+        return intended_faces(intent.follower, play)
+    return measured_faces(intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored), play)
+
+
+def contour_of(path: Path, mm: float, *, mirrored: bool) -> Contour:
+    """Read the outer contour of a DXF or STL, in mm and as if not mirrored; `mm` is the unit of an R12 drawing."""
+    from kin.read import read_dxf, read_stl
+
+    if path.suffix == ".stl":
+        contour = read_stl(path).contour
+    else:
+        drawing = read_dxf(path)
+        contour = drawing.contour if drawing.units_mm is not None or mm == 1.0 else drawing.contour.scaled(mm)
+    return contour.mirrored() if mirrored else contour
+
+
+def _one(scene: _Scene, design: Design, path: Path | None) -> tuple[dict[str, Any], Check]:
+    """One run: entry of the report, and its check."""
+    from kin.drive import drives
+
+    faces = _faces(scene, design, path)
+    ends = [end for rest in scene.rests for end in rest]
+    found = drives([face for face in faces if face is not None], ends)
+    entry: dict[str, Any] = {"from": "intended" if path is None else path.name}
+    if len(found) > 1:
+        return _with_play(scene, entry, found[0], found[1])
+    return _with_spring(scene, entry, found[0])
+
+
+def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:
+    from kin.bouncing import course
+    from kin.dynamics import steady
+
+    train, rpm = scene.train, scene.asked.rpm
+    found = steady(train, drive, rpm, scene.rests)
+    entry["steady"] = _steady(scene, found)
+    followed = course(train, (drive, None), rpm, TURNS)
+    entry["transient"] = _transient(followed, rpm, train)
+    entry |= _float_speed(train, drive)
+    entry["impacts"] = _impacts(followed)
+    least = found.force.least
+    detail = f"greatest {found.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
+    unit = "N m" if scene.name == "deg" else "N"
+    at_deg = degrees(found.force.least_at)
+    return entry, Check("float", least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
+
+
+def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
+    from kin.bouncing import course, least_gap
+
+    least, at = least_gap(lower, upper)
+    if least > 0.0:
+        followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS)
+        entry["transient"] = _transient(followed, scene.asked.rpm, scene.train)
+        entry["impacts"] = _impacts(followed)
+    swings = scene.name == "deg"
+    value, unit = (math.degrees(least), "deg") if swings else (1e3 * least, "mm")
+    return entry, Check("play", least > 0.0, value, 0.0, unit, degrees(at), "at_least")
+
+
+def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:
+    force = found.force
+    return {
+        "holds": found.holds,
+        "peak_force": force.greatest,
+        "peak_at_deg": degrees(force.greatest_at),
+        "least_force": force.least,
+        "least_at_deg": degrees(force.least_at),
+        "residual": [
+            {
+                "dwell_from_deg": degrees(rest.start),
+                "dwell_to_deg": degrees(rest.end),
+                "amplitude": scene.unit * rest.amplitude,
+            }
+            for rest in found.residual
+        ],
+    }
+
+
+def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
+    """From rest: the extremes of all turns, and how many turns the free motion takes to fall to a hundredth."""
+    turns = followed.turns
+    peak = max(range(len(turns)), key=lambda i: turns[i].greatest)
+    low = min(range(len(turns)), key=lambda i: turns[i].least)
+    fading = train.at(rpm).bound.fading
+    return {
+        "turns": len(turns),
+        "settled": followed.settled,
+        "peak_force": turns[peak].greatest,
+        "peak_at_deg": math.degrees(turns[peak].greatest_at) + 360.0 * peak,
+        "least_force": turns[low].least,
+        "least_at_deg": math.degrees(turns[low].least_at) + 360.0 * low,
+        "turns_to_one_percent": math.log(100.0) / (2.0 * math.pi * fading) if fading > 0.0 else None,
+    }
+
+
+def _impacts(followed: Course) -> dict[str, Any]:
+    """Of the last turn that was followed; `settled` says that all later turns are like it."""
+    last: Turn = followed.turns[-1]
+    return {
+        "settled": followed.settled,
+        "count": last.impacts,
+        "greatest_velocity": last.velocity,
+        "velocity_at_deg": degrees(last.velocity_at) if last.impacts else None,
+        "peak_force": last.greatest,
+        "peak_at_deg": degrees(last.greatest_at),
+        "free_deg": math.degrees(last.free),
+    }
+
+
+def _float_speed(train: Train, drive: Drive) -> dict[str, Any]:
+    from kin.dynamics import DynamicsError
+    from kin.floating import float_speed
+
+    if len(drive) > MOST_FOR_FLOAT:
+        return {"float_rpm": None, "float_why": f"not searched: the motion has more than {MOST_FOR_FLOAT} stretches"}
+    try:
+        found = float_speed(train, drive)
+    except DynamicsError as error:
+        return {"float_rpm": None, "float_why": str(error)}
+    entry: dict[str, Any] = {"float_rpm": found.rpm, "float_rigid_rpm": found.rigid_rpm}
+    if found.rpm is None:
+        entry["float_why"] = "contact holds up to a shaft at twice the natural frequency"
+    return entry
