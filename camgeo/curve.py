@@ -144,6 +144,10 @@ class Shape(Protocol):
         """
         ...
 
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,); at a break as `sample`."""
+        ...
+
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over the intervals [low, high] (n,), none of which spans a break."""
         ...

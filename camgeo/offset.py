@@ -62,6 +62,11 @@ class Parallel:
             at.turn_slope,
         )
 
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
+        speed, turn = self.base.series(t, order, side)
+        return speed - self.distance * turn, turn
+
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
         b = self.base.bounds(low, high)

@@ -51,6 +51,10 @@ class Polar:
         speed, turn = (x.derivatives() for x in self.rates(Jet.variable(t, 3)))
         return Frame(r[:, None] * u, velocity / speed[0][:, None], speed[0], turn[0], speed[1], turn[1])
 
+    def series(self, t, order, side=1):  # noqa: ARG002
+        speed, turn = self.rates(Jet.variable(t, order + 2))
+        return speed.c, turn.c
+
     def bounds(self, low, high):
         (a, b), (c, d) = (x.bounds() for x in self.rates(BallJet.variable(low, high, 4)))
         speed, turn = np.maximum(np.abs(a), np.abs(b)), np.maximum(np.abs(c), np.abs(d))
@@ -82,6 +86,9 @@ class Moved:
     def sample(self, t, side=1):
         f = self.shape.sample(t, side)
         return Frame(f.point - np.array(self.origin), f.tangent, f.speed, f.turn, f.speed_slope, f.turn_slope)
+
+    def series(self, t, order, side=1):
+        return self.shape.series(t, order, side)
 
     def bounds(self, low, high):
         return self.shape.bounds(low, high)

@@ -48,7 +48,7 @@ FLOORS = {
         foreseen recipe.checks report.linkage study.least undercut
         figures fit.polygon linkage recipe.build trim
         crossing files.stl fit.arcs fit.edges fit.inflection fit.spline motion profile.build recipe.readers
-        causes fit.free_arcs part report.document report.failure
+        causes fit.cubic fit.free_arcs part report.document report.failure
         recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
         files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius reach
         recipe.edit recipe.reader recipe.schema recipe.starter

@@ -1,20 +1,22 @@
 """A curve as a cubic B-spline with a continuous tangent, for CAD systems that want few, smooth pieces.
 
-Each span takes points and tangents from the curve; the length of its handles is the one freedom left and is set so
-that the span strays as far to one side as to the other. Handles are equal at both ends of a span and the knots are
-spaced like the handles, so the spline is C1 in its own parameter. The error falls as the fifth or sixth power of the
-span's length (the fourth for a spline in the curve's own parameter).
+Each span takes points and tangents from the curve; the lengths of its two handles are free and set so that it strays
+least. Then the error falls as the sixth power of the span's length, and 1.06 of the fewest spans do that any such
+spline needs (`camgeo.fit.cubic`), which whole numbers of spans and places where the nearest cubic ceases to exist
+raise to about 1.1. Knots are spaced so that the spline is C1 in its own parameter.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.fit.cubic import LEAST, ORDER, contact, spans_wanted
 from camgeo.fit.deviation import Chain, chain_deviation
-from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
+from camgeo.fit.nodes import TRIES, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, BSpline
 
 if TYPE_CHECKING:
@@ -22,17 +24,21 @@ if TYPE_CHECKING:
 
 HOPELESS = 1.02  # times the aim: spans seen farther off are given up; more than 1/USABLE, so none of them can pass
 USABLE = 0.985  # of the tolerance, that errors seen may use; the rest is left to the proof
-INSIDE = (0.3373, 0.6627)  # roots of the fourth-degree part that make the error's humps equal
-ORDER = 5.0  # power of the span's length with which the error falls
-DAMPED = 8.0  # the same where nodes were shared before: spans about extrema, whose errors fall faster, come to rest
-TURN_ERROR = 4.9e-6  # error of an arc of unit radius and unit angle: a quarter circle has 2.7e-4 mm at 1 mm
-LOOKS = 12  # steps of a span at which its error is seen
+ON_CURVE = 604.39  # a span of length h with its ends on the curve errs by c h^6/604.2 (docs/theory.md 3)
+PLACES = (0.1, 0.3, 0.5, 0.7, 0.9)  # of a span, where its handles are judged
+MOST_LEAN = 0.6  # by which the handles of the first guess differ
+LOOKS = 16  # steps of a span at which its error is seen
 PROOF_LOOKS = 24  # and at which it is first proved
 MOST_LOOKS = 384
 SLACK = 0.02  # of the tolerance: how far the proof may exceed what is seen before it is sharpened,
 OVER = 0.01  # and how far the tolerance, before that
-SHARINGS = 3  # of the nodes before there are more of them
-HANDLE_STEPS = 2  # of Newton's method for the handles: any will do, the proof takes them as they are
+SHARINGS = 8  # of the nodes before there are more of them,
+GROWTH = 1.01  # by this factor at least
+DAMPED = 12.0  # power for the error where nodes were shared before, so that they come to rest
+HANDLE_STEPS = 12
+ENOUGH = 0.01  # of a span's error: handles that would change it by less are settled
+STEP = 0.3  # of a handle's logarithm, that one such step may change
+FIRST_DAMPING = 1e-3
 NEWTON = 5  # steps that settle feet of normals to rounding
 
 
@@ -40,8 +46,8 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
     """Cubic B-spline within `tolerance` mm of a curve; corners of a trimmed curve stay corners.
 
     The bound is proved: against arcs that are themselves proved close to the curve, by the Bernstein coefficients of
-    each span's distance to them. Spans grow as tolerance^(-1/5) to tolerance^(-1/6). Raises ToleranceError where the
-    tolerance is below rounding, needs too many spans, or is not reached.
+    each span's distance to them. Their number grows as tolerance^(-1/6). Raises ToleranceError where the tolerance
+    is below rounding, needs too many spans, or is not reached.
     """
     size = curve.size
     check_precision(size, tolerance)
@@ -53,7 +59,10 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
         groups.append(np.concatenate([control for control, _, _ in spans[first : first + count]]))
         first += count
     outward, inward = max(out for _, out, _ in spans), max(into for _, _, into in spans)
-    return _assembled(groups, Bound(outward, inward).widened(rounding(size)))
+    spline = _assembled(groups, Bound(outward, inward))
+    # joints are no longer given but follow from the knots
+    moved = math.sqrt(2.0) * float(np.abs(spline.beziers() - np.concatenate(groups)).max())
+    return replace(spline, bound=spline.bound.widened(rounding(size) + moved))
 
 
 def _assembled(groups: list[Array], bound: Bound) -> BSpline:
@@ -61,8 +70,10 @@ def _assembled(groups: list[Array], bound: Bound) -> BSpline:
     control, knots = [groups[0][0, :1]], [np.zeros(4)]
     at = 0.0
     for number, beziers in enumerate(groups):
-        length = np.hypot(*(beziers[:, 1] - beziers[:, 0]).T)
-        ends = at + np.cumsum(length)
+        leaving, arriving = (np.hypot(*(beziers[:, i + 1] - beziers[:, i]).T) for i in (0, 2))
+        # a span's share of the parameter: at a joint both sides run equally fast
+        share = np.cumprod(np.append(1.0, leaving[1:] / arriving[:-1]))
+        ends = at + np.cumsum(share * leaving[0])
         at = float(ends[-1])
         control.append(beziers[:, 1:3].reshape(-1, 2))
         knots.append(np.repeat(ends[:-1], 2))
@@ -75,27 +86,16 @@ def _assembled(groups: list[Array], bound: Bound) -> BSpline:
     return BSpline(3, np.concatenate(control), np.concatenate(knots), spans, bound)
 
 
-def _spline_density(frame: Frame) -> Array:
-    """Spans for each unit of parameter: from the turning, and from the change of curvature as arcs take it."""
-    slope = np.abs(frame.turn_slope * frame.speed - frame.turn * frame.speed_slope)
-    density: Array = np.abs(frame.turn) + 0.5 * np.cbrt(slope / np.maximum(slope.max(initial=0.0), 1e-300))
-    return density
-
-
 def _fit_stretches(curve: Curve, stretches: Array, aim: float, limit: float) -> list[tuple[Array, float, float]]:
     """Bezier spans (n, 4, 2) over each smooth stretch, with their outward and inward bound.
 
     Errors are seen up to `aim` and proved up to `limit`.
     """
     tolerance = min(aim, limit)
-    densities = Density.of(curve, stretches, _spline_density)
-    nodes = []
-    for density in densities:
-        middle = curve.cells.over(density.t[:1], density.t[-1:])
-        radius = max(float(middle.speed_high[0]), tolerance)
-        first = density.total * (TURN_ERROR * radius / tolerance) ** (1.0 / 6.0)
-        check_count(first, "spline spans", tolerance, ORDER)
-        nodes.append(density.nodes(max(1, math.ceil(first))))
+    wanted = spans_wanted(curve, stretches)
+    counts = np.array([one.total for one in wanted]) * ((LEAST / ON_CURVE) * tolerance) ** (-1.0 / ORDER)
+    check_count(float(counts.sum()), "spline spans", tolerance, ORDER)
+    nodes = [one.nodes(max(1, math.ceil(count))) for one, count in zip(wanted, counts, strict=True)]
     done: dict[int, tuple[Array, float, float]] = {}
     shared = [0] * len(nodes)
     best = math.inf
@@ -107,8 +107,7 @@ def _fit_stretches(curve: Curve, stretches: Array, aim: float, limit: float) -> 
         check_count(2.0 * owner.size, "spline spans", tolerance, ORDER)
         low = np.concatenate([nodes[i][:-1] for i in todo])
         high = np.concatenate([nodes[i][1:] for i in todo])
-        control = _handled(curve, low, high)
-        worst = _seen(curve, control, low, high)
+        control, worst = _handled(curve, low, high)
         out = into = worst
         passed = [i for i in todo if float(worst[owner == i].max()) <= tolerance]
         if passed:
@@ -129,49 +128,93 @@ def _fit_stretches(curve: Curve, stretches: Array, aim: float, limit: float) -> 
 
 def _denser(nodes: Array, worst: Array, tolerance: float, shared: int) -> tuple[Array, int]:
     """Nodes for the next try: shared anew while the mean error allows it, then more of them; halved where unproved."""
-    reached = float(worst.max())
-    if not math.isfinite(reached):
+    if not math.isfinite(float(worst.max())):
         middle = 0.5 * (nodes[:-1] + nodes[1:])
         return np.sort(np.append(nodes, middle[~np.isfinite(worst)])), 0
     mean = float(np.mean(worst ** (1.0 / ORDER))) ** ORDER
-    if shared < SHARINGS and mean < 0.9 * tolerance:
+    if shared < SHARINGS and mean < 0.97 * tolerance:
         return reshared(nodes, worst, DAMPED if shared else ORDER), shared + 1
     count = nodes.size - 1
-    more = max(count + 1, math.ceil(count * (max(mean, tolerance) / tolerance) ** (1.0 / ORDER)))
-    return reshared(nodes, worst, ORDER, more), 0
+    growth = max(GROWTH if shared else 1.0, (mean / tolerance) ** (1.0 / ORDER))
+    return reshared(nodes, worst, ORDER, max(count + 1, math.ceil(count * growth))), 0
 
 
-def _handled(curve: Curve, low: Array, high: Array) -> Array:
-    """Cubic spans (n, 4, 2) between points of the curve, handles equal and set so that the error balances."""
+def _handled(curve: Curve, low: Array, high: Array) -> tuple[Array, Array]:
+    """Cubic spans (n, 4, 2) between points of the curve, and how far each is seen to stray from it (n,).
+
+    Handles are sought from two beginnings, as the equations for them may have more than one solution; the closer span
+    counts.
+    """
     a, b = curve.span(low, high)
-    chord = b.point - a.point
-    both = a.tangent + b.tangent
-    # the handle of a circular arc with these ends, which also serves a straight line: a third of the chord
-    half_cosine = np.sqrt(np.maximum(0.25 * np.sum(both * both, axis=1), 1e-12))
-    handle = np.hypot(chord[:, 0], chord[:, 1]) * 2.0 / (3.0 * (1.0 + half_cosine) * 1.0)
-    u = np.array(INSIDE)
-    t = low[:, None] + (high - low)[:, None] * u
-    inner0, inner1 = 3.0 * u * (1.0 - u) ** 2, 3.0 * u**2 * (1.0 - u)
-    for _ in range(HANDLE_STEPS):
+    chord = np.hypot(*(b.point - a.point).T)
+    # handles of a circular arc with these ends, and how the nearest cubic's differ
+    half_cosine = np.sqrt(np.maximum(0.25 * np.sum((a.tangent + b.tangent) ** 2, axis=1), 1e-12))
+    third = chord * 2.0 / (3.0 * (1.0 + half_cosine))
+    speed, turn = curve.shape.series(0.5 * (low + high), 4)
+    lean = np.clip(np.nan_to_num(contact(speed, turn).lean) * chord, -MOST_LEAN, MOST_LEAN)
+    leaning = np.column_stack([third * (1.0 - lean), third * (1.0 + lean)])
+    spans = _Spans(*(np.concatenate([x, x]) for x in (low, high, a.point, a.tangent, b.point, b.tangent)))
+    control = _control(spans, _settled(curve, spans, np.concatenate([leaning, np.column_stack([third, third])])))
+    worst = _seen(curve, control, spans)
+    chosen = np.argmin(worst.reshape(2, -1), axis=0) * low.size + np.arange(low.size)
+    return control[chosen], worst[chosen]
+
+
+@dataclass(frozen=True)
+class _Spans:
+    """Spans over parameters [low, high] (n,): end points and tangents (n, 2)."""
+
+    low: Array
+    high: Array
+    start: Array
+    leaving: Array
+    end: Array
+    arriving: Array
+
+
+def _settled(curve: Curve, spans: _Spans, handles: Array) -> Array:
+    """Handles (n, 2) whose span strays least from the curve, in the mean of squares at `PLACES`.
+
+    Levenberg's and Marquardt's steps, of the handles' logarithms: near places where the nearest cubic ceases to exist
+    the equations have no solution. Any handles will do, the proof takes them as they are.
+    """
+    u = np.broadcast_to(np.array(PLACES), (len(handles), len(PLACES)))
+    t = spans.low[:, None] + (spans.high - spans.low)[:, None] * u
+    inner = 3.0 * u * (1.0 - u) ** 2, 3.0 * u**2 * (1.0 - u)
+
+    def looked(handles: Array, t: Array) -> tuple[Array, Array, Array]:
         at = curve.sample(t.ravel())
-        on = _bezier(_control(a, b, handle)[:, None], np.broadcast_to(u, t.shape))
-        gap, moved = _gap(at, t, low, high, on)
+        gap, moved = _gap(at, t, spans.low, spans.high, _bezier(_control(spans, handles)[:, None], u))
         normal = at.normal.reshape(*t.shape, 2)
-        pull = inner0 * np.sum(a.tangent[:, None] * normal, axis=2)
-        pull = pull - inner1 * np.sum(b.tangent[:, None] * normal, axis=2)
-        gain = pull.sum(axis=1)
-        # where the curve is nearly straight the handles move nothing sideways: leave them
-        firm = np.abs(gain) > 1e-6
-        change = np.where(firm, gap.sum(axis=1) / np.where(firm, gain, 1.0), 0.0)
-        handle = handle - np.clip(change, -0.3 * handle, 0.3 * handle)
-        t = moved
-    return _control(a, b, handle)
+        pull_a = inner[0] * np.sum(spans.leaving[:, None] * normal, axis=2)
+        pull_b = -inner[1] * np.sum(spans.arriving[:, None] * normal, axis=2)
+        return gap, np.stack([pull_a, pull_b], axis=2) * handles[:, None], moved
+
+    gap, gain, t = looked(handles, looked(handles, t)[2])
+    size = np.sum(gap * gap, axis=1)
+    damping = np.full(len(handles), FIRST_DAMPING)
+    for _ in range(HANDLE_STEPS):
+        square = np.einsum("nmi,nmj->nij", gain, gain)
+        scale = np.trace(square, axis1=1, axis2=2) + 1e-300
+        square = square + (damping * scale)[:, None, None] * np.eye(2)
+        change = np.linalg.solve(square, np.einsum("nmi,nm->ni", gain, gap)[:, :, None])[:, :, 0]
+        if not (np.sum((gain @ change[:, :, None])[:, :, 0] ** 2, axis=1) > ENOUGH**2 * size).any():
+            break
+        tried = handles * np.exp(-np.clip(change, -STEP, STEP))
+        gap_, gain_, t_ = looked(tried, t)
+        size_ = np.sum(gap_ * gap_, axis=1)
+        better = size_ < size
+        handles = np.where(better[:, None], tried, handles)
+        gap, gain = np.where(better[:, None], gap_, gap), np.where(better[:, None, None], gain_, gain)
+        t, size = np.where(better[:, None], t_, t), np.where(better, size_, size)
+        damping = np.where(better, 0.1 * damping, 10.0 * damping)
+    return handles
 
 
-def _control(a: Frame, b: Frame, handle: Array) -> Array:
-    """Bezier points (n, 4, 2) from end frames and handle lengths (n,)."""
-    h = handle[:, None]
-    return np.stack([a.point, a.point + h * a.tangent, b.point - h * b.tangent, b.point], axis=1)
+def _control(spans: _Spans, handles: Array) -> Array:
+    """Bezier points (n, 4, 2) of spans with handles (n, 2)."""
+    start, end = spans.start, spans.end
+    return np.stack([start, start + handles[:, :1] * spans.leaving, end - handles[:, 1:] * spans.arriving, end], axis=1)
 
 
 def _bezier(control: Array, u: Array) -> Array:
@@ -203,13 +246,13 @@ def _gap(at: Frame, t: Array, low: Array, high: Array, point: Array) -> tuple[Ar
     return gap.reshape(t.shape), np.clip(t + step.reshape(t.shape), low[:, None], high[:, None])
 
 
-def _seen(curve: Curve, control: Array, low: Array, high: Array) -> Array:
+def _seen(curve: Curve, control: Array, spans: _Spans) -> Array:
     """Greatest distance of each span from the curve at a few places (n,): quick, from below, no proof."""
-    u = np.linspace(0.0, 1.0, LOOKS + 1)[1:-1]
-    t = low[:, None] + (high - low)[:, None] * u
-    on = _bezier(control[:, None], np.broadcast_to(u, t.shape))
+    u = np.broadcast_to(np.linspace(0.0, 1.0, LOOKS + 1)[1:-1], (len(control), LOOKS - 1))
+    t = spans.low[:, None] + (spans.high - spans.low)[:, None] * u
+    on = _bezier(control[:, None], u)
     for _ in range(2):
-        gap, t = _gap(curve.sample(t.ravel()), t, low, high, on)
+        gap, t = _gap(curve.sample(t.ravel()), t, spans.low, spans.high, on)
     worst: Array = np.abs(gap).max(axis=1)
     return worst
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve import Bounds, Frame
+from kin.taylor import factorials
 
 if TYPE_CHECKING:
     from camgeo.curve import Array, Side
@@ -57,6 +58,14 @@ class SupportShape:
         tangent = np.column_stack([-sine, cosine])
         point = np.column_stack([p[0] * cosine - p[1] * sine, p[0] * sine + p[1] * cosine])
         return Frame(point, tangent, p[0] + p[2], np.ones_like(t), p[1] + p[3], np.zeros_like(t))
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at normal directions t (n,)."""
+        p = self.lift.derivatives(t, order + 2, side)
+        speed = (p[:-2] + p[2:]) / factorials(order)
+        turn = np.zeros_like(speed)
+        turn[0] = 1.0
+        return speed, turn
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds of the radius of curvature over intervals (n,)."""

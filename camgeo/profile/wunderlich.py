@@ -17,6 +17,7 @@ from camgeo.curve import Bounds, Frame
 from kin import jet
 from kin.ball import Ball
 from kin.jet import BallJet, Jet
+from kin.taylor import factorials
 
 if TYPE_CHECKING:
     from camgeo.curve import Array, Side
@@ -108,6 +109,10 @@ class PitchShape(_OfLaw):
         turn_slope = 0.5 * (a1 + b1) + (part1 - share * q1) / q
         return self.law.arm * root, 0.5 * (a + b) + share, 0.5 * self.law.arm * q1 / root, turn_slope
 
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,) of the law."""
+        return _series(self.law, t, order, side, self._rates)
+
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
         return _bounds(self.law, low, high, self._rates)
@@ -170,6 +175,10 @@ class FlatPairShape(_OfLaw):
         slope = (turn1 * left - 2.0 * turn * k * k1 - k1 * h) * cosine - (turn * left * h + k2) * sine
         return 2.0 * self.law.arm * speed, turn, 2.0 * self.law.arm * slope, turn1
 
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,) of the law."""
+        return _series(self.law, t, order, side, self._rates)
+
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
         return _bounds(self.law, low, high, self._rates)
@@ -209,6 +218,13 @@ def _cut(series: Series, order: int) -> Series:
     if isinstance(series, Jet):
         return Jet(series.c[: order + 1])
     return BallJet(series.mid[: order + 1], series.rad[: order + 1])
+
+
+def _series(law: Transmission, t: Array, order: int, side: Side, rates: _Rates) -> tuple[Array, Array]:
+    """Taylor coefficients of speed and turn (order + 1, n) from those of the law, two orders more."""
+    phi, psi = (Jet(rows / factorials(order + 2)) for rows in law.at(t, order + 2, side))
+    speed, turn = rates(phi, psi)
+    return speed.c, turn.c
 
 
 def _bounds(law: Transmission, low: Array, high: Array, rates: _Rates) -> Bounds:

@@ -1,0 +1,130 @@
+"""What a cubic span can reach: how closely a polynomial cubic follows a smooth curve, to leading order.
+
+A plane cubic has eight coefficients, two of which only say how fast it is run through: six numbers are free, and it
+meets a curve six times. Write the curve as ``y = f2 x^2 + f3 x^3 + ...`` over its tangent and the cubic as
+``x = t + a t^2 + b t^3, y = f2 t^2 + (2 f2 a + f3) t^3``: it agrees to the third order whatever a and b are, to the
+fifth where they satisfy two equations, and then misses the curve by ``-c t^6`` (de Boor, Höllig and Sabin, High
+accuracy geometric Hermite interpolation, CAGD 4, 1987). Eliminating b leaves a cubic equation for a with one or three
+real roots; the one that misses least counts.
+
+Over a span of length h whose ends lie off the curve by half of what its middle does to the other side, with tangents
+parallel to the curve's, the miss is ``c (h/2)^6 (z (z - 1)^2 - 2/27)``, z = (2 s/h)^2: 2/27 to either side, c h^6/864.
+No spline with a continuous tangent does better (docs/theory.md 3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.nodes import Density
+from kin.jet import Jet
+
+if TYPE_CHECKING:
+    from camgeo.curve import Array, Curve
+
+ORDER = 6.0  # power of a span's length with which its error falls
+LEAST = 864.0  # a span of length h errs by c h^6/864 at least
+STEPS_PER_CELL = 8  # of the curve, at whose middles the density is taken
+VANISHING = 1e-14  # relative: a leading coefficient below is rounding
+REAL = 1e-6  # relative: roots with less of an imaginary part are a double root, split by rounding
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The cubics nearest to a curve at n places, all (n,).
+
+    `miss` is the coefficient c, positive where the cubic lies outside a convex curve, per mm^5; `lean` is the
+    coefficient a, per mm: how fast the cubic's own parameter gains on the arc length.
+    """
+
+    miss: Array
+    lean: Array
+
+
+def contact(speed: Array, turn: Array) -> Contact:
+    """Leading miss of the nearest cubic, from Taylor coefficients (5, n) of speed and turn.
+
+    Not finite where the speed vanishes.
+    """
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        f = _heights(speed, turn)
+        # all lengths by the curve's own: the coefficients become numbers of about one
+        k = np.arange(1.0, 6.0)[:, None]
+        scale = np.maximum((np.abs(f) ** (1.0 / k)).max(axis=0), 1e-300)
+        f = f / scale**k
+        known = np.isfinite(f).all(axis=0)
+        lean = _roots(np.where(known, f, 0.0))
+        f2, f3, f4, f5, f6 = f[:, :, None]
+        # b by both equations, as either may be empty
+        p, q = 2.0 * f2, 2.0 * f2 * lean + 3.0 * f3
+        first = f2 * lean**2 + 3.0 * f3 * lean + f4
+        second = 3.0 * f3 * lean**2 + 4.0 * f4 * lean + f5
+        b = -(p * first + q * second) / np.maximum(p * p + q * q, 1e-300)
+        miss = f2 * b**2 + f3 * (lean**3 + 6.0 * lean * b) + f4 * (6.0 * lean**2 + 4.0 * b) + 5.0 * f5 * lean + f6
+        least = np.argmin(np.where(np.isnan(miss), np.inf, np.abs(miss)), axis=1)[:, None]
+        chosen, leaning = (np.take_along_axis(rows, least, axis=1)[:, 0] for rows in (miss, lean))
+        return Contact(np.where(known, chosen * scale**5, np.nan), np.where(known, leaning * scale, 0.0))
+
+
+def _heights(speed: Array, turn: Array) -> Array:
+    """Coefficients f2 to f6 (5, n) of the curve over its tangent, from the derivatives of its curvature by length."""
+    slowness = Jet(speed) ** -1
+    row = Jet(turn) * slowness
+    k = [row.c[0]]
+    while row.order:
+        row = row.derivative()
+        row = row * Jet(slowness.c[: row.order + 1])
+        k.append(row.c[0])
+    return np.stack(
+        [
+            k[0] / 2.0,
+            k[1] / 6.0,
+            (k[2] + 3.0 * k[0] ** 3) / 24.0,
+            (k[3] + 19.0 * k[0] ** 2 * k[1]) / 120.0,
+            (k[4] + 48.0 * k[0] * k[1] ** 2 + 34.0 * k[0] ** 2 * k[2] + 45.0 * k[0] ** 5) / 720.0,
+        ]
+    )
+
+
+def _roots(f: Array) -> Array:
+    """Real roots (n, 3) of the equation for a; nan in place of complex ones."""
+    f2, f3, f4, f5, _ = f
+    rows = np.stack([-2.0 * f2**2, -3.0 * f2 * f3, 6.0 * f2 * f4 - 9.0 * f3**2, 2.0 * f2 * f5 - 3.0 * f3 * f4], axis=1)
+    size = np.abs(rows).max(axis=1, initial=0.0)
+    least = VANISHING * np.where(size > 0.0, size, 1.0)
+    lead = np.where(np.abs(rows[:, 0]) < least, -least, rows[:, 0])
+    companion = np.zeros((len(lead), 3, 3))
+    companion[:, 0] = -rows[:, 1:] / lead[:, None]
+    companion[:, 1, 0] = companion[:, 2, 1] = 1.0
+    found = np.linalg.eigvals(companion)
+    real: Array = np.where(np.abs(found.imag) <= REAL * (1.0 + np.abs(found)), found.real, np.nan)
+    return real
+
+
+def spans_wanted(curve: Curve, stretches: Array) -> list[Density]:
+    """For each stretch (m, 2), none of which spans a break, the integral of (|c|/864)^(1/6) ds.
+
+    Over the sixth root of a tolerance it is the least number of spans, to leading order. Where the curve stands still
+    the density is taken as 0.
+    """
+    cells, edges = curve.cells, []
+    for low, high in stretches:
+        first = int(np.searchsorted(cells.low, low, side="right")) - 1
+        last = int(np.searchsorted(cells.high, high, side="left"))
+        ends = np.clip(np.append(cells.low[first : last + 1], high), low, high)
+        inner = ends[:-1, None] + np.diff(ends)[:, None] * np.arange(STEPS_PER_CELL) / STEPS_PER_CELL
+        edges.append(np.append(inner.ravel(), high))
+    middle = np.concatenate([0.5 * (part[:-1] + part[1:]) for part in edges])
+    speed, turn = curve.shape.series(middle, 4)
+    miss = np.nan_to_num(contact(speed, turn).miss, nan=0.0, posinf=0.0, neginf=0.0)
+    value = (np.abs(miss) / LEAST) ** (1.0 / ORDER) * np.abs(speed[0])
+    out, at = [], 0
+    for part in edges:
+        width, mine = np.diff(part), slice(at, at + part.size - 1)
+        at = mine.stop
+        total = np.concatenate([[0.0], np.cumsum(value[mine] * width)])
+        out.append(Density(part, total, float(np.abs(turn[0, mine] * width).sum())))
+    return out
