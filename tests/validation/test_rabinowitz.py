@@ -33,7 +33,7 @@ def gradient(x, y):
 
 def distances(contour):
     """Distance of points of the contour from the polynomial's curve, to first order: |F| / |grad F|, mm."""
-    x, y = contour.sample(100).T
+    x, y = contour.sample(200).T
     return np.abs(polynomial(x, y)) / gradient(x, y)
 
 
