@@ -17,6 +17,7 @@ import numpy as np
 from kin.chain import Chain, Solved
 from kin.distinct import distinct
 from kin.dwell import Dwell, dwells
+from kin.dyad import RRP
 from kin.figures import Figures, Rows, figures
 from kin.forces import force, transmission
 from kin.jet import Jet
@@ -97,7 +98,8 @@ class Mechanism:
 
     `breadth` is that of the frame and the cam, mm; `chain` is all the links. ValueError if the first dyad hangs on a
     previous one. IntentError if p(theta) + p(theta + pi) is not the breadth all round (field "p"), or if the shaft is
-    not within the cam (field "pivot"): on its edge is allowed.
+    not within the cam (field "pivot"): on its edge is allowed; or if the point a dyad hangs on goes right round the
+    dyad's ground pivot (field "dyads").
     """
 
     linkage: Linkage
@@ -111,6 +113,7 @@ class Mechanism:
         object.__setattr__(self, "chain", Chain(self.linkage, self.breadth, self.dyads))
         self._demand_constant_breadth()
         self._demand_shaft_within()
+        _ = self.about
 
     @property
     def unit(self) -> str:
@@ -231,7 +234,10 @@ class Mechanism:
         return self._mobility
 
     def figures(self) -> Figures:
-        """Give the extremes of the motion over a turn. PlaceError unless the mechanism turns."""
+        """Give the extremes of the motion over a turn.
+
+        PlaceError unless the mechanism turns; RoughError where it comes so close to binding that rounding hides them.
+        """
         self._demand_turning()
         return figures(self._rows, lambda theta: float(self.at(theta, 0).shaft[0, 0]), self.breaks)
 
@@ -308,8 +314,21 @@ class Mechanism:
                 return (*found, *(0.0,) * (len(self.dyads) - loop))
             s0, s01 = self._lifts(theta, 0)
             x, y = self.chain.hung(self.chain.solve(s0, s01, found), loop)
+            if not isinstance(dyad, RRP) and len(theta) == _TABLE:
+                self._demand_swinging(loop, x.c[0] - dyad.ground[0], y.c[0] - dyad.ground[1])
             found = (*found, dyad.middle(x.c[0], y.c[0]))
         return found
+
+    def _demand_swinging(self, loop: int, x: Array, y: Array) -> None:
+        """Refuse a dyad whose point, at x, y (n,) from its ground pivot, goes right round it: the output never comes back."""
+        steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
+        turned = float(np.sum(steps - TURN * np.round(steps / TURN)))
+        if abs(turned) > math.pi:
+            raise IntentError(
+                f"the point that dyad {loop + 1} hangs on goes right round the dyad's ground pivot: its output would "
+                "turn on and on, not swing",
+                "dyads",
+            )
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:
@@ -324,8 +343,10 @@ class Mechanism:
         mobile = self._mobility
         if not mobile.turns:
             what, place = "the shaft would have to turn back", mobile.rate_at
-            if mobile.margin <= 0:
+            if mobile.binds:
                 what, place = "a loop cannot be closed", mobile.margin_at
+            elif math.isnan(mobile.least_rate):
+                what = "the linkage is so close to binding that the rate of the shaft is lost in rounding"
             raise PlaceError(what, place, np.zeros(0, dtype=np.intp))
 
     def _demand_constant_breadth(self) -> None:

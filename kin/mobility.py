@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.monotone import SAME, Pieces, between, cells, pieces
+from kin.monotone import SAME, Pieces, RoughError, between, cells, pieces
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -35,12 +35,13 @@ _BESIDE = 1e-9
 class Mobility:
     """Where and by how much a mechanism binds or turns back; angles are relative ones, rad.
 
-    margin      least distance from binding of any loop, mm, negative where one binds; of the loops after a binding one
-                nothing is known
+    margin      least distance from binding of any loop, mm, negative or lost in rounding where one binds; of the loops
+                after a binding one nothing is known
     margin_at   where in [0, 2 pi)
     loop        which loop it is: 0 the linkage, k the k-th dyad
     binds       spans (from, to) in which that loop cannot be closed; those that run through 0 end beyond 2 pi
-    least_rate  least 1 - theta_3'; nan where the linkage binds, and there is no least
+    least_rate  least 1 - theta_3'; nan where the linkage binds, and there is no least, or is so close to that that the
+                rate is lost in rounding
     rate_at     where in [0, 2 pi)
     reverses    spans in which the shaft would turn back, as far as the linkage can be closed
     """
@@ -56,7 +57,7 @@ class Mobility:
     @property
     def turns(self) -> bool:
         """Whether the cam can be turned right round by its shaft."""
-        return self.margin > 0 and self.least_rate > 0
+        return not self.binds and self.least_rate > 0
 
 
 def mobility(
@@ -79,14 +80,18 @@ def mobility(
         least, at = of.least()
         if least < found[0]:
             found = (least, at % TURN, loop)
-        if least <= 0:
-            binds = _below(of, 0.0)
+        rounding = float(of.blur.min())
+        if least <= rounding:
+            binds = _below(of, 0.0 if least < -2 * rounding else 4 * rounding)
             break
     if binds and found[2] == 0:
         free = _others(binds)
         reverses = tuple(_reduced(span) for begin, end in free for span in _reversing(sense, begin, end, breaks))
         return Mobility(*found, binds, math.nan, math.nan, reverses)
-    of = _all_round(rate, breaks, _RESOLUTION)
+    try:
+        of = _all_round(rate, breaks, _RESOLUTION)
+    except RoughError as error:
+        return Mobility(*found, binds, math.nan, error.at % TURN, ())
     least, at = of.least()
     return Mobility(*found, binds, least, at % TURN, _below(of, 0.0))
 

@@ -312,6 +312,24 @@ def test_what_does_not_turn_says_where():
         mechanism(InvertedSliderCrank(20.0, 0.0)).relative(0.3)
 
 
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-13, 0.0, -1e-13, -1e-9, -1e-6])
+@pytest.mark.parametrize("limit", ["drawn in", "stretched"])
+def test_mobility_close_to_a_limit_position(gap, limit):
+    """Links that miss their limit by a gap, or overlap by it: the margin is the gap, and nothing is raised."""
+    nearest, farthest = 76.59532940170207, 113.42503701566515  # AD with a coupler of 70
+    of = mechanism(FourBar(80.0, 70.0, 80 + nearest - gap if limit == "drawn in" else farthest + gap - 80))
+    mobile = of.mobility()
+    assert mobile.margin == pytest.approx(gap, abs=2e-13)
+    assert mobile.loop == 0
+    if abs(gap) >= 1e-9:
+        assert mobile.turns == (gap > 0)
+        assert len(mobile.binds) == (gap < 0)
+        for begin, end in mobile.binds:
+            assert begin < mobile.margin_at < end
+    else:
+        assert not mobile.turns
+
+
 # Figures
 
 
@@ -467,6 +485,12 @@ def test_a_slotted_rocker():
     assert of.mobility().turns
     assert np.ptp(of.at(EVERY, 0).output[0]) < 2.0
     assert np.abs(np.diff(of.at(EVERY, 0).output[0])).max() < 0.1
+
+
+def test_a_rocker_that_would_go_right_round_is_refused():
+    with pytest.raises(IntentError, match="dyad 1 hangs on goes right round") as refused:
+        mechanism(dyads=(RPR("coupler", (-60.0, 20.0), (-6.0, 40.0), 0.0),))
+    assert refused.value.field == "dyads"
 
 
 def test_the_first_dyad_has_no_previous_one():
