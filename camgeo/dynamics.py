@@ -50,8 +50,8 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
     """Find the dynamics of a recipe that asks for them, as intended and with each DXF and STL file.
 
     Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
-    play `play`, that some is left. Raises RecipeErrors where the train has no steady state, ValueError for a recipe that
-    asks for no dynamics.
+    play `play`, that some is left. Raises RecipeErrors where the train has no steady state, and ValueError for a recipe
+    that asks for no dynamics.
     """
     from kin.drive import DriveError
     from kin.dynamics import DynamicsError
@@ -123,9 +123,8 @@ def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
     intent = intended(scene.recipe, design)
     play = scene.asked.play
     if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
-        follower = intent.follower
-        turns = isinstance(follower, DoubleRoller | FlatPair)
-        play = play / follower.transmission.arm if turns else METRE * play
+        held = intent.follower
+        play = play / held.transmission.arm if isinstance(held, DoubleRoller | FlatPair) else METRE * play
     if path is None:
         return intended_faces(intent.follower, play)
     return measured_faces(intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored), play)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.dynamics import DynamicsError, Running, Train
+from kin.peaks import beside
 from kin.response import Response, Samples, response
 
 if TYPE_CHECKING:
@@ -244,8 +245,8 @@ class _View:
         # where it has only just begun, rounding may stand on either side of 0
         begun = np.flatnonzero(ended)
         until = int(begun[0]) if len(begun) else len(level)
-        for i in self._near(at, level, until).tolist():
-            hit = self._search(at, i - 1, i + 1, limit)
+        for low, high in self._near(at, level, until):
+            hit = self._search(at, low, high, limit)
             if hit is not None:
                 return hit
         if until == len(level):
@@ -256,14 +257,15 @@ class _View:
         hit = self._search(at, until - 1, until, limit)
         return hit or (int(kind[until]), int(at.stretch[until]), float(at.time[until]))
 
-    def _near(self, at: Samples, level: Array, until: int) -> Indices:
-        """Places before `until` where the state all but ends, between neighbours in one stretch."""
-        inner = np.arange(1, min(until, len(level) - 1))
-        low = (level[inner] <= level[inner - 1]) & (level[inner] <= level[inner + 1])
-        low &= level[inner] < _NEAR * (np.ptp(level) + self.course.level)
-        low &= (at.stretch[inner - 1] == at.stretch[inner]) & (at.stretch[inner + 1] == at.stretch[inner])
-        inner = inner[low]
-        return np.sort(inner[np.argsort(level[inner], kind="stable")[:_MOST_NEAR]])
+    def _near(self, at: Samples, level: Array, until: int) -> list[tuple[int, int]]:
+        """Neighbours, in one stretch, of the places before `until` where the state all but ends."""
+        places = np.arange(until)
+        before, after = beside(at.stretch, places)
+        low = (level[places] <= level[before]) & (level[places] <= level[after]) & (after < until) & (places > 0)
+        low &= level[places] < _NEAR * (np.ptp(level) + self.course.level)
+        places = places[low]
+        places = np.sort(places[np.argsort(level[places], kind="stable")[:_MOST_NEAR]])
+        return list(zip(before[places].tolist(), after[places].tolist(), strict=True))
 
     def _search(self, at: Samples, low: int, high: int, limit: float) -> tuple[int, int, float] | None:
         """First event between two places of one stretch, by narrowing from both sides; None where there is none."""
@@ -311,9 +313,8 @@ class _View:
         """Extreme of the force about place i, and where."""
         stretch = int(at.stretch[i])
         knot = float(self.found.drive.knots[stretch])
-        before, after = max(i - 1, 0), min(i + 1, count - 1)
-        low = float(at.time[before] if at.stretch[before] == stretch else at.time[i])
-        high = float(at.time[after] if at.stretch[after] == stretch else at.time[i])
+        before, after = (int(places[0]) for places in beside(at.stretch[:count], np.array([i])))
+        low, high = float(at.time[before]), float(at.time[after])
         high = min(high, last - knot)
         for _ in range(_ROUNDS // 2):
             time = np.linspace(low, high, _GRID)

@@ -14,6 +14,8 @@ Indices = NDArray[np.intp]
 
 DEGREE = 24
 _COUNT = DEGREE + 1
+_ORDERS = np.arange(_COUNT, dtype=np.float64)
+_FEW = 2000
 _ANGLES = np.pi * (np.arange(_COUNT) + 0.5) / _COUNT
 
 NODES: Array = np.cos(_ANGLES)
@@ -63,14 +65,22 @@ def fitted(values: Array) -> Array:
 
 
 def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
-    """Values (n,) at x (n,) of the series in the rows (n,) of `coefficients` (m, DEGREE + 1), by Clenshaw's sum."""
+    """Values (n,) at x (n,) in [-1, 1] of the series in the rows (n,) of `coefficients` (m, DEGREE + 1).
+
+    A few as sums of cosines, many by Clenshaw's recurrence: the one saves calls, the other memory.
+    """
+    found: Array
+    if len(x) <= _FEW:
+        angle = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
+        found = np.einsum("nk,nk->n", coefficients[row], np.cos(angle[:, None] * _ORDERS))
+        return found
     used = np.flatnonzero(coefficients.any(axis=0))
     columns = np.ascontiguousarray(coefficients.T)
     ahead, further = np.zeros_like(x), np.zeros_like(x)
     twice = 2.0 * x
     for k in range(int(used[-1]) if len(used) else 0, 0, -1):
         ahead, further = columns[k][row] + twice * ahead - further, ahead
-    found: Array = columns[0][row] + x * ahead - further
+    found = columns[0][row] + x * ahead - further
     return found
 
 

@@ -89,16 +89,12 @@ class Figure:
             top = int(near[np.argmax(sign * values[near])]) if len(near) else -1
             if top >= 0:
                 found.append((float(values[top]), int(at.stretch[top]), float(at.time[top])))
-            inner = near[(near > 0) & (near < len(values) - 1)]
-            inner = inner[(at.stretch[inner - 1] == at.stretch[inner]) & (at.stretch[inner + 1] == at.stretch[inner])]
-            peak = (sign * values[inner] >= sign * values[inner - 1]) & (
-                sign * values[inner] >= sign * values[inner + 1]
-            )
-            inner = inner[peak]
-            inner = inner[np.argsort(-sign * values[inner], kind="stable")[:_MOST_NEAR]]
-            brackets += zip(
-                at.stretch[inner].tolist(), at.time[inner - 1].tolist(), at.time[inner + 1].tolist(), strict=True
-            )
+            before, after = beside(at.stretch, near)
+            peak = (sign * values[near] >= sign * values[before]) & (sign * values[near] >= sign * values[after])
+            near, before, after = near[peak], before[peak], after[peak]
+            highest = np.argsort(-sign * values[near], kind="stable")[:_MOST_NEAR]
+            columns = at.stretch[near], at.time[before], at.time[after]
+            brackets += zip(*(column[highest].tolist() for column in columns), strict=True)
         if brackets and rounds:
             stretch, low, high = (np.array(column) for column in zip(*brackets, strict=True))
             grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))
@@ -110,3 +106,11 @@ class Figure:
             found += zip(values[rows, top].tolist(), stretch.tolist(), time[rows, top].tolist(), strict=True)
         value, which, time = max(found, key=lambda one: sign * one[0])
         return value, float(self.response.drive.knots[which]) + time
+
+
+def beside(stretch: Indices, places: Indices) -> tuple[Indices, Indices]:
+    """The samples before and after the given ones, or themselves at the ends of a stretch; `stretch` of each sample."""
+    before, after = np.maximum(places - 1, 0), np.minimum(places + 1, len(stretch) - 1)
+    before = np.where(stretch[before] == stretch[places], before, places)
+    after = np.where(stretch[after] == stretch[places], after, places)
+    return before, after

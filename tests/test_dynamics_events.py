@@ -1,0 +1,235 @@
+"""Loss of contact, impacts and the speed at which float begins: closed forms, and a second opinion by scipy."""
+
+import math
+
+import numpy as np
+import pytest
+from dynamics_oracle import Cycloid
+from test_dynamics import Harmonic, Saw
+
+from kin.bouncing import FREE, LOWER, UPPER, State, course, least_gap
+from kin.drive import drives
+from kin.driven import Moved
+from kin.dynamics import DynamicsError, Train, steady
+from kin.floating import float_speed
+from kin.integrated import integrated
+
+TURN = 2.0 * math.pi
+
+
+class Still:
+    """A face that does not move."""
+
+    breaks = corners = np.empty(0)
+
+    def __init__(self, position=0.0):
+        self.position = position
+
+    def rows(self, phi):
+        return np.stack([np.full_like(phi, self.position), np.zeros_like(phi), np.zeros_like(phi)])
+
+
+def faces(lower, upper=None):
+    found = drives([lower] if upper is None else [lower, upper])
+    return found[0], found[1] if upper is not None else None
+
+
+# --- closed forms -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("stiffness", [1e4, 1e7, 1e11])
+def test_a_follower_that_falls_on_a_still_face(stiffness):
+    """Under a constant preload it drops with F/m, meets the face with sqrt(2 h F/m), and bounces for ever."""
+    mass, preload, height, rpm = 0.5, 20.0, 1e-3, 600.0
+    train = Train(mass, 0.0, stiffness, preload)
+    w = rpm * TURN / 60.0
+    found = course(train, faces(Still()), rpm, 1, State(FREE, height, 0.0)).turns[0]
+    speed = math.sqrt(2.0 * height * preload / mass)
+    assert found.velocity == pytest.approx(speed, rel=1e-10)
+    # a half swing about -F/k from 0 with that speed
+    peak = preload + math.sqrt(preload**2 + stiffness * mass * speed**2)
+    assert found.greatest == pytest.approx(peak, rel=1e-9)
+    natural = math.sqrt(stiffness / mass)
+    fall = speed * mass / preload
+    contact = (math.pi + 2.0 * math.atan(preload / (mass * natural * speed))) / natural
+    assert found.impacts == 1 + math.floor((TURN / w - fall) / (2.0 * fall + contact))
+    assert found.least == 0.0
+
+
+def test_play_between_two_still_faces_is_crossed_to_and_fro():
+    mass, stiffness, play, rpm, speed = 0.2, 1e6, 2e-4, 600.0, 0.05
+    train = Train(mass, 0.0, stiffness)
+    w = rpm * TURN / 60.0
+    found = course(train, faces(Still(), Still(play)), rpm, 1, State(FREE, 0.5 * play, speed / w))
+    turn = found.turns[0]
+    assert turn.velocity == pytest.approx(speed, rel=1e-10)
+    assert turn.greatest == pytest.approx(speed * math.sqrt(stiffness * mass), rel=1e-9)
+    flight, contact = play / speed, math.pi * math.sqrt(mass / stiffness)
+    assert turn.impacts == 1 + math.floor((TURN / w - 0.5 * flight) / (flight + contact))
+    first = 0.5 * flight + (turn.impacts - 1) * (flight + contact)  # the last meeting
+    free = 0.5 * flight + (turn.impacts - 1) * flight + max(0.0, TURN / w - first - contact)
+    assert turn.free == pytest.approx(w * free, rel=1e-9)
+
+
+def test_damping_ends_contact_before_the_spring_is_slack():
+    """From a press-in that is let go: N = -(k z + c z') reaches 0 while z is still below 0."""
+    train = Train(1.0, 600.0, 1e5, 0.0)
+    found = course(train, faces(Still()), 60.0, 1, State(LOWER, -1e-3, 0.0))
+    a, b = 300.0, math.sqrt(1e5 - 300.0**2)
+    t = math.atan2(b, a) / b  # N = m z'', and from rest z'' goes as cos bt - (a/b) sin bt
+    w = TURN
+    assert found.turns[0].free == pytest.approx(TURN - w * t, rel=1e-9)
+    assert found.turns[0].impacts == 0
+    assert found.end.contact == FREE
+
+
+def test_a_train_at_rest_stays_there():
+    train = Train(0.4, 20.0, 2e5, 150.0)
+    found = course(train, faces(Still(0.01)), 600.0, 5)
+    assert found.settled
+    assert len(found.turns) == 1
+    assert found.turns[0].greatest == pytest.approx(150.0, rel=1e-12)
+    assert found.turns[0].least == pytest.approx(150.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("rpm", [60.0, 400.0])
+def test_where_contact_holds_the_course_settles_in_the_steady_state(rpm):
+    train = Train(0.4, 40.0, 2e5, 150.0)
+    lower, _ = faces(Cycloid(math.radians(120.0), 20e-3))
+    found = course(train, (lower, None), rpm, 40)
+    force = steady(train, lower, rpm).force
+    assert found.settled
+    assert found.turns[-1].greatest == pytest.approx(force.greatest, rel=1e-7)
+    assert found.turns[-1].least == pytest.approx(force.least, rel=1e-7)
+    assert found.turns[-1].greatest_at == pytest.approx(force.greatest_at, abs=1e-5)
+    assert found.turns[0].greatest > 0.0
+
+
+def test_corners_throw_the_follower_off_without_damping_at_any_preload_they_can():
+    """A blow of 2 at a corner of s' gives |k z| = 2 sqrt(k m) W: float if that is above F."""
+    rpm = 60.0
+    w = rpm * TURN / 60.0
+    lower, _ = faces(Saw())
+    blow = 2.0 * w * math.sqrt(1e6)  # the corner at half a turn lets go of the follower
+    for preload, floats in ((1.6 * blow, False), (0.6 * blow, True)):
+        found = course(Train(1.0, 30.0, 1e6, preload), (lower, None), rpm, 1)
+        assert (found.turns[0].least == 0.0) == floats
+
+
+def test_no_play_is_refused_with_its_place():
+    lower = Harmonic(1, 1e-3)
+    upper = Moved(Harmonic(1, 0.9e-3), 1.0, 0.05e-3)  # they meet where cos is above a half
+    drives_ = faces(lower, upper)
+    least, at = least_gap(drives_[0], drives_[1])
+    assert least == pytest.approx(-0.05e-3, rel=1e-12)
+    assert math.cos(at) == pytest.approx(1.0)
+    with pytest.raises(DynamicsError, match="no play is left at 0 degrees: -5e-05"):
+        course(Train(1.0, 1.0, 1e5), drives_, 100.0, 1)
+
+
+# --- a second opinion -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("rpm", "damping", "play"),
+    [(500.0, 20.0, None), (900.0, 20.0, None), (1300.0, 200.0, None), (600.0, 200.0, 2e-5), (1000.0, 400.0, 5e-5)],
+)
+def test_an_implicit_solver_sees_the_same_turn(rpm, damping, play):
+    pytest.importorskip("scipy")
+    motion = Cycloid(math.radians(120.0), 20e-3)
+    upper = None if play is None else Moved(motion, 1.0, play)
+    train = Train(0.4, damping, 2e5, 150.0 if play is None else 0.0)
+    start = (train.at(rpm).static(0.0), 0.0) if play is None else (0.5 * play, 0.0)
+    places = np.linspace(0.0, TURN, 2001)
+    other = integrated(train, (motion, upper), rpm, places, start, rtol=1e-8)
+    found = course(train, faces(motion, upper), rpm, 1)
+    z, v = found.end.z, found.end.v
+    if found.end.contact == UPPER:
+        z += play
+    size = np.abs(other.states).max(axis=1)
+    assert abs(z - other.states[0, -1]) < 1e-6 * size[0]
+    assert abs(v - other.states[1, -1]) < 1e-6 * size[1]
+    greatest = np.abs(other.force).max()
+    assert found.turns[0].greatest >= greatest * (1.0 - 1e-6)
+    assert found.turns[0].greatest < 1.25 * greatest  # a step of force at a meeting may fall between two places
+    if play is None and found.turns[0].impacts == 0:
+        assert found.turns[0].least == pytest.approx(other.force.min(), rel=1e-4)
+
+
+def test_the_implicit_solver_sees_the_same_steady_state():
+    pytest.importorskip("scipy")
+    motion = Cycloid(1.0, 1e-2)
+    (drive,) = drives([motion])
+    train = Train(0.4, 60.0, 3e5, 100.0)
+    found = steady(train, drive, 300.0)
+    places = np.linspace(0.0, TURN, 400)
+    other = integrated(train, (motion, None), 300.0, places, found.state, rtol=1e-8, bonded=True)
+    assert other.states[:, -1] == pytest.approx(np.array(found.state), rel=1e-5)
+    assert other.force.max() <= found.force.greatest * (1.0 + 1e-8)
+
+
+def test_too_much_work_for_an_explicit_solver_is_told():
+    pytest.importorskip("scipy")
+    train = Train(0.4, 60.0, 3e12, 100.0)
+    with pytest.raises(DynamicsError, match="more than 2000 evaluations"):
+        integrated(
+            train,
+            (Harmonic(2, 1e-3), None),
+            300.0,
+            np.array([0.0, 1.0]),
+            (0.0, 0.0),
+            method="RK45",
+            most=2000,
+            bonded=True,
+        )
+
+
+# --- float ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("zeta", [0.01, 0.3, 0.9, 1.0, 2.0])
+@pytest.mark.parametrize("order", [1, 3])
+def test_float_of_a_harmonic_drive_begins_where_its_amplitude_reaches_the_preload(order, zeta):
+    mass, stiffness, preload, size = 0.4, 2e5, 150.0, 2e-3
+    damping = 2.0 * zeta * math.sqrt(stiffness * mass)
+    train = Train(mass, damping, stiffness, preload)
+    (drive,) = drives([Harmonic(order, size)])
+    found = float_speed(train, drive)
+
+    def force(rpm):
+        w = order * rpm * TURN / 60.0
+        return abs((stiffness + 1j * damping * w) * mass * w * w / (stiffness + 1j * damping * w - mass * w * w)) * size
+
+    assert found.rpm is not None
+    assert force(found.rpm) == pytest.approx(preload, rel=1e-8)
+    assert all(force(share * found.rpm) < preload for share in np.linspace(0.01, 0.9999, 200))
+    rigid = math.sqrt(preload / (mass * size)) / order * 60.0 / TURN
+    assert found.rigid_rpm == pytest.approx(rigid, rel=1e-3)
+    assert found.rigid_rpm >= rigid * (1.0 - 1e-12)
+
+
+def test_float_of_a_rise_is_found_in_its_first_dip():
+    """Rigid at 1092 rpm; the least force over the speed has dips, and the first to reach 0 counts."""
+    train = Train(0.4, 20.0, 2e5, 150.0)
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    found = float_speed(train, drive)
+    assert found.rpm is not None
+    assert found.rigid_rpm == pytest.approx(1092.55, abs=0.1)
+    assert steady(train, drive, found.rpm).force.least == pytest.approx(0.0, abs=1e-6)
+    assert steady(train, drive, 1.0001 * found.rpm).force.least < 0.0
+    below = [steady(train, drive, rpm).force.least for rpm in np.linspace(600.0, 0.9999 * found.rpm, 200)]
+    assert min(below) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("damping", "preload", "message"), [(0.0, 1.0, "without damping contact is lost"), (1.0, 0.0, "without preload")]
+)
+def test_where_float_has_no_least_speed(damping, preload, message):
+    (drive,) = drives([Harmonic(1, 1e-3)])
+    with pytest.raises(DynamicsError, match=message):
+        float_speed(Train(1.0, damping, 1e5, preload), drive)
+
+
+def test_a_drive_that_never_falls_away_never_floats():
+    found = float_speed(Train(1.0, 10.0, 1e5, 10.0), drives([Still(0.1)])[0])
+    assert (found.rpm, found.at, found.rigid_rpm) == (None, None, None)
