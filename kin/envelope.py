@@ -249,7 +249,10 @@ class RollerEnvelope:
         tau, centre, _ = self._table
         size = 0.5 * dot(centre, centre)
         first, second = two_best(lambda x: x @ centre.T - size, points, len(tau))
-        return better(self._climb(points, tau[first]), self._climb(points, tau[second]))
+        feet = self._climb(points, tau[first]), self._climb(points, tau[second])
+        # Across a fold of the pitch curve the far side is seen from without: the nearer foot counts, not the higher.
+        near = [-np.abs(one.excess - self.radius) for one in feet]
+        return better(*feet, *near)
 
     def _climb(self, points: Array, tau: Array) -> Feet:
         reached = [np.empty_like(points) for _ in range(3)]
