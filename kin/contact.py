@@ -165,32 +165,59 @@ def _meet(pieces: Arcs, arm: Arm, phi: Array) -> Array:
     """Greatest distance from the shaft at which each piece meets the arm's circle at its angle (n,), -inf if nowhere.
 
     From the start of the piece, its circle is 2 y.m + k y^2 = 0 and the arm's |y - q| = l; their difference is the line
-    both intersections lie on, y.(m + k q) = k (q^2 - l^2)/2, also for k = 0.
+    both intersections lie on, y.(m + k q) = k (q^2 - l^2)/2, also for k = 0. Where on that line they lie is asked of
+    the smaller of the two circles: of the other one it would be a difference of large numbers.
     """
     pivot = arm.pivot * unit(phi)
     q = pivot - pieces.start
-    m = right(pieces.tangent)
-    k = pieces.curvature
-    v = m + k[:, None] * q
-    size = np.hypot(v[:, 0], v[:, 1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        across = v / size[:, None]
-        depth = -(dot(q, m) + 0.5 * k * (dot(q, q) + arm.length**2)) / size
-        square = (arm.length - depth) * (arm.length + depth)
-        touching = (square < 0.0) & (square >= -SLACK * arm.length)
-        half = np.sqrt(np.where(touching, 0.0, square))
-    chord_turn = 0.5 * k * pieces.length
+    small = np.abs(pieces.curvature) * arm.length > 1.0
+    y = np.empty((2, len(phi), 2))
+    for rows, crossings in ((np.flatnonzero(~small), _on_arm), (np.flatnonzero(small), _on_piece)):
+        if len(rows):
+            y[:, rows] = crossings(pieces.take(rows), q[rows], arm.length)
+    chord_turn = 0.5 * pieces.curvature * pieces.length
     chord = pieces.length * np.sinc(chord_turn / np.pi)
     along = np.cos(chord_turn)[:, None] * pieces.tangent + np.sin(chord_turn)[:, None] * left(pieces.tangent)
     sagitta = np.abs(chord * np.tan(0.5 * chord_turn)) + SLACK
     best = np.full(len(phi), -np.inf)
-    for sign in (1.0, -1.0):
-        y = q + depth[:, None] * across + (sign * half)[:, None] * left(across)
-        s = dot(y, along)
+    for found in y:
+        s = dot(found, along)
         with np.errstate(invalid="ignore"):
-            on_piece = (s >= -SLACK) & (s <= chord + SLACK) & (np.abs(cross(along, y)) <= sagitta)
-            point = pieces.start + y
+            on_piece = (s >= -SLACK) & (s <= chord + SLACK) & (np.abs(cross(along, found)) <= sagitta)
+            point = pieces.start + found
             on_side = arm.side * cross(pivot, point) >= -SLACK * arm.pivot
         r = np.hypot(point[:, 0], point[:, 1])
         best = np.where(on_piece & on_side & (r > best), r, best)
     return best
+
+
+def _on_arm(pieces: Arcs, q: Array, length: float) -> Array:
+    """Both crossings (2, n, 2), seen from the pieces' starts, nan where there are none; from the arm's circle."""
+    m, k = right(pieces.tangent), pieces.curvature
+    v = m + k[:, None] * q
+    size = np.hypot(v[:, 0], v[:, 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across = v / size[:, None]
+        depth = -(dot(q, m) + 0.5 * k * (dot(q, q) + length**2)) / size
+        square = (length - depth) * (length + depth)
+        touching = (square < 0.0) & (square >= -SLACK * length)
+        half = np.sqrt(np.where(touching, 0.0, square))
+    middle, aside = q + depth[:, None] * across, half[:, None] * left(across)
+    return np.stack([middle + aside, middle - aside])
+
+
+def _on_piece(pieces: Arcs, q: Array, length: float) -> Array:
+    """The same from the piece's own circle, which is the smaller one."""
+    m, k = right(pieces.tangent), pieces.curvature
+    v = m + k[:, None] * q
+    size, away = np.hypot(v[:, 0], v[:, 1]), np.hypot(q[:, 0], q[:, 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across = v / size[:, None]
+        foot = 0.5 * k * (away - length) * (away + length) / size
+        cosine = dot(across, m) + k * foot
+        square = (1.0 - cosine) * (1.0 + cosine)
+        touching = (square < 0.0) & (square >= -2.0 * SLACK * np.abs(k))
+        half = np.sqrt(np.where(touching, 0.0, square)) / k
+    aside = left(across)
+    middle = foot[:, None] * across - (dot(aside, m) / k)[:, None] * aside
+    return np.stack([middle + half[:, None] * aside, middle - half[:, None] * aside])
