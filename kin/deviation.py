@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.arcs import Arcs, dot, left
-from kin.extremes import extremes
+from kin.extremes import extremes, resolution
 from kin.nearest import nearest
 
 if TYPE_CHECKING:
@@ -26,10 +26,9 @@ if TYPE_CHECKING:
     from kin.extremes import Extremes
     from kin.foot import Feet
 
-RESOLUTION = 1e-11  # mm
 LEAST_PARTS = 1024  # a contour of fewer pieces is cut into about so many
 TIGHT = 4.0  # a radius of curvature below so many widths of the tube makes a tight corner
-CUT_OFF = 1e-9  # mm; points of the exact curve with more excess are no part of the trimmed contour
+CUT_OFF = 2e-11  # of the extent; points of the exact curve with more excess are no part of the trimmed contour
 MOST_TURN = 0.05  # rad; greatest turn of a part
 JOINED = 1e-12  # ends closer than this share of the contour's extent are one point
 
@@ -78,7 +77,7 @@ def deviation(chain: Arcs, envelope: Envelope) -> Deviation:
 
     at_start = _along(feet, pieces.tangent, pieces.curvature)
     at_end = _along(end_feet, end_tangents, pieces.curvature)
-    found = extremes(zero, pieces.length, at_start, at_end, inside, resolution=RESOLUTION)
+    found = extremes(zero, pieces.length, at_start, at_end, inside, resolution=resolution(pieces.start))
     bare, bare_at = _bare(chain, envelope, max(found.greatest, -found.least))
     advance = np.mod(end_feet.parameter - feet.parameter + np.pi, 2.0 * np.pi) - np.pi
     return Deviation(
@@ -126,13 +125,15 @@ def _bare(chain: Arcs, envelope: Envelope, width: float) -> tuple[float, float]:
 
 def _trimmed(envelope: Envelope, parameter: Array, tight: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:
     """Leave out what an undercut cuts off, and add the corners that it leaves."""
-    kept = envelope.feet(envelope.points(parameter)).excess <= CUT_OFF
+    points = envelope.points(parameter)
+    cut_off = CUT_OFF * float(np.abs(points).max())
+    kept = envelope.feet(points).excess <= cut_off
     after = np.roll(kept, -1)
     edge = np.flatnonzero(kept != after)
     low, high = parameter[edge], np.append(parameter[1:], parameter[0] + 2.0 * np.pi)[edge]
     for _ in range(50):
         middle = 0.5 * (low + high)
-        same = (envelope.feet(envelope.points(middle)).excess <= CUT_OFF) == kept[edge]
+        same = (envelope.feet(envelope.points(middle)).excess <= cut_off) == kept[edge]
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     corner = np.where(kept[edge], low, high)
     return np.concatenate([parameter, corner]), np.concatenate([tight & kept, np.ones(len(corner), dtype=bool)])

@@ -16,7 +16,7 @@ from kin.bearing import Bearing, bearing_of
 from kin.check import degrees
 from kin.distinct import distinct
 from kin.envelope import FlatEnvelope, PairSupport, SupportLaw
-from kin.extremes import Extremes, extremes
+from kin.extremes import Extremes, extremes, resolution
 from kin.foot import FINE_STEP, grid
 from kin.motion import TURN, ContactError, Judged, MotionError, Play, Unit, motion_error, with_steps
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from kin.lift import Lift
     from kin.transmission import Transmission
 
-RESOLUTION = 1e-11  # mm: to this the extremes of a length are found
 RESOLUTION_ANGLE = 1e-13  # rad
 MOST_STEPS = 60
 SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in rounding
@@ -108,7 +107,8 @@ class Yoke(_OfLift):
             return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
 
         at_low, at_high = near_low + far_low, near_high + far_high
-        found = extremes(nodes[:-1], nodes[1:], at_low, at_high, breadth, resolution=RESOLUTION)
+        fine = resolution(bearing.contour.vertices)
+        found = extremes(nodes[:-1], nodes[1:], at_low, at_high, breadth, resolution=fine)
         return Play(
             self.breadth - found.greatest,
             degrees(found.greatest_at),
@@ -140,7 +140,7 @@ def error_extremes(bearing: Bearing, law: SupportLaw) -> Extremes:
     def error(theta: Array, of: Indices) -> Array:
         return bearing.derivatives(theta, stretch[of]) - law.derivatives(theta, 2)
 
-    return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=RESOLUTION)
+    return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=resolution(bearing.contour.vertices))
 
 
 def lift_range(bearing: Bearing, begin: float, end: float) -> float:
@@ -151,7 +151,7 @@ def lift_range(bearing: Bearing, begin: float, end: float) -> float:
     def lift(theta: Array, of: Indices) -> Array:
         return bearing.derivatives(theta, stretch[of])
 
-    return extremes(nodes[:-1], nodes[1:], at_low, at_high, lift, resolution=RESOLUTION).span
+    return extremes(nodes[:-1], nodes[1:], at_low, at_high, lift, resolution=resolution(bearing.contour.vertices)).span
 
 
 def dwells(lift: Lift) -> Iterator[tuple[float, float]]:

@@ -11,7 +11,7 @@ from kin.arcs import dot, left
 from kin.check import Check, at_most, failed
 from kin.contour import ARC_SHARE
 from kin.deviation import Deviation, convex_deviation, deviation
-from kin.extremes import extremes
+from kin.extremes import extremes, resolution
 from kin.follower import ContactError, DoubleRoller, FlatPair, Follower, Judged, Yoke
 
 if TYPE_CHECKING:
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from kin.arcs import Array, Indices
     from kin.contour import Contour
     from kin.frame import DwellFound, LinkageVerdict
+    from kin.hole import Hole
+    from kin.layers import CrossHole, Layer
     from kin.mechanism import Mechanism
 
 # The judge's own rounding, as a share of the contour's extent; a value this far above its limit still holds.
@@ -27,7 +29,6 @@ ROUNDING = 1e-12
 # Splines are judged as arcs within this share of the tolerance, and no coarser than SPLINE_ERROR, mm, as far as
 # rounding lets them be.
 SPLINE_SHARE, SPLINE_ERROR = 1e-3, 1e-9
-RESOLUTION = 1e-11  # mm
 DWELL_ROUNDING = 1e-7  # degrees; the ends of a dwell are found to this
 
 
@@ -52,6 +53,8 @@ class Intent:
     trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
     mechanism   that the yoke's frame drives as a coupler; None for a plain follower
     dwell       of the mechanism's output, which is found in each file and, if it must last, judged
+    holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
+    layers      of its solid, from below, and radial holes through layers with an outline of their own
     """
 
     follower: Follower
@@ -62,6 +65,14 @@ class Intent:
     trimmed: bool = False
     mechanism: Mechanism | None = None
     dwell: DwellAsked | None = None
+    holes: tuple[Hole, ...] = ()
+    layers: tuple[Layer, ...] = ()
+    cross_holes: tuple[CrossHole, ...] = ()
+
+    @property
+    def featured(self) -> bool:
+        """Whether the part has more than a round bore."""
+        return bool(self.holes or self.layers)
 
 
 @dataclass(frozen=True)
@@ -241,17 +252,18 @@ def _distance_range(contour: Contour) -> tuple[float, float]:
     """Least and greatest distance of a contour from the origin."""
     arcs, _ = contour.as_arcs()
     pieces, _ = arcs.cut(np.ceil(np.maximum(np.abs(arcs.curvature) * arcs.length / 0.1, 1.0)).astype(np.intp))
+    fine = resolution(pieces.start)
 
     def distance(s: Array, piece: Indices) -> Array:
         here = pieces.take(piece)
         x, tangent = here.points(s), here.tangents(s)
-        r = np.maximum(np.hypot(x[:, 0], x[:, 1]), RESOLUTION)
+        r = np.maximum(np.hypot(x[:, 0], x[:, 1]), fine)
         slope = dot(x, tangent) / r
         return np.stack([r, slope, (1.0 + here.curvature * dot(x, left(tangent)) - slope**2) / r])
 
     every = np.arange(len(pieces))
     low, high = np.zeros(len(pieces)), pieces.length
-    found = extremes(low, high, distance(low, every), distance(high, every), distance, resolution=RESOLUTION)
+    found = extremes(low, high, distance(low, every), distance(high, every), distance, resolution=fine)
     return found.least, found.greatest
 
 
