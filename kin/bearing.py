@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kin.contour import Contour
 
 TURN = 2.0 * np.pi
-NEAR_CENTRE = 1e3  # mm; a point found from a centre farther away would lose more than a picometre to rounding
+NEAR_CENTRE = 20.0  # of the extent; a point found from a centre farther away would lose too much to rounding
 FLATTEST = 1e9  # mm; larger radii of curvature are all alike
 
 
@@ -74,7 +74,7 @@ class Bearing:
             i = piece[arc]
             radius[arc] = r = self.contour.radius[i]
             x[arc] = self.contour.centre[i] + r[:, None] * u[arc]
-            far = r > NEAR_CENTRE
+            far = r > NEAR_CENTRE * float(np.abs(self.contour.vertices).max())
             arc, i = arc[far], i[far]
             x[arc] = self.contour.arc_points(i, theta[arc] - self.contour.angle[i])
             if len(bow):
@@ -113,7 +113,7 @@ def bearing_of(contour: Contour) -> Bearing:
     """Find what bears in every direction. Cost: one support evaluation for each break of the contour's support."""
     breaks = contour.normals
     middle = np.mod(breaks + 0.5 * np.diff(breaks, append=breaks[:1] + TURN), TURN)
-    if contour.is_convex:
+    if contour.is_convex and not _overlap(contour):
         return _of_convex(contour, breaks, middle)
     found = contour.support(middle)
     ranges = contour.normal_ranges
@@ -121,6 +121,19 @@ def bearing_of(contour: Contour) -> Bearing:
     low[ranges.piece], width[ranges.piece] = ranges.low, ranges.width
     curved = np.mod(middle - low[found.piece], TURN) <= width[found.piece]
     return Bearing(contour, breaks, found.point, np.where(curved, found.piece, -1))
+
+
+def _overlap(contour: Contour) -> bool:
+    """Tell whether neighbours' normals overlap by so much, in rounding, that it is felt which of them bears there.
+
+    The ends of an arc hardly longer than the rounding of its coordinates point anywhere; where the tangent turns back
+    by b onto an arc of radius R, that arc reaches R b^2/2 farther than the short one.
+    """
+    back = np.maximum(-contour.joints, 0.0)
+    chord, turn = np.hypot(*(contour.end - contour.start).T), np.abs(contour.turns)
+    radius = np.divide(chord, turn, out=np.zeros(len(contour)), where=(contour.kind != LINE) & (turn > 0.0))
+    felt = 0.5 * np.maximum(radius, np.roll(radius, 1)) * back**2
+    return bool((felt > 4.0 * np.finfo(float).eps * float(np.abs(contour.vertices).max())).any())
 
 
 def _of_convex(contour: Contour, breaks: Array, middle: Array) -> Bearing:
