@@ -99,6 +99,9 @@ def remains(curve: Curve, why: Causes) -> Remains:
     a fine grid, without proof for what lies between; a missed cut shows when the file is judged.
     """
     contact = _Contact.of(curve)
+    plain = _swallowtails(curve, contact, why)
+    if plain is not None:
+        return plain
     for turn in range(ROUNDS):
         nodes = _nodes(curve, why, NODES << turn)
         on = curve.sample(nodes)
@@ -109,6 +112,44 @@ def remains(curve: Curve, why: Causes) -> Remains:
             return _with_depths(curve, contact, corners, stretches)
     where = why.reversals[0].start if why.reversals else why.necks[0].first
     raise UndercutError(f"the crossings of the undercut contour near parameter {where:.9g} cannot be told apart", where)
+
+
+def _swallowtails(curve: Curve, contact: _Contact, why: Causes) -> Remains | None:
+    """What is left where each reversal is cut off by a crossing of its own, apart from all others; else None.
+
+    Without a hollow in the pitch curve that settles it: what is kept runs forward and turns once round in left corners,
+    so it bounds a convex body. Many small swallowtails, equal but for rounding, are told apart by this alone.
+    """
+    convex = bool((curve.cells.rows[2] >= 0.0).all())
+    if not convex or why.necks or not why.reversals or any(r.still for r in why.reversals):
+        return None
+    period = curve.shape.period
+    starts = np.array([r.start for r in why.reversals])
+    ends = np.array([r.end for r in why.reversals])
+    found = np.full((len(starts), 2), np.nan)
+    for share in STARTS:
+        open_ = np.flatnonzero(np.isnan(found[:, 0]))
+        room = share * (ends - starts)[open_]
+        pairs = settled(curve, np.column_stack([starts[open_] - room, ends[open_] + room]), contact.size)
+        of = np.searchsorted(starts, pairs[:, 0], side="right")  # the reversal after the first of the two
+        for (low, high), number in zip(pairs.tolist(), of.tolist(), strict=True):
+            shift, i = (period, 0) if number == len(starts) else (0.0, number)
+            if low - shift < starts[i] and ends[i] < high - shift and np.isnan(found[i, 0]):
+                found[i] = low - shift, high - shift
+    following = np.append(found[1:, 0], found[0, 0] + period)
+    if np.isnan(found).any() or not (found[:, 1] < following).all():
+        return None
+    at, to = curve.sample(found[:, 0], -1), curve.sample(found[:, 1])
+    if not (at.tangent[:, 0] * to.tangent[:, 1] - at.tangent[:, 1] * to.tangent[:, 0] > 0.0).all():
+        return None
+    middle = 0.5 * (at.point + to.point)
+    corners = [Corner(low, high, point) for (low, high), point in zip(found.tolist(), middle, strict=True)]
+    base = curve.runs[0].low
+    turns = np.floor((found[:, 0] - base) / period) * period
+    stretches = sorted(
+        ((i, i, low, high) for i, (low, high) in enumerate((found - turns[:, None]).tolist())), key=lambda s: s[2]
+    )
+    return _with_depths(curve, contact, corners, stretches)
 
 
 @dataclass(frozen=True)
