@@ -32,7 +32,8 @@ SPLITS = 8  # parts into which an undecided interval is divided
 NEAR = 100.0  # an end this many times `SHARPNESS` from the least counts as a minimum
 GROWTH = 1.6  # from part to part away from a minimum already found
 LEVELS = 30
-MOST_INTERVALS = 50_000  # undecided at a time
+MOST_INTERVALS = 100_000  # undecided at a time
+FRESH = 1_000  # so many undecided: the bounds over them are formed anew, not taken over from their cells
 _ROOT_STEPS = 60
 
 
@@ -221,9 +222,13 @@ class _Intervals:
             highs.append(knots[1:])
             owner.append(np.full(knots.size - 1, i))
         of = np.concatenate(owner)
-        return _Intervals.of(
-            curve, np.concatenate(lows), np.concatenate(highs), self.speed_bend[of], self.turn_bend[of]
-        )
+        low, high = np.concatenate(lows), np.concatenate(highs)
+        speed_bend, turn_bend = self.speed_bend[of], self.turn_bend[of]
+        if len(self.low) > FRESH:
+            # Where terms cancel, as on a circle that its formula does not tell, a bound falls with the width.
+            fresh = curve.shape.bounds(low, high)
+            speed_bend, turn_bend = np.fmin(speed_bend, fresh.speed_bend), np.fmin(turn_bend, fresh.turn_bend)
+        return _Intervals.of(curve, low, high, speed_bend, turn_bend)
 
 
 def _extent(frame: Frame) -> float:
