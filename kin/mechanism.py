@@ -320,7 +320,7 @@ class Mechanism:
         return found
 
     def _demand_swinging(self, loop: int, x: Array, y: Array) -> None:
-        """Refuse a dyad whose point, at x, y (n,) from its ground pivot, goes right round it: the output never comes back."""
+        """Refuse a dyad whose point, at x, y (n,) from its ground pivot, goes right round that."""
         steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
         turned = float(np.sum(steps - TURN * np.round(steps / TURN)))
         if abs(turned) > math.pi:
