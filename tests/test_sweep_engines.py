@@ -97,7 +97,7 @@ def test_figures_of_linkages_are_the_same_bytes_from_every_engine(engine: str, c
         assert old in text
         text = text.replace(old, new)
     asked = Ask.of(read(text.encode(), "four-bar.yaml"))
-    real = Job(asked.plan, asked.scene, figures)
+    real = Job(asked.plan, asked.scene(asked.figures), figures)
     how = {"processes": How(2), "dask": How(scheduler=cluster.scheduler_address)}[engine]
     numbers = range(real.plan.chunks)
     landed = dict(how.results(real, numbers))

@@ -15,7 +15,9 @@ from camgeo.linkage import dwells_over, mechanism_of
 from camgeo.profile.build import intent_of
 from camgeo.recipe.load import load_text
 from camgeo.recipe.table_sweep import FIGURES
-from camgeo.sweep.figures import REASONS, compute, evaluate
+from camgeo.sweep import means
+from camgeo.sweep.ask import Ask
+from camgeo.sweep.figures import REASONS, Evaluator, compute, evaluate
 from camgeo.sweep.linkages import Lengths, Loop, Support, angles
 from camgeo.sweep.rebuilt import recipe_with
 from kin.linkage import FourBar, InvertedSliderCrank, SliderCrank
@@ -209,6 +211,43 @@ sweep:
 def swept(limits):
     base = recipe()
     return load_text(base.text + SWEPT.replace("LIMITS", limits), "a.yaml")
+
+
+@pytest.mark.parametrize(
+    ("rank", "limits", "without"),
+    [
+        ("dwell", "", {"dwell-relative", "peak-velocity", "peak-acceleration", "force-angle"}),
+        ("force-angle", "peak-velocity: {at_least: 0}", {"dwell-relative", "peak-acceleration"}),
+        ("dwell-relative", "", {"peak-velocity", "peak-acceleration", "force-angle"}),
+    ],
+)
+def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank, limits, without):
+    one = swept(limits)
+    asked = Ask.of(load_text(one.text.replace("rank: dwell", f"rank: {rank}"), "a.yaml"))
+    values = asked.plan.values(0, 21)
+    cheap, whole = means.figures(asked.scene(asked.figures), values), means.measure(asked, values)
+    assert set(FIGURES) - set(cheap) == without
+    assert set(whole) == set(FIGURES)
+    for name in set(FIGURES) - without:
+        assert np.array_equal(cheap[name], whole[name], equal_nan=True), name
+
+
+def test_what_chunks_share_is_prepared_once(monkeypatch):
+    calls = []
+    monkeypatch.setattr(means.Evaluator, "of", lambda *a, of=Evaluator.of, **how: calls.append(a) or of(*a, **how))
+    asked = Ask.of(swept("force-angle: {at_least: 20.125}"))
+    scenes = [asked.scene(asked.figures) for _ in range(3)]
+    calls.clear()
+    for first, scene in zip((0, 7, 14), scenes, strict=True):
+        means.figures(scene, asked.plan.values(first, first + 7))
+    assert len(calls) <= 1
+
+
+def test_designs_made_one_by_one_get_all_figures():
+    dyads = ", dyads: [{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
+    base = recipe(more=dyads)
+    asked = Ask.of(load_text(base.text + SWEPT.replace("LIMITS", ""), "a.yaml"))
+    assert asked.figures == asked.all_figures == tuple(FIGURES)
 
 
 def test_what_breaks_a_limit_is_computed_no_further():

@@ -180,7 +180,8 @@ def test_the_best_are_whole_recipes_that_say_what_was_measured(swept: Path) -> N
         assert replace(recipe.linkage, rocker=0.0) == replace(ask().recipe.linkage, rocker=0.0)
         assert recipe.linkage.rocker == y
         origin = f"design {index} of 825 of the sweep of four-bar"
-        assert recipe.about == f"{origin}: dwell {dwell:.6g} deg, margin {x - 12:.6g} mm. AS 2023, Figure 9"
+        told = f"dwell {dwell:.6g} deg, dwell-relative {dwell / 2:.6g} deg, margin {x - 12:.6g} mm"
+        assert recipe.about == f"{origin}: {told}. AS 2023, Figure 9"
         assert "# the shaft" in recipe.text
 
 
@@ -192,6 +193,10 @@ def test_the_report_tells_what_was_asked_and_what_came_of_it(swept: Path) -> Non
     assert report["counts"]["reasons"] == {"binds": report["counts"]["not_turning"]}
     assert report["counts"]["kept"] == report["counts"]["rows"] == len(by_hand(RANKING))
     assert [best["index"] for best in report["best"]] == [index for _, index in by_hand(RANKING)[:3]]
+    # the table holds what every design was given, the best designs all there is
+    in_table = {name: figure["in_table"] for name, figure in report["figures"].items()}
+    assert in_table == {"dwell": True, "dwell-relative": False, "margin": True}
+    assert all(set(best["figures"]) == set(in_table) for best in report["best"])
     assert report["run"]["designs_computed"] == 825
     assert report["run"]["designs_per_second"] > 0
 
@@ -354,6 +359,8 @@ def test_a_curve_over_one_variable_is_drawn(tmp_path: Path) -> None:
     def flat(_scene, values):
         return hills("", np.column_stack([values, np.full(len(values), 111.0)]))
 
-    outcome = search(Ask.of(read(text.encode(), "a.yaml")), tmp_path, How(1), replace(MEANS, compute=flat))
+    outcome = search(
+        Ask.of(read(text.encode(), "a.yaml")), tmp_path, How(1), replace(MEANS, compute=flat, measure=flat)
+    )
     assert outcome.report["counts"]["computed"] == 25
     assert (outcome.folder / "sweep-map.png").read_bytes().startswith(PNG)

@@ -147,7 +147,7 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
 
 def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
     def key(recipe: object) -> str:
-        return Job(recipe.plan, recipe.scene, hills).key
+        return Job(recipe.plan, recipe.scene(recipe.figures), hills).key
 
     plain = key(ask())
     for same in (
@@ -163,6 +163,18 @@ def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
     assert key(Ask.of(read((longer.recipe.text + train).encode(), "four-bar.yaml"))) == plain
     text = longer.recipe.text.replace("coupler: 70", "coupler: 71")
     assert key(Ask.of(read(text.encode(), "four-bar.yaml"))) != plain
+
+
+def test_limits_cost_computing_only_where_they_ask_for_another_figure() -> None:
+    def key(limits: str, rank: str = "dwell") -> str:
+        text = ask(rank=rank).recipe.text.replace("margin: {at_least: 1.0}", limits)
+        asked = Ask.of(read(text.encode(), "four-bar.yaml"))
+        return Job(asked.plan, asked.scene(asked.figures), hills).key
+
+    plain = key("margin: {at_least: 1}")
+    assert key("swing: {at_least: 20}, size: {at_most: 44}, dwell: {at_least: 9}") == plain
+    assert key("margin: {at_least: 1}", "transmission-angle") == plain
+    assert key("force-angle: {at_least: 9}") == key("margin: {at_least: 1}", "force-angle") != plain
 
 
 def test_a_worker_of_other_versions_is_refused() -> None:

@@ -175,6 +175,25 @@ def test_the_error_falls_with_the_fourth_power_of_the_step():
     assert 8 < ratio < 32
 
 
+def test_where_nothing_can_be_written_the_compiled_engine_is_not_kept(monkeypatch):
+    numba = pytest.importorskip("numba")
+    compiler = numba.njit
+
+    def barred(cache=False, **how):
+        if cache:
+            raise RuntimeError("cannot cache function '_scan': no locator available for file 'windows.py'")
+        return compiler(**how)
+
+    monkeypatch.setattr(numba, "njit", barred)
+    windows._compiled.cache_clear()
+    samples = sampled(*waves(3, 5, 60))
+    try:
+        compiled = longest(samples, 0.2, "compiled")
+    finally:
+        windows._compiled.cache_clear()
+    assert np.array_equal(compiled, longest(samples, 0.2, "numpy"))
+
+
 def test_a_window_over_the_shaft_is_not_the_one_over_the_relative_angle():
     over_shaft, relative = lengths_of(*waves(2, 30, 360), 0.02)
     assert np.abs(over_shaft - relative).max() > 0.05

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,12 +26,16 @@ from camgeo.recipe.model_part import Part
 from camgeo.recipe.spec import Kind
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.recipe.tables import field_at
+from camgeo.sweep.figures import Evaluator, asked_of
 from camgeo.sweep.gather import Ranking
 from camgeo.sweep.plan import Axis, Plan, steps
+from camgeo.sweep.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+# What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
+_DEAR = ("dwell-relative", "peak-velocity", "peak-acceleration", "force-angle")
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 _KINDS = {
@@ -76,14 +81,32 @@ class Ask:
         plan = Plan(axes, sweep.method, count, sweep.seed)
         return Ask(recipe, sweep, plan, Ranking(sweep.rank, FIGURES[sweep.rank].best == "most", sweep.limits))
 
-    @property
-    def scene(self) -> Recipe:
-        """The recipe without all that has no bearing on a design's figures.
+    @cached_property
+    def figures(self) -> tuple[str, ...]:
+        """The figures that every design is given: those that cost little, and the others where they rank or limit.
 
-        So a change of limits, ranking or files to export leaves what was computed as it is.
+        Limits on the cheap ones so leave what is computed as it is. Designs that are made one by one get all, which
+        then cost next to nothing.
+        """
+        paths = tuple(axis.path for axis in self.sweep.vary)
+        asked = {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
+        if Evaluator.of(self.recipe, paths).slow:
+            return self.all_figures
+        return tuple(name for name in self.all_figures if name in asked or name not in _DEAR)
+
+    @property
+    def all_figures(self) -> tuple[str, ...]:
+        """The figures that the best designs are given."""
+        return asked_of(self.recipe)
+
+    def scene(self, figures: tuple[str, ...]) -> Scene:
+        """What decides these figures of a design.
+
+        It leaves out what has no bearing on them, so that a change of limits, ranking or files to export leaves what
+        was computed as it is.
         """
         plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
-        return replace(
+        recipe = replace(
             self.recipe,
             name="",
             about="",
@@ -94,6 +117,7 @@ class Ask:
             path=Path("recipe.yaml"),
             sweep=plain,
         )
+        return Scene(recipe, figures)
 
     def units(self, figures: Iterable[str]) -> dict[str, Unit]:
         """Unit of each figure, lengths in that of the recipe."""

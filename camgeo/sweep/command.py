@@ -92,11 +92,11 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
 
 
 def _means() -> Means:
-    from camgeo.sweep.means import REASONS, figures
+    from camgeo.sweep.means import REASONS, figures, measure
     from camgeo.sweep.refine import polish
     from camgeo.sweep.search import Means
 
-    return Means(figures, polish, REASONS)
+    return Means(figures, measure, polish, REASONS)
 
 
 def _complain(ask: Ask, text: str) -> None:

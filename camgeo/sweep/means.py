@@ -2,22 +2,40 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.sweep.figures import REASONS, evaluate
+from camgeo.sweep.figures import REASONS, Evaluator
 from camgeo.sweep.gather import REASON
 
 if TYPE_CHECKING:
-    from camgeo.recipe.model import Recipe
+    from camgeo.sweep.ask import Ask
     from camgeo.sweep.gather import Floats
+    from camgeo.sweep.scene import Scene
 
-__all__ = ["REASONS", "figures"]
+__all__ = ["REASONS", "figures", "measure"]
+
+_HEAP = 3 << 20  # numbers, 24 MB
 
 
-def figures(scene: Recipe, values: Floats) -> dict[str, Floats]:
+def figures(scene: Scene, values: Floats) -> dict[str, Floats]:
     """Figures of designs with the values (m, axes) of the scene's sweep, and why a design has none, as a number."""
-    paths = tuple(axis.path for axis in scene.sweep.vary) if scene.sweep else ()
-    found = evaluate(scene, paths, values)
+    found = _evaluator(scene).found(values)
     return {**found.figures, REASON: found.reason.astype(np.float64)}
+
+
+def measure(ask: Ask, values: Floats) -> dict[str, Floats]:
+    """All figures of designs with the values (m, axes) of a sweep."""
+    scene = ask.scene(ask.all_figures)
+    return Evaluator.of(scene.recipe, scene.paths).found(values).figures
+
+
+@lru_cache(maxsize=1)
+def _evaluator(scene: Scene) -> Evaluator:
+    """What the chunks of a sweep share; a process that computes one computes many."""
+    # glibc hands the memory of each block back to the system, and takes it again page by page for the next, at a tenth
+    # of all time. It keeps what is smaller than the largest piece it was ever given back.
+    np.empty(_HEAP)
+    return Evaluator.of(scene.recipe, scene.paths, figures=scene.figures)

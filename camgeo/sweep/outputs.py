@@ -161,7 +161,11 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
             "keep": sweep.keep,
             "refine": sweep.refine,
         },
-        "figures": {name: {"unit": units[name].name, "about": FIGURES[name].about} for name in found.figures},
+        "figures": {
+            name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in found.figures}
+            for name in FIGURES
+            if name in found.figures or any(name in design.figures for design in best)
+        },
         "counts": {
             "computed": counts.computed,
             "not_turning": counts.not_turning,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.sweep.figures import Evaluator
+from camgeo.sweep.figures import Evaluator, asked_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,11 +55,14 @@ class _Goal:
         values[:, self.free] = self.low + self.span * share
         return values
 
-    def loss(self, values: Array) -> tuple[Array, dict[str, Array]]:
-        """The rank's figure, less is better, and above all others where a limit is broken; and all figures."""
-        figures = self.evaluator.found(values).figures
+    def loss(self, values: Array) -> Array:
+        """The rank's figure (m,), less is better, and above all others where a limit is broken."""
+        return self.loss_of(self.evaluator.found(values).figures)
+
+    def loss_of(self, figures: dict[str, Array]) -> Array:
+        """The same for designs whose figures are known."""
         lost = -figures[self.rank] if self.most else figures[self.rank]
-        broken = np.zeros(len(values))
+        broken = np.zeros(len(lost))
         for limit in self.limits:
             figure = figures[limit.figure]
             for bound, sign in ((limit.at_least, 1.0), (limit.at_most, -1.0)):
@@ -67,7 +70,7 @@ class _Goal:
                     size = max(abs(bound), 1.0)
                     broken += np.maximum(sign * (bound - figure) / size + _TIGHTER, 0.0)
         lost = np.where(broken > 0.0, _FAR * (1.0 + np.minimum(broken, 1e3)), lost)
-        return np.where(np.isfinite(lost), lost, 1e4 * _FAR), figures
+        return np.where(np.isfinite(lost), lost, 1e4 * _FAR)
 
 
 def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
@@ -83,7 +86,9 @@ def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[s
     if len(goal.free):
         found = goal.values(_sought(goal)[None])[0]
         designs = np.stack([start, found, _rounded(goal, found)])
-    loss, figures = goal.loss(designs)
+    # all figures, in the end; the search itself looks at those that rank or limit
+    figures = replace(goal.evaluator, wanted=asked_of(ask.recipe)).found(designs).figures
+    loss = goal.loss_of(figures)
     best = 0
     if len(designs) > 1 and loss[1] < min(loss[0], _FAR):
         # written with no more digits than it is worth, unless that costs a part of what was gained
@@ -99,8 +104,9 @@ def _goal(ask: Ask, paths: Sequence[str], start: Array) -> _Goal:
     free = np.array([i for i, axis in enumerate(sweep.vary) if not axis.values], dtype=np.intp)
     low = np.array([axis.low for axis in sweep.vary])[free]
     high = np.array([axis.high for axis in sweep.vary])[free]
-    recipe = replace(ask.recipe, sweep=replace(sweep, limits=()))  # all figures, whatever limits are broken
-    evaluator = Evaluator.of(recipe, paths, samples=max(sweep.angles, _ANGLES))
+    recipe = replace(ask.recipe, sweep=replace(sweep, limits=()))  # whatever limits are broken
+    wanted = (sweep.rank, *(limit.figure for limit in sweep.limits))
+    evaluator = Evaluator.of(recipe, paths, figures=wanted, samples=max(sweep.angles, _ANGLES))
     return _Goal(evaluator, sweep.rank, ask.ranking.most, sweep.limits, start, free, low, high - low)
 
 
@@ -115,7 +121,7 @@ def _sought(goal: _Goal) -> Array:
     cloud[0] = start
     box = [(0.0, 1.0)] * len(start)
     evolved = differential_evolution(
-        lambda share: goal.loss(goal.values(share.T))[0],
+        lambda share: goal.loss(goal.values(share.T)),
         box,
         init=cloud,
         maxiter=_SLOW_GENERATIONS if slow else _GENERATIONS,
@@ -129,7 +135,7 @@ def _sought(goal: _Goal) -> Array:
     corners = evolved.x + 0.25 * _CLOUD * np.eye(len(start) + 1, len(start), k=-1)
     corners = np.where(corners > 1.0, 2.0 * evolved.x - corners, corners)
     walked = minimize(
-        lambda share: float(goal.loss(goal.values(share[None]))[0][0]),
+        lambda share: float(goal.loss(goal.values(share[None]))[0]),
         evolved.x,
         method="Nelder-Mead",
         bounds=box,

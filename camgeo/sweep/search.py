@@ -18,11 +18,11 @@ from camgeo.sweep.recipes import Best, recipe_text
 from camgeo.sweep.run import chunks_of, compute, gathered
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from camgeo.sweep.ask import Ask
-    from camgeo.sweep.gather import Gathered
+    from camgeo.sweep.gather import Floats, Gathered
     from camgeo.sweep.job import Compute
     from camgeo.sweep.run import How, Told, Work
 
@@ -40,11 +40,19 @@ class Polish(Protocol):
         """Values of a design that is as good or better, and its figures, in mm and degrees."""
 
 
+class Measure(Protocol):
+    """Tells of a few designs also what the search went without."""
+
+    def __call__(self, ask: Ask, values: Floats, /) -> Mapping[str, Floats]:
+        """All figures (m,) of designs with values (m, axes), in mm and degrees."""
+
+
 @dataclass(frozen=True)
 class Means:
-    """What computes the figures of designs, the words for why one has none, and what polishes the best."""
+    """What computes the figures of designs, all those of a few, what polishes; the words for why one has none."""
 
     compute: Compute
+    measure: Measure
     polish: Polish
     reasons: Sequence[str] = ()
 
@@ -67,11 +75,11 @@ def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, 
     started = time.perf_counter()
     demand_extras(ask, how)
     recipe_text(ask, Best(1, 0, False, _by_path(ask, ask.plan.values(0, 1)[0]), {}))  # told now if it cannot be written
-    job = Job(ask.plan, ask.scene, means.compute)
+    job = Job(ask.plan, ask.scene(ask.figures), means.compute)
     chunks = chunks_of(job, out / ask.recipe.name)
     work = compute(job, chunks, how, fresh=fresh, told=told)
     found = gathered(job, chunks, ask.ranking)
-    best = best_of(ask, found, means.polish, how, told)
+    best = best_of(ask, found, means, how, told)
     run = {
         "engine": str(how),
         "key": job.key,
@@ -99,8 +107,11 @@ def demand_extras(ask: Ask, how: How) -> None:
             raise ModuleNotFoundError(name=name)
 
 
-def best_of(ask: Ask, found: Gathered, polish: Polish, how: How, told: Told | None = None) -> list[Best]:
-    """The best designs; if asked for, the best that lie apart, polished, those that have become the same as one."""
+def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None = None) -> list[Best]:
+    """The best designs with all their figures.
+
+    If asked for it is the best that lie apart, polished, those that have become the same as one.
+    """
     places = _apart(ask, found) if ask.sweep.refine else range(min(ask.sweep.keep, found.rows))
     plain = [
         Best(
@@ -113,13 +124,24 @@ def best_of(ask: Ask, found: Gathered, polish: Polish, how: How, told: Told | No
         for number, place in enumerate(places, 1)
     ]
     if not ask.sweep.refine:
-        return plain
-    polished = sorted(_polished(ask, plain, polish, how, told), key=lambda design: _order(ask, design))
+        return _measured(ask, plain, means.measure)
+    polished = sorted(_polished(ask, plain, means.polish, how, told), key=lambda design: _order(ask, design))
     best: list[Best] = []
     for design in polished:
         if not any(_same(ask, design, other) for other in best):
             best.append(replace(design, place=len(best) + 1))
     return best
+
+
+def _measured(ask: Ask, plain: list[Best], measure: Measure) -> list[Best]:
+    """Designs with the figures that the search went without."""
+    if not plain or set(ask.all_figures) <= set(plain[0].figures):
+        return plain
+    found = measure(ask, np.array([list(design.values.values()) for design in plain]))
+    return [
+        replace(design, figures={**{name: float(found[name][i]) for name in found}, **design.figures})
+        for i, design in enumerate(plain)
+    ]
 
 
 def _order(ask: Ask, design: Best) -> tuple[float, int]:

@@ -76,8 +76,12 @@ def longest(samples: Samples, band: float, engine: Engine | None = None) -> Wind
 def _compiled() -> Callable[..., None]:
     from numba import njit
 
+    compiled: Callable[..., None]
     # no fastmath: sums in another order, or fused, would be other numbers
-    compiled: Callable[..., None] = njit(cache=True, nogil=True, error_model="numpy")(_scan)
+    try:
+        compiled = njit(cache=True, nogil=True, error_model="numpy")(_scan)
+    except RuntimeError:  # no folder can be written to keep it in: then each process compiles it anew, for a second
+        compiled = njit(nogil=True, error_model="numpy")(_scan)
     return compiled
 
 
