@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.model import FileRequest, Recipe
     from kin.check import Check
+    from kin.lift import Lift
+    from kin.transmission import Transmission
 
 REPORT = "report.json"
 COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which nothing is cut by
@@ -106,7 +108,7 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
     checks = list(design.checks)
     files: list[FileResult] = []
     if design.contour is not None:
-        outlines = Outlines(design.contour, clock)
+        outlines = Outlines(design.contour, clock, formula_rounding(design.intent, design.contour))
         for request in requests:  # an STL that single precision cannot hold is refused before anything is fitted
             if request.kind == "stl":
                 _aim(recipe, request, design.contour)
@@ -228,21 +230,44 @@ def _aim(recipe: Recipe, request: FileRequest, contour: Curve) -> float:
 
 @dataclass
 class Outlines:
-    """The fits of one contour; files that ask for the same one share it."""
+    """The fits of one contour; files that ask for the same one share it. `unsure`, mm: see `formula_rounding`."""
 
     contour: Curve
     clock: Clock
+    unsure: float = 0.0
     made: dict[tuple[str, float], Outline] = field(default_factory=dict)
 
     def within(self, form: str, tolerance: float) -> Outline:
         """Polygon, arcs or spline within a tolerance in mm; raises ToleranceError where it cannot be held."""
         if (form, tolerance) not in self.made:
             with self.clock.stage(f"fit {form}"):
-                self.made[form, tolerance] = _fitted(form, self.contour, tolerance)
+                self.made[form, tolerance] = _fitted(form, self.contour, tolerance, self.unsure)
         return self.made[form, tolerance]
 
 
-def _fitted(form: str, contour: Curve, tolerance: float) -> Outline:
+def formula_rounding(intent: Lift | Transmission, contour: Curve) -> float:
+    """By how much a recipe's own formula may have moved the contour in rounding, mm; 0 if by no more than usual."""
+    from camgeo.fit.nodes import rounding
+
+    unsure = intent.rounding
+    return unsure if unsure > rounding(contour.size) else 0.0
+
+
+def _fitted(form: str, contour: Curve, tolerance: float, unsure: float) -> Outline:
+    """Fit within a tolerance of which the formula's rounding takes its share, and the judge's view of it another."""
+    if not unsure:
+        return _exactly_fitted(form, contour, tolerance)
+    if 4.0 * unsure > tolerance:
+        raise ToleranceError(
+            f"{tolerance:.3g} mm cannot be held: digits cancel in the formula, so that it is known to {unsure:.3g} mm "
+            f"only; at least {4.0 * unsure:.3g} mm, or write the formula so that they do not",
+            4.0 * unsure,
+        )
+    outline = _exactly_fitted(form, contour, tolerance - 2.0 * unsure)
+    return replace(outline, bound=outline.bound.widened(unsure))
+
+
+def _exactly_fitted(form: str, contour: Curve, tolerance: float) -> Outline:
     if form == "arcs":
         from camgeo.fit.arcs import fit_arcs
 

@@ -106,6 +106,20 @@ class _Run:
         return path + self.s if self.s else path
 
 
+def first_harmonic(stretch: Affine) -> tuple[float, float, float] | None:
+    """Mean, and coefficients of cos t and sin t, where a stretch of a programme is nothing else; None where it is not.
+
+    That is the harmonic law over a half turn: the eccentric, of which the radius of curvature is constant.
+    """
+    run = stretch.function
+    if not (isinstance(run, _Run) and run.shape == "cos" and run.start == run.s == run.v == 0.0):
+        return None
+    if abs(run.rate / abs(stretch.width) - 1.0) > 4.0 * 2.0**-52:
+        return None
+    half = stretch.scale * run.peak / run.rate**2
+    return stretch.offset + half, -half * math.cos(stretch.start), -half * math.sin(stretch.start)
+
+
 def _mirrored(function: Stretch) -> Stretch:
     """1 - f(1 - u): the other half of a symmetric law."""
     return Affine(function, offset=1.0, scale=-1.0, start=1.0, width=-1.0)

@@ -22,10 +22,12 @@ from numpy.typing import NDArray
 
 from kin.jet import Ball, BallJet, Jet, cos
 from kin.piecewise import Affine, Constant, Piecewise, Series, Side
+from kin.routes import FromLeaf
 
 Array = NDArray[np.float64]
 
 _TURN = 2 * math.pi
+_LOOKS = 1024  # parameters at which a formula's rounding is asked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,6 +133,19 @@ class Transmission:
         phi, psi = self.jets(Jet.variable(tau, order), side)
         half = psi * 0.5 + self.alpha / 2
         return (cos(half) * (2 * self.arm)).derivatives(), (phi - half).derivatives()
+
+    @cached_property
+    def rounding(self) -> float:
+        """By how much the pitch curve may be off through the rounding of a recipe's own formula, mm; else 0.
+
+        As `Lift.rounding`, at `_LOOKS` parameters of the law's period.
+        """
+        bare = [f.function if isinstance(f, Affine) else f for f in self.psi.functions]
+        if not any(isinstance(f, FromLeaf) for f in bare):
+            return 0.0
+        tau = self.psi.knots[0] + np.arange(_LOOKS) * (2 * self.delta / _LOOKS)
+        (_, phi), (_, psi) = self.enclosure(tau, tau, 0)
+        return 2 * self.arm * float((phi + psi).max())
 
     def psi_of_shaft(self, phi: float | Array, order: int, side: int = 1) -> Array:
         """Give psi and its derivatives by phi at shaft angles phi (n,), (order + 1, n); at a break by side."""

@@ -19,9 +19,9 @@ FLOORS = {
         deviation flat resting
         envelope mechanism
         lift transmission
-        chain formula read
-        dyad forces possible read_dxf read_stl switches
-        bearing bouncing bounding flaws floating integrated law linkage nesting roots routes syntax transmission_law
+        chain formula possible read
+        dyad forces read_dxf read_stl switches transmission_law
+        bearing bouncing bounding flaws floating integrated law linkage nesting roots routes syntax
         contour dynamics expression frame_dwell loop piecewise
         biarc dwell dxf_entities figures jet mobility peaks pieces
         bezier monotone motion response series

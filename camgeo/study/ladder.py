@@ -156,7 +156,8 @@ def _once(
         raise ValueError(f"{recipe.name}: there is no contour to be drawn")
     recipe = replace(recipe, export=replace(recipe.export, files=(request,)))
     clock = Clock()
-    file, checks = pipeline.drawn(recipe, design, request, path, pipeline.Outlines(design.contour, clock))
+    outlines = pipeline.Outlines(design.contour, clock, pipeline.formula_rounding(design.intent, design.contour))
+    file, checks = pipeline.drawn(recipe, design, request, path, outlines)
     stages = dict.fromkeys(("fit", "write", "judge"), 0.0)
     for name, seconds in clock.stages:
         stages[name.split()[0]] += seconds
