@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from camgeo.curve import Curve
     from camgeo.linkage import Driven
+    from camgeo.part.body import Body
     from camgeo.recipe.model import Recipe
     from kin.follower import Follower
     from kin.lift import Lift
@@ -53,7 +54,7 @@ class Design:
     """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file.
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
-    `driven` is the linkage, None without one.
+    `driven` is the linkage, None without one; `body` the part where it has more than a round bore.
     """
 
     intent: Lift | Transmission
@@ -64,6 +65,7 @@ class Design:
     yoke_breadth: float | None
     trimmed: bool
     driven: Driven | None = None
+    body: Body | None = None
 
 
 def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
@@ -93,13 +95,18 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         with clock.stage("linkage"):
             driven = linkage.driven(recipe, cast("Lift", intent), breadth)
         more += driven.checks
+    body = None
     if contour is not None:
-        wall = _wall(recipe, contour, intent)
-        more += wall
-        if not all(found.ok for found in wall):
-            contour = None  # a bore through the contour leaves no part to draw
+        try:
+            with clock.stage("part"):
+                body, found = _part(recipe, contour, intent)
+        except CurveError as error:
+            raise recipe.error("part.chamfer", str(error)) from error
+        more += found
+        if not all(check.ok for check in found):
+            contour = body = None  # without its least walls there is no part to draw
     trimmed = contour is not None and not contour.closed
-    return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed, driven)
+    return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed, driven, body)
 
 
 def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
@@ -188,15 +195,22 @@ def _figures(recipe: Recipe, intent: Lift | Transmission, profile: Profile) -> t
     return breadth[0] if yoke else None, held, flat_face_checks(lift, breadth if yoke else None)
 
 
-def _wall(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> list[Check]:
-    """Least wall between bore and contour, where there is a bore."""
-    if recipe.part.bore is None:
-        return []
-    from camgeo.part import least_wall
+def _part(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> tuple[Body | None, list[Check]]:
+    """The body of a part that has more than a bore, and the checks of the walls."""
+    part = recipe.part
+    if part.plain:
+        if part.bore is None:
+            return None, []
+        from camgeo.part.wall import least_wall
 
-    wall, at = least_wall(contour, recipe.part.bore)
-    at_deg = _shaft_deg(intent, at)
-    return [Check("wall", wall > 0.0, wall, 0.0, "mm", at_deg, "at_least")]
+        wall, at = least_wall(contour, part.bore)
+        ok = wall > 0.0 if part.wall is None else wall >= part.wall
+        return None, [Check("wall", ok, wall, part.wall or 0.0, "mm", _shaft_deg(intent, at), "at_least")]
+    from camgeo.part.body import body_of
+    from camgeo.part.check import part_checks
+
+    body = body_of(part, contour)
+    return body, part_checks(body, contour, part.wall, lambda t: _shaft_deg(intent, t))
 
 
 def intended(recipe: Recipe, design: Design) -> Intent:
@@ -217,7 +231,7 @@ def intended(recipe: Recipe, design: Design) -> Intent:
         held = follower.FlatFace(cast("Lift", design.intent))
     driven, asked = design.driven, recipe.dwell
     turns = driven is not None and driven.turns
-    return Intent(
+    intent = Intent(
         follower=held,
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
@@ -227,6 +241,12 @@ def intended(recipe: Recipe, design: Design) -> Intent:
         mechanism=driven.mechanism if driven is not None and turns else None,
         dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
     )
+    if design.body is None:
+        return intent
+    from camgeo.part.meant import cross_holes_of, holes_of, layers_of
+
+    body = design.body
+    return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
 
 
 def permitted(recipe: Recipe, tolerance: float) -> Limits:

@@ -13,6 +13,7 @@ from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam
 
 if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
+    from camgeo.recipe.model_part import Part
 
 PLAY = frozenset({"constant-breadth", "breadth-max", "form-closure"})
 """Checks of a file on what is left between contour and follower."""
@@ -44,9 +45,11 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     if linkage:
         names += ["mobility", "reversal", *dwell]
     train = [] if recipe.dynamics is None else ["float" if recipe.dynamics.play is None else "play"]
-    bore = ["bore"] if recipe.part.bore is not None else []
-    if bore:
+    part = recipe.part
+    bore, solid = _of_part(part)
+    if bore or part.hub is not None:
         names.append("wall")
+    names += [name for name in ("chamfer", "lightening") if getattr(part, name) is not None]
     found = [Foreseen(name) for name in names]
     play = ["form-closure"] if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam) else []
     if yoke:
@@ -55,13 +58,24 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
         if request.kind == "csv":
             continue
         file = request.filename(recipe.name, recipe.export.files)
-        own = ["watertight", *bore, "thickness", "volume"] if request.kind == "stl" else ["units", "closed", *bore]
+        own = ["units", "closed", *bore]
+        if request.kind == "stl":
+            own = ["watertight", *bore, "thickness", *solid, "volume"]
         driven = ["linkage-error", *dwell] if linkage else []
         found += [Foreseen(name, file) for name in (*own, "contour", "motion", *play, *driven)]
     found += [Foreseen(name) for name in train]
     if not linkage:  # of a linkage the intended output alone drives
         found += [Foreseen(name, file) for name in train for file in _judged(recipe)]
     return tuple(found)
+
+
+def _of_part(part: Part) -> tuple[list[str], list[str]]:
+    """Checks of a file's openings, and those of a solid besides."""
+    drilled = part.bolts is not None or part.dowel is not None or part.lightening is not None
+    given = (("bore", part.bore is not None), ("holes", drilled), ("mark", part.mark is not None))
+    raised = (("hub", part.hub is not None), ("chamfer", part.chamfer is not None))
+    screwed = (("set-screw", part.set_screw is not None),)
+    return [name for name, there in given if there], [name for name, there in (*raised, *screwed) if there]
 
 
 def _judged(recipe: Recipe) -> list[str]:

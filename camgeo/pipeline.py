@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
     from camgeo.curve import Curve
     from camgeo.files.dxf import Reference
-    from camgeo.fit.pieces import Bound, Outline
+    from camgeo.fit.pieces import Bound, Outline, Polygon
+    from camgeo.page.content import Content
+    from camgeo.part.body import Body
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.model import FileRequest, Recipe
     from kin.check import Check
@@ -111,7 +113,7 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
         outlines = Outlines(design.contour, clock, formula_rounding(design.intent, design.contour))
         for request in requests:  # an STL that single precision cannot hold is refused before anything is fitted
             if request.kind == "stl":
-                _aim(recipe, request, design.contour)
+                _aim(recipe, request, design)
         for request in requests:
             path = folder / request.filename(recipe.name, recipe.export.files)
             if request.kind == "csv":
@@ -173,20 +175,20 @@ def drawn(
 
     clock = outlines.clock
     tolerance = request.tolerance or recipe.export.tolerance
-    aim = _aim(recipe, request, outlines.contour)
+    aim = _aim(recipe, request, design)
     try:
         outline = outlines.within(request.as_ or "polyline", aim)
         drawn = outline.mirrored() if recipe.rotation == "ccw" else outline
         with clock.stage(f"write {request.kind}"):
             if request.kind == "stl":
-                bound, pieces = _write_stl(recipe, drawn, path, tolerance)
+                bound, pieces = _write_stl(recipe, design, drawn, path, tolerance)
             else:
                 _write_dxf(recipe, design, drawn, request, path)
                 bound, pieces = outline.bound, outline.count
     except ToleranceError as error:
         raise _refused(recipe, request, error) from error
     except RegionError as error:
-        field_path = "cam" if recipe.part.bore is None else "part.bore"
+        field_path = "part" if design.body else "cam" if recipe.part.bore is None else "part.bore"
         raise recipe.error(field_path, f"within the tolerance, {error}") from error
     except CurveError as error:
         raise recipe.error("cam", str(error)) from error
@@ -208,13 +210,14 @@ def _refused(recipe: Recipe, request: FileRequest, error: ToleranceError) -> Rec
     return recipe.error(where, str(error), None, reached)
 
 
-def _aim(recipe: Recipe, request: FileRequest, contour: Curve) -> float:
-    """Tolerance left to the fit: all of it, or what rounding to single precision leaves of it.
+def _aim(recipe: Recipe, request: FileRequest, design: Design) -> float:
+    """Tolerance left to the fit: all of it, or what rounding to single precision and a chamfer leave of it.
 
     Raises RecipeErrors where that is nothing.
     """
     tolerance = request.tolerance or recipe.export.tolerance
-    if request.kind != "stl":
+    contour = design.contour
+    if request.kind != "stl" or contour is None:
         return tolerance
     import numpy as np
 
@@ -223,7 +226,7 @@ def _aim(recipe: Recipe, request: FileRequest, contour: Curve) -> float:
     size = float(np.abs(contour.sample(contour.cells.low).point).max())
     # between two samples the contour reaches a little farther
     try:
-        return fit_tolerance(tolerance, 1.01 * size)
+        return fit_tolerance(tolerance, 1.01 * size) * (design.body.fineness if design.body else 1.0)
     except ToleranceError as error:
         raise _refused(recipe, request, error) from error
 
@@ -281,7 +284,7 @@ def _exactly_fitted(form: str, contour: Curve, tolerance: float) -> Outline:
     return fit_polygon(contour, tolerance)
 
 
-def _write_stl(recipe: Recipe, polygon: Outline, path: Path, tolerance: float) -> tuple[Bound, int]:
+def _write_stl(recipe: Recipe, design: Design, polygon: Outline, path: Path, tolerance: float) -> tuple[Bound, int]:
     from camgeo.files.stl import write_stl
     from camgeo.fit.pieces import Polygon
 
@@ -306,7 +309,9 @@ def _write_dxf(recipe: Recipe, design: Design, outline: Outline, request: FileRe
     write_dxf(
         path,
         outline,
-        bore=recipe.part.bore,
+        bore=bore,
+        cutouts=cut,
+        remarks=remarks,
         reference=_reference(recipe, design),
         mm=recipe.mm,
         version=request.version or "R2010",
@@ -325,6 +330,8 @@ def _reference(recipe: Recipe, design: Design) -> list[Reference]:
     cam = recipe.cam
     found: list[Reference] = [Point("shaft", (0.0, 0.0))]
     base = design.profile.base.sample(design.profile.base.cells.low).point
+    if design.body is not None:
+        return _write_part(recipe, design.body, polygon, path, tolerance)
     if isinstance(cam, ConstantBreadthCam):
         found.append(Circle("base circle", (0.0, 0.0), cam.base_radius))
     elif isinstance(cam, SupportCam):
@@ -336,9 +343,29 @@ def _reference(recipe: Recipe, design: Design) -> list[Reference]:
         pitch = fit_arcs(design.profile.base, COARSE)
         found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
         found.append(Circle("pivot circle", (0.0, 0.0), cam.arm))
+def _write_part(recipe: Recipe, body: Body, polygon: Polygon, path: Path, tolerance: float) -> tuple[Bound, int]:
+    """Write the solid of a part that has more than a round bore."""
+    from camgeo.files.missing import MissingExtraError
+    from camgeo.part.files import write_part
+    from camgeo.store import SurroundingsError
+
+    drawn = body.mirrored() if recipe.rotation == "ccw" else body
+    try:
+        facts = write_part(path, polygon, drawn, tolerance=tolerance, about=recipe.name)
+    except MissingExtraError as error:
+        raise SurroundingsError(str(error), recipe.path) from error
+    return facts.bound, facts.vertices
+
+
     elif isinstance(cam, FlatPairCam):
         found.append(Circle("pivot circle", (0.0, 0.0), 2.0 * cam.arm))
     return found
+    bore, cut, remarks = recipe.part.bore, [], []
+    if design.body is not None:
+        from camgeo.part import files
+
+        body = design.body.mirrored() if recipe.rotation == "ccw" else design.body
+        bore, cut, remarks = None, files.cutouts(body), files.remarks(body, recipe.mm)
 
 
 def _write_table(recipe: Recipe, design: Design, path: Path) -> None:
@@ -360,6 +387,8 @@ def _skipped(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     found = []
     asked = {request.kind for request in recipe.export.files}
     wanted = {request.kind for request in requests}
+    if recipe.part.hub is not None:
+        found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
     for kind in ("dxf", "stl", "csv"):
         if kind not in asked:
             found.append((kind, "the recipe's export.files does not list it"))

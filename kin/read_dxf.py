@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 __all__ = ["Aside", "Drawing", "Fault", "read_dxf"]
 
 CUT, BORE = "CUT", "BORE"
+# Layers that are cut beside CUT: the bore's, holes, a mark that is cut through.
+BESIDE = frozenset({BORE, "HOLES", "MARK"})
+# What is engraved stands here, read if it is asked for.
+ENGRAVED = "ENGRAVE"
 # Layers that are never cut: our own reference geometry, and AutoCAD's definition points.
 REFERENCE = frozenset({"REFERENCE", "DEFPOINTS"})
 # Mm in a unit of $INSUNITS: inch, foot, mm, cm, m, microinch, mil, yard, micrometre, decimetre.
@@ -88,6 +92,7 @@ class Drawing:
     measurement     $MEASUREMENT: 0 English, 1 metric, None if not stated
     extents         $EXTMIN and $EXTMAX, mm; None if not stated
     audit           messages of ezdxf's auditor, None if it was not asked
+    engraved        what is engraved, counter-clockwise, if it was asked for
     """
 
     contour: Contour
@@ -103,6 +108,7 @@ class Drawing:
     measurement: int | None
     extents: Box | None
     audit: tuple[str, ...] | None
+    engraved: tuple[Contour, ...] = ()
 
 
 class Found(NamedTuple):
@@ -114,13 +120,17 @@ class Found(NamedTuple):
     aside: Counter[tuple[str, str]]
 
 
-def read_dxf(path: Path | str, gap: float = 1e-6, layer: str | None = None, *, audit: bool = False) -> Drawing:
+def read_dxf(
+    path: Path | str, gap: float = 1e-6, layer: str | None = None, *, audit: bool = False, engraved: bool = False
+) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
 
     gap     mm; ends of loose pieces are joined if they lie within it
-    layer   the one to cut. Default: CUT, with holes also from BORE, if there is something on CUT; else all layers but
-            those of reference geometry. The outermost closed chain is the contour, those inside it are holes.
+    layer   the one to cut. Default: CUT, with holes also from BORE, HOLES and MARK, if there is something on CUT; else
+            all layers but those of reference geometry. The outermost closed chain is the contour, those inside it are
+            holes.
     audit   have ezdxf's auditor look at the file too, which takes as long again
+    engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs and splines in one plane, with the place and the size of the gap.
@@ -132,11 +142,17 @@ def read_dxf(path: Path | str, gap: float = 1e-6, layer: str | None = None, *, a
         unit = unit_of(document, raw[:COMMENT_BYTES], path)
         scale = 1.0 if unit is None else unit
         found = entities_to_cut(document, layer, path)
+        marks = entities_engraved(document, path) if engraved else None
         messages = tuple(e.message for e in document.audit().errors) if audit else None
         low, high = (document.header.get(name) for name in ("$EXTMIN", "$EXTMAX"))
         stated = low is not None and high is not None and low[0] <= high[0] and low[1] <= high[1]
         extents = Box(*(float(v) * scale for v in (*low[:2], *high[:2]))) if stated else None
         measurement = document.header.get("$MEASUREMENT")
+    scratched: tuple[Contour, ...] = ()
+    if marks is not None and marks.shapes:
+        lines, owner = gathered(marks.shapes)
+        lines = lines.enlarged(scale) if scale != 1.0 else lines
+        scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, gap, path))
     pieces, run = gathered(found.shapes)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
     heights = np.concatenate([s.heights for s in found.shapes]) * scale
@@ -166,6 +182,7 @@ def read_dxf(path: Path | str, gap: float = 1e-6, layer: str | None = None, *, a
         measurement=measurement,
         extents=extents,
         audit=messages,
+        engraved=scratched,
     )
 
 
@@ -220,8 +237,25 @@ def entities_to_cut(document: Document, layer: str | None, path: Path) -> Found:
         there = ", ".join(sorted(drawn)) or "none"
         raise ReadError("layer", f"nothing is drawn on a layer {layer}; layers with curves: {there}", path)
     chosen = layer if layer is not None else (CUT if CUT in drawn else None)
-    wanted = drawn - REFERENCE if chosen is None else {chosen.upper(), BORE}
+    beside = BESIDE if layer is None else {BORE}
+    wanted = drawn - REFERENCE if chosen is None else {chosen.upper(), *beside}
     refuse_elsewhere(document, wanted, path)
+    found = gather(space, wanted, path)
+    if not found.shapes:
+        others = ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(found.aside.items())) or "nothing at all"
+        raise ReadError("empty", f"nothing to cut; the file holds {others}", path)
+    return found
+
+
+def entities_engraved(document: Document, path: Path) -> Found:
+    """Find the entities on the layer that is engraved; none where no layer is cut by its name."""
+    space = list(document.modelspace())
+    by_name = any(entity.dxf.layer.upper() == CUT for entity in space)
+    return gather(space, {ENGRAVED} if by_name else set(), path)
+
+
+def gather(space: list[Any], wanted: set[str], path: Path) -> Found:
+    """Read the entities on some layers, and count the others."""
     found = Found([], [], [], Counter())
     for entity in space:
         kind, on = entity.dxftype(), entity.dxf.layer
@@ -239,9 +273,6 @@ def entities_to_cut(document: Document, layer: str | None, path: Path) -> Found:
             raise ReadError(reason, f"{name}: {what}", path) from None
         found.names.append(name)
         found.layers.append(on)
-    if not found.shapes:
-        others = ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(found.aside.items())) or "nothing at all"
-        raise ReadError("empty", f"nothing to cut; the file holds {others}", path)
     return found
 
 

@@ -16,13 +16,15 @@ from kin.read_error import ReadError
 from kin.triangles import EdgeFaults, Mesh, plan_welded, welded
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from kin.arcs import Array, Indices
 
     Corners = NDArray[np.float32] | NDArray[np.float64]
 
-__all__ = ["Solid", "read_stl"]
+__all__ = ["Section", "Solid", "read_stl"]
 
 HEADER = 84
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -34,6 +36,14 @@ LONGEST_WORD = 40
 NUMBERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 # Beyond this, mm, products of three coordinates have no digits left for a part.
 LARGEST = 1e7
+
+
+class Section(NamedTuple):
+    """A section: its height, mm, outline and holes, counter-clockwise all of them."""
+
+    height: float
+    contour: Contour
+    holes: tuple[Contour, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +60,8 @@ class Solid:
     degenerate          triangles without area
     duplicate           triangles that another one covers
     form                "binary" or "text"
+    sections            those that were asked for, by height as asked for
+    faces               heights of the horizontal faces, rising
     """
 
     contour: Contour
@@ -64,6 +76,8 @@ class Solid:
     degenerate: int
     duplicate: int
     form: Literal["binary", "text"]
+    sections: tuple[Section, ...] = ()
+    faces: tuple[float, ...] = ()
 
     @property
     def closed(self) -> bool:
@@ -81,8 +95,11 @@ class Solid:
         return self.z_max - self.z_min
 
 
-def read_stl(path: Path | str) -> Solid:
+def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
     """Read a part. Costs about one sort of the corners.
+
+    The contour is that of the section at half the part's height, or of the first of `heights`, all of which become
+    `sections`.
 
     Raises OSError as the file system does; ReadError where the file is cut short or damaged, and where the section
     does not close or is not one contour with holes. All other faults are in the Solid's fields.
@@ -98,18 +115,21 @@ def read_stl(path: Path | str) -> Solid:
     two_levels = bool(((z == z_min) | (z == z_max)).all())
     mesh = plan_welded(corners, z_min, z_max) if two_levels else welded(corners)
     outline = prism_outline(mesh) if two_levels else None
-    height = (z_min + z_max) / 2.0
+    height = heights[0] if len(heights) else (z_min + z_max) / 2.0
     prism = outline is not None or (not two_levels and walls_upright(mesh, z_min, z_max))
+    whole = outline
     if outline is None:
-        height, outline = section(mesh, height)
-    contours = [Contour.from_vertices(outline.points[ring]) for ring in rings(outline, path)]
-    meeting = first_meeting(contours)
-    if meeting:
-        raise met(meeting, path)
-    first, *others = nested(contours, path)
+        height, outline = cut(mesh, height, path)
+    contour, holes = sectioned(outline, path)
+    sections = []
+    for asked in heights:
+        if whole is None:
+            sections.append(Section(asked, *sectioned(cut(mesh, asked, path)[1], path)))
+        elif z_min < asked < z_max:
+            sections.append(Section(asked, contour, holes))
     return Solid(
-        contour=counter_clockwise(contours[first]),
-        holes=tuple(counter_clockwise(contours[k]) for k in others),
+        contour=contour,
+        holes=holes,
         z_min=z_min,
         z_max=z_max,
         height=height,
@@ -120,7 +140,28 @@ def read_stl(path: Path | str) -> Solid:
         degenerate=mesh.degenerate,
         duplicate=mesh.duplicate,
         form=form,
+        sections=tuple(sections),
+        faces=tuple(distinct(z[(z == z[:, :1]).all(axis=1), 0].astype(np.float64)).tolist()) if len(heights) else (),
     )
+
+
+def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
+    """Cut at a height; raises ReadError where the part does not reach there."""
+    z = mesh.points[:, 2]
+    if not z.min() < height < z.max():
+        message = f"the part reaches from z = {z.min():.9g} to {z.max():.9g} mm: it has no section at {height:.9g}"
+        raise ReadError("several", message, path)
+    return section(mesh, height)
+
+
+def sectioned(outline: Outline, path: Path) -> tuple[Contour, tuple[Contour, ...]]:
+    """Contour and holes of a section, which is one contour with holes in it."""
+    contours = [Contour.from_vertices(outline.points[ring]) for ring in rings(outline, path)]
+    meeting = first_meeting(contours)
+    if meeting:
+        raise met(meeting, path)
+    first, *others = nested(contours, path)
+    return counter_clockwise(contours[first]), tuple(counter_clockwise(contours[k]) for k in others)
 
 
 def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:
@@ -217,11 +258,11 @@ def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
         height = (height + float(levels[np.searchsorted(levels, height) + 1])) / 2.0
     above = mesh.points[:, 2] > height
     high = above[mesh.corners]
-    cut = mesh.corners[high.any(axis=1) & ~high.all(axis=1)]
-    after = np.roll(cut, -1, axis=1)
-    rises, falls = ~above[cut] & above[after], above[cut] & ~above[after]
-    up = np.stack([cut[rises], after[rises]])
-    down = np.stack([after[falls], cut[falls]])
+    met_by = mesh.corners[high.any(axis=1) & ~high.all(axis=1)]
+    after = np.roll(met_by, -1, axis=1)
+    rises, falls = ~above[met_by] & above[after], above[met_by] & ~above[after]
+    up = np.stack([met_by[rises], after[rises]])
+    down = np.stack([after[falls], met_by[falls]])
     codes, number = np.unique(mesh.code(*np.concatenate([down, up], axis=1)), return_inverse=True)
     low, top = mesh.points[codes // len(mesh.points)], mesh.points[codes % len(mesh.points)]
     share = (height - low[:, 2]) / (top[:, 2] - low[:, 2])

@@ -18,6 +18,7 @@ from kin.motion import TURN, MotionError, Play
 from kin.read_error import ReadError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from kin.contour import Contour
@@ -92,12 +93,21 @@ def _of_drawing(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check]
     """Read a DXF file: the checks on what is drawn, the contour in mm as if not mirrored, the number of its pieces."""
     from kin.read_dxf import read_dxf
 
-    drawing = read_dxf(path)
+    drawing = read_dxf(path, engraved=any(hole.depth is not None for hole in intent.holes))
     scale = intent.mm if drawing.units_mm is None else 1.0
     contour, *holes = (_placed(c, scale, intent.mirrored) for c in (drawing.contour, *drawing.holes))
     checks = [_units_check(drawing.units_mm, intent.mm), _closed_check(drawing, contour)]
+    if intent.featured:
+        from kin.part import drawn_checks  # a plain part does without
+
+        engraved = [_placed(c, scale, intent.mirrored) for c in drawing.engraved]
+        return [*checks, *drawn_checks(holes, engraved, intent, limits.tolerance)], contour, drawing.pieces
     bore = bore_check(holes, intent.bore, limits.tolerance)
     return [*checks, bore] if bore else checks, contour, drawing.pieces
+
+
+def _all_placed(contours: Sequence[Contour], intent: Intent) -> tuple[Contour, ...]:
+    return tuple(_placed(contour, 1.0, intent.mirrored) for contour in contours)
 
 
 def _placed(contour: Contour, scale: float, mirrored: bool) -> Contour:
@@ -131,8 +141,19 @@ def _count_check(name: str, faults: list[str]) -> Check:
 
 def _of_solid(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
     """Read an STL file: the checks on the solid, its contour in mm as if not mirrored, and the number of its edges."""
-    from kin.read_stl import read_stl
+    from kin.read_stl import Section, read_stl
 
+    if intent.layers:
+        from kin.part import levels, solid_checks
+
+        solid = read_stl(path, levels(intent))
+        sections = [
+            Section(one.height, _placed(one.contour, 1.0, intent.mirrored), _all_placed(one.holes, intent))
+            for one in solid.sections
+        ]
+        contour = sections[0].contour
+        checks = [_watertight_check(solid, contour)]
+        return [*checks, *solid_checks(solid, sections, intent, limits.tolerance)], contour, len(contour)
     solid = read_stl(path)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (solid.contour, *solid.holes))
     checks = [_watertight_check(solid, contour)]

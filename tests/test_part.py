@@ -5,7 +5,7 @@ import math
 import pytest
 
 from camgeo.curve import Curve
-from camgeo.part import least_wall
+from camgeo.part.wall import least_wall
 from camgeo.profile.support import SupportShape
 from kin.lift import lift_from_fourier, lift_reuleaux
 

@@ -1,5 +1,7 @@
 """Contours as DXF drawings: one closed entity on CUT, the bore on BORE, everything else on REFERENCE.
 
+Holes stand on HOLES, a timing mark on MARK where it is cut and on ENGRAVE where it is engraved.
+
 ezdxf provides the frame of the drawing, which CAD systems are particular about. Coordinates are written with as many
 digits as give back the same double. Nothing in the file depends on when, where or by whom it was written.
 """
@@ -11,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.pieces import BSpline, Outline, Polygon
+from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,6 +32,7 @@ APPLICATION = "CAMGEO"  # under this name each entity of the reference carries w
 
 _CUT, _BORE, _REFERENCE = "CUT", "BORE", "REFERENCE"
 _COLOURS = {_CUT: 7, _BORE: 5, _REFERENCE: 8}
+_MORE_COLOURS = {"HOLES": 5, "MARK": 1, "ENGRAVE": 3}  # of layers that are only there when something is on them
 _CENTRE_LINE = (22.0, 14.0, -3.0, 2.0, -3.0)  # mm: length of the pattern, then dash, gap, dash, gap
 _DATE = 2451544.5  # 2000-01-01 as a Julian date, in place of the times of writing
 _GUID = "{00000000-0000-0000-0000-000000000000}"
@@ -62,6 +65,14 @@ class Trace:
     outline: Outline
 
 
+@dataclass(frozen=True)
+class Cutout:
+    """What is cut or engraved besides the contour, on a layer of its own: a circle, or a closed chain of arcs."""
+
+    layer: str
+    shape: Circle | ArcSpline
+
+
 Reference = Circle | Point | Trace
 
 
@@ -70,18 +81,20 @@ def write_dxf(
     outline: Outline,
     *,
     bore: float | None = None,
+    cutouts: Sequence[Cutout] = (),
     reference: Sequence[Reference] = (),
     mm: float = 1.0,
     version: str = "R2010",
     name: str = "",
     about: str = "",
+    remarks: Sequence[str] = (),
 ) -> None:
     """Write a contour, with its bore and reference geometry, as a DXF drawing with the shaft at the origin.
 
     A polygon becomes one closed LWPOLYLINE, arcs one with bulges (in R12 a POLYLINE), a B-spline a SPLINE by its
     control points and knots. `bore` is a diameter and all lengths are given in mm; the drawing's unit is `mm` mm long
     (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment on top. `$EXTMIN` and
-    `$EXTMAX` are the exact extremes of all that is drawn. `name` and `about` go into comments.
+    `$EXTMAX` are the exact extremes of all that is drawn. `name`, `about` and `remarks` go into comments.
 
     Nothing is drawn twice: shapes of the reference that coincide become one entity with all their names.
 
@@ -98,11 +111,16 @@ def write_dxf(
     from ezdxf.enums import InsertUnits
 
     drawing = Drawing.new(VERSIONS[version])
-    _set_layers(drawing, mm)
+    _set_layers(drawing, mm, {cutout.layer for cutout in cutouts})
     space = drawing.modelspace()
     boxes = [_draw_outline(space, outline, mm, _CUT)[1]]
     if bore is not None:
         boxes.append(_draw_circle(space, Circle("bore", (0.0, 0.0), 0.5 * bore), mm, _BORE)[1])
+    for cutout in cutouts:
+        if isinstance(cutout.shape, Circle):
+            boxes.append(_draw_circle(space, cutout.shape, mm, cutout.layer)[1])
+        else:
+            boxes.append(_draw_outline(space, cutout.shape, mm, cutout.layer)[1])
     for item, names in _distinct(reference):
         if isinstance(item, Circle):
             entity, box = _draw_circle(space, item, mm, _REFERENCE)
@@ -130,7 +148,7 @@ def write_dxf(
             "$INSUNITS": insunits, "$MEASUREMENT": measurement,
             "$TDUCREATE": _DATE, "$TDUUPDATE": _DATE, "$FINGERPRINTGUID": _GUID, "$VERSIONGUID": _GUID,
         }  # fmt: skip
-    comments = [f"camgeo units: {unit}", *(_comment(text) for text in (name, about) if text)]
+    comments = [f"camgeo units: {unit}", *(_comment(text) for text in (name, about, *remarks) if text)]
     _save(path, drawing, header, comments)
 
 
@@ -153,10 +171,10 @@ def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: lis
         drawing.export_sections(TagWriter(stream, drawing.dxfversion, write_handles=True))
 
 
-def _set_layers(drawing: Drawing, mm: float) -> None:
+def _set_layers(drawing: Drawing, mm: float, more: set[str]) -> None:
     drawing.appids.add(APPLICATION)
     drawing.linetypes.add("CENTER", [length / mm for length in _CENTRE_LINE], description="Center ____ _ ____ _ ____")
-    for layer, colour in _COLOURS.items():
+    for layer, colour in (_COLOURS | {name: colour for name, colour in _MORE_COLOURS.items() if name in more}).items():
         drawing.layers.add(layer, color=colour, linetype="CENTER" if layer == _REFERENCE else "Continuous")
 
 

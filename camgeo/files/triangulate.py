@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
@@ -56,6 +58,22 @@ def ring(outer: Array, inner: Array) -> Triangles:
         if _all_positive(points, merged):
             return merged
     return clip(outer, inner)
+
+
+def region(outer: Array, inners: Sequence[Array]) -> Triangles:
+    """Triangles, counter-clockwise, of a loop (n, 2) with several holes (m, 2) in it; all counter-clockwise.
+
+    Indices count through the loop and the holes in their order. One hole goes to `ring`; more are bridged to the loop
+    one after the other, and its ears clipped. Raises RegionError where a loop is not simple or a hole reaches another.
+    """
+    if len(inners) < 2:
+        return ring(outer, inners[0]) if len(inners) else disc(outer)
+    points = np.concatenate((outer, *inners))
+    chain = _bridged_all(points, [len(outer), *map(len, inners)])
+    triangles = None if chain is None else _clip_ears(points, chain)
+    if triangles is None or not _all_positive(points, triangles):
+        raise RegionError("a hole reaches another or the contour, or the contour touches or crosses itself")
+    return triangles
 
 
 def disc(outer: Array) -> Triangles:
@@ -175,6 +193,52 @@ def _bridged(outer: Array, inner: Array) -> NDArray[np.int64] | None:
             round_outer = (p + np.arange(n + 1)) % n
             round_inner = n + (q - np.arange(m + 1)) % m
             return np.concatenate((round_outer, round_inner))
+    return None
+
+
+def _bridged_all(points: Array, counts: list[int]) -> NDArray[np.int64] | None:
+    """One chain of vertex indices round the first loop and, over bridges and back, clockwise round all others.
+
+    Each hole's vertex farthest right is joined to the nearest vertex of the chain that it sees and that no bridge has
+    taken, holes farther right first; None if one sees none.
+    """
+    first = np.cumsum([0, *counts[:-1]])
+    following = np.concatenate([start + np.roll(np.arange(n), -1) for start, n in zip(first, counts, strict=True)])
+    start, end = np.arange(len(points)), following
+    chain = np.arange(counts[0])
+    bridged: set[int] = set()
+    rightmost = [int(f + np.argmax(points[f : f + n, 0])) for f, n in zip(first[1:], counts[1:], strict=True)]
+    for hole in sorted(range(len(rightmost)), key=lambda k: (-points[rightmost[k], 0], k)):
+        q, low, n = rightmost[hole], int(first[hole + 1]), counts[hole + 1]
+        place = _seen_from(points, q, chain, (start, end), bridged)
+        if place is None:
+            return None
+        p = int(chain[place])
+        round_hole = low + (q - low - np.arange(n + 1)) % n
+        chain = np.concatenate((chain[: place + 1], round_hole, chain[place:]))
+        bridged |= {p, q}
+        start, end = np.append(start, p), np.append(end, q)
+    return chain
+
+
+def _seen_from(
+    points: Array, q: int, chain: NDArray[np.int64], edges: tuple[NDArray[np.intp], NDArray[np.intp]], taken: set[int]
+) -> int | None:
+    """Place in the chain of the nearest vertex that q sees past all edges, starts and ends; None if there is none."""
+    start, end = edges
+    a, b = points[start], points[end]
+    there = np.broadcast_to(points[q], a.shape)
+    own_q = (start == q) | (end == q)
+    for place in np.argsort(np.hypot(*(points[chain] - points[q]).T), kind="stable"):
+        p = int(chain[place])
+        if p in taken:
+            continue
+        here = np.broadcast_to(points[p], a.shape)
+        side_a, side_b = sides(there, here, a), sides(there, here, b)
+        crosses = (side_a * side_b <= 0) & (sides(a, b, there) * sides(a, b, here) <= 0)
+        own = own_q | (start == p) | (end == p)
+        if not np.any(crosses & (~own | ((side_a == 0) & (side_b == 0)))):
+            return int(place)
     return None
 
 

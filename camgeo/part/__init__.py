@@ -1,0 +1,1 @@
+"""The part round the contour: openings, hub, chamfer, and the walls that they leave."""
