@@ -26,6 +26,7 @@ Indices = NDArray[np.intp]
 TURN = 2.0 * math.pi
 
 AIM = 1e-14  # of a fitted acceleration, as a share of the greatest
+_ROUNDING = 1e-15  # of the greatest position: what an acceleration may hold of it, as that of a circle R - q does
 TOLERANCE = 1e-10  # what is accepted where halving helps no more
 _TAIL = 3  # coefficients that must have died away
 _FIRST = 12  # stretches, at least: none is wider than 30 degrees
@@ -138,7 +139,8 @@ def drives(motions: Sequence[Motion], also: Sequence[float] | Array = (), tolera
         phi = low[:, None] + 0.5 * width[:, None] * (1.0 + NODES)
         for i, motion in enumerate(motions):
             rows = motion.rows(phi.ravel()).reshape(3, *phi.shape)
-            scale[i] = max(scale[i], float(np.abs(rows[2]).max(initial=0.0)))
+            size = np.abs(rows[[0, 2]]).max(axis=(1, 2), initial=0.0)
+            scale[i] = max(scale[i], float(size[1]), float(size[0]) * _ROUNDING / AIM)
             series.append(fitted(rows))
             tail[i] = np.abs(series[i][2, :, -_TAIL:]).max(axis=1)
         least = np.maximum(scale, np.finfo(float).tiny)[:, None]

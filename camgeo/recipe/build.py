@@ -14,7 +14,6 @@ from camgeo.recipe.model import (
     DoubleRollerCam,
     DwellAsked,
     Dyad,
-    Dynamics,
     Export,
     FileRequest,
     FlatPairCam,
@@ -40,6 +39,7 @@ from camgeo.recipe.model import (
     Sweep,
     Verify,
 )
+from camgeo.recipe.model_dynamics import Dynamics
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
