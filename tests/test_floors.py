@@ -13,14 +13,15 @@ ROOT = Path(__file__).parents[1]
 FLOORS = {
     "kin": """
         verify
+        part
         driven judge
         follower
         frame roller
-        deviation flat resting
+        deviation flat layers resting
         envelope mechanism
         lift transmission
-        chain formula possible read
-        dyad forces read_dxf read_stl switches transmission_law
+        chain formula read
+        dyad forces hole possible read_dxf read_stl switches
         bearing bouncing bounding flaws floating integrated law linkage nesting roots routes syntax
         contour dynamics expression frame_dwell loop piecewise
         biarc dwell dxf_entities figures jet mobility peaks pieces
@@ -45,17 +46,19 @@ FLOORS = {
         pipeline recipe
         dynamics
         design recipe.load
-        foreseen recipe.checks report.linkage study.least undercut
-        figures fit.polygon linkage recipe.build trim
-        crossing files.stl fit.arcs fit.edges fit.inflection fit.spline motion profile.build recipe.readers
-        causes fit.cubic fit.free_arcs part report.document report.failure
+        foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
+        figures files.solid fit.polygon linkage part.body recipe.build trim
+        crossing files.stl fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build recipe.readers
+        part.wall recipe.build_part recipe.check_part recipe.read_part
+        causes fit.cubic fit.free_arcs report.document report.failure
         recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
         files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius reach
-        recipe.edit recipe.reader recipe.schema recipe.starter
+        part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         recipe.model recipe.scalars recipe.source recipe.tables
-        recipe.model_dynamics recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_sweep
+        recipe.model_dynamics recipe.table_part
+        recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_sweep
         curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
-        study study.picture sweep
+        files.missing part recipe.din6885 recipe.model_part study study.picture sweep
     """,
 }
 HEAVY = {
