@@ -359,8 +359,7 @@ def test_a_curve_over_one_variable_is_drawn(tmp_path: Path) -> None:
     def flat(_scene, values):
         return hills("", np.column_stack([values, np.full(len(values), 111.0)]))
 
-    outcome = search(
-        Ask.of(read(text.encode(), "a.yaml")), tmp_path, How(1), replace(MEANS, compute=flat, measure=flat)
-    )
+    means = replace(MEANS, compute=flat, measure=lambda _ask, values: {"dwell": flat("", values)["dwell"]})
+    outcome = search(Ask.of(read(text.encode(), "a.yaml")), tmp_path, How(1), means)
     assert outcome.report["counts"]["computed"] == 25
     assert (outcome.folder / "sweep-map.png").read_bytes().startswith(PNG)
