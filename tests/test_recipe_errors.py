@@ -15,7 +15,7 @@ from kin.formula import Formula, FormulaError
 from kin.law import LAWS
 
 SUPPORT = "cam: {kind: support, p: 9}\n"
-KEYS = "name, about, units, rotation, cam, linkage, part, export, verify, dwell and sweep"
+KEYS = "name, about, units, rotation, cam, linkage, part, export, verify, dwell, sweep and dynamics"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 LENGTH = "give a length above 0 in mm"
 
@@ -36,7 +36,7 @@ cam:
   arms: 60
   roller_radius: -8
   delta: {cos: {2: 625}}
-dynamics: {}
+dynamics: {mass: 1, stiffness: 1e5, rpm: 100}
 part: {bore: 10mm, keyway: 3}
 export: {files: [dxf, {dxf: {as: spline, version: R12}}, stl, step]}
 verify: {angles: 010}
@@ -51,7 +51,7 @@ tolerance: 4
         "cams/a.yaml:6:3: cam.arms: unknown key; did you mean arm?",
         "cams/a.yaml:7:18: cam.roller_radius: not above 0, given -8; give a length above 0 in inch",
         "cams/a.yaml:8:17: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199",
-        f"cams/a.yaml:9:1: dynamics: not available in this version; leave it out; here it has {KEYS}",
+        "cams/a.yaml:9:11: dynamics: needs preload or play; give exactly one of them",
         "cams/a.yaml:10:14: part.bore: not a number, given '10mm'; write the number without its unit",
         "cams/a.yaml:10:20: part.keyway: not available in this version; leave it out; here it has thickness and bore",
         (
@@ -225,8 +225,16 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         ),
         (FLAT_PAIR, "1:43: cam.roller_radius: unknown key; it belongs under cam of kind double-roller"),
         (
-            SUPPORT + "dynamics: {}\n",
-            f"2:1: dynamics: not available in this version; leave it out; here it has {KEYS}",
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, damping: 300, play: 0.1}\n",
+            "2:56: dynamics.damping: 15 times critical; give at most 200",
+        ),
+        (
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, play: 0.1, rate: 2}\n",
+            "2:63: dynamics.rate: a spring's rate beside play; give preload instead of play, or leave it out",
+        ),
+        (
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, play: 0.1}\n",
+            "2:64: dynamics.play: cannot stand beside preload; give exactly one of preload or play",
         ),
         *(
             (

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from camgeo.recipe.spec import Field, Kind, Table, length
+from camgeo.recipe.spec import MOST, Field, Kind, Table, length
 
-_MOST = 1e15  # of figures in SI: a bound against slips
+_MOST = MOST**2  # of figures in SI: a bound against slips
 
 DYNAMICS = Table(
     (
@@ -48,7 +48,7 @@ DYNAMICS = Table(
             at_least=0,
             at_most=_MOST,
         ),
-        Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=1e7),
+        Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
     ),
     alternatives=(("preload", ()), ("play", ())),
 )
