@@ -160,6 +160,7 @@ def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: lis
     drawing.commit_pending_changes()
     drawing.update_all()
     drawing.header["$HANDSEED"] = str(drawing.entitydb.handles)
+    _order_classes(drawing)
     for key, value in header.items():
         drawing.header[key] = value
     about_ezdxf = drawing.ezdxf_metadata()
@@ -172,6 +173,16 @@ def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: lis
 
 
 def _set_layers(drawing: Drawing, mm: float, more: set[str]) -> None:
+def _order_classes(drawing: Drawing) -> None:
+    """Put the classes of entities in use in one order: ezdxf takes them from a set of texts, which differs by run."""
+    from ezdxf.sections.classes import REQ_R2004, REQUIRED_CLASSES
+
+    always = REQUIRED_CLASSES.get(drawing.dxfversion, REQ_R2004)
+    classes = drawing.classes.classes
+    for name in sorted((name for name in classes if name[0] not in always), reverse=True):
+        classes[name] = classes.pop(name)
+
+
     drawing.appids.add(APPLICATION)
     drawing.linetypes.add("CENTER", [length / mm for length in _CENTRE_LINE], description="Center ____ _ ____ _ ____")
     for layer, colour in (_COLOURS | {name: colour for name, colour in _MORE_COLOURS.items() if name in more}).items():
