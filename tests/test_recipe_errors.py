@@ -299,7 +299,7 @@ def test_keys(body: str, message: str) -> None:
         ("1e-999", f"not above 0, given 1e-999; {LENGTH}"),
         ("0", f"not above 0, given 0; {LENGTH}"),
         ("-2", f"not above 0, given -2; {LENGTH}"),
-        ("1000001", f"above 1000000, given 1000001; {LENGTH}"),
+        ("2000001", f"above 2000000, given 2000001; {LENGTH}"),
         ("[1]", f"not a length, given a list of 1; {LENGTH}"),
         ("{}", f"not a length, given a mapping of 0; {LENGTH}"),
         (

@@ -205,7 +205,7 @@ def test_an_axis(axis: str, message: str) -> None:
             [".to: not above `from`, given 95; give a greater number, or a list of values"],
         ),
         ("{from: 0, to: 95, steps: 4}", [".from: not above 0, given 0; linkage.rocker takes a length above 0"]),
-        ("{from: 5, to: 1e7, steps: 4}", [".to: above 1000000, given 10000000; linkage.rocker takes a length above 0"]),
+        ("{from: 5, to: 1e7, steps: 4}", [".to: above 2000000, given 10000000; linkage.rocker takes a length above 0"]),
         ("[5, -1/8]", ["[1]: not above 0, given -0.125; linkage.rocker takes a length above 0"]),
         ("{from: 1, to: 2, steps: 1}", [".steps: below 2, given 1; give a whole number from 2 to 1000000"]),
         (

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-MOST = 1e6  # of lengths as written, a kilometre in mm: a bound against slips, far above any cam
+MOST = 2e6  # of lengths as written, two kilometres in mm: a bound against slips, far above any cam
 _SLIPS = (MOST, MOST**2)
 MOST_HARMONIC = 199
 MOST_LAMBDA = 200
