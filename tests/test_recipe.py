@@ -30,12 +30,12 @@ from camgeo.recipe.model import (
     HypocycloidShape,
     LawRoute,
     MotionSegment,
-    Part,
     ReuleauxShape,
     RosetteRoute,
     SupportCam,
     Verify,
 )
+from camgeo.recipe.model_part import Part
 from camgeo.recipe.scalars import Complaint, read_number
 from camgeo.recipe.schema import json_schema
 from camgeo.recipe.starter import KINDS, starter
