@@ -22,6 +22,7 @@ UNITS = {
     Kind.ANGLE: "deg",
     Kind.ERROR: "length; deg",
     Kind.OUTPUT: "deg; length",
+    Kind.BORE: "length",
 }
 
 
