@@ -6,9 +6,12 @@ import hashlib
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -155,6 +158,33 @@ def test_workers_refuse_a_job_that_they_read_otherwise(
 )
 def test_a_scheduler_that_is_none_is_told_at_once(address: str, message: str) -> None:
     with pytest.raises(engines.EngineError, match=f"^{message}"):
+        next(engines.dask(job(), [0], address))
+
+
+@pytest.mark.parametrize("says", [b"", b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n"])
+def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(engines, "_PATIENCE", 1.0)
+    accepted = []
+
+    def answer() -> None:
+        with suppress(OSError):  # closed at the end
+            while True:
+                accepted.append(listener.accept()[0])
+                accepted[-1].sendall(says)
+
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        threading.Thread(target=answer, daemon=True).start()
+        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
+        with pytest.raises(engines.EngineError, match=f"^what (answers|listens) at {address} (is no|does not|speaks)"):
+            next(engines.dask(job(), [0], address))
+        listener.shutdown(socket.SHUT_RDWR)
+    for connection in accepted:
+        connection.close()
+
+
+def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:
+    address = next(iter(cluster.scheduler_info["workers"]))
+    with pytest.raises(engines.EngineError, match=f"^what answers at {address} is no Dask scheduler, but a Worker$"):
         next(engines.dask(job(), [0], address))
 
 

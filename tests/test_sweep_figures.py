@@ -309,6 +309,15 @@ def test_a_recipe_without_a_linkage():
     assert [REASONS[code] for code in bent.reason] == ["", "undercut"]
 
 
+def test_a_bore_has_no_bearing_on_a_cam_without_a_linkage_but_the_shaft_lies_within():
+    given = np.array([[18.0, 0.0], [30.0, 0.0], [0.0, -27.0]])
+    bored = load_text(recipe(linkage="").text.replace("thickness: 8", "thickness: 8, bore: 30"), "a.yaml")
+    plain, other = (evaluate(one, PIVOT, given) for one in (recipe(linkage=""), bored))
+    assert [REASONS[code] for code in other.reason] == ["", "shaft-outside", "shaft-outside"]
+    for name, column in plain.figures.items():
+        assert np.array_equal(column, other.figures[name], equal_nan=True), name
+
+
 def test_a_constant_breadth_cam_drives_a_linkage():
     shape = (
         "kind: constant-breadth\n  base_radius: 20\n  motion: [{rise: 8, over: 120, law: cycloidal}, {dwell: 60}]\n"

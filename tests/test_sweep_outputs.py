@@ -21,6 +21,7 @@ from camgeo.sweep import gather as gathering
 from camgeo.sweep import outputs
 from camgeo.sweep.ask import Ask
 from camgeo.sweep.gather import KEPT, OUTSIDE, STUCK, Ranking, gather
+from camgeo.sweep.pictures import draw_map
 from camgeo.sweep.plan import Axis, Plan, steps
 from camgeo.sweep.recipes import Best, curve_of, recipe_text
 from camgeo.sweep.run import How
@@ -351,6 +352,16 @@ sweep: {vary: {'cam.motion[0].rise': [10, 20], 'cam.motion[0].over': [119, 120],
 """
     asked = Ask.of(read(text, "a.yaml"))
     assert [asked.axis_unit(axis.path) for axis in asked.plan.axes] == ["mm", "deg", "mm"]
+
+
+def test_a_picture_has_room_for_long_names_and_notes() -> None:
+    cells = gather(GRID, RANKING, chunks(GRID)).cells
+    paths = ", ".join(f"linkage.dyads[{i}].links[{j}]" for i in range(9) for j in (0, 1))
+    files = draw_map(
+        "a" * 60 + " " + "b" * 60, cells, "dwell (deg)", paths[:46].split(", "), np.empty((0, 2)), notes=paths
+    )
+    assert files["png"].startswith(PNG)
+    assert b"links[1]" in files["svg"]
 
 
 def test_a_curve_over_one_variable_is_drawn(tmp_path: Path) -> None:

@@ -106,6 +106,18 @@ def test_listed_values_stay():
     assert polish(alone, {"linkage.rocker": 105.0})[0] == {"linkage.rocker": 105.0}
 
 
+def test_where_there_is_nothing_to_gain_the_start_stays():
+    # the cam's least radius of curvature does not depend on where its shaft is
+    asked = ask(rank="radius-of-curvature", vary="'cam.pivot[0]': {from: -20, to: 20}")
+    assert polish(asked, {"cam.pivot[0]": 17.0})[0] == {"cam.pivot[0]": 17.0}
+
+
+def test_a_polished_zero_has_no_sign():
+    asked = ask(vary="'cam.pivot[1]': {from: -20, to: 20}")
+    goal = refine._goal(asked, ["cam.pivot[1]"], np.array([3.0]))
+    assert repr(float(refine._rounded(goal, np.array([-1e-9]))[0])) == "0.0"
+
+
 def test_designs_made_one_by_one(monkeypatch):
     monkeypatch.setattr(refine, "_MEMBERS", 6)
     monkeypatch.setattr(refine, "_ANGLES", 90)

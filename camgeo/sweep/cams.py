@@ -26,7 +26,7 @@ Array: TypeAlias = NDArray[np.float64]
 Codes: TypeAlias = NDArray[np.uint8]
 
 FINE, IMPOSSIBLE, UNDERCUT, OUTSIDE, BINDS, REVERSES, BROKEN = range(7)
-_EDGE = 1e-12  # of the breadth: how far outside the cam rounding may put a shaft on its edge
+EDGE = 1e-12  # of the breadth: how far outside the cam rounding may put a shaft on its edge
 
 
 class Sampled(NamedTuple):
@@ -111,7 +111,7 @@ class Cams:
         dp -= y * cosine
         if self.recipe.cam.undercut == "refuse":
             fault[(fault == FINE) & ~(radius > 0.0)] = UNDERCUT
-        fault[(fault == FINE) & (p.min(axis=1) < -_EDGE * breadth[:, 0])] = OUTSIDE
+        fault[(fault == FINE) & (p.min(axis=1) < -EDGE * breadth[:, 0])] = OUTSIDE
         support = Support(breadth, *(np.broadcast_to(row, shape) for row in (p, dp, ddp)))
         return Sampled(support, radius, smooth, fault)
 

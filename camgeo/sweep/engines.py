@@ -143,7 +143,7 @@ def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
 @contextmanager
 def _connected(client: Any, address: str) -> Iterator[Any]:  # noqa: ANN401 - distributed has no types
     """A client of the scheduler, closed in the end; what it still had in hand is then dropped by the scheduler."""
-    _heard(address)  # first: a client that finds nobody takes half a minute to say so
+    _heard(address)  # first: a client that finds nobody takes half a minute to say so, or for ever
     try:
         opened = client(address, timeout=_PATIENCE, set_as_default=False)
     except OSError as error:
@@ -153,7 +153,8 @@ def _connected(client: Any, address: str) -> Iterator[Any]:  # noqa: ANN401 - di
 
 
 def _heard(address: str) -> None:
-    """Make sure that somebody listens at an address such as tcp://host:8786; raises EngineError otherwise."""
+    """Make sure that a scheduler listens at an address such as tcp://host:8786; raises EngineError otherwise."""
+    import asyncio
     import socket
     from urllib.parse import urlsplit
 
@@ -164,6 +165,31 @@ def _heard(address: str) -> None:
         socket.create_connection((parts.hostname, parts.port), _PATIENCE).close()
     except (OSError, ValueError) as error:
         raise EngineError(f"no Dask scheduler answers at {address}: {error}") from error
+    try:
+        kind = asyncio.run(asyncio.wait_for(_kind_of(address), _PATIENCE))
+    except TimeoutError:
+        text = f"what listens at {address} does not speak as a Dask scheduler does: no answer in {_PATIENCE:g} s"
+        raise EngineError(text) from None
+    except MemoryError:  # its first bytes were read as a length
+        raise EngineError(f"what answers at {address} speaks another protocol than a Dask scheduler") from None
+    except (OSError, ValueError) as error:
+        raise EngineError(f"what answers at {address} is no Dask scheduler: {error}") from error
+    if kind != "Scheduler":
+        raise EngineError(f"what answers at {address} is no Dask scheduler, but a {kind}")
+
+
+async def _kind_of(address: str) -> str:
+    """What a node of Dask calls itself: Scheduler, Worker, Nanny."""
+    from distributed.comm.core import connect
+    from distributed.core import send_recv
+
+    reach: Callable[..., Any] = connect
+    ask: Callable[..., Any] = send_recv
+    comm = await reach(address, timeout=_PATIENCE)
+    try:
+        return str((await ask(comm, op="identity"))["type"])
+    finally:
+        comm.abort()
 
 
 @contextmanager

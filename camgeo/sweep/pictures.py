@@ -7,6 +7,7 @@ bytes. Colours are told apart by those who see few: viridis, and the set of Okab
 from __future__ import annotations
 
 import io
+import textwrap
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999")
 _PLAIN = {OUTSIDE: ("#d9d9d9", "breaks a limit"), STUCK: ("#8c8c8c", "does not turn")}
 _DOTS = 150  # per inch, of the PNG
+_TITLE, _NOTES = 75, 100  # letters in a line
 _FEW = 60  # values up to which a curve shows each as a point
 
 
@@ -152,9 +154,12 @@ def _sheet() -> Iterator[tuple[Figure, Axes]]:
 
 
 def _head(axes: Axes, title: str, notes: str) -> None:
-    axes.set_title(f"{title}\n" if notes else title, loc="left", fontweight="bold", fontsize="medium")
-    if notes:
-        axes.text(0.0, 1.02, notes, transform=axes.transAxes, fontsize="small", color="#404040")
+    # broken into lines: whoever lays the picture out makes room for the longest
+    title = textwrap.fill(title, _TITLE)
+    lines = textwrap.wrap(notes, _NOTES)
+    axes.set_title(title + "\n" * len(lines), loc="left", fontweight="bold", fontsize="medium")
+    if lines:
+        axes.text(0.0, 1.02, "\n".join(lines), transform=axes.transAxes, fontsize="small", color="#404040")
 
 
 def _encoded(figure: Figure) -> dict[str, bytes]:

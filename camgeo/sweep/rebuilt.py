@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from camgeo.recipe.edit import with_values
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load_text
-from camgeo.sweep.cams import FINE, IMPOSSIBLE, UNDERCUT
+from camgeo.recipe.model_part import Part
+from camgeo.sweep.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
 from camgeo.sweep.linkages import angles
+from kin.lift import Lift
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 Array: TypeAlias = NDArray[np.float64]
 Codes: TypeAlias = NDArray[np.uint8]
 
+_ROUND = 720  # angles at which faces are held against the shaft
 _POINTS = 4096  # of each run of a contour, among which the farthest from the shaft is taken
 
 
@@ -50,15 +53,21 @@ def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | 
 
 
 def plain(recipe: Recipe, paths: Sequence[str], values: Array) -> tuple[Array, Array, Codes]:
-    """Least radius of curvature and greatest distance of a contour from the shaft, mm, and what is wrong, (m,) each."""
+    """Least radius of curvature and greatest distance of a contour from the shaft, mm, and what is wrong, (m,) each.
+
+    Of the part there is nothing but the contour: a bore has no bearing on these.
+    """
     from camgeo.design import designed
 
     m = len(values)
     radius, size, fault = np.full(m, np.nan), np.full(m, np.nan), np.full(m, IMPOSSIBLE, dtype=np.uint8)
     for i, row in enumerate(values):
         try:
-            design = designed(recipe_with(recipe, paths, row))
+            design = designed(replace(recipe_with(recipe, paths, row), part=Part(), dynamics=None))
         except RecipeErrors:
+            continue
+        if isinstance(design.intent, Lift) and _outside(design.intent):
+            fault[i] = OUTSIDE
             continue
         contour = design.contour
         if contour is None:
@@ -70,6 +79,12 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array) -> tuple[Array, A
         radius[i], size[i] = np.nan if bent is None else bent, np.hypot(points[:, 0], points[:, 1]).max()
         fault[i] = FINE
     return radius, size, fault
+
+
+def _outside(lift: Lift) -> bool:
+    """Whether the shaft lies outside the contour: some face would have to pass it."""
+    p = lift.derivatives(angles(_ROUND), 0)[0]
+    return bool(p.min() < -EDGE * p.max())
 
 
 def chains(recipe: Recipe, paths: Sequence[str], values: Array, count: int) -> tuple[Array, Rows]:
@@ -89,7 +104,6 @@ def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
     from camgeo.profile.build import intent_of
     from kin.forces import force, transmission
     from kin.jet import Jet
-    from kin.lift import Lift
     from kin.loop import BindingError
 
     lift = intent_of(recipe.cam)

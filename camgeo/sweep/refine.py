@@ -33,6 +33,7 @@ _SLOW_GENERATIONS, _SLOW_STEPS = 6, 150  # where each design is a recipe of its 
 _TIGHTER = 1e-6  # relatively: limits as they are sought, so that no rounding of a figure breaks them
 _DIGITS = 6  # of each range, that a polished value keeps
 _WORTH = 1e-3
+_IDLE = 1e-9  # relatively: what is gained by less is rounding, and the start stays
 _FAR = 1e6  # what breaks a limit is worse than anything that does not
 
 
@@ -90,7 +91,7 @@ def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[s
     figures = replace(goal.evaluator, wanted=asked_of(ask.recipe)).found(designs).figures
     loss = goal.loss_of(figures)
     best = 0
-    if len(designs) > 1 and loss[1] < min(loss[0], _FAR):
+    if len(designs) > 1 and loss[1] < min(loss[0] - _IDLE * abs(loss[0]), _FAR):
         # written with no more digits than it is worth, unless that costs a part of what was gained
         best = 2 if loss[2] - loss[1] <= _WORTH * (loss[0] - loss[1]) else 1
     return (
@@ -156,5 +157,5 @@ def _rounded(goal: _Goal, values: Array) -> Array:
     rounded = values.copy()
     for i, low, span in zip(goal.free, goal.low, goal.span, strict=True):
         digits = _DIGITS - math.floor(math.log10(span))
-        rounded[i] = min(max(round(float(values[i]), digits), float(low)), float(low + span))
+        rounded[i] = min(max(round(float(values[i]), digits), float(low)), float(low + span)) + 0.0  # and not -0
     return rounded

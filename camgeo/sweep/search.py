@@ -30,7 +30,7 @@ FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
 _AGAIN = 0.05
 _NEAR = 0.15  # of an axis's range in every value: polishing would lead designs nearer than that to one place
-_SAME = 1e-6  # of an axis's range: designs nearer than that in every value are one
+_SAME = 1e-3  # of an axis's range: designs nearer than that in every value are one, as far as polishing can tell
 
 
 class Polish(Protocol):
