@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.part.shapes import Opening, disc
-from camgeo.part.wall import distance_inside
+from camgeo.part.wall import distance_inside, intervals
 from kin.arcs import Arcs
 from kin.nearest import signed_distance
 
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_part import Lightening
 
 GRID = 49  # points of the search each way
-LOOKS = 8  # points of each cell that stand for the contour while places are looked for
 STARTS = 12  # places from which the room is climbed
 CENTRE, DIAMETER = 0.01, 0.1  # mm: steps of centres and diameters
 RINGS = 400  # radii of a ring that are tried
@@ -66,10 +65,7 @@ class _Room:
 
     def __init__(self, contour: Curve, there: list[Arcs], wall: float, edge: float) -> None:
         self.contour, self.there, self.wall, self.edge = contour, list(there), wall, edge
-        cells = contour.cells
-        share = np.arange(LOOKS) / LOOKS
-        t = (cells.low[:, None] + (cells.high - cells.low)[:, None] * share).ravel()
-        self.ring = contour.sample(t).point
+        self.ring = contour.sample(intervals(contour)[0]).point
         step = np.roll(self.ring, -1, axis=0) - self.ring
         length = np.hypot(step[:, 0], step[:, 1])
         kept = length > 0.0

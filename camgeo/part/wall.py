@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame
     from kin.arcs import Arcs, Indices
 
-LOOKS = 8  # points of each cell at which the distance is looked at
+LOOKS_PER_TURN = 768  # points of a contour, about, at which the distance is looked at
 PART_TURN = 0.1  # rad: an arc is looked at about so often
 PARTS = 12  # and each of its pieces at least so often
 SETTLED = 1e-9  # of the interval: a least distance is off by the square of this
@@ -136,11 +136,21 @@ def _along(chain: Arcs, piece: Indices, point: Array, tangent: Array) -> Array:
 
 def _looked_at(contour: Curve) -> tuple[Array, Array, Frame, Frame]:
     """Intervals between the points of a contour that are looked at, and the frames at their ends."""
-    cells = contour.cells
-    share = np.linspace(0.0, 1.0, LOOKS + 1)
-    t = cells.low[:, None] + (cells.high - cells.low)[:, None] * share
-    low, high = t[:, :-1].ravel(), t[:, 1:].ravel()
+    low, high = intervals(contour)
     return (low, high, *contour.span(low, high))
+
+
+def intervals(contour: Curve) -> tuple[Array, Array]:
+    """Cut the cells of a contour into parts of about its period over LOOKS_PER_TURN: their ends (n,), (n,)."""
+    cells = contour.cells
+    width = cells.high - cells.low
+    parts = np.maximum(np.ceil(width * (LOOKS_PER_TURN / contour.shape.period)), 1.0).astype(np.intp)
+    owner = np.repeat(np.arange(parts.size), parts)
+    number = np.arange(owner.size) - np.repeat(np.cumsum(parts) - parts, parts)
+    low = cells.low[owner] + width[owner] * (number / parts[owner])
+    last = number + 1 == parts[owner]
+    high = np.where(last, cells.high[owner], np.append(low[1:], 0.0))
+    return low, high
 
 
 def _winds(ring: Array) -> bool:

@@ -1,0 +1,46 @@
+"""Parts for tests: one contour, recipes of what is cut into it, and all that a run finds of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from camgeo.design import Clock, designed, intended
+from camgeo.pipeline import Outlines, drawn
+from camgeo.recipe import read
+from kin.judge import Limits
+from kin.verify import verify
+
+CAM = "cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}\n"
+EXPORT = "export: {{tolerance: 0.01, files: [{}]}}\nverify: {{angles: 36}}\n"
+
+
+def recipe_of(part, *, cam=CAM, more=""):
+    files = "dxf, stl" if "thickness" in part else "dxf"
+    return read(f"{cam}part: {part}\n{EXPORT.format(files)}{more}".encode(), Path("part.yaml"))
+
+
+def found(recipe):
+    """Design of a recipe, and its checks by name."""
+    design = designed(recipe)
+    return design, {check.name: check for check in design.checks}
+
+
+def files_of(recipe, folder, *, sound=True):
+    """The design, and the path and the verdict's checks by name of each file, by kind."""
+    design = designed(recipe)
+    assert design.contour is not None, [check for check in design.checks if not check.ok]
+    made = {}
+    for request in recipe.export.files:
+        path = folder / request.filename(recipe.name, recipe.export.files)
+        _, checks = drawn(recipe, design, request, path, Outlines(design.contour, Clock()))
+        if sound:
+            assert all(check.ok for check in checks), [check for check in checks if not check.ok]
+        made[request.kind] = (path, {check.name: check for check in checks})
+    return design, made
+
+
+def failures(path, recipe, design, tolerance=0.01, **changes):
+    """Names of the checks that a file fails; `changes` of the intent."""
+    intent = replace(intended(recipe, design), **changes)
+    return {check.name for check in verify(path, intent, 36, Limits(tolerance)).checks if not check.ok}
