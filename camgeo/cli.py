@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from camgeo.page import command as page_command
 from camgeo.progress import Progress
 from camgeo.study import command as study_command
 from camgeo.sweep import command as sweep_command
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
 
 OK, FAILED, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
+KINDS = ("dxf", "stl", "csv", "html")
 PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
@@ -101,9 +103,10 @@ def _parser() -> argparse.ArgumentParser:
     recipes(export)
     export.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
     export.add_argument(
-        "--only", action="append", default=[], choices=("dxf", "stl", "csv"), help="only files of this kind; repeatable"
+        "--only", action="append", default=[], choices=KINDS, help="only files of this kind; repeatable"
     )
     export.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
+    export.add_argument("--watch", action="store_true", help="export again at each saving; a page reloads itself")
     check = command("check", _check, "Every check of a recipe; nothing is written.")
     recipes(check)
     check.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
@@ -119,6 +122,8 @@ def _parser() -> argparse.ArgumentParser:
     new.add_argument("file", nargs="?", metavar="FILE")
     study = command("study", study_command.run, "Error against run time of each output form; a recipe's margins.")
     study_command.add_arguments(study)
+    report = command("report", page_command.run, "A page to look at: the mechanism turning, its curves, its checks.")
+    page_command.add_arguments(report)
     laws = command("laws", _laws, "The motion laws with their peak velocity, acceleration and jerk.")
     laws.add_argument("--json", action="store_true", help="as JSON, for machines")
     command("schema", _schema, "The recipe's JSON schema.")
@@ -151,7 +156,48 @@ def _complain(text: str) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> int:
+    if arguments.watch:
+        return _watch(arguments)
     return _several(arguments, "export")
+
+
+def _watch(arguments: argparse.Namespace) -> int:
+    """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
+    from pathlib import Path
+
+    from camgeo.page.watch import watch
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.recipe.load import load
+    from camgeo.recipe.model import FileRequest
+
+    if len(arguments.recipes) != 1 or arguments.json:
+        _complain("--watch takes one recipe, and no --json")
+        return WRONG
+    path = Path(arguments.recipes[0])
+    only = (*arguments.only, "html") if arguments.only else ()
+
+    def exported() -> tuple[str | None, str]:
+        try:
+            recipe = load(path)
+        except RecipeErrors as errors:
+            print(errors, file=sys.stderr)
+            return None, str(errors)
+        asked = [request for request in recipe.export.files if request.kind != "html"]
+        page = FileRequest("html")
+        export = replace(recipe.export, files=(*asked, page))
+        if arguments.tolerance is not None:
+            export = replace(export, tolerance=arguments.tolerance * recipe.mm)
+        recipe = replace(recipe, export=export)
+        report, message, _ = _one(recipe, "export", {"out": arguments.out, "only": only}, None)
+        if report is None:
+            print(message, file=sys.stderr)
+            return None, message
+        _show(report, verbose=arguments.verbose)
+        folder = Path(arguments.out) / (recipe.name if report["ok"] else f"{recipe.name}.rejected")
+        return (folder / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
+
+    watch(path, exported, lambda address: print(f"watching {path}: {address}  (ctrl-c ends)", flush=True))
+    return OK
 
 
 def _check(arguments: argparse.Namespace) -> int:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from camgeo.recipe.model import NO_CONTOUR, ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
 
 if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
@@ -55,7 +55,7 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     if yoke:
         play = ["constant-breadth", "breadth-max"]
     for request in recipe.export.files:
-        if request.kind == "csv":
+        if request.kind in NO_CONTOUR:
             continue
         file = request.filename(recipe.name, recipe.export.files)
         own = ["units", "closed", *bore]
@@ -81,7 +81,7 @@ def _of_part(part: Part) -> tuple[list[str], list[str]]:
 def _judged(recipe: Recipe) -> list[str]:
     """Names of the files that have a contour."""
     files = recipe.export.files
-    return [request.filename(recipe.name, files) for request in files if request.kind != "csv"]
+    return [request.filename(recipe.name, files) for request in files if request.kind not in NO_CONTOUR]
 
 
 def _in_a_yoke(recipe: Recipe) -> bool:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo.curve import CurveError
 from camgeo.design import Clock, Design, designed, intended, permitted
 from camgeo.fit.nodes import ToleranceError
-from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from camgeo.recipe.model import NO_CONTOUR, ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
 from camgeo.report.document import FileResult, Findings, document, encoded
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def export(
     clock = Clock(told)
     requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
     with Run(out, recipe.name) as run:
-        found = _produced(recipe, requests, run.folder, clock)
+        _, found = _produced(recipe, requests, run.folder, clock)
         kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
         (run.folder / REPORT).write_text(encoded(report), encoding="utf-8")
@@ -72,8 +72,20 @@ def check(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> Outco
     from pathlib import Path
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        found = _produced(recipe, recipe.export.files, Path(folder), Clock(told))
+        _, found = _produced(recipe, recipe.export.files, Path(folder), Clock(told))
         return Outcome(document(recipe, found), found.ok, None)
+
+
+def shown(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
+    """Make and judge everything as `check` does; also what a page shows of it. Raises as `export` does."""
+    import tempfile
+    from pathlib import Path
+
+    clock = Clock(told)
+    requests = tuple(request for request in recipe.export.files if request.kind != "html")
+    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+        design, found = _produced(recipe, requests, Path(folder), clock)
+        return Outcome(document(recipe, found), found.ok, None), _content(recipe, design, found, clock)
 
 
 def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
@@ -104,8 +116,8 @@ def _tolerance_of(recipe: Recipe, path: Path) -> float:
     return next((tolerance for tolerance in own if tolerance is not None), recipe.export.tolerance)
 
 
-def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> Findings:
-    """All stages: design, fits, files, verdicts."""
+def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:
+    """All stages: design, fits, files, verdicts, page."""
     design = designed(recipe, clock)
     checks = list(design.checks)
     files: list[FileResult] = []
@@ -116,6 +128,8 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
                 _aim(recipe, request, design)
         for request in requests:
             path = folder / request.filename(recipe.name, recipe.export.files)
+            if request.kind == "html":
+                continue  # it tells of all the others
             if request.kind == "csv":
                 if design.driven is not None and not design.driven.turns:
                     continue  # told as skipped: over the shaft angle there is no motion
@@ -126,7 +140,29 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
             file, verdicts = drawn(recipe, design, request, path, outlines)
             files.append(file)
             checks += verdicts
-    return _findings(recipe, design, checks, files, clock, skipped=_skipped(recipe, requests, design))
+    found = _findings(recipe, design, checks, files, clock, skipped=_skipped(recipe, requests, design))
+    for request in requests:
+        if request.kind == "html":
+            path = folder / request.filename(recipe.name, recipe.export.files)
+            found = _with_page(recipe, design, found, FileResult(path, request, None, None, None, None, None), clock)
+    return design, found
+
+
+def _with_page(recipe: Recipe, design: Design, found: Findings, file: FileResult, clock: Clock) -> Findings:
+    """Write the page on everything that was found; it is there also where no cam is made."""
+    from camgeo.page.page import page
+
+    gathered = _content(recipe, design, found, clock)
+    with clock.stage("write html"):
+        file.path.write_bytes(page(recipe, gathered, document(recipe, found)).encode("utf-8"))
+    return replace(found, files=(*found.files, file), stages=tuple(clock.stages))
+
+
+def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> Content:
+    from camgeo.page.content import content
+
+    with clock.stage("page"):
+        return content(recipe, design, [file.path for file in found.files if file.request.kind not in NO_CONTOUR])
 
 
 def _findings(
@@ -389,7 +425,7 @@ def _skipped(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     wanted = {request.kind for request in requests}
     if recipe.part.hub is not None:
         found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
-    for kind in ("dxf", "stl", "csv"):
+    for kind in ("dxf", "stl", "csv", "html"):
         if kind not in asked:
             found.append((kind, "the recipe's export.files does not list it"))
         elif kind not in wanted:

@@ -31,7 +31,7 @@ FLOORS = {
     """,
     "camgeo": """
         cli pytest_plugin testing
-        study.command sweep.command
+        page.command study.command sweep.command
         study.document sweep.means sweep.refine sweep.search
         study.ladder study.margins sweep.outputs sweep.run
         sweep.engines sweep.recipes sweep.table
@@ -44,6 +44,11 @@ FLOORS = {
         sweep.ends sweep.linkages
         sweep.windows
         pipeline recipe
+        page.png page.watch
+        page.page
+        page.content page.tables
+        page.curves
+        page.linked page.outline
         dynamics
         design recipe.load
         foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
@@ -58,7 +63,9 @@ FLOORS = {
         recipe.model_dynamics recipe.table_part
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_sweep
         curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
-        files.missing part recipe.din6885 recipe.model_part study study.picture sweep
+        page.followers page.pack page.svg
+        page.scene
+        files.missing page part recipe.din6885 recipe.model_part study study.picture sweep
     """,
 }
 HEAVY = {

@@ -308,11 +308,15 @@ class Sweep:
     refine: bool
 
 
+NO_CONTOUR = frozenset({"csv", "html"})
+"""Kinds of file that hold no contour to be judged."""
+
+
 @dataclass(frozen=True)
 class FileRequest:
     """One file to write. `as_` and `version` belong to DXF; `tolerance` (mm) stands in for the export's own."""
 
-    kind: Literal["dxf", "stl", "csv"]
+    kind: Literal["dxf", "stl", "csv", "html"]
     as_: Literal["arcs", "polyline", "spline"] | None = None
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None

@@ -34,6 +34,7 @@ FILES: dict[str, Table] = {
     ),
     "stl": Table((_TOLERANCE,)),
     "csv": Table(()),
+    "html": Table(()),
 }
 LATER_FILES = ("3mf", "step", "svg")
 
@@ -56,7 +57,7 @@ RECIPE = Table(
             "export",
             "the files",
             length("tolerance", "greatest distance between a file's contour and the exact one", default="0.001 mm"),
-            Field("files", Kind.FILES, "dxf, stl, csv, or mappings such as {dxf: {as: spline}}", default="[dxf]"),
+            Field("files", Kind.FILES, "dxf, stl, csv, html, or mappings such as {dxf: {as: spline}}", default="[dxf]"),
         ),
         mapping(
             "verify",

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from camgeo import __version__
+from camgeo.recipe.model import NO_CONTOUR
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -119,7 +120,7 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "bytes": len(data),
         "sha256": hashlib.sha256(data).hexdigest(),
     }
-    if file.request.kind == "csv":
+    if file.request.kind in NO_CONTOUR:
         return entry
     mm = recipe.mm
     if file.request.kind == "dxf":

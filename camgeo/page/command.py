@@ -1,0 +1,120 @@
+"""The command `camgeo report`: its options, what it prints, its exit status."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from camgeo.progress import Progress
+
+if TYPE_CHECKING:
+    import argparse
+
+    from camgeo.page.content import Content
+    from camgeo.recipe.model import Recipe
+
+OK, FAILED, WRONG, SURROUNDINGS = 0, 1, 2, 3
+REPORT, PAGE, PICTURE = "page.json", "page.html", "page"
+FORMS = ("svg", "png")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Give the command its options."""
+    parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file")
+    parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    parser.add_argument(
+        "--picture", action="append", default=[], choices=FORMS, help="a still picture as well; repeatable"
+    )
+    text = "shaft angle of the picture, degrees (default: %(default)g)"
+    parser.add_argument("--at", type=_angle, default=0.0, metavar="DEG", help=text)
+    parser.add_argument("--json", action="store_true", help="page.json, for machines")
+
+
+def _angle(text: str) -> float:
+    import argparse
+    import math
+
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not abs(value) <= 1e6:
+        raise argparse.ArgumentTypeError(f"a shaft angle is a number of degrees, not {text}")
+    return value
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the page of one recipe: 0 every check holds, 1 one fails, which the page shows, 2 wrong, 3 surroundings."""
+    from camgeo.page.page import page
+    from camgeo.pipeline import shown
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.recipe.load import load
+    from camgeo.store import SurroundingsError
+
+    progress = Progress(Path(arguments.recipe).name)
+    try:
+        recipe = load(arguments.recipe)
+        outcome, found = shown(recipe, told=progress)
+        files = {PAGE: page(recipe, found, outcome.report).encode("utf-8")}
+        files |= _pictures(recipe, found, arguments.picture, arguments.at)
+        report = _written(recipe, files, Path(arguments.out), ok=outcome.ok)
+    except RecipeErrors as errors:
+        progress.clear()
+        print(errors, file=sys.stderr)
+        return WRONG
+    except ModuleNotFoundError as error:
+        progress.clear()
+        print(f'camgeo: the package {error.name} is missing: pip install "camgeo[picture]"', file=sys.stderr)
+        return SURROUNDINGS
+    except (SurroundingsError, OSError) as error:
+        progress.clear()
+        print(f"camgeo: {error}", file=sys.stderr)
+        return SURROUNDINGS
+    progress.clear()
+    if arguments.json:
+        from camgeo.report.document import encoded
+
+        print(encoded(report), end="")
+    else:
+        folder = Path(arguments.out) / recipe.name
+        verdict = "ok" if outcome.ok else "FAILED"
+        told = ", ".join(f"{folder / file['path']} {file['bytes'] / 1000:.0f} kB" for file in report["files"])
+        print(f"{recipe.name}: {verdict}  {told}")
+    return OK if outcome.ok else FAILED
+
+
+def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -> dict[str, bytes]:
+    """Return the pictures that are asked for, at the step of the turn nearest to an angle."""
+    from camgeo.page import svg
+    from camgeo.page.page import asset
+    from camgeo.page.scene import STEPS
+
+    step = round(at_deg / 360.0 * STEPS) % STEPS
+    made = {}
+    if "svg" in forms:
+        made[f"{PICTURE}.svg"] = svg.still(found.scene, step, asset("drawing.css"), recipe.name).encode("utf-8")
+    if "png" in forms:
+        from camgeo.page.png import png
+
+        made[f"{PICTURE}.png"] = png(found.scene, step)
+    return made
+
+
+def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> dict[str, Any]:
+    """Write page and pictures beside the recipe's files, all or none; return the report that names them."""
+    import hashlib
+
+    from camgeo.report.document import encoded
+    from camgeo.store import Family, Run
+
+    entries = [
+        {"path": name, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()} for name, data in files.items()
+    ]
+    report = {"recipe": recipe.name, "ok": ok, "files": entries}
+    with Run(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
+        for name, data in files.items():
+            (run_.folder / name).write_bytes(data)
+        (run_.folder / REPORT).write_text(encoded(report), encoding="utf-8")
+        run_.commit(list(files))
+    return report

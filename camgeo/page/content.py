@@ -1,0 +1,114 @@
+"""Everything a page shows of one recipe, gathered from the design and the files: scene, plots, dwells, errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from camgeo.page import curves, outline
+from camgeo.page.followers import SHAFT, cam, double_roller, flat, flat_pair
+from camgeo.page.scene import Scene, pivot
+from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.design import Design
+    from camgeo.page.scene import Array, Ring
+    from camgeo.recipe.model import Recipe
+    from kin.lift import Lift
+    from kin.transmission import Transmission
+
+JOINT = 0.045  # of the cam's reach: the size of a joint
+EXACT = "exact"
+
+
+@dataclass(frozen=True, eq=False)
+class FileError:
+    """How far a file lies outside the exact contour in each step: least and greatest (STEPS,), negative inside."""
+
+    name: str
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """What a page shows; lengths in the recipe's unit, the drawing as the shaft turns.
+
+    `relative` (STEPS + 1,) is the angle between cam and frame over the shaft's, rad; without a linkage they are one.
+    `point` and `normal` (STEPS, 2) are of the exact contour in the cam's axes, at the middle of each step, where
+    `errors` are looked at.
+    """
+
+    scene: Scene
+    plots: tuple[curves.Plot, ...]
+    rests: tuple[curves.Rest, ...]
+    relative: Array
+    point: Array
+    normal: Array
+    errors: tuple[FileError, ...]
+
+
+def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
+    """Gather what a page shows; `paths` are the DXF and STL files that were made, and still lie there."""
+    files = [found for path in paths if (found := outline.read(recipe, path)) is not None]
+    exact = outline.Exact.of(design, outline.Exact.looks(files))
+    rings = [(file.name, file.ring) for file in files] or [(EXACT, _exact_ring(design))]
+    scene, plots, relative = _mechanism(recipe, design, rings)
+    plots.append(curves.curvature(recipe, design, exact))
+    errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files]
+    scene = scene.scaled(1.0 / recipe.mm)
+    middle = slice(exact.per // 2, None, exact.per)
+    point, normal = exact.point[middle] / recipe.mm, exact.normal[middle]
+    if recipe.rotation == "ccw":
+        flip = np.array([1.0, -1.0])
+        scene, point, normal = scene.mirrored(), point * flip, normal * flip
+    rests = tuple(curves.rests(recipe, design))
+    return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
+
+
+def _exact_ring(design: Design) -> Ring:
+    if design.contour is None:
+        return outline.exact(design.profile.curve, whole=True)
+    return outline.exact(design.contour)
+
+
+def _mechanism(recipe: Recipe, design: Design, rings: list[tuple[str, Ring]]) -> tuple[Scene, list[curves.Plot], Array]:
+    """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
+    reach = float(np.hypot(*rings[0][1].flattened().T).max())
+    size, bore = JOINT * reach, recipe.part.bore
+    note = "" if design.contour is not None else "No such cam is made: a check of the exact contour fails."
+    disk = cam(rings, bore, size, -SHAFT)
+    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
+        if isinstance(recipe.cam, DoubleRollerCam):
+            bodies, angles = double_roller(law, recipe.cam.roller_radius, size)
+            more = curves.pressure(angles)
+        else:
+            bodies, lever = flat_pair(law, size)
+            more = curves.levers(recipe, lever)
+        return (
+            Scene((disk, pivot("shaft", 0.0, 0.0, size, "O"), *bodies), note),
+            [*curves.motion(recipe, design), more],
+            SHAFT,
+        )
+    lift = cast("Lift", design.intent)
+    if design.driven is not None and design.driven.turns:
+        from camgeo.page.linked import Driven, linked
+
+        driven = Driven.of(design.driven.mechanism)
+        disk = cam(rings, bore, size, driven.cam)
+        bodies = linked(driven, size)
+        return (
+            Scene((disk, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
+            curves.output(recipe, driven),
+            driven.theta,
+        )
+    if design.driven is not None:
+        note = "The mechanism does not turn right round: the cam is shown in a frame that only slides. " + note
+    bodies = flat(lift, design.yoke_breadth, reach, size)
+    return Scene((disk, pivot("shaft", 0.0, 0.0, size), *bodies), note), curves.motion(recipe, design), SHAFT

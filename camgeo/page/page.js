@@ -1,0 +1,500 @@
+"use strict";
+(() => {
+  const find = (id) => document.getElementById(id);
+  const data = JSON.parse(find("data").textContent);
+  const root = document.documentElement;
+  const drawing = find("drawing");
+  const N = data.steps;
+
+  // --- numbers ------------------------------------------------------------------------------------------------------
+
+  // a packed row: a constant, plain numbers with holes, or differences in units of the last digit
+  function unpacked(row) {
+    if ("c" in row) return null;
+    if ("n" in row) return row.n;
+    const scale = 10 ** row.d;
+    let sum = 0;
+    return row.v.map((step) => (sum += step) / scale);
+  }
+
+  // a function of the step x in [0, N]: cubic between values, which join over the turn; a leap is not smoothed
+  function curve(row) {
+    const v = unpacked(row);
+    if (v === null) return () => row.c;
+    const turn = v[N] - v[0];
+    const get = (i) => (i < 0 ? v[i + N] - turn : i > N ? v[i - N] + turn : v[i]);
+    return (x) => {
+      const i = Math.min(Math.max(Math.floor(x), 0), N - 1);
+      const t = x - i;
+      const [p, a, b, q] = [get(i - 1), v[i], v[i + 1], get(i + 2)];
+      if (a === null || b === null) return NaN;
+      if (p === null || q === null) return a + t * (b - a);
+      const leap = Math.abs(b - a) > 6 * (Math.abs(a - p) + Math.abs(q - b));
+      if (leap) return t < 0.5 ? a : b;
+      const m = 0.5 * (b - p);
+      const n = 0.5 * (q - a);
+      return a + t * (m + t * (3 * (b - a) - 2 * m - n + t * (m + n - 2 * (b - a))));
+    };
+  }
+
+  function tidy(value, unit) {
+    if (!Number.isFinite(value)) return "–";
+    const size = Math.abs(value);
+    const digits = size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : size >= 0.1 ? 3 : size >= 0.001 ? 4 : 2;
+    const text = size > 0 && size < 0.001 ? value.toExponential(2) : value.toFixed(digits);
+    return text.replace("-", "−").replace(/^−(0(\.0*)?)$/, "$1") + (unit === "°" ? "°" : unit ? " " + unit : "");
+  }
+
+  // --- state --------------------------------------------------------------------------------------------------------
+
+  const relative = curve(data.relative);
+  const bodies = data.bodies.map((rows, i) => ({
+    group: find(`body-${i}`),
+    x: curve(rows[0]),
+    y: curve(rows[1]),
+    angle: curve(rows[2]),
+    moves: rows.some((row) => !("c" in row)),
+  }));
+  const letters = [...drawing.querySelectorAll(".letters text")].map((text) => {
+    const [x, y] = text.dataset.at.split(" ").map(Number);
+    return { text, x, y, body: bodies[Number(text.dataset.body)] };
+  });
+  const [scale, left, top] = data.view;
+  let px = 1; // units of the drawing that one px of the screen is
+  let degrees = 0;
+  let playing = false;
+  let last = 0;
+  const followers = []; // what else moves with the angle
+
+  function show() {
+    const x = (degrees / 360) * N;
+    for (const body of bodies) {
+      body.at = [body.x(x), body.y(x), (body.angle(x) * Math.PI) / 180];
+      if (body.moves) {
+        const [bx, by] = body.at;
+        body.group.setAttribute("transform", `translate(${bx.toFixed(6)} ${by.toFixed(6)}) rotate(${body.angle(x).toFixed(5)})`);
+      }
+    }
+    for (const letter of letters) {
+      const [bx, by, angle] = letter.body.at;
+      const c = Math.cos(angle);
+      const s = Math.sin(angle);
+      const lx = scale * (bx + letter.x * c - letter.y * s - left) + 13 * px;
+      const ly = scale * (top - by - letter.x * s - letter.y * c) - 13 * px;
+      letter.text.setAttribute("x", lx.toFixed(1));
+      letter.text.setAttribute("y", ly.toFixed(1));
+    }
+    for (const follow of followers) follow(x);
+    find("slider").value = degrees;
+    find("slider").setAttribute("aria-valuetext", `${degrees.toFixed(1)} degrees`);
+    root.dataset.degrees = degrees.toFixed(4);
+  }
+
+  function turnTo(next) {
+    degrees = next >= 0 && next <= 360 ? next : ((next % 360) + 360) % 360;
+    show();
+  }
+
+  function tick(now) {
+    if (!playing) return;
+    const rpm = Number(find("speed").value);
+    turnTo((degrees + Math.min(now - last, 100) * rpm * 0.006) % 360);
+    last = now;
+    requestAnimationFrame(tick);
+  }
+
+  function play(on) {
+    playing = on;
+    root.dataset.playing = on;
+    const button = find("play");
+    button.textContent = on ? "Pause" : "Play";
+    button.setAttribute("aria-pressed", String(on));
+    if (on) {
+      last = performance.now();
+      requestAnimationFrame(tick);
+    }
+  }
+
+  function held(next) {
+    play(false);
+    turnTo(next);
+  }
+
+  // shaft angle at which the relative angle has this value; it rises with the shaft's
+  function shaftAt(wanted) {
+    let [low, high] = [0, N];
+    const goal = relative(0) + ((((wanted - relative(0)) % 360) + 360) % 360);
+    for (let i = 0; i < 40; i++) {
+      const middle = 0.5 * (low + high);
+      if (relative(middle) < goal) low = middle;
+      else high = middle;
+    }
+    return (180 * (low + high)) / N;
+  }
+
+  // --- plots --------------------------------------------------------------------------------------------------------
+
+  const space = drawing.namespaceURI;
+  function made(name, attributes, parent) {
+    const element = document.createElementNS(space, name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    if (parent) parent.append(element);
+    return element;
+  }
+
+  function html(name, className, parent, text) {
+    const element = document.createElement(name);
+    if (className) element.className = className;
+    if (text) element.textContent = text;
+    if (parent) parent.append(element);
+    return element;
+  }
+
+  // round steps that give about `count` of them
+  function ticks(low, high, count) {
+    const rough = (high - low) / count;
+    const power = 10 ** Math.floor(Math.log10(rough));
+    const step = power * [1, 2, 5, 10].find((m) => m * power >= rough * 0.999);
+    const found = [];
+    for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(k * step);
+    return { found, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
+  }
+
+  // indices of values in runs without a hole
+  function runs(values) {
+    const found = [];
+    values.forEach((value, i) => {
+      if (value === null) return;
+      if (i && values[i - 1] !== null && found.length) found.at(-1).push(i);
+      else found.push([i]);
+    });
+    return found;
+  }
+
+  const HEIGHT = 138;
+  const LEFT = 48;
+  const RIGHT = 8;
+  const TOP = 8;
+  const BOTTOM = 20;
+
+  class Plot {
+    constructor(plot) {
+      this.plot = plot;
+      this.over = plot.over === "relative" ? relative : (x) => (360 * x) / N;
+      this.rows = plot.series.map((series) => ({
+        name: series.name,
+        at: curve(series),
+        values: unpacked(series) || Array(series.high ? N : N + 1).fill(series.c),
+        high: series.high && (unpacked(series.high) || Array(N).fill(series.high.c)),
+      }));
+      this.range();
+      this.figure = html("figure", "plot", find("plots"));
+      const caption = html("figcaption", "", this.figure);
+      const title = plot.title;
+      const notes = [plot.over === "relative" ? "over the relative angle" : "", plot.note].filter(Boolean);
+      html("b", "", caption, title);
+      this.value = html("span", "value", caption);
+      this.spans = this.rows.map((row, i) => html("span", i ? "second-text" : "first-text", this.value));
+      const told = this.rows.map((row) => `${row.name} from ${tidy(row.least)} to ${tidy(row.most)}`).join(", ");
+      this.svg = made("svg", { role: "img", "aria-label": `${title}, ${plot.unit}: ${told}` }, this.figure);
+      if (notes.length) html("small", "", this.figure, notes.join("; "));
+      this.svg.addEventListener("pointerdown", (event) => {
+        this.svg.setPointerCapture(event.pointerId);
+        this.drag(event);
+      });
+      this.svg.addEventListener("pointermove", (event) => event.buttons && this.drag(event));
+      followers.push((x) => this.follow(x));
+    }
+
+    range() {
+      let [low, high] = [Infinity, -Infinity];
+      for (const row of this.rows) {
+        const good = row.values.concat(row.high || []).filter((v) => v !== null);
+        row.least = Math.min(...good);
+        row.most = Math.max(...good);
+        [low, high] = [Math.min(low, row.least), Math.max(high, row.most)];
+      }
+      const span = high - low || Math.abs(high) || 1;
+      this.limits = this.plot.limits.filter(([value]) => value > low - 3 * span && value < high + 3 * span);
+      for (const [value] of this.limits) [low, high] = [Math.min(low, value), Math.max(high, value)];
+      if (high - low < 1e-12 * Math.abs(high) || high === low) [low, high] = [low - 0.5 * span, high + 0.5 * span];
+      const room = 0.06 * (high - low);
+      [this.low, this.high] = [low - room, high + room];
+    }
+
+    x(angle) {
+      return LEFT + (angle / 360) * (this.width - LEFT - RIGHT);
+    }
+
+    y(value) {
+      return TOP + ((this.high - value) / (this.high - this.low)) * (HEIGHT - TOP - BOTTOM);
+    }
+
+    draw() {
+      this.width = Math.max(180, this.figure.clientWidth);
+      this.svg.replaceChildren();
+      this.svg.setAttribute("viewBox", `0 0 ${this.width} ${HEIGHT}`);
+      const line = (name, x1, y1, x2, y2) => made("line", { class: name, x1, y1, x2, y2 }, this.svg);
+      if (this.plot.rests) {
+        for (const [start, length] of data.rests) {
+          for (const from of [start, start - 360]) {
+            const [a, b] = [Math.max(from, 0), Math.min(from + length, 360)];
+            if (b <= a) continue;
+            const place = { class: "rest", x: this.x(a), y: TOP, width: this.x(b) - this.x(a) };
+            made("rect", { ...place, height: HEIGHT - TOP - BOTTOM }, this.svg);
+          }
+        }
+      }
+      const { found, digits } = ticks(this.low, this.high, 5);
+      for (const value of found) {
+        const y = this.y(value);
+        line(Math.abs(value) < 1e-12 * (this.high - this.low) ? "zero" : "grid", LEFT, y, this.width - RIGHT, y);
+        const text = made("text", { x: LEFT - 5, y: y + 4, "text-anchor": "end" }, this.svg);
+        text.textContent = digits > 4 ? value.toExponential(0) : value.toFixed(digits).replace("-", "−");
+      }
+      for (let angle = 0; angle <= 360; angle += 90) {
+        line("grid", this.x(angle), TOP, this.x(angle), HEIGHT - BOTTOM);
+        const place = { x: this.x(angle) + (angle === 360 ? 7 : 0), y: HEIGHT - 5 };
+        place["text-anchor"] = angle === 360 ? "end" : "middle";
+        made("text", place, this.svg).textContent = `${angle}°`;
+      }
+      for (const [value, name] of this.limits) {
+        line("limit", LEFT, this.y(value), this.width - RIGHT, this.y(value));
+        const place = { x: this.width - RIGHT - 2, y: this.y(value) + 11, "text-anchor": "end" };
+        if (name) made("text", place, this.svg).textContent = name;
+      }
+      this.rows.forEach((row, i) => {
+        const d = row.high ? this.band(row) : this.path(row.values);
+        made("path", { class: `${row.high ? "band" : "line"}${i ? " second" : ""}`, d }, this.svg);
+      });
+      this.cursor = line("cursor", 0, TOP, 0, HEIGHT - BOTTOM);
+      this.dots = this.rows.map((row, i) => made("circle", { class: `dot${i ? " second" : ""}`, r: 3.5 }, this.svg));
+    }
+
+    path(values) {
+      let text = "";
+      let pen = "M";
+      values.forEach((value, i) => {
+        if (value === null) {
+          pen = "M";
+          return;
+        }
+        text += `${pen}${this.x((360 * i) / N).toFixed(1)} ${this.y(value).toFixed(1)}`;
+        pen = "L";
+      });
+      return text;
+    }
+
+    band(row) {
+      const side = (values, run) =>
+        run.map((i) => `${this.x((360 * (i + 0.5)) / N).toFixed(1)} ${this.y(values[i]).toFixed(1)}`);
+      const outline = (run) => `M${side(row.high, run).concat(side(row.values, run).reverse()).join("L")}Z`;
+      return runs(row.values).map(outline).join("");
+    }
+
+    follow(x) {
+      const angle = this.over(x) % 360.0000001;
+      const at = (angle / 360) * N;
+      const place = this.x(angle);
+      this.cursor.setAttribute("x1", place);
+      this.cursor.setAttribute("x2", place);
+      this.rows.forEach((row, i) => {
+        const value = row.high ? row.high[Math.min(Math.floor(at), N - 1)] : row.at(at);
+        const good = Number.isFinite(value) && value !== null;
+        this.dots[i].setAttribute("visibility", good ? "visible" : "hidden");
+        if (good) {
+          this.dots[i].setAttribute("cx", place);
+          this.dots[i].setAttribute("cy", this.y(Math.min(Math.max(value, this.low), this.high)));
+        }
+        const name = this.rows.length > 1 ? `${row.name.replace(/ angle$/, "")} ` : "";
+        this.spans[i].textContent = (i ? ", " : "") + name + tidy(value === null ? NaN : value, this.plot.unit);
+      });
+    }
+
+    drag(event) {
+      const box = this.svg.getBoundingClientRect();
+      const share = (((event.clientX - box.left) / box.width) * this.width - LEFT) / (this.width - LEFT - RIGHT);
+      const angle = 360 * Math.min(Math.max(share, 0), 1);
+      held(this.plot.over === "relative" ? shaftAt(angle) : angle);
+    }
+  }
+
+  const micro = data.unit === "mm" ? ["µm", 1e3] : ["µin", 1e6];
+  const scaled = (row, by) =>
+    "c" in row ? { c: row.c * by } : "n" in row ? { n: row.n.map((v) => v && v * by) } : { d: row.d - Math.log10(by), v: row.v };
+  const over = data.linked ? "relative" : "shaft";
+  const errors = data.errors.map(({ file, low, high }) => ({
+    title: `Error of ${file}`,
+    unit: micro[0],
+    series: [{ name: file, ...scaled(low, micro[1]), high: scaled(high, micro[1]) }],
+    limits: [[0, ""]],
+    note: "distance outside the exact contour, negative inside",
+    over,
+  }));
+  const plots = [...data.plots, ...errors].map((plot) => new Plot(plot));
+  const rests = find("rests");
+  data.rests.forEach(([start, length, name], i) => {
+    if (!i) html("span", "rest-key", rests).setAttribute("aria-hidden", "true");
+    rests.append(`${i ? "; " : " "}${name}, from ${start.toFixed(2)}° to ${((start + length) % 360).toFixed(2)}°`);
+  });
+  find("plots").append(rests);
+
+  // --- the line under the drawing -----------------------------------------------------------------------------------
+
+  const now = find("now");
+  const told = [["shaft", (x) => `${((360 * x) / N).toFixed(1)}°`, "4.2em"]];
+  if (data.linked) told.push(["relative", (x) => `${(((relative(x) % 360) + 360) % 360).toFixed(1)}°`, "4.2em"]);
+  for (const plot of plots.slice(0, 1)) {
+    told.push([plot.plot.title.toLowerCase(), (x) => tidy(plot.rows[0].at(x), plot.plot.unit), "6.2em"]);
+  }
+  for (const [name, text, width] of told) {
+    const span = html("span", "", now, `${name} `);
+    const value = html("b", "", span);
+    value.style.minWidth = width;
+    followers.push((x) => (value.textContent = text(x)));
+  }
+
+  // --- the error round the contour ----------------------------------------------------------------------------------
+
+  const ring = find("ring");
+  const chosen = find("error-file");
+  if (data.errors.length) {
+    const [px0, py0, nx, ny] = data.contour.map((row) => unpacked(row) || Array(N).fill(row.c));
+    const y0 = py0.map((y) => -y);
+    const [lowX, highX, lowY, highY] = [Math.min(...px0), Math.max(...px0), Math.min(...y0), Math.max(...y0)];
+    const extent = Math.max(highX - lowX, highY - lowY);
+    const pad = 0.16 * extent;
+    const view = [lowX - pad, lowY - pad, highX - lowX + 2 * pad, highY - lowY + 2 * pad];
+    const svg = made("svg", { viewBox: view.join(" "), role: "img" }, ring);
+    const exact = made("path", { class: "exact" }, svg);
+    const band = made("path", { class: "band" }, svg);
+    const place = made("circle", { class: "place", r: 0.012 * extent }, svg);
+    const point = (i, off) => `${(px0[i] + nx[i] * off).toPrecision(7)} ${(y0[i] - ny[i] * off).toPrecision(7)}`;
+    exact.setAttribute("d", `M${px0.map((_, i) => point(i, 0)).join("L")}Z`);
+    for (const { file } of data.errors) chosen.append(new Option(file, file));
+    const rows = data.errors.map(({ low, high }) =>
+      [low, high].map((row) => unpacked(row) || Array(N).fill(row.c)));
+    const redraw = () => {
+      const [low, high] = rows[Math.max(chosen.selectedIndex, 0)];
+      const worst = Math.max(...low.concat(high).filter((v) => v !== null).map(Math.abs)) || 1e-9 * extent;
+      const natural = (0.1 * extent) / worst;
+      const wanted = natural * 10 ** ((Number(find("magnify").value) - 50) / 50);
+      const power = 10 ** Math.floor(Math.log10(wanted));
+      const by = Math.round((wanted / power) * 10) * power / 10;
+      const outline = (run) => {
+        const round = run.length === N ? [...run, 0] : run;
+        const there = round.map((i) => point(i, by * high[i]));
+        const back = round.map((i) => point(i, by * low[i])).reverse();
+        return `M${there.concat(back).join("L")}Z`;
+      };
+      band.setAttribute("d", runs(low).map(outline).join(""));
+      const name = data.errors[Math.max(chosen.selectedIndex, 0)].file;
+      const most = tidy(worst * micro[1], micro[0]);
+      find("error-note").textContent = `${name}, up to ${most} off the exact contour (black), drawn ${tidy(by)} times as large.`;
+      svg.setAttribute("aria-label", find("error-note").textContent);
+    };
+    chosen.addEventListener("change", redraw);
+    find("magnify").addEventListener("input", redraw);
+    followers.push((x) => {
+      const i = Math.floor(data.linked ? (((relative(x) % 360) + 360) % 360) / 360 * N : x) % N;
+      place.setAttribute("cx", px0[i]);
+      place.setAttribute("cy", y0[i]);
+    });
+    redraw();
+  } else {
+    find("errors").hidden = true;
+  }
+
+  // --- controls -----------------------------------------------------------------------------------------------------
+
+  find("play").addEventListener("click", () => play(!playing));
+  find("slider").addEventListener("input", (event) => held(Number(event.target.value)));
+  for (const kind of ["contacts", "forces"]) {
+    find(kind).addEventListener("change", (event) => drawing.classList.toggle(`hide-${kind}`, !event.target.checked));
+  }
+  find("forces-label").hidden = !drawing.querySelector(".forces");
+  const contours = [...drawing.querySelectorAll(".cam .metal")];
+  const names = contours.map((path) => path.querySelector("title").textContent);
+  names.forEach((name) => find("contour").append(new Option(name, name)));
+  find("contour-label").hidden = contours.length < 2;
+  find("contour").addEventListener("change", (event) => {
+    contours.forEach((path, i) => path.classList.toggle("other", i !== event.target.selectedIndex));
+  });
+  for (const button of document.querySelectorAll(".go")) {
+    button.addEventListener("click", () => {
+      const at = Number(button.dataset.deg);
+      held(button.dataset.over === "relative" ? shaftAt(at) : ((at % 360) + 360) % 360);
+    });
+  }
+
+  document.addEventListener("keydown", (event) => {
+    const on = event.target;
+    const own = on.closest("select, button, summary, a") || (on.tagName === "INPUT" && on.id !== "slider");
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const step = event.shiftKey ? 10 : 1;
+    const keys = {
+      " ": () => play(!playing),
+      ArrowLeft: () => held(degrees - step),
+      ArrowRight: () => held(degrees + step),
+      Home: () => held(0),
+      End: () => held(360),
+    };
+    if (own || !(event.key in keys)) return;
+    event.preventDefault();
+    keys[event.key]();
+  });
+
+  // drag the cam about its shaft
+  let grip = null;
+  const polar = (event) => {
+    const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(drawing.getScreenCTM().inverse());
+    const x = at.x + scale * left;
+    const y = at.y - scale * top;
+    return (Math.atan2(-y, x) * 180) / Math.PI;
+  };
+  const disk = drawing.querySelector(".cam");
+  disk.addEventListener("pointerdown", (event) => {
+    grip = polar(event);
+    disk.setPointerCapture(event.pointerId);
+    find("stage").classList.add("dragged");
+    play(false);
+    event.preventDefault();
+  });
+  disk.addEventListener("pointermove", (event) => {
+    if (grip === null) return;
+    const next = polar(event);
+    const step = ((next - grip + 540) % 360) - 180;
+    grip = next;
+    held((degrees + data.sense * step + 360) % 360);
+  });
+  for (const name of ["pointerup", "pointercancel"]) {
+    disk.addEventListener(name, () => {
+      grip = null;
+      find("stage").classList.remove("dragged");
+    });
+  }
+
+  // --- begin --------------------------------------------------------------------------------------------------------
+
+  function fit() {
+    px = 1 / (drawing.getScreenCTM()?.a || 1);
+    drawing.style.setProperty("--px", px.toFixed(4));
+    for (const plot of plots) plot.draw();
+    show();
+  }
+  let width = 0;
+  new ResizeObserver(() => {
+    if (document.body.clientWidth === width) return;
+    width = document.body.clientWidth;
+    fit();
+  }).observe(document.body);
+  window.addEventListener("beforeprint", fit);
+  window.addEventListener("afterprint", fit);
+  fit();
+  // #deg=90 begins there and stands still, #deg=90&play turns on from there
+  const begin = /^#deg=(-?[0-9.]+)(&play)?$/.exec(location.hash);
+  if (begin) turnTo(Number(begin[1]));
+  const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
+  play(begin ? Boolean(begin[2]) : !still);
+  root.dataset.ready = "true";
+})();

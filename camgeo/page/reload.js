@@ -1,0 +1,26 @@
+"use strict";
+// A page that is watched: it reloads where the recipe was exported anew, and shows what is wrong with one that was not.
+(() => {
+  let seen = null;
+  const box = document.createElement("pre");
+  box.id = "fault";
+  box.setAttribute("role", "alert");
+  box.style.cssText =
+    "position:fixed;inset:0 0 auto 0;margin:0;padding:12px 18px;max-height:60vh;overflow:auto;z-index:9;" +
+    "background:#7a1405;color:#fff;white-space:pre-wrap;font:13px/1.5 monospace";
+  box.hidden = true;
+  document.body.append(box);
+  const events = new EventSource("/events");
+  events.onmessage = (message) => {
+    const event = JSON.parse(message.data);
+    const first = seen === null;
+    const changed = seen !== event.version;
+    seen = event.version;
+    box.hidden = !event.fault;
+    box.textContent = event.fault;
+    if (first || !changed || event.fault) return;
+    const { degrees, playing } = document.documentElement.dataset;
+    if (degrees) history.replaceState(null, "", `#deg=${degrees}${playing === "true" ? "&play" : ""}`);
+    location.reload();
+  };
+})();

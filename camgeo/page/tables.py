@@ -1,0 +1,179 @@
+"""The report's tables as HTML: checks with failed ones first, files, the linkage, what was skipped."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from camgeo.report.document import pieces_word
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+# With a linkage these concern the cam in its frame alone, and their place is the relative angle (docs/report.md).
+OVER_RELATIVE = frozenset({"contour", "motion", "constant-breadth", "breadth-max"})
+NONE = "–"
+
+
+def failing(checks: Sequence[dict[str, Any]]) -> str:
+    """Return how many checks fail, in words."""
+    count = sum(not check["ok"] for check in checks)
+    return f"{count} check{'s' * (count != 1)} of {len(checks)} fail{'s' * (count == 1)}"
+
+
+def checks(report: dict[str, Any]) -> str:
+    """Return the table of checks; a place is a button that turns the shaft there."""
+    rows = []
+    linked = "linkage" in report
+    for check in sorted(report["checks"], key=lambda check: bool(check["ok"])):
+        sign = "≥" if check["sense"] == "at_least" else "≤"
+        limit = NONE if check["limit"] is None else f"{sign} {number(check['limit'])}"
+        over = "relative" if linked and check["name"] in OVER_RELATIVE else "shaft"
+        detail = f'<div class="detail">{escape(check["detail"])}</div>' if check.get("detail") else ""
+        rows.append(
+            f'<tr class="{"ok" if check["ok"] else "failed"}">'
+            f'<td class="state">{"holds" if check["ok"] else "fails"}</td>'
+            f'<th scope="row">{escape(check["name"])}{detail}</th>'
+            f'<td class="number">{number(check["value"])}</td>'
+            f"<td>{escape(_unit(check['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
+            f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
+        )
+    return _table("Checks", ("", "check", "value", "unit", "limit", "at", "file"), rows, "checks")
+
+
+def written(report: dict[str, Any]) -> str:
+    """Return the table of files."""
+    rows = []
+    for file in report["files"]:
+        if file.get("stale"):
+            cells = ["left as it was", *[NONE] * 6]
+        else:
+            motion = file.get("motion") or {}
+            pieces = f"{file['pieces']} {pieces_word(file)}" if file.get("pieces") else NONE
+            unit = escape(_unit(motion.get("unit", "")))
+            cells = [
+                _bytes(file["bytes"]),
+                pieces,
+                *(number(file.get(key)) for key in ("tolerance", "geometry_error", "measured_error")),
+                f"{number(motion.get('max'))} {unit}".strip(),
+                number(motion.get("rms")),
+            ]
+        body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
+        rows.append(f'<tr><th scope="row">{escape(file["path"])}</th>{body}</tr>')
+    if not rows:
+        return "<p>No files were made.</p>"
+    unit = "in" if report["units"] == "inch" else "mm"
+    head = ("file", "size", "pieces", f"tolerance, {unit}", "proved", "measured", "motion error", "rms")
+    return _table("Files", head, rows)
+
+
+def linkage(report: dict[str, Any]) -> str:
+    """Return the figures of the linkage; nothing without one."""
+    section = report.get("linkage")
+    if section is None:
+        return ""
+    margin, rate = section["margin"], section["shaft_rate"]
+    rows = [
+        ("margin from binding", margin["value"], margin["unit"], None),
+        ("least rate of the shaft", rate["min"], "", None),
+    ]
+    output = section.get("output")
+    if output is not None:
+        peaks, unit = section["peaks"]["shaft"], output["unit"]
+        rows += [
+            ("least output", output["min"], unit, output["min_at"]["shaft_deg"]),
+            ("greatest output", output["max"], unit, output["max_at"]["shaft_deg"]),
+            ("swing", section["swing"], unit, None),
+            (
+                "least transmission angle",
+                section["transmission_angle"]["min"],
+                "deg",
+                section["transmission_angle"]["min_at_deg"],
+            ),
+            ("least force angle", section["force_angle"]["min"], "deg", section["force_angle"]["min_at_deg"]),
+            ("greatest velocity", peaks["velocity"]["value"], f"{unit}/rad", peaks["velocity"]["shaft_deg"]),
+            (
+                "greatest acceleration",
+                peaks["acceleration"]["value"],
+                f"{unit}/rad²",
+                peaks["acceleration"]["shaft_deg"],
+            ),
+        ]
+    for dwell in section["dwells"]:
+        if dwell["over"] == "shaft":
+            name = f"dwell within {number(dwell['band'])}, {dwell['from']}"
+            rows.append((escape(name), dwell["length_deg"], "deg", dwell["start_deg"]))
+    error = section.get("error")
+    if error is not None:
+        rows.append(("error of the output, worst file", error["max"], error["unit"], error["at_deg"]))
+    text = [
+        f'<tr><th scope="row">{name}</th><td class="number">{number(value)}</td><td>{_unit(unit)}</td>'
+        f"<td>{_place(at, 'shaft')}</td></tr>"
+        for name, value, unit, at in rows
+    ]
+    spans = [("binds", section["binds_at_deg"]), ("would turn the shaft back", section["reverses_at_deg"])]
+    told = "".join(
+        f'<p class="failed">It {what} from {number(a)}° to {number(b)}° of the relative angle.</p>'
+        for what, found in spans
+        for a, b in found
+    )
+    head = _table(f"Linkage: {section['kind']}", ("figure", "value", "unit", "at"), text)
+    return f'<section aria-labelledby="linkage-head"><h2 id="linkage-head">Linkage</h2>{told}{head}</section>'
+
+
+def skipped(report: dict[str, Any]) -> str:
+    """Return what was left out and why; of the page itself there is nothing to say."""
+    items = [item for item in report["skipped"] if item["what"] != "html"]
+    return "".join(f"<li><b>{escape(item['what'])}</b>: {escape(item['why'])}</li>" for item in items)
+
+
+def facts(report: dict[str, Any]) -> str:
+    """Return one line about the recipe: follower, unit, sense, tolerance."""
+    sense = "clockwise" if report["rotation"] == "cw" else "counter-clockwise"
+    unit = "in" if report["units"] == "inch" else "mm"
+    kind = report["follower"]
+    if "linkage" in report:
+        kind += f" in a {str(report['linkage']['kind']).replace('-', ' ')}"
+    return escape(f"{kind} · the shaft turns {sense} · tolerance {report['tolerance']:.6g} {unit}")
+
+
+def number(value: float | None) -> str:
+    """Return a figure to six digits, the exact one as a hint where that says more."""
+    if value is None:
+        return NONE
+    short, exact = f"{value:.6g}", repr(value)
+    return short if float(short) == value else f'<span title="{exact}">{short}</span>'
+
+
+def _place(at: float | None, over: str) -> str:
+    if at is None:
+        return NONE
+    name = "relative angle" if over == "relative" else "shaft angle"
+    label = f"turn to {at:.2f} degrees of the {name}"
+    mark = " rel." if over == "relative" else ""
+    return (
+        f'<button type="button" class="go" data-deg="{at:.6f}" data-over="{over}" aria-label="{label}">'
+        f"{at:.2f}°{mark}</button>"
+    )
+
+
+def _cell(text: str, kind: str = "") -> str:
+    """Return a cell, marked where there is nothing in it."""
+    name = " ".join(filter(None, (kind, "none" if text in {NONE, ""} else "")))
+    return f'<td class="{name}">{text}</td>' if name else f"<td>{text}</td>"
+
+
+def _unit(name: str) -> str:
+    """Return a unit as it is read."""
+    return name.replace("^2", "²").replace("^3", "³").replace("deg", "°")
+
+
+def _bytes(count: int) -> str:
+    return f'<span title="{count} bytes">{count / 1000.0:.1f} kB</span>' if count >= 1000 else f"{count} B"
+
+
+def _table(caption: str, head: Sequence[str], rows: Sequence[str], kind: str = "plain") -> str:
+    cells = "".join(f'<th scope="col">{name}</th>' if name else "<td></td>" for name in head)
+    region = f'<div class="wide" tabindex="0" role="region" aria-label="{caption}">'
+    body = f"<thead><tr>{cells}</tr></thead><tbody>{''.join(rows)}</tbody>"
+    return f'{region}<table class="{kind}">{body}</table></div>'

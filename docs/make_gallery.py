@@ -1,0 +1,67 @@
+"""Write docs/gallery.md and a picture of every shipped recipe, docs/gallery/*.svg: `python docs/make_gallery.py`."""
+
+from __future__ import annotations
+
+import re
+from html import escape
+from pathlib import Path
+
+from camgeo.page.page import asset
+from camgeo.page.scene import STEPS
+from camgeo.page.svg import still
+from camgeo.pipeline import shown
+from camgeo.recipe.load import load
+from camgeo.recipe.model import DoubleRollerCam, FlatPairCam, Recipe
+
+ROOT = Path(__file__).parents[1]
+FAMILIES = ("Flat faces and yokes", "Linkages", "Double rollers", "Flat pairs")
+SHAFT_DEG = 60.0
+COLUMNS = 3
+HEAD = """\
+# Gallery
+
+Every shipped recipe with the shaft turned by 60 degrees, the cam as its first file draws it. Drawn and written by
+`python docs/make_gallery.py`; a page that moves comes from `camgeo report RECIPE` ([page.md](page.md)).
+"""
+
+
+def family(recipe: Recipe) -> str:
+    """The heading under which a recipe stands."""
+    if recipe.linkage is not None:
+        return "Linkages"
+    if isinstance(recipe.cam, DoubleRollerCam):
+        return "Double rollers"
+    return "Flat pairs" if isinstance(recipe.cam, FlatPairCam) else "Flat faces and yokes"
+
+
+def main() -> None:
+    """Draw all recipes, and put them on one page."""
+    folder = ROOT / "docs" / "gallery"
+    folder.mkdir(exist_ok=True)
+    style = re.sub(r"/\*.*?\*/\s*|\n\s*", " ", asset("drawing.css"), flags=re.DOTALL).strip()
+    cells: dict[str, list[str]] = {name: [] for name in FAMILIES}
+    drawn = set()
+    for path in sorted((ROOT / "recipes").glob("*.yaml")):
+        recipe = load(path)
+        _, found = shown(recipe)
+        picture = folder / f"{path.stem}.svg"
+        picture.write_text(still(found.scene, round(SHAFT_DEG / 360.0 * STEPS), style, recipe.name), encoding="utf-8")
+        drawn.add(picture)
+        cells[family(recipe)].append(
+            f'<td align="center" valign="bottom"><img src="gallery/{picture.name}" width="260" alt="{recipe.name}"><br>'
+            f'<a href="../recipes/{path.name}">{recipe.name}</a><br><sub>{escape(recipe.about)}</sub></td>'
+        )
+        print(f"{picture.name}: {picture.stat().st_size} bytes")
+    for old in set(folder.glob("*.svg")) - drawn:
+        old.unlink()
+    text = [HEAD]
+    for name, found_cells in cells.items():
+        rows = [found_cells[i : i + COLUMNS] for i in range(0, len(found_cells), COLUMNS)]
+        table = "\n".join("<tr>\n" + "\n".join(row) + "\n</tr>" for row in rows)
+        text.append(f"## {name}\n\n<table>\n{table}\n</table>\n")
+    (ROOT / "docs" / "gallery.md").write_text("\n".join(text), encoding="utf-8")
+    print(f"{len(drawn)} pictures, {sum(path.stat().st_size for path in drawn)} bytes in all")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,79 @@
+"""Pages of shipped recipes as tests want them: each made once, with the data that its script reads."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import time
+import urllib.request
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.page.pack import unpacked
+from camgeo.page.page import page
+from camgeo.page.scene import STEPS
+from camgeo.pipeline import shown
+from camgeo.recipe.load import load
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.recipe.model import Recipe
+
+RECIPES = Path(__file__).parents[1] / "recipes"
+SHOWN = ("shu-wu", "as-figure-9-2a", "six-bar", "slider-crank", "oscillating-yoke", "w-law", "w-ellipse")
+SHAFT = 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
+
+
+class Made:
+    """A recipe with everything a page shows, made once."""
+
+    def __init__(self, path: Path) -> None:
+        self.recipe: Recipe = load(path)
+        self.outcome, self.content = shown(self.recipe)
+        self.text = page(self.recipe, self.content, self.outcome.report)
+        self.data: dict[str, Any] = json.loads(re.findall(r'id="data">(.*?)</script>', self.text, re.DOTALL)[0])
+
+    def pose(self, name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """x, y and angle, rad, of a body as the script reads them."""
+        index = [body.name for body in self.content.scene.bodies].index(name)
+        x, y, angle = (unpacked(row, STEPS + 1) for row in self.data["bodies"][index])
+        return x, y, np.radians(angle)
+
+    def plot(self, title: str, series: int = 0) -> np.ndarray:
+        (entry,) = (plot for plot in self.data["plots"] if plot["title"] == title)
+        return unpacked(entry["series"][series], STEPS + 1)
+
+
+CACHE: dict[str, Made] = {}
+
+
+def of(name: str) -> Made:
+    if name not in CACHE:
+        CACHE[name] = Made(RECIPES / f"{name}.yaml")
+    return CACHE[name]
+
+
+def wait(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def fetched(address: str) -> str:
+    with urllib.request.urlopen(address, timeout=20) as answer:
+        text: str = answer.read().decode("utf-8")
+        return text
+
+
+def told(stream: Any) -> dict[str, Any]:
+    """Next event of a stream that is no mere sign of life."""
+    while True:
+        line = stream.readline().decode("utf-8")
+        if line.startswith("data: "):
+            event: dict[str, Any] = json.loads(line[6:])
+            return event
