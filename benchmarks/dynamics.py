@@ -156,7 +156,7 @@ def picture(rows):
             )
             if len(done) < len(own):
                 text = f"RK45 gave up at {len(own) - len(done)} of {len(own)} tolerances"
-                axis.text(0.05, 0.05, text, transform=axis.transAxes, fontsize=7, color=colour)
+                axis.text(0.05, 0.3, text, transform=axis.transAxes, fontsize=7, color=colour)
         axis.set_title(f"natural frequency {ratio:,.0f} x shaft", fontsize=9)
         axis.set_xlabel("seconds", fontsize=8)
         axis.tick_params(labelsize=7)

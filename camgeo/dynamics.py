@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_dynamics import Dynamics
     from kin.bouncing import Course, Turn
     from kin.contour import Contour
-    from kin.drive import Drive
+    from kin.drive import Drive, Motion
     from kin.driven import Faces
     from kin.dynamics import Steady, Train
 
@@ -145,14 +145,29 @@ def contour_of(path: Path, mm: float, *, mirrored: bool) -> Contour:
 def _one(scene: _Scene, design: Design, path: Path | None) -> tuple[dict[str, Any], Check]:
     """One run: entry of the report, and its check."""
     from kin.drive import drives
+    from kin.driven import Faces, Moved
 
     faces = _faces(scene, design, path)
+    if scene.asked.rate:  # the spring's force is given at the lowest place
+        faces = Faces(Moved(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
     ends = [end for rest in scene.rests for end in rest]
     found = drives([face for face in faces if face is not None], ends)
     entry: dict[str, Any] = {"from": "intended" if path is None else path.name}
     if len(found) > 1:
         return _with_play(scene, entry, found[0], found[1])
     return _with_spring(scene, entry, found[0])
+
+
+def _lowest(motion: Motion) -> float:
+    """Least position of a motion, m or rad, at the best of 65 places a stretch."""
+    import numpy as np
+
+    from kin.drive import drives
+
+    (drive,) = drives([motion])
+    every = np.repeat(np.arange(len(drive)), 65)
+    phi = drive.knots[every] + np.tile(np.linspace(0.0, 2.0, 65), len(drive)) * drive.half[every]
+    return float(drive.rows(every, phi)[0].min())
 
 
 def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:

@@ -35,7 +35,7 @@ DYNAMICS = Table(
         Field(
             "preload",
             Kind.NUMBER,
-            "force of the spring that holds the follower on the cam, N, at lift 0; N m where it turns",
+            "force of the spring that holds the follower on the cam, N, at its lowest; N m where it turns",
             above=0,
             at_most=_MOST,
         ),
