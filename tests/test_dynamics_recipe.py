@@ -207,7 +207,7 @@ def test_what_has_no_dynamics_is_refused_at_its_field(train: str, cam: str, mess
 
 
 def test_a_spoilt_file_shows_in_its_own_run(tmp_path: Path) -> None:
-    """A corner that stands out by 0.03 mm shortly before the dwell makes the train of the file ring, not the intended."""
+    """A corner that stands out by 0.03 mm shortly before the dwell: the train of the file rings on, the other not."""
     import ezdxf
 
     asked = recipe(TRAIN.replace("rpm: 600", "rpm: 200"))
