@@ -328,6 +328,8 @@ def _write_stl(recipe: Recipe, design: Design, polygon: Outline, path: Path, tol
         raise TypeError("a solid is made of a polygon")
     if recipe.part.thickness is None:
         raise recipe.error("part.thickness", "an STL needs a thickness")
+    if design.body is not None:
+        return _write_part(recipe, design.body, polygon, path, tolerance)
     facts = write_stl(
         path,
         polygon,
@@ -339,9 +341,29 @@ def _write_stl(recipe: Recipe, design: Design, polygon: Outline, path: Path, tol
     return facts.bound, facts.vertices
 
 
+def _write_part(recipe: Recipe, body: Body, polygon: Polygon, path: Path, tolerance: float) -> tuple[Bound, int]:
+    """Write the solid of a part that has more than a round bore."""
+    from camgeo.files.missing import MissingExtraError
+    from camgeo.part.files import write_part
+    from camgeo.store import SurroundingsError
+
+    drawn = body.mirrored() if recipe.rotation == "ccw" else body
+    try:
+        facts = write_part(path, polygon, drawn, tolerance=tolerance, about=recipe.name)
+    except MissingExtraError as error:
+        raise SurroundingsError(str(error), recipe.path) from error
+    return facts.bound, facts.vertices
+
+
 def _write_dxf(recipe: Recipe, design: Design, outline: Outline, request: FileRequest, path: Path) -> None:
     from camgeo.files.dxf import write_dxf
 
+    bore, cut, remarks = recipe.part.bore, [], []
+    if design.body is not None:
+        from camgeo.part import files
+
+        body = design.body.mirrored() if recipe.rotation == "ccw" else design.body
+        bore, cut, remarks = None, files.cutouts(body), files.remarks(body, recipe.mm)
     write_dxf(
         path,
         outline,
@@ -365,9 +387,9 @@ def _reference(recipe: Recipe, design: Design) -> list[Reference]:
 
     cam = recipe.cam
     found: list[Reference] = [Point("shaft", (0.0, 0.0))]
+    if recipe.part.hub is not None:
+        found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
     base = design.profile.base.sample(design.profile.base.cells.low).point
-    if design.body is not None:
-        return _write_part(recipe, design.body, polygon, path, tolerance)
     if isinstance(cam, ConstantBreadthCam):
         found.append(Circle("base circle", (0.0, 0.0), cam.base_radius))
     elif isinstance(cam, SupportCam):
@@ -379,29 +401,9 @@ def _reference(recipe: Recipe, design: Design) -> list[Reference]:
         pitch = fit_arcs(design.profile.base, COARSE)
         found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
         found.append(Circle("pivot circle", (0.0, 0.0), cam.arm))
-def _write_part(recipe: Recipe, body: Body, polygon: Polygon, path: Path, tolerance: float) -> tuple[Bound, int]:
-    """Write the solid of a part that has more than a round bore."""
-    from camgeo.files.missing import MissingExtraError
-    from camgeo.part.files import write_part
-    from camgeo.store import SurroundingsError
-
-    drawn = body.mirrored() if recipe.rotation == "ccw" else body
-    try:
-        facts = write_part(path, polygon, drawn, tolerance=tolerance, about=recipe.name)
-    except MissingExtraError as error:
-        raise SurroundingsError(str(error), recipe.path) from error
-    return facts.bound, facts.vertices
-
-
     elif isinstance(cam, FlatPairCam):
         found.append(Circle("pivot circle", (0.0, 0.0), 2.0 * cam.arm))
     return found
-    bore, cut, remarks = recipe.part.bore, [], []
-    if design.body is not None:
-        from camgeo.part import files
-
-        body = design.body.mirrored() if recipe.rotation == "ccw" else design.body
-        bore, cut, remarks = None, files.cutouts(body), files.remarks(body, recipe.mm)
 
 
 def _write_table(recipe: Recipe, design: Design, path: Path) -> None:
@@ -423,8 +425,6 @@ def _skipped(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     found = []
     asked = {request.kind for request in recipe.export.files}
     wanted = {request.kind for request in requests}
-    if recipe.part.hub is not None:
-        found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
     for kind in ("dxf", "stl", "csv", "html"):
         if kind not in asked:
             found.append((kind, "the recipe's export.files does not list it"))
