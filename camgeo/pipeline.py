@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.curve import CurveError
 from camgeo.design import Clock, Design, designed, intended, permitted
+from camgeo.fit.bound import FormError
 from camgeo.fit.nodes import ToleranceError
 from camgeo.recipe.model import NO_CONTOUR, ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
 from camgeo.report.document import FileResult, Findings, document, encoded
@@ -223,6 +224,9 @@ def drawn(
                 bound, pieces = outline.bound, outline.count
     except ToleranceError as error:
         raise _refused(recipe, request, error) from error
+    except FormError as error:
+        where = f"export.files[{recipe.export.files.index(request)}].dxf.as"
+        raise recipe.error(where, str(error), f"'{request.as_}'", "give spline or arcs") from error
     except RegionError as error:
         field_path = "part" if design.body else "cam" if recipe.part.bore is None else "part.bore"
         raise recipe.error(field_path, f"within the tolerance, {error}") from error
@@ -277,7 +281,10 @@ class Outlines:
     made: dict[tuple[str, float], Outline] = field(default_factory=dict)
 
     def within(self, form: str, tolerance: float) -> Outline:
-        """Polygon, arcs or spline within a tolerance in mm; raises ToleranceError where it cannot be held."""
+        """Polygon, arcs or spline within a tolerance in mm, or the exact rational spline.
+
+        Raises ToleranceError where the tolerance cannot be held, FormError where the form cannot tell the contour.
+        """
         if (form, tolerance) not in self.made:
             with self.clock.stage(f"fit {form}"):
                 self.made[form, tolerance] = _fitted(form, self.contour, tolerance, self.unsure)
@@ -315,6 +322,10 @@ def _exactly_fitted(form: str, contour: Curve, tolerance: float) -> Outline:
         from camgeo.fit.spline import fit_spline
 
         return fit_spline(contour, tolerance)
+    if form == "exact":
+        from camgeo.fit.exact import fit_exact
+
+        return fit_exact(contour, tolerance)
     from camgeo.fit.polygon import fit_polygon
 
     return fit_polygon(contour, tolerance)

@@ -21,7 +21,7 @@ NOTES = frozenset({"TEXT", "MTEXT", "ATTDEF", "DIMENSION", "LEADER", "MULTILEADE
 LARGEST = 1e7
 LARGEST_BULGE = 1e6
 LARGEST_WEIGHT_RATIO = 1e6
-HIGHEST_DEGREE = 11
+HIGHEST_DEGREE = 25
 # Slope, and relative size, that is still rounding.
 LEVEL = 1e-9
 

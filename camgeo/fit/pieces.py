@@ -1,4 +1,4 @@
-"""The three forms in which a fitted contour is written: polygon, arcs and B-spline.
+"""The forms in which a fitted contour is written: polygon, arcs and B-spline; `camgeo.fit.rational` has the fourth.
 
 Each is a closed contour in millimetres, counter-clockwise about its inside, with the shaft at the origin. The closing
 piece, from the last point to the first, is understood for polygons and arcs; the B-spline ends where it starts. Each
@@ -13,41 +13,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.fit.bound import Bound
+from camgeo.fit.rational import RationalSpline
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from camgeo.fit.bound import Box
+
     Array = NDArray[np.float64]
 
-Box = tuple[float, float, float, float]
-
-
-@dataclass(frozen=True)
-class Bound:
-    """Proved greatest deviation from the exact curve in mm: outward of it and inward of it, both >= 0.
-
-    Raises ValueError for a negative or non-finite figure.
-    """
-
-    outward: float
-    inward: float
-
-    def __post_init__(self) -> None:
-        for side, value in (("outward", self.outward), ("inward", self.inward)):
-            if not (math.isfinite(value) and value >= 0.0):
-                raise ValueError(f"bound: {side} must be finite and >= 0, not {value!r}")
-
-    @property
-    def worst(self) -> float:
-        """The larger of the two sides, in mm."""
-        return max(self.outward, self.inward)
-
-    def scaled(self, k: float) -> Bound:
-        """Return the bound in a drawing k times as large."""
-        return Bound(k * self.outward, k * self.inward)
-
-    def widened(self, margin: float) -> Bound:
-        """Return the bound after every point may have moved by `margin` mm more (rounding to a file's precision)."""
-        return Bound(self.outward + margin, self.inward + margin)
+__all__ = ["ArcSpline", "BSpline", "Bound", "Outline", "Polygon", "RationalSpline"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,7 +254,7 @@ class BSpline:
         return np.flatnonzero(np.diff(inside) > 0.0) + self.degree
 
 
-Outline = Polygon | ArcSpline | BSpline
+Outline = Polygon | ArcSpline | BSpline | RationalSpline
 
 
 def _numbers(what: str, array: Array, shape: tuple[int, ...]) -> None:

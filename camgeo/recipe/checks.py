@@ -104,9 +104,9 @@ def _files(values: Values, reader: Reader) -> None:
         path = file["path"]
         if request.kind == "stl" and "part.thickness" not in reader.marks:
             reader.fault_at(path, "stl needs a thickness", None, "give part.thickness, or leave stl out")
-        if request.as_ == "spline" and request.version == "R12":
+        if request.as_ in {"spline", "exact"} and request.version == "R12":
             remedy = "give arcs or polyline, or a later version"
-            reader.fault_at(f"{path}.dxf.as", "R12 has no splines", "'spline'", remedy)
+            reader.fault_at(f"{path}.dxf.as", "R12 has no splines", f"'{request.as_}'", remedy)
         if request in listed[:i]:
             reader.fault_at(path, "the same file twice", None, "leave one out")
         elif names[i] in names[:i]:

@@ -317,7 +317,7 @@ class FileRequest:
     """One file to write. `as_` and `version` belong to DXF; `tolerance` (mm) stands in for the export's own."""
 
     kind: Literal["dxf", "stl", "csv", "html"]
-    as_: Literal["arcs", "polyline", "spline"] | None = None
+    as_: Literal["arcs", "polyline", "spline", "exact"] | None = None
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
 

@@ -20,7 +20,7 @@ FILES: dict[str, Table] = {
                 Kind.CHOICE,
                 "what the contour is made of",
                 default="arcs",
-                choices=("arcs", "polyline", "spline"),
+                choices=("arcs", "polyline", "spline", "exact"),
             ),
             Field(
                 "version",

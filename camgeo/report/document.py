@@ -204,7 +204,7 @@ def pieces_word(file: dict[str, Any]) -> str:
     """What the pieces of a file's contour are called."""
     if file["kind"] == "stl":
         return "edges"
-    return {"arcs": "arcs", "polyline": "edges", "spline": "spans"}.get(file.get("as") or "", "pieces")
+    return {"arcs": "arcs", "polyline": "edges", "spline": "spans", "exact": "spans"}.get(file.get("as") or "", "pieces")
 
 
 def table(report: dict[str, Any]) -> str:

@@ -3,7 +3,7 @@
 Each rung writes a file into a private folder and has it judged there, as an export does, then repeats the work to time
 it warm: the exact curve and its bounds are made once and are told apart as the stages of the design. A ladder ends
 where the form cannot hold the tolerance, which is told with the reason and what can be held, or at a run that takes
-longer than the patience that is given.
+longer than the patience that is given. An exact spline is the same whatever the tolerance: it has one rung.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from camgeo.report.document import FileResult
 
 FIRST_EXPONENT, LAST_EXPONENT = -1, -12  # of ten: the rungs, in the recipe's unit
+EXACT_EXPONENT = -9  # the one rung of an exact spline: below what others reach, above rounding
 REPEATS = 5
 QUICK = 0.3  # seconds: longer runs are repeated twice only, and runs above SLOW once, as the first run is cold
 SLOW = 2.0
@@ -92,7 +93,9 @@ def climb(
     told: Callable[[str], None] | None = None,
 ) -> Iterator[Rung | Ended]:
     """Rungs of one form from a tenth of the recipe's unit downward, and last where and why the ladder ended."""
-    for exponent in range(FIRST_EXPONENT, LAST_EXPONENT - 1, -1):
+    exact = form == "exact"
+    first, last = (EXACT_EXPONENT, EXACT_EXPONENT) if exact else (FIRST_EXPONENT, LAST_EXPONENT)
+    for exponent in range(first, last - 1, -1):
         tolerance = 10.0**exponent * recipe.mm
         if told is not None:
             told(f"{form} within {10.0**exponent:.0e}")
@@ -106,15 +109,16 @@ def climb(
             why = f"a run took {rung.seconds:.3g} s, longer than {patience:.3g} s"
             yield Ended(form, tolerance / 10.0, why)
             return
-    yield Ended(form, 10.0 ** (LAST_EXPONENT - 1) * recipe.mm, "the ladder's last rung")
+    why = "exact to rounding: the same file at every tolerance" if exact else "the ladder's last rung"
+    yield Ended(form, 10.0 ** (last - 1) * recipe.mm, why)
 
 
 def request_of(form: str, tolerance: float) -> FileRequest:
     """The file that stands for a form."""
     if form == "stl":
         return FileRequest("stl", tolerance=tolerance)
-    if form in {"polyline", "arcs", "spline"}:
-        return FileRequest("dxf", as_=form, version="R2010", tolerance=tolerance)  # type: ignore[arg-type] # one of the three
+    if form in {"polyline", "arcs", "spline", "exact"}:
+        return FileRequest("dxf", as_=form, version="R2010", tolerance=tolerance)  # type: ignore[arg-type] # one of these
     raise ValueError(f"no such form: {form}")
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.fit.cubic import ORDER, spans_wanted
 from camgeo.fit.nodes import Density
 from camgeo.fit.polygon import least_vertices
 
@@ -17,15 +18,17 @@ FREE_ARCS = 124.7  # tangent-continuous arcs with joints off the curve: the inte
 
 
 def least_pieces(form: str, curve: Curve, tolerance: float) -> float | None:
-    """Least number of pieces of a form (polyline, stl, arcs) within `tolerance` mm; None for a form without a formula.
+    """Least number of pieces of a form within `tolerance` mm; None for one without a formula (an exact spline).
 
-    A form's pieces are counted as the report counts them. An arc at least is counted for each smooth stretch, where the
-    integral vanishes on a dwell.
+    A form's pieces are counted as the report counts them. A piece at least is counted for each smooth stretch: the
+    arcs' integral vanishes on a dwell.
     """
     if form in {"polyline", "stl"}:
         return least_vertices(curve, tolerance)
     if form == "arcs":
         return least_arcs(curve, tolerance)
+    if form == "spline":
+        return least_spline(curve, tolerance)
     return None
 
 
@@ -33,6 +36,13 @@ def least_arcs(curve: Curve, tolerance: float) -> float:
     """Leading-order count of tangent-continuous arcs with free joints, and one at least for each smooth stretch."""
     parts = [part.total for run in curve.runs for part in Density.of(curve, run.stretches, _arc_density)]
     return sum(max(1.0, part / math.cbrt(tolerance)) for part in parts)
+
+
+def least_spline(curve: Curve, tolerance: float) -> float:
+    """Leading-order count of cubic spans with a continuous tangent, and one at least for each smooth stretch."""
+    stretches = np.concatenate([run.stretches for run in curve.runs])
+    scale = math.pow(tolerance, -1.0 / ORDER)
+    return sum(max(1.0, part.total * scale) for part in spans_wanted(curve, stretches))
 
 
 def _arc_density(frame: Frame) -> Array:
