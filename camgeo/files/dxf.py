@@ -95,7 +95,8 @@ def write_dxf(
     A polygon becomes one closed LWPOLYLINE, arcs one with bulges (in R12 a POLYLINE), a B-spline a SPLINE by its
     control points, knots and weights if it is rational. `bore` is a diameter and all lengths are given in mm; the
     drawing's unit is `mm` mm long (1.0 or 25.4), stated in the header and, since R12 knows no such header, in a comment
-    on top. `$EXTMIN` and `$EXTMAX` are the exact extremes of all that is drawn. `name`, `about` and `remarks` go into comments.
+    on top. `$EXTMIN` and `$EXTMAX` are the exact extremes of all that is drawn. `name`, `about` and `remarks` go into
+    comments.
 
     Nothing is drawn twice: shapes of the reference that coincide become one entity with all their names.
 
@@ -160,8 +161,8 @@ def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: lis
 
     drawing.commit_pending_changes()
     drawing.update_all()
-    drawing.header["$HANDSEED"] = str(drawing.entitydb.handles)
     _order_classes(drawing)
+    drawing.header["$HANDSEED"] = str(drawing.entitydb.handles)
     for key, value in header.items():
         drawing.header[key] = value
     about_ezdxf = drawing.ezdxf_metadata()
@@ -173,7 +174,6 @@ def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: lis
         drawing.export_sections(TagWriter(stream, drawing.dxfversion, write_handles=True))
 
 
-def _set_layers(drawing: Drawing, mm: float, more: set[str]) -> None:
 def _order_classes(drawing: Drawing) -> None:
     """Put the classes of entities in use in one order: ezdxf takes them from a set of texts, which differs by run."""
     from ezdxf.sections.classes import REQ_R2004, REQUIRED_CLASSES
@@ -184,6 +184,7 @@ def _order_classes(drawing: Drawing) -> None:
         classes[name] = classes.pop(name)
 
 
+def _set_layers(drawing: Drawing, mm: float, more: set[str]) -> None:
     drawing.appids.add(APPLICATION)
     drawing.linetypes.add("CENTER", [length / mm for length in _CENTRE_LINE], description="Center ____ _ ____ _ ____")
     for layer, colour in (_COLOURS | {name: colour for name, colour in _MORE_COLOURS.items() if name in more}).items():
