@@ -9,6 +9,10 @@ from typing import Literal
 Sense = Literal["at_least", "at_most"]
 
 
+class UnsettledError(ArithmeticError):
+    """A search that ended short of its promise: what was sought, and how far it came."""
+
+
 @dataclass(frozen=True)
 class Check:
     """A figure held against its limit.

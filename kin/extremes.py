@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.check import UnsettledError
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
     from kin.arcs import Array, Indices
 
 MOST_HALVINGS = 48
-RESOLUTION = 2e-13  # as a share of a contour's extent: to this the extremes of a length are found (1e-11 mm of 50 mm)
+MOST_OPEN = 400_000  # intervals, beside eight times those given, that may stay undecided
+RESOLUTION = 2e-14  # as a share of a contour's extent: to this the extremes of a length are found (1e-12 mm of 50 mm)
 BLOCK = 8192  # intervals at a time, so that their arrays stay in the cache
 
 
@@ -68,20 +71,23 @@ def extremes(
     `at_low` and `at_high` (3, m) are f, f', f'' at the ends, one-sided into the interval; `evaluate(x, interval)`
     gives the same rows at points inside, `interval` (k,) being the interval each x comes from. Values are good to
     `resolution`, as far as f'''' does not swing within an interval; halving costs grow as resolution ** -1/4.
+    UnsettledError where that is not reached: f is rougher than it, by rounding.
     """
+    most = 8 * len(low) + MOST_OPEN
     found = Extremes(-np.inf, np.nan, -1, np.inf, np.nan, -1)
     owner = np.arange(len(low))
-    for halving in range(MOST_HALVINGS):
-        last = halving == MOST_HALVINGS - 1
+    for halving in range(MOST_HALVINGS + 1):
         parts = [slice(begin, begin + BLOCK) for begin in range(0, len(low), BLOCK)]
         doubtful = []
         for part in parts:
             block = _Block(low[part], high[part], at_low[:, part], at_high[:, part], owner[part])
-            found, open_ = _scan(found, block, np.inf if last else resolution)
+            found, open_ = _scan(found, block, resolution)
             doubtful.append(open_)
         open_ = np.concatenate(doubtful) if doubtful else np.zeros(0, dtype=bool)
         if not open_.any():
             break
+        if halving == MOST_HALVINGS or 2 * np.count_nonzero(open_) > most:
+            raise UnsettledError(f"extremes cannot be told to {resolution:.3g}: rounding makes the function rougher")
         low, high, at_low, at_high, owner = low[open_], high[open_], at_low[:, open_], at_high[:, open_], owner[open_]
         middle = 0.5 * (low + high)
         at_middle = evaluate(middle, owner)

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from kin.bearing import Bearing, bearing_of
-from kin.check import degrees
+from kin.check import UnsettledError, degrees
 from kin.distinct import distinct
-from kin.envelope import FlatEnvelope, PairSupport, SupportLaw
+from kin.envelope import FlatEnvelope, PairSupport
 from kin.extremes import Extremes, extremes, resolution
 from kin.foot import FINE_STEP, grid
 from kin.motion import TURN, ContactError, Judged, MotionError, Play, Unit, motion_error, with_steps
@@ -125,7 +125,7 @@ def _face_error(bearing: Bearing, lift: Lift, theta: Array, reach: Extremes) -> 
     return motion_error(reach.worst, errors, max(ranges, default=None), "mm")
 
 
-def error_extremes(bearing: Bearing, law: SupportLaw) -> Extremes:
+def error_extremes(bearing: Bearing, law: Lift) -> Extremes:
     """Extremes of q - p over the turn."""
     nodes = bearing.nodes(0.0, TURN, law.breaks)
     stretch, at_low, at_high = bearing.between(nodes)
@@ -140,7 +140,14 @@ def error_extremes(bearing: Bearing, law: SupportLaw) -> Extremes:
     def error(theta: Array, of: Indices) -> Array:
         return bearing.derivatives(theta, stretch[of]) - law.derivatives(theta, 2)
 
-    return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=resolution(bearing.contour.vertices))
+    return extremes(
+        nodes[:-1],
+        nodes[1:],
+        at_low,
+        at_high,
+        error,
+        resolution=resolution(bearing.contour.vertices) + 4.0 * law.rounding,
+    )
 
 
 def lift_range(bearing: Bearing, begin: float, end: float) -> float:
@@ -285,6 +292,8 @@ class FlatPair:
             theta = new
             if moved <= SETTLED:
                 break
+        else:
+            raise UnsettledError(f"contact was not found in {MOST_STEPS} steps; the last was of {moved:.3g} rad")
         return np.stack([theta + turns * TURN, 1.0 / slope, -bend / slope**3])
 
     def _error_extremes(self, bearing: Bearing, side: int) -> Extremes:
@@ -311,6 +320,9 @@ class FlatPair:
                     break
                 t[todo] += np.clip(step[todo], -0.2, 0.2)
                 there[:, todo] = intended(t[todo])
+            else:
+                left = float(np.abs(step[todo]).max())
+                raise UnsettledError(f"a normal was not found in {MOST_STEPS} steps; {left:.3g} rad are left")
             rate = slope / (there[1] + there[2] * step)
             return np.stack([t - theta + step, rate - 1.0, (bend - there[2] * rate**2) / there[1]])
 
@@ -319,7 +331,8 @@ class FlatPair:
 
         there, low, high = intended(nodes), nodes[:-1], nodes[1:]
         at_low, at_high = error(low, q_low, there[:, :-1]), error(high, q_high, there[:, 1:])
-        found = extremes(low, high, at_low, at_high, inside, resolution=RESOLUTION_ANGLE)
+        fine = RESOLUTION_ANGLE + 4.0 * self.transmission.rounding / self.transmission.arm
+        found = extremes(low, high, at_low, at_high, inside, resolution=fine)
 
         def shaft(theta: float) -> float:
             at = np.array([theta])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from kin.check import UnsettledError
 from kin.distinct import distinct
 
 if TYPE_CHECKING:
@@ -84,6 +85,9 @@ def climb(
         closed = high[todo] - low[todo] <= 1e-15 * TURN
         step[todo[closed]] = 0.0
         todo = todo[far(x[todo], step[todo])]
+    if len(todo):
+        left = float(np.abs(step[todo]).max())
+        raise UnsettledError(f"{len(todo)} feet were not found in {MOST_STEPS} steps; the last was of {left:.3g} rad")
     return x, step, f, slope, bend
 
 
@@ -190,6 +194,9 @@ class Inverse:
             if not len(todo):
                 break
             x[todo] += step[todo]
+        if len(todo):
+            left = float(np.abs(step[todo]).max())
+            raise UnsettledError(f"{len(todo)} angles were not found in {MOST_STEPS} steps; {left:.3g} rad are left")
         return x + base, step
 
 

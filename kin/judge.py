@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from kin.arcs import dot, left
-from kin.check import Check, at_most, failed
+from kin.check import Check, UnsettledError, at_most, failed
 from kin.contour import ARC_SHARE
 from kin.deviation import Deviation, convex_deviation, deviation
 from kin.extremes import extremes, resolution
@@ -94,11 +94,11 @@ class Limits:
 class Findings:
     """What was found on a contour; motion is None where the follower finds no contact.
 
-    `linkage` is None without a mechanism, or where the contour does not drive it all round.
+    `deviation` is None where it could not be told. `linkage` is None without a mechanism, or where the contour does not drive it all round.
     """
 
     judged: Judged | None
-    deviation: Deviation
+    deviation: Deviation | None
     checks: tuple[Check, ...]
     linkage: LinkageVerdict | None = None
 
@@ -117,13 +117,17 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) 
     try:
         judged = intent.follower.judge(contour, phi)
         checks = _motion_checks(judged, intent, limits, slack)
-    except ContactError as error:
+    except (ContactError, UnsettledError) as error:
         checks = [failed("motion", str(error), unit=intent.follower.unit)]
     envelope = intent.follower.envelope
     if judged and judged.reach and contour.is_convex and envelope.regular:
         found = convex_deviation(judged.reach)
     else:
-        found = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], envelope)
+        try:
+            found = deviation(contour.as_arcs(spline or SPLINE_ERROR)[0], envelope)
+        except UnsettledError as error:
+            unsettled = failed("contour", str(error), unit="mm", limit=limits.tolerance)
+            return Findings(judged, None, (unsettled, *checks))
     linkage = None
     if intent.mechanism is not None:
         linkage, more = _judge_linkage(contour, intent, phi, limits, slack)

@@ -83,7 +83,7 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
         checks=tuple(about(check, path.name) for check in (*checks, *found.checks)),
         motion=found.judged and found.judged.motion,
         play=found.judged and found.judged.play,
-        measured_error=found.deviation.worst[0],
+        measured_error=found.deviation.worst[0] if found.deviation else None,
         pieces=pieces,
         linkage=found.linkage,
     )
