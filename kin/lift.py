@@ -51,6 +51,12 @@ _SEAM_ORDER = 6  # derivatives that must agree at 0 and 2 pi, else 0 is a break
 _SLIVER = 1e-11  # rad: switches closer than this are one, found twice
 _CLEAR = 1e-6  # rad, likewise
 _SAME_CIRCLE = 16 * 2.0**-52
+_WHOLE = "a whole exponent is smooth where what it is put on vanishes"
+_HINTS = (
+    ("fractional power", _WHOLE),
+    ("derivative", _WHOLE),
+    ("division", "where both sides of a fraction vanish, write it out (sin(2*t)/sin(t) is 2*cos(t))"),
+)
 _LOOKS = 1024  # angles at which a formula's rounding is asked for
 
 
@@ -247,7 +253,9 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
             _demand_finite(piece, begin, end)
     except FormulaDomainError as error:
         at = math.degrees(error.at) % 360
-        raise IntentError(f"p does not exist at {at:.6g} degrees: {error.operation}", "p", at) from error
+        what = "p or a derivative of it" if error.operation.startswith("derivative") else "p"
+        hint = next((f"; {hint}" for word, hint in _HINTS if word in error.operation), "")
+        raise IntentError(f"{what} does not exist at {at:.6g} degrees: {error.operation}{hint}", "p", at) from error
     except FormulaError as error:
         raise IntentError(error.message, "p") from error
     functions = [_about(_plain(piece), pivot, scale) for piece in pieces]
@@ -290,7 +298,12 @@ def _demand_finite(piece: Expression, begin: float, end: float) -> None:
     at = unbounded(piece, begin, end, 2)
     if at is not None:
         degrees = math.degrees(at) % 360
-        raise IntentError(f"p, p' or p'' cannot be bounded near {degrees:.6g} degrees", "p", degrees)
+        raise IntentError(
+            f"p, p' or p'' cannot be bounded near {degrees:.6g} degrees; {_WHOLE}, and a fraction of which both sides "
+            "vanish has to be written out",
+            "p",
+            degrees,
+        )
 
 
 def _plain(piece: Expression) -> Stretch:

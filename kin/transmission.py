@@ -142,6 +142,19 @@ def from_arc(
     if not 0 < top < 2 * arm:
         where = f"the middle of the arc is {top:.9g} mm from the shaft"
         raise IntentError(f"{where}; it must lie between 0 and 2 l = {2 * arm:.9g} mm", "arc.radius")
+    if side == "concave":
+        # r cuts the arc's circle at this distance from its middle; at 0 it is tangent to the ray, and r' infinite
+        half_chord = centre * math.cos(delta / 2) - mean
+        steep = centre * math.sin(delta / 2) * mean
+        room = half_chord * math.sqrt((2 * arm - mean) * (2 * arm + mean))
+        if room <= steep:
+            reached = 2 * steep / (max(room, 0.0) + steep)
+            raise IntentError(
+                f"psi'(phi) must stay below 1, else the cam cannot be turned through; it reaches {reached:.9g} at a shaft "
+                f"angle of {math.degrees(alpha / 2):.6g} degrees, where the arc begins; a larger radius is less steep",
+                "arc.radius",
+                math.degrees(alpha / 2),
+            )
     arc = FromArc(arm, alpha, delta, centre, radius, power, side == "convex")
     psi, lean = _over_period(delta, [0.0, delta], [arc], (0.5, 0.5))
     place = (centre * math.cos(delta / 2), centre * math.sin(delta / 2), radius if side == "convex" else -radius)
