@@ -19,6 +19,8 @@ from kin.distinct import distinct
 from kin.dwell import dwells
 from kin.extremes import Extremes, extremes
 from kin.frame_dwell import Output, longest_dwell
+from kin.jet import Jet
+from kin.monotone import between, cells, pieces
 from kin.motion import MotionError, Play, Unit, motion_error, with_steps
 from kin.resting import CENTRED, TURN, WAYS, FrameError, Resting, driven
 
@@ -190,10 +192,13 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
 
     Both lifts off by the tolerance, in the four combinations of signs: to first order the tolerance times the greatest
     |d output/dS| + |d output/dS1| at fixed shaft angle, and the term of second order. Between these corners the error
-    can be greater by its curvature along either lift alone, which is added. None where the mechanism binds within it.
+    can be greater by its curvature along either lift alone, which is added. None where the mechanism may bind within
+    it: not at a corner, perhaps, but between them, when the point of a dyad can get to either side of its ground pivot.
     """
     intended = _Intended(mechanism)
     nodes = apart(np.concatenate([mechanism.breaks, np.arange(LIMIT_STEPS) * (TURN / LIMIT_STEPS)]))
+    if _may_bind(mechanism, tolerance, nodes):
+        return None
     nodes = np.append(nodes, nodes[0] + TURN)
 
     def error(theta: Array, off: float, off1: float) -> Array:
@@ -220,6 +225,37 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
         return None
     limit = max(corners) + 0.5 * float(np.max(bulge))
     return float(np.degrees(limit)) if mechanism.unit == "deg" else limit
+
+
+def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
+    """Whether some loop is nearer to binding than both lifts, off by the tolerance, can move its point.
+
+    Looked for at relative angles (n,) and where the margin of a loop is least. No margin changes faster than its point.
+    """
+    chain, about = mechanism.chain, mechanism.about
+
+    def lifts(theta: Array) -> tuple[Array, Array]:
+        s, s1 = (mechanism.lift.derivatives(theta + k, 0)[0] for k in (0.0, 0.5 * np.pi))
+        return s, s1
+
+    for loop in range(mechanism.outputs):
+
+        def margin(theta: Array, loop: int = loop) -> Array:
+            return chain.margin(loop, *lifts(theta), about)[None]
+
+        least = pieces(cells(margin, between(0.0, TURN, mechanism.breaks.tolist()), 0.01 * tolerance)).x
+        theta = np.concatenate([nodes, least])
+        s, s1 = lifts(theta)
+        moved = np.full_like(theta, 2.0)
+        if loop > 0:
+            moved = np.zeros_like(theta)
+            for off, off1 in ((1.0, 0.0), (0.0, 1.0)):
+                s_jet, s1_jet = (Jet(np.stack([f, np.full_like(f, rate)])) for f, rate in ((s, off), (s1, off1)))
+                x, y = chain.hung(chain.solve(s_jet, s1_jet, about[: loop - 1]), loop - 1)
+                moved += np.hypot(x.c[1], y.c[1])
+        if (margin(theta)[0] <= tolerance * moved).any():
+            return True
+    return False
 
 
 def _plays(centred: Resting) -> tuple[Play, Play]:

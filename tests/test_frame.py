@@ -7,6 +7,7 @@ from square_frame import CENTRED, RESTS, Bars, Bench
 
 from kin.bearing import bearing_of
 from kin.contour import Contour
+from kin.dyad import RPR
 from kin.extremes import extremes
 from kin.frame import FrameError, _output, implied_limit, judge_frame
 from kin.frame_dwell import Output, longest_dwell
@@ -226,6 +227,17 @@ def test_no_limit_where_the_mechanism_binds_within_the_tolerance():
     mechanism = Mechanism(InvertedSliderCrank(ground, rocker), LIFT, BREADTH)
     assert implied_limit(mechanism, 1e-3) is not None
     assert implied_limit(mechanism, 0.02) is None
+
+
+def test_no_limit_where_a_contour_may_take_a_block_past_its_pivot():
+    """The corners of the tolerance lie on either side of the pivot, none on it: an error of 180 degrees is no limit."""
+    here = FOUR_BAR.at(1.3, 1)
+    x, y = here.joint[:, 0, 0] - 70.0 * np.array([np.cos(here.frame[0, 0]), np.sin(here.frame[0, 0])])
+    slide = RPR("coupler", (-70.0, 0.0), (x - 0.03, y - 0.04), 0.0)
+    mechanism = Mechanism(FOUR_BAR.linkage, LIFT, BREADTH, (slide,))
+    assert 1e-3 < mechanism.mobility().margin < 0.05
+    assert 0 < implied_limit(mechanism, 1e-4) < 10
+    assert implied_limit(mechanism, 0.05) is None
 
 
 # --- what does not go round -------------------------------------------------------------------------------------------
