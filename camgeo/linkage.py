@@ -14,6 +14,7 @@ import numpy as np
 
 from camgeo.recipe.model import FourBarLinkage, InvertedSliderCrankLinkage, RPRDyad, RRPDyad, RRRDyad
 from kin.check import Check, degrees, failed
+from kin.monotone import RoughError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model import DwellAsked, Dyad, Linkage, Recipe
     from kin import dyad, linkage
     from kin.dwell import Dwell
+    from kin.figures import Figures
     from kin.lift import Lift
     from kin.mechanism import Mechanism
 
@@ -33,7 +35,10 @@ DEGREES = 180.0 / math.pi
 
 
 def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
-    """Mechanism of a recipe that has a linkage; raises RecipeErrors where the shaft does not lie within the cam."""
+    """Mechanism of a recipe that has a linkage.
+
+    Raises RecipeErrors where the shaft does not lie within the cam, or a dyad's output would not swing.
+    """
     from kin.law import IntentError
     from kin.mechanism import Mechanism
 
@@ -41,8 +46,9 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
     try:
         return Mechanism(_loop(asked), lift, breadth, tuple(map(_dyad, asked.dyads)))
     except IntentError as error:
-        field = f"cam.{error.field}"
-        raise recipe.error(field if field in recipe.marks else "cam", error.message) from error
+        part = "linkage" if error.field.startswith("dyads") else "cam"
+        field = f"{part}.{error.field}"
+        raise recipe.error(field if field in recipe.marks else part, error.message) from error
 
 
 def _linkage(recipe: Recipe) -> Linkage:
@@ -132,11 +138,15 @@ def _dwell_check(asked: DwellAsked, longest: Dwell) -> list[Check]:
 
 @dataclass(frozen=True)
 class Driven:
-    """The linkage of a recipe: mechanism, checks, and dwells over the shaft and the relative angle, if asked for."""
+    """The linkage of a recipe: mechanism, checks, and dwells over the shaft and the relative angle, if asked for.
+
+    `figures` are those of its motion, None where it does not turn.
+    """
 
     mechanism: Mechanism
     checks: tuple[Check, ...]
     dwells: Mapping[Over, tuple[Dwell, ...]]
+    figures: Figures | None
 
     @property
     def turns(self) -> bool:
@@ -147,11 +157,21 @@ class Driven:
 def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
     """Mechanism of a recipe that has a linkage, with its checks; `breadth` (mm) is that of the cam, None if it varies.
 
-    Raises RecipeErrors where no square frame holds the cam, or the shaft does not lie within it.
+    Raises RecipeErrors where no square frame holds the cam, or the shaft does not lie within it, where a dyad's output
+    would not swing, a band is lost in rounding, or the motion is too sudden to be followed.
     """
     if breadth is None:
         raise recipe.error("linkage", "a square frame holds a cam of constant breadth alone, and this cam's varies")
     mechanism = mechanism_of(recipe, lift, breadth)
+    try:
+        return _driven(recipe, mechanism)
+    except RoughError as error:
+        at = math.degrees(error.at % TURN)
+        problem = f"the motion is too sudden to be followed, near a relative angle of {at:.6g} degrees"
+        raise recipe.error("linkage", problem, None, "keep its loops farther from binding") from error
+
+
+def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
     checks = mobility_checks(mechanism)
     found: dict[Over, tuple[Dwell, ...]] = {}
     asked = recipe.dwell
@@ -159,11 +179,13 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
         try:
             found = {over: dwells_over(mechanism, asked.band, over) for over in OVER}
         except ValueError as error:
-            raise recipe.error("dwell.band", str(error)) from error
+            unit = "rad" if mechanism.unit == "deg" else "mm"
+            raise recipe.error("dwell.band", f"{error} {unit}", None, "give a wider band") from error
         checks += _dwell_check(asked, found[asked.over][0])
     elif asked is not None and asked.at_least is not None:
         checks.append(failed("dwell", "the mechanism does not turn", unit="deg", limit=math.degrees(asked.at_least)))
-    return Driven(mechanism, tuple(checks), found)
+    figures = mechanism.figures() if mechanism.mobility().turns else None
+    return Driven(mechanism, tuple(checks), found, figures)
 
 
 def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...], Array]:

@@ -20,6 +20,8 @@ __all__ = ["Figures", "Place", "Rows", "figures"]
 TURN = 2.0 * math.pi
 # What is resolved, as a part of the greatest value of each row.
 _SHARE = 1e-12
+# Changes of the output below this part of it, or of 1 rad or mm, are rounding: an output may stand still but for that.
+_ROUNDED = 64.0 * 2.0**-52
 
 
 class Place(NamedTuple):
@@ -84,9 +86,15 @@ class Rows(NamedTuple):
     offset: Array  # of D from the middle of the frame
 
 
+_OF_OUTPUT = {"output", "velocity_relative", "acceleration_relative", "velocity", "acceleration"}
+
+
 def figures(rows: Callable[[Array], Rows], shaft: Callable[[float], float], breaks: Array) -> Figures:
     """Find the figures from the rows, smooth between breaks, and the shaft angle at a relative angle."""
-    of = cells(lambda theta: np.stack(rows(theta)), between(0.0, TURN, breaks.tolist()), share=_SHARE)
+    places = between(0.0, TURN, breaks.tolist())
+    size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
+    rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Rows._fields])
+    of = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
     by = dict(zip(Rows._fields, (pieces(of, row) for row in range(len(Rows._fields))), strict=True))
 
     def place(found: tuple[float, float]) -> Place:

@@ -15,6 +15,9 @@ from camgeo import pipeline
 from camgeo.foreseen import foreseen
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load, read
+from camgeo.report.document import summary
+from kin.mechanism import Mechanism
+from kin.monotone import RoughError
 
 if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
@@ -133,6 +136,39 @@ def test_a_dwell_that_only_the_file_misses_fails_the_file(tmp_path: Path) -> Non
     assert failed(outcome.report) == {("dwell", "four-bar.dxf")}
 
 
+def test_a_motion_too_sudden_to_be_followed_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def rough(_: Mechanism) -> None:
+        raise RoughError(1.3, 1e-9)
+
+    monkeypatch.setattr(Mechanism, "figures", rough)
+    with pytest.raises(RecipeErrors, match=r"linkage: the motion is too sudden .* of 74\.4845 degrees; keep"):
+        pipeline.export(recipe(), tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_output_that_stands_still_but_for_rounding_is_one_long_dwell(tmp_path: Path) -> None:
+    # the slot of the second dyad lies along the slide of the first: 30 degrees, whatever the cam does
+    dyads = (
+        "rocker: 105, dyads: [{kind: rrp, point: [105, 0], link: 200, through: [0, 0], direction: 30}, "
+        "{kind: rpr, on: previous, point: [0, 0], ground: [-300, -173.2050807568877]}]"
+    )
+    outcome = pipeline.export(recipe("rocker: 105", dyads), tmp_path)
+    assert outcome.ok
+    linkage = outcome.report["linkage"]
+    assert linkage["output"]["min"] == pytest.approx(30, abs=1e-12)
+    assert linkage["swing"] < 1e-12
+    assert abs(linkage["peaks"]["shaft"]["velocity"]["value"]) < 1e-12
+    assert {row["length_deg"] for row in linkage["dwells"]} == {360.0}
+
+
+@pytest.mark.parametrize(("over", "length"), [("shaft", 37.05), ("relative", 45.17)])
+def test_the_dwell_over_the_angle_asked_for_comes_first(over: str, length: float) -> None:
+    report = pipeline.check(recipe("at_least: 36", f"over: {over}")).report
+    first = report["linkage"]["dwells"][0]
+    assert (first["over"], first["from"]) == (over, "intended")
+    assert f"dwell {length} deg" in summary(report)
+
+
 def test_a_limit_of_the_output_error_of_one_s_own(tmp_path: Path) -> None:
     outcome = pipeline.export(recipe("{angles: 360}", "{angles: 360, output_error: 1.0e-5}"), tmp_path)
     assert failed(outcome.report) == {("linkage-error", "four-bar.dxf")}
@@ -146,7 +182,13 @@ def test_a_limit_of_the_output_error_of_one_s_own(tmp_path: Path) -> None:
     [
         ("[18, 8.5]", "[28, 8.5]", "four-bar.yaml:5:10: cam.pivot: the shaft lies outside the cam"),
         ("p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25", "p: 40 + cos(2*t)", "four-bar.yaml:6:10: linkage: a square"),
-        ("band: 0.1", "band: 1.0e-13", "dwell.band"),
+        ("band: 0.1", "band: 1.0e-13", "e-14 rad; give a wider band"),
+        (
+            "rocker: 105",
+            # the middle of the frame's side goes round this pivot once a turn
+            "rocker: 105, dyads: [{kind: rpr, on: coupler, point: [-70, 0], ground: [10, 25]}]",
+            "four-bar.yaml:6:72: linkage.dyads: the point that dyad 1 hangs on goes right round",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused(old: str, new: str, words: str, tmp_path: Path) -> None:

@@ -36,9 +36,9 @@ def linkage_section(recipe: Recipe, driven: Driven, files: Sequence[FileResult])
         "shaft_rate": {"min": mobility.least_rate, "relative_deg": math.degrees(mobility.rate_at)},
         "dwells": [],
     }
-    if not driven.turns:
+    if driven.figures is None:
         return section
-    section |= _figures(mechanism.figures(), scale, unit)
+    section |= _figures(driven.figures, scale, unit)
     section["dwells"] = _dwells(recipe, driven, judged, scale)
     if judged:
         name, worst = max(judged, key=lambda pair: pair[1].error.max)
@@ -108,6 +108,7 @@ def _figures(found: Figures, scale: float, unit: str) -> dict[str, Any]:
 def _dwells(
     recipe: Recipe, driven: Driven, judged: Sequence[tuple[str, LinkageVerdict]], scale: float
 ) -> list[dict[str, Any]]:
+    """Rows of the dwells, those over the angle that the recipe asks for first."""
     asked = recipe.dwell
     if asked is None:
         return []
@@ -120,7 +121,7 @@ def _dwells(
             "length_deg": math.degrees(dwell.length),
             "from": "intended",
         }
-        for over in OVER
+        for over in sorted(OVER, key=lambda over: over != asked.over)
         for dwell in driven.dwells[over]
     ]
     # of the ways in which a frame with play can rest, that in which the dwell is shortest
