@@ -204,7 +204,8 @@ def pieces_word(file: dict[str, Any]) -> str:
     """What the pieces of a file's contour are called."""
     if file["kind"] == "stl":
         return "edges"
-    return {"arcs": "arcs", "polyline": "edges", "spline": "spans", "exact": "spans"}.get(file.get("as") or "", "pieces")
+    words = {"arcs": "arcs", "polyline": "edges", "spline": "spans", "exact": "spans"}
+    return words.get(file.get("as") or "", "pieces")
 
 
 def table(report: dict[str, Any]) -> str:
