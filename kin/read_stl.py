@@ -36,6 +36,8 @@ LONGEST_WORD = 40
 NUMBERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 # Beyond this, mm, products of three coordinates have no digits left for a part.
 LARGEST = 1e7
+# Share of a section's extent within which a point is on the straight between its neighbours.
+STRAIGHT = 1e-13
 
 
 class Section(NamedTuple):
@@ -120,11 +122,11 @@ def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
     whole = outline
     if outline is None:
         height, outline = cut(mesh, height, path)
-    contour, holes = sectioned(outline, path)
+    contour, holes = sectioned(outline, path, across=whole is None)
     sections = []
     for asked in heights:
         if whole is None:
-            sections.append(Section(asked, *sectioned(cut(mesh, asked, path)[1], path)))
+            sections.append(Section(asked, *sectioned(cut(mesh, asked, path)[1], path, across=True)))
         elif z_min < asked < z_max:
             sections.append(Section(asked, contour, holes))
     return Solid(
@@ -154,9 +156,10 @@ def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
     return section(mesh, height)
 
 
-def sectioned(outline: Outline, path: Path) -> tuple[Contour, tuple[Contour, ...]]:
-    """Contour and holes of a section, which is one contour with holes in it."""
-    contours = [Contour.from_vertices(outline.points[ring]) for ring in rings(outline, path)]
+def sectioned(outline: Outline, path: Path, *, across: bool) -> tuple[Contour, tuple[Contour, ...]]:
+    """Contour and holes of a section, which is one contour with holes in it; `across` triangles, or along a face."""
+    loops = [outline.points[ring] for ring in rings(outline, path)]
+    contours = [Contour.from_vertices(straightened(loop) if across else loop) for loop in loops]
     meeting = first_meeting(contours)
     if meeting:
         raise met(meeting, path)
@@ -269,6 +272,17 @@ def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
     points = low[:, :2] + share[:, None] * (top - low)[:, :2]
     start, end = number.reshape(2, -1)
     return height, Outline(points, start, end)
+
+
+def straightened(points: Array) -> Array:
+    """Ring (n, 2) without the points on the straight between their neighbours, where a section cuts diagonals."""
+    before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+    chord, here = after - before, points - before
+    length = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), np.finfo(float).tiny)
+    beside = np.abs(chord[:, 0] * here[:, 1] - chord[:, 1] * here[:, 0]) / length
+    along = (chord[:, 0] * here[:, 0] + chord[:, 1] * here[:, 1]) / length
+    straight = (beside <= STRAIGHT * np.abs(points).max()) & (along > 0.0) & (along < length)
+    return points[~straight] if np.count_nonzero(~straight) >= 3 else points
 
 
 def rings(outline: Outline, path: Path) -> list[Indices]:

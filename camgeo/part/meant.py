@@ -63,7 +63,9 @@ def cross_holes_of(body: Body) -> tuple[CrossHole, ...]:
 
 
 def _inset(z: float, thickness: float, chamfer: float) -> float:
-    return max(chamfer - z, chamfer - (thickness - z), 0.0)
+    """How far inside the contour the chamfers take the outline at a height; exactly 0 between them."""
+    upper = thickness - chamfer
+    return max(chamfer - z, 0.0) if z <= upper else z - upper
 
 
 def _is_within(opening: Opening, diameter: float) -> bool:
