@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.dynamics import DynamicsError, Running, Train
-from kin.peaks import beside
+from kin.peaks import beside, narrowed
 from kin.response import Response, Samples, response
 
 if TYPE_CHECKING:
@@ -300,28 +300,19 @@ class _View:
         inside = np.flatnonzero(phi <= end)
         if not len(inside):
             return
-        force, phi = force[inside], phi[inside]
+        force = force[: inside[-1] + 1]
         for sign, best in ((1.0, log.greatest), (-1.0, -log.least)):
-            i = int(np.argmax(sign * force))
-            log.force(float(force[i]), float(phi[i]))
-            room = _NEAR * float(np.ptp(force))
-            if sign * force[i] + room <= best:
+            least = max(best, float((sign * force).max())) - _NEAR * float(np.ptp(force))
+            near = np.flatnonzero(sign * force >= least)
+            before, after = beside(at.stretch[: len(force)], near)
+            peak = (sign * force[near] >= sign * force[before]) & (sign * force[near] >= sign * force[after])
+            if not peak.any():
                 continue
-            log.force(*self._peak(at, i, len(force), sign, end))
-
-    def _peak(self, at: Samples, i: int, count: int, sign: float, last: float) -> tuple[float, float]:
-        """Extreme of the force about place i, and where."""
-        stretch = int(at.stretch[i])
-        knot = float(self.found.drive.knots[stretch])
-        before, after = (int(places[0]) for places in beside(at.stretch[:count], np.array([i])))
-        low, high = float(at.time[before]), float(at.time[after])
-        high = min(high, last - knot)
-        for _ in range(_ROUNDS // 2):
-            time = np.linspace(low, high, _GRID)
-            force, _ = self._level(Samples(np.full(_GRID, stretch), time))
-            j = int(np.argmax(sign * force))
-            low, high = float(time[max(j - 1, 0)]), float(time[min(j + 1, _GRID - 1)])
-        return float(force[j]), knot + float(time[j])
+            stretch = at.stretch[near[peak]]
+            high = np.minimum(at.time[after[peak]], end - knots[stretch])
+            values, time = narrowed(lambda x: self._level(x)[0], stretch, (at.time[before[peak]], high), sign)
+            i = int(np.argmax(sign * values))
+            log.force(float(values[i]), float(knots[stretch[i]] + time[i]))
 
 
 class _Log:

@@ -30,7 +30,8 @@ Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 _LADDER = 1.08  # ratio of the speeds at which the bound is taken
-_MOST_STEPS = 2_000
+_EACH = 50  # places on a stretch, and what it costs besides
+_MOST_PLACES = 10_000_000  # at which forces are taken in all, which bounds the search to some seconds
 _HALVINGS = 48
 _RESOLUTION = 1e-11
 _CORNER = 1e-9  # of the greatest velocity: a lesser leap is a tangent's rounding
@@ -142,7 +143,7 @@ def _rigid(train: Train, drive: Drive) -> float | None:
 
 def _speeds(train: Train, drive: Drive) -> Iterator[float]:
     """Speeds to look at, rising; DynamicsError where they are too many."""
-    steps = 0
+    places = 0.0
     rpm = _safe(train, drive)
     last = train.natural / _LEAST_RATIO * 60.0 / TURN
     while rpm < last:
@@ -155,11 +156,11 @@ def _speeds(train: Train, drive: Drive) -> Iterator[float]:
         ratio = b * rpm  # b falls as the speed rises
         while rpm < top:
             yield rpm
-            steps += 1
-            if steps > _MOST_STEPS:
+            places += _EACH * len(drive) + 4.0 * TURN * b
+            if places > _MOST_PLACES:
                 raise DynamicsError(
-                    f"float has not begun at {rpm:.6g} rpm, and {_MOST_STEPS} speeds have been looked at: so little "
-                    "damping makes too many resonances"
+                    f"float has not begun at {rpm:.6g} rpm, and the search ends there: a train so stiff with so little "
+                    "damping has too many resonances"
                 )
             b = ratio / rpm
             width = train.damping_ratio * b

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kin.chebyshev import evaluated
 from kin.response import Response, Samples
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -97,15 +100,30 @@ class Figure:
             brackets += zip(*(column[highest].tolist() for column in columns), strict=True)
         if brackets and rounds:
             stretch, low, high = (np.array(column) for column in zip(*brackets, strict=True))
-            grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))
-            for _ in range(rounds):
-                time = low[:, None] + (high - low)[:, None] * grid
-                values = self.at(starts, Samples(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
-                top = np.argmax(sign * values, axis=1)
-                low, high = time[rows, np.maximum(top - 1, 0)], time[rows, np.minimum(top + 1, _GRID - 1)]
-            found += zip(values[rows, top].tolist(), stretch.tolist(), time[rows, top].tolist(), strict=True)
+            tops, times = narrowed(lambda at: self.at(starts, at), stretch, (low, high), sign, rounds)
+            found += zip(tops.tolist(), stretch.tolist(), times.tolist(), strict=True)
         value, which, time = max(found, key=lambda one: sign * one[0])
         return value, float(self.response.drive.knots[which]) + time
+
+
+def narrowed(
+    value: Callable[[Samples], Array],
+    stretch: Indices,
+    between: tuple[Array, Array],
+    sign: float,
+    rounds: int = _ROUNDS,
+) -> tuple[Array, Array]:
+    """Greatest value times sign between two times in each stretch (n,), and its time: (n,), (n,)."""
+    low, high = between
+    grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))
+    best, where = np.empty(len(stretch)), low
+    for _ in range(rounds):
+        time = low[:, None] + (high - low)[:, None] * grid
+        values = value(Samples(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
+        top = np.argmax(sign * values, axis=1)
+        best, where = values[rows, top], time[rows, top]
+        low, high = time[rows, np.maximum(top - 1, 0)], time[rows, np.minimum(top + 1, _GRID - 1)]
+    return best, where
 
 
 def beside(stretch: Indices, places: Indices) -> tuple[Indices, Indices]:
