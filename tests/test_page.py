@@ -309,6 +309,24 @@ def test_a_shifted_contour_shows_as_an_error_on_one_side(tmp_path: Path) -> None
     assert error.low[STEPS // 2] == pytest.approx(-0.01, abs=1e-4)
 
 
+def test_holes_are_the_files_own_and_a_train_has_its_table(tmp_path: Path) -> None:
+    path = tmp_path / "train.yaml"
+    path.write_text(
+        "cam: {kind: support, p: 25 + cos(3*t)}\npart: {bore: 12, bolts: {count: 4, hole: 3, circle: 30}}\n"
+        "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 300}\n",
+        encoding="utf-8",
+    )
+    made = Made(path)
+    metal = made.content.scene.bodies[0].shapes[0]
+    assert len(metal.rings) == 6
+    areas = sorted(abs(Contour.from_bulges(ring.points, ring.bulges).area) for ring in metal.rings[1:])
+    assert areas == pytest.approx([math.pi * 1.5**2] * 4 + [math.pi * 36.0])
+    (run, *_) = made.outcome.report["dynamics"]["runs"]
+    table = made.text.partition('id="train-head"')[2].partition("</table>")[0]
+    assert f"{run['steady']['peak_force']:.6g}" in table
+    assert "train.dxf" in table
+
+
 def test_an_unreadable_file_is_left_out(tmp_path: Path) -> None:
     recipe = load(RECIPES / "reuleaux.yaml")
     path = tmp_path / "reuleaux.stl"

@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.page import curves, outline
 from camgeo.page.followers import SHAFT, cam, double_roller, flat, flat_pair
-from camgeo.page.scene import Scene, pivot
+from camgeo.page.scene import Scene, disc, pivot
 from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
 
 if TYPE_CHECKING:
@@ -57,8 +57,8 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
     """Gather what a page shows; `paths` are the DXF and STL files that were made, and still lie there."""
     files = [found for path in paths if (found := outline.read(recipe, path)) is not None]
     exact = outline.Exact.of(design, outline.Exact.looks(files))
-    rings = [(file.name, file.ring) for file in files] or [(EXACT, _exact_ring(design))]
-    scene, plots, relative = _mechanism(recipe, design, rings)
+    drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
+    scene, plots, relative = _mechanism(recipe, design, drawn)
     plots.append(curves.curvature(recipe, design, exact))
     errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files]
     scene = scene.scaled(1.0 / recipe.mm)
@@ -71,18 +71,22 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
     return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
 
 
-def _exact_ring(design: Design) -> Ring:
+def _exact_rings(recipe: Recipe, design: Design) -> tuple[Ring, ...]:
+    bore = recipe.part.bore
+    holes = (disc(0.0, 0.0, 0.5 * bore),) if bore else ()
     if design.contour is None:
-        return outline.exact(design.profile.curve, whole=True)
-    return outline.exact(design.contour)
+        return (outline.exact(design.profile.curve, whole=True), *holes)
+    return (outline.exact(design.contour), *holes)
 
 
-def _mechanism(recipe: Recipe, design: Design, rings: list[tuple[str, Ring]]) -> tuple[Scene, list[curves.Plot], Array]:
+def _mechanism(
+    recipe: Recipe, design: Design, drawn: list[tuple[str, tuple[Ring, ...]]]
+) -> tuple[Scene, list[curves.Plot], Array]:
     """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
-    reach = float(np.hypot(*rings[0][1].flattened().T).max())
+    reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contour is not None else "No such cam is made: a check of the exact contour fails."
-    disk = cam(rings, bore, size, -SHAFT)
+    disk = cam(drawn, bore, size, -SHAFT)
     if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
         law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
         if isinstance(recipe.cam, DoubleRollerCam):
@@ -101,7 +105,7 @@ def _mechanism(recipe: Recipe, design: Design, rings: list[tuple[str, Ring]]) ->
         from camgeo.page.linked import Driven, linked
 
         driven = Driven.of(design.driven.mechanism)
-        disk = cam(rings, bore, size, driven.cam)
+        disk = cam(drawn, bore, size, driven.cam)
         bodies = linked(driven, size)
         return (
             Scene((disk, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),

@@ -26,6 +26,7 @@ ORDER = 3
 DERIVATIVES = ("", "velocity", "acceleration", "jerk")
 POWERS = ("", "/rad", "/rad²", "/rad³")
 DEGREES = 180.0 / math.pi
+COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not told
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,13 +140,14 @@ def closed(values: Array) -> Array:
 
 
 def rests(recipe: Recipe, design: Design) -> list[Rest]:
-    """Return the dwells: true rests of a follower, or of a linkage's output the longest within the band asked for."""
+    """Return the dwells: true rests of a follower, or of an output the longest within its band."""
     if design.driven is not None:
         unit = "°" if design.driven.mechanism.unit == "deg" else f" {length_unit(recipe)}"
         scale = DEGREES if unit == "°" else 1.0 / recipe.mm
         band = "" if recipe.dwell is None else f", within {recipe.dwell.band * scale:.4g}{unit}"
-        longest = design.driven.dwells.get("shaft", ())[:1]
-        return [_rest(dwell.start, dwell.start + dwell.length, band) for dwell in longest]
+        dwells_of = design.driven.dwells.get("shaft", ())
+        counted = [dwell for dwell in dwells_of if dwell.length >= COUNTS * dwells_of[0].length]
+        return [_rest(dwell.start, dwell.start + dwell.length, band) for dwell in counted]
     found: Sequence[tuple[float, float]]
     if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
         from kin.flat import dwell_angles

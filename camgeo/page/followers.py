@@ -35,15 +35,12 @@ if TYPE_CHECKING:
 SHAFT = TURN * np.arange(STEPS + 1) / STEPS
 
 
-def cam(rings: list[tuple[str, Ring]], bore: float | None, size: float, turned: Array) -> Body:
-    """Return the cam: contours by name, of which the first shows, its bore and a mark along its own x axis."""
+def cam(drawn: list[tuple[str, tuple[Ring, ...]]], bore: float | None, size: float, turned: Array) -> Body:
+    """Return the cam: contours with holes by name, of which the first shows, and a mark along its own x axis."""
     hole = 0.5 * bore if bore else 0.0
-    cut = (disc(0.0, 0.0, hole),) if bore else ()
-    shapes = [
-        Shape("metal" if index == 0 else "metal other", (ring, *cut), name) for index, (name, ring) in enumerate(rings)
-    ]
-    reach = np.abs(rings[0][1].points).max()
-    beyond = rings[0][1].flattened()
+    shapes = [Shape("metal other" if index else "metal", rings, name) for index, (name, rings) in enumerate(drawn)]
+    beyond = drawn[0][1][0].flattened()
+    reach = np.abs(beyond).max()
     ahead = beyond[beyond[:, 0] > 0.0]
     edge = float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(reach)
     first = max(hole, 1.2 * size)
@@ -59,9 +56,9 @@ def touched(lift: Lift, theta: Array) -> tuple[Array, Array]:
     return p, slope
 
 
-def contact(name: str, x: Array, y: Array, direction: Array | float, size: float) -> Body:
-    """Return a contact with the direction in which it pushes."""
-    return Body(name, "contacts", arrow(6.0 * size, size), poses(x, y, direction))
+def contact(name: str, x: Array, y: Array, direction: Array | float, size: float, *, within: float = 0.0) -> Body:
+    """Return a contact with the direction in which it pushes, the arrow longer by what it runs `within` a roller."""
+    return Body(name, "contacts", arrow(6.0 * size + within, size), poses(x, y, direction))
 
 
 def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[Body]:
@@ -128,7 +125,7 @@ def double_roller(law: Transmission, radius: float, size: float) -> tuple[list[B
         normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
         point = centre - radius * normal
         direction = np.unwrap(np.arctan2(normal[:, 1], normal[:, 0]))
-        bodies.append(contact(f"contact of {name}", point[:, 0], point[:, 1], direction, size))
+        bodies.append(contact(f"contact of {name}", point[:, 0], point[:, 1], direction, size, within=radius))
         across = np.abs(ray[:, 0] * normal[:, 1] - ray[:, 1] * normal[:, 0])
         angles.append(np.arctan2(np.abs(np.sum(ray * normal, axis=1)), across))
     return bodies, (angles[0], angles[1])

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.page.scene import Array
     from camgeo.recipe.model import Recipe
     from kin.arcs import Arcs
-    from kin.contour import Contour
+    from kin.read import Drawing, Solid
 
 POINTS = 1440  # of an exact contour
 MOST_PIECES = 1600  # of a file's contour that a page draws; of more, every second or third node
@@ -48,13 +48,13 @@ def exact(curve: Curve, *, whole: bool = False) -> Ring:
 class Read:
     """A file's contour as it was read, mm and as if the shaft turned clockwise: `arcs` throughout, `pieces` in number.
 
-    `ring` is for drawing.
+    `rings` are for drawing: the contour and its holes.
     """
 
     name: str
     arcs: Arcs
     pieces: int
-    ring: Ring
+    rings: tuple[Ring, ...]
 
 
 def read(recipe: Recipe, path: Path) -> Read | None:
@@ -64,16 +64,19 @@ def read(recipe: Recipe, path: Path) -> Read | None:
 
     try:
         if path.suffix.lower() == ".stl":
-            contour: Contour = read_stl(path).contour
+            found: Drawing | Solid = read_stl(path)
+            unit = 1.0
         else:
-            drawing = read_dxf(path)
-            contour = drawing.contour.scaled(recipe.mm if drawing.units_mm is None else 1.0)
+            found = drawing = read_dxf(path)
+            unit = recipe.mm if drawing.units_mm is None else 1.0
     except ReadError:
         return None
-    contour = contour.mirrored() if recipe.rotation == "ccw" else contour
+    scaled = [each.scaled(unit) for each in (found.contour, *found.holes)]
+    contour, *holes = [each.mirrored() for each in scaled] if recipe.rotation == "ccw" else scaled
     size = float(np.abs(contour.vertices).max())
     arcs, _ = contour.as_arcs(max(MEASURED * recipe.export.tolerance, ROUNDING * size))
-    return Read(path.name, arcs, len(contour), _drawn(contour.as_arcs(FINE * size)[0]))
+    rings = tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in (contour, *holes))
+    return Read(path.name, arcs, len(contour), rings)
 
 
 def _drawn(arcs: Arcs) -> Ring:

@@ -39,6 +39,7 @@ def page(recipe: Recipe, found: Content, report: dict[str, Any]) -> str:
         "checks": tables.checks(report),
         "files": tables.written(report),
         "linkage": tables.linkage(report),
+        "dynamics": tables.dynamics(report),
         "skipped": tables.skipped(report),
         "recipe": escape(recipe.text),
         "style": asset("drawing.css") + asset("page.css"),

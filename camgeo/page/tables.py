@@ -121,6 +121,36 @@ def linkage(report: dict[str, Any]) -> str:
     return f'<section aria-labelledby="linkage-head"><h2 id="linkage-head">Linkage</h2>{told}{head}</section>'
 
 
+def dynamics(report: dict[str, Any]) -> str:
+    """Return what drives the follower train to what, as intended and by each file; nothing without a train."""
+    section = report.get("dynamics")
+    if section is None:
+        return ""
+    unit, rows = section["force_unit"], []
+    for run in section["runs"]:
+        steady, impacts = run.get("steady") or {}, run.get("impacts") or {}
+        cells = [
+            *(_figure(steady.get(f"{name}_force"), steady.get(f"{name}_at_deg")) for name in ("peak", "least")),
+            number(run.get("float_rpm")),
+            NONE if impacts.get("count") is None else str(impacts["count"]),
+            number(impacts.get("greatest_velocity")),
+        ]
+        body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
+        rows.append(f'<tr><th scope="row">{escape(run["from"])}</th>{body}</tr>')
+    head = ("driven by", f"peak force, {unit}", f"least force, {unit}", "floats from, rpm", "impacts a turn", "fastest")
+    told = (
+        f"At {number(section['rpm'])} rpm; the train's own frequency is {number(section['natural_ratio'])} times the "
+        f"shaft's, its damping ratio {number(section['damping_ratio'])}."
+    )
+    table = _table("Dynamics", head, rows)
+    return f'<section aria-labelledby="train-head"><h2 id="train-head">Dynamics</h2><p>{told}</p>{table}</section>'
+
+
+def _figure(value: float | None, at: float | None) -> str:
+    """Return a figure with the place where it is."""
+    return number(value) if value is None or at is None else f"{number(value)} {_place(at, 'shaft')}"
+
+
 def skipped(report: dict[str, Any]) -> str:
     """Return what was left out and why; of the page itself there is nothing to say."""
     items = [item for item in report["skipped"] if item["what"] != "html"]
@@ -133,7 +163,8 @@ def facts(report: dict[str, Any]) -> str:
     unit = "in" if report["units"] == "inch" else "mm"
     kind = report["follower"]
     if "linkage" in report:
-        kind += f" in a {str(report['linkage']['kind']).replace('-', ' ')}"
+        linkage_kind = str(report["linkage"]["kind"]).replace("-", " ")
+        kind += f" in {'an' if linkage_kind[0] in 'aeiou' else 'a'} {linkage_kind}"
     return escape(f"{kind} · the shaft turns {sense} · tolerance {report['tolerance']:.6g} {unit}")
 
 
