@@ -79,11 +79,19 @@ class Tally:
 Tallies = dict[str, Tally]
 
 
-def tally(tallies: Tallies, found: Sequence[Contour], meant: Sequence[Hole], tolerance: float, where: str = "") -> None:
+def tally(
+    tallies: Tallies,
+    found: Sequence[Contour],
+    meant: Sequence[Hole],
+    tolerance: float,
+    *,
+    where: str = "",
+    known: Sequence[Hole] = (),
+) -> None:
     """Match the openings that were found with those that are meant, and take in how far each is off.
 
-    Each kind that is meant gets its tally; openings that none is meant for go to `holes`, or to `bore` where nothing
-    else is meant.
+    Each kind that is meant gets its tally. An opening that none is meant for goes to the kind of the one of `known`
+    that it looks like, else to `holes`, or to `bore` where nothing else is meant.
     """
     pairs, left_over = _matched(found, meant)
     for hole, contour in pairs:
@@ -97,7 +105,11 @@ def tally(tallies: Tallies, found: Sequence[Contour], meant: Sequence[Hole], tol
         told.measured(off, f"{hole.name}, about ({x:.6g}, {y:.6g}){where}, is off by {off:.3g} mm")
     for contour in left_over:
         x, y = _middle(contour)
-        kind = "holes" if "holes" in tallies or len(tallies) > 1 else next(iter(tallies), "bore")
+        alike = [hole for hole, one in _matched([contour], known)[0] if one is not None]
+        if alike:
+            kind = alike[0].kind
+        else:
+            kind = "holes" if "holes" in tallies or len(tallies) > 1 else next(iter(tallies), "bore")
         fault = f"an opening of {abs(contour.area):.6g} mm^2 about ({x:.6g}, {y:.6g}){where}, where none is meant to be"
         tallies.setdefault(kind, Tally()).faults.append(fault)
 

@@ -31,10 +31,10 @@ def drawn_checks(
     """Check the openings of a drawing, in mm and no longer mirrored: each once at its place, and none besides."""
     through = [hole for hole in intent.holes if hole.depth is None]
     tallies: Tallies = {}
-    tally(tallies, holes, through, tolerance)
+    tally(tallies, holes, through, tolerance, known=intent.holes)
     shallow = [hole for hole in intent.holes if hole.depth is not None]
     if shallow:
-        tally(tallies, engraved, shallow, tolerance, ", engraved")
+        tally(tallies, engraved, shallow, tolerance, where=", engraved", known=intent.holes)
     return _told(tallies, tolerance)
 
 
@@ -94,7 +94,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Section, int
     where = f" at z = {z:.6g} mm"
     exact: Envelope = intent.follower.envelope
     if layer.outline is None:
-        tally(tallies, section.holes, layer.holes, tolerance, where)
+        tally(tallies, section.holes, layer.holes, tolerance, where=where, known=intent.holes)
         if layer.inset == (0.0, 0.0):
             kind, envelope = "thickness", exact
             if intent.trimmed or not envelope.regular:
@@ -108,7 +108,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Section, int
         return
     bored = next((one for one in intent.cross_holes if one.half_width(z) > 0.0), None)
     if bored is None:
-        tally(tallies, section.holes, layer.holes, tolerance, where)
+        tally(tallies, section.holes, layer.holes, tolerance, where=where, known=intent.holes)
         off_hub = apart(section.contour, layer.outline.contour, FINE * tolerance)
         tallies["hub"].measured(off_hub, f"{layer.outline.name}{where} is off by {off_hub:.3g} mm")
         return
