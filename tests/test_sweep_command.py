@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import pty
@@ -121,6 +122,19 @@ def test_a_disk_that_refuses_exits_3(tmp_path: Path, capsys: pytest.CaptureFixtu
     (tmp_path / "out").write_text("in the way")
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out")]) == 3
     assert "four-bar: " in capsys.readouterr().err
+
+
+def test_a_full_disk_is_told_with_its_place(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_path: Path, _data: bytes) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    path = written(tmp_path)
+    monkeypatch.setattr(Path, "write_bytes", full)
+    assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 3
+    said = capsys.readouterr().err
+    assert said.startswith(f"camgeo: four-bar: {tmp_path / 'out' / 'four-bar'}: No space left on device; what was")
 
 
 def test_a_users_file_in_the_way_exits_3_and_stays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -198,6 +198,51 @@ def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) ->
         next(engines.dask(job(), [0], empty.scheduler_address))
 
 
+def slowly(seconds: float) -> float:
+    time.sleep(seconds)
+    return seconds
+
+
+def test_workers_are_left_behind_at_once_when_nobody_waits_for_them() -> None:
+    begun = time.monotonic()
+    results = engines.at_once(slowly, [0.0, 60.0, 60.0], 2)
+    assert next(results) == (0.0, 0.0)
+    results.close()
+    assert time.monotonic() - begun < 30.0
+
+
+def test_an_interrupt_while_workers_start_is_said_once(tmp_path: Path) -> None:
+    script = tmp_path / "start.py"
+    script.write_text(STARTING)
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parent)}
+    with subprocess.Popen(
+        [sys.executable, str(script)],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        for _ in range(20):  # the whole group hears them, as from a terminal; the run itself is deaf here
+            time.sleep(0.02)
+            os.killpg(process.pid, signal.SIGINT)
+        said, complaint = process.communicate(timeout=60)
+    assert (said, complaint) == ("[0.0, 0.1]\n", "")
+
+
+STARTING = """\
+import signal
+from camgeo.sweep.engines import at_once
+from test_sweep_engines import slowly
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, lambda *_: None)
+    print("begun", flush=True)
+    print(sorted(result for _, result in at_once(slowly, [0.0, 0.1], 2)))
+"""
+
+
 def killed(scene, values):
     """A chunk of which its process dies."""
     if values[0, 0] > 12.0:

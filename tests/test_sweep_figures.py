@@ -305,6 +305,9 @@ def test_a_recipe_without_a_linkage():
     both = evaluate(roller, ("cam.roller_radius", "cam.arm"), np.array([[8.0, 60.0], [8.0, 5.0]]))
     assert [REASONS[code] for code in both.reason] == ["", "impossible"]
     assert both.figures["size"][0] > 0
+    # of the contour, not of the roller's way, which is bent less by the roller's radius
+    way = evaluate(roller, ("cam.roller_radius",), np.array([[8.0], [3.0]])).figures["radius-of-curvature"]
+    assert way[1] - way[0] == pytest.approx(5.0, abs=1e-6)
     bent = evaluate(recipe(FOURIER, linkage=""), ("cam.fourier.cos.5",), np.array([[0.2], [2.0]]))
     assert [REASONS[code] for code in bent.reason] == ["", "undercut"]
 

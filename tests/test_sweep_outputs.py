@@ -17,6 +17,7 @@ from sweepers import GRID, MEANS, ask, hills
 
 from camgeo.recipe.load import load, read
 from camgeo.recipe.model import Limit
+from camgeo.store import SurroundingsError
 from camgeo.sweep import gather as gathering
 from camgeo.sweep import outputs
 from camgeo.sweep.ask import Ask
@@ -260,6 +261,16 @@ def test_a_users_own_files_are_left_alone(tmp_path: Path) -> None:
     (folder / "best-7.yaml").write_text("mine")
     search(ask(), tmp_path, How(1), MEANS)
     assert (folder / "notes.txt").read_text() == (folder / "best-7.yaml").read_text() == "mine"
+
+
+@pytest.mark.parametrize("name", ["best-3.yaml", "sweep.csv", "sweep-map.svg"])
+def test_a_users_file_in_the_way_is_told_before_anything_is_computed(name: str, tmp_path: Path) -> None:
+    (tmp_path / "four-bar").mkdir()
+    (tmp_path / "four-bar" / name).write_text("mine")
+    with pytest.raises(SurroundingsError, match=f"{name}: is in the way"):
+        search(ask(), tmp_path, How(1), MEANS)
+    assert [path.name for path in (tmp_path / "four-bar").iterdir()] == [name]
+    assert [path.name for path in tmp_path.iterdir()] == ["four-bar"]
 
 
 def test_fewer_best_designs_take_the_old_ones_away(tmp_path: Path) -> None:

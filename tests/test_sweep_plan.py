@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import signal
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -38,6 +40,20 @@ def test_sobol_is_scipys_scrambled_sequence(width: int) -> None:
     plan = Plan(tuple(Axis(f"x{i}", 0.0, 1.0) for i in range(width)), "sobol", 4096, 7)
     expected = qmc.Sobol(width, scramble=True, rng=np.random.default_rng(7)).random(4096)
     assert np.array_equal(plan.values(0, 4096), expected)
+
+
+def test_an_interrupt_while_scipy_reads_its_numbers_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    sobol = qmc.Sobol
+
+    def interrupted(*arguments: object, **named: object) -> qmc.Sobol:
+        with suppress(KeyboardInterrupt):  # as its compiled code does
+            signal.raise_signal(signal.SIGINT)
+        return sobol(*arguments, **named)
+
+    monkeypatch.setattr(qmc, "Sobol", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        Plan(AXES, "sobol", 100, 987_654).values(0, 1)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 @pytest.mark.parametrize("method", ["random", "sobol"])

@@ -84,8 +84,11 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
         return None, f'the package {error.name} is missing: pip install "camgeo[{extra}]"', SURROUNDINGS
     except (EngineError, VersionsError) as error:
         return None, f"{error}; {resume}", SURROUNDINGS
-    except (SurroundingsError, OSError) as error:
+    except SurroundingsError as error:
         return None, str(error), SURROUNDINGS
+    except OSError as error:
+        where = error.filename or Path(arguments.out) / ask.recipe.name
+        return None, f"{where}: {error.strerror or error}; {resume}", SURROUNDINGS
     finally:
         progress.clear()
     return outcome, "", FOUND if outcome.report["ok"] else NOTHING

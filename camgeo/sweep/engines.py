@@ -17,6 +17,7 @@ from camgeo.sweep.job import result
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+    from multiprocessing.connection import Connection
 
     from camgeo.sweep.job import Job
 
@@ -57,8 +58,12 @@ def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Gen
 
     # not fork: this process may have threads, of a linear algebra library or a compiler
     clean = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+    context = multiprocessing.get_context(clean)
+    if clean == "forkserver":
+        _start_server()
     left = list(items)[::-1]
-    with ProcessPoolExecutor(workers, multiprocessing.get_context(clean), _be_a_worker) as pool:
+    theirs, ours = context.Pipe(duplex=False)
+    with theirs, ours, ProcessPoolExecutor(workers, context, _be_a_worker, (theirs,)) as pool:
         running: dict[Future[R], T] = {}
         try:
             while left or running:
@@ -73,21 +78,39 @@ def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Gen
             raise EngineError(text) from error
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+            if running:
+                ours.close()  # nobody waits for what is still at work
 
 
-def _be_a_worker() -> None:
-    """Leave interrupts to the run that started this process, and end with it: nobody would fetch the results."""
+def _start_server() -> None:
+    """Start the process that workers are forked from, deaf to interrupts from its first instruction, as they are."""
+    import signal
+    from multiprocessing import forkserver, resource_tracker
+
+    resource_tracker.ensure_running()  # first: it is deaf by itself, and leaves this process hearing
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        forkserver.ensure_running()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _be_a_worker(run: Connection) -> None:
+    """Leave interrupts to the run that started this process, and end with it: nobody would fetch the results.
+
+    `run` is a pipe that the run closes to be rid of its workers at once.
+    """
     import multiprocessing
     import signal
     import threading
+    from multiprocessing.connection import wait
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
 
     def watch() -> None:
-        if parent is not None:
-            parent.join()
-            os._exit(1)
+        wait([run] if parent is None else [run, parent.sentinel])
+        os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
 

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from camgeo.sweep.recipes import Best
 
 REPORT = "sweep.json"
+TABLES = ("sweep.csv", "sweep.parquet")
+PICTURES = ("sweep-map.png", "sweep-map.svg", "sweep-best.png", "sweep-best.svg")
 EXTRA = 'pip install "camgeo[sweep]"'
 _DRAWN = 10  # best designs in the picture of curves
 
@@ -55,14 +57,14 @@ def outputs(
     files = Files()
     units = ask.units(found.figures)
     heads = columns(ask.plan, found, units)
-    files.make(["sweep.csv"], lambda: [as_csv(heads)])
+    files.make(TABLES[:1], lambda: [as_csv(heads)])
     about = {"recipe": ask.recipe.name, "camgeo": __version__, "units": ask.recipe.units}
-    files.make(["sweep.parquet"], lambda: [as_parquet(heads, about)])
-    files.make(["sweep-map.png", "sweep-map.svg"], lambda: _map(ask, found, best))
+    files.make(TABLES[1:], lambda: [as_parquet(heads, about)])
+    files.make(PICTURES[:2], lambda: _map(ask, found, best))
     for design in best:
         files.made[design.file] = recipe_text(ask, design).encode()
     if best:
-        files.make(["sweep-best.png", "sweep-best.svg"], lambda: _curves(ask, best, files.made))
+        files.make(PICTURES[2:], lambda: _curves(ask, best, files.made))
     report = _report(ask, found, best, reasons)
     report["files"] = [
         {"path": name, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}

@@ -76,7 +76,9 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array) -> tuple[Array, A
         bent = next(check.value for check in design.checks if check.name == "radius-of-curvature")
         t = np.concatenate([np.linspace(run.low, run.high, _POINTS) for run in contour.runs])
         points = contour.sample(t).point
-        radius[i], size[i] = np.nan if bent is None else bent, np.hypot(points[:, 0], points[:, 1]).max()
+        # what is checked is bent as the roller's centre runs; the contour lies within by the roller's radius
+        radius[i] = np.nan if bent is None else bent - design.profile.roller_radius
+        size[i] = np.hypot(points[:, 0], points[:, 1]).max()
         fault[i] = FINE
     return radius, size, fault
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from dataclasses import dataclass, replace
 from functools import partial
@@ -10,10 +11,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from camgeo.store import BusyError, Family, Run
+from camgeo.store import BusyError, Family, Run, SurroundingsError
 from camgeo.sweep.engines import at_once
 from camgeo.sweep.job import Job
-from camgeo.sweep.outputs import REPORT, outputs
+from camgeo.sweep.outputs import PICTURES, REPORT, TABLES, outputs
 from camgeo.sweep.recipes import Best, recipe_text
 from camgeo.sweep.run import chunks_of, compute, gathered
 
@@ -75,6 +76,7 @@ def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, 
     started = time.perf_counter()
     demand_extras(ask, how)
     recipe_text(ask, Best(1, 0, False, _by_path(ask, ask.plan.values(0, 1)[0]), {}))  # told now if it cannot be written
+    demand_room(ask, out)
     job = Job(ask.plan, ask.scene(ask.figures), means.compute)
     chunks = chunks_of(job, out / ask.recipe.name)
     work = compute(job, chunks, how, fresh=fresh, told=told)
@@ -105,6 +107,22 @@ def demand_extras(ask: Ask, how: How) -> None:
     for name in needed:
         if find_spec(name) is None:
             raise ModuleNotFoundError(name=name)
+
+
+def demand_room(ask: Ask, out: Path) -> None:
+    """Raise SurroundingsError for a file of the user's where one of the sweep would go: told now, not in the end."""
+    folder = out / ask.recipe.name
+    if not folder.exists():
+        return
+    try:
+        with Run(out, ask.recipe.name, FILES) as run:
+            ours = {*run.kept(), REPORT}
+    except BusyError:
+        return  # a run that is putting its files in place; the end will tell
+    best = (f"best-{place}.yaml" for place in range(1, min(ask.sweep.keep, ask.plan.count) + 1))
+    for name in (*TABLES, *PICTURES, *best):
+        if name not in ours and os.path.lexists(folder / name):
+            raise SurroundingsError("is in the way, and no report says that it may be replaced", folder / name)
 
 
 def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None = None) -> list[Best]:
