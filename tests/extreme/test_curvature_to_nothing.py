@@ -1,0 +1,106 @@
+"""Least radius of curvature from a thousandth of the breadth to nothing, and below; corners rounded by a nanometre."""
+
+import math
+
+import numpy as np
+import pytest
+from accuracy import Row, made, off_file, off_motion, off_profile, recipe, rows_of
+from extreme_oracle import fourier, reuleaux
+
+from camgeo.design import designed
+from kin.bearing import bearing_of
+from kin.flat import error_extremes
+from kin.lift import lift_reuleaux
+
+FORMS = "{dxf: {as: arcs}}, {dxf: {as: polyline}}, stl"
+
+
+def tricorn(share):
+    """Coefficient of cos 3t, of mean 25, whose least radius of curvature is a share of the breadth of 50."""
+    return (25.0 - 50.0 * share) / 8.0
+
+
+def harmonic(k, a, trim=False):
+    return f"kind: support\nfourier: {{mean: 25, cos: {{{k}: {a!r}}}}}\nundercut: {'trim' if trim else 'refuse'}"
+
+
+def rows():
+    yield from (one for share in (1e-3, 1e-6, 1e-9, 1e-12) for one in free(share))
+    yield from (one for share in (1e-3, 1e-6, 1e-9, 1e-12) for one in undercut(share))
+    yield from many()
+    yield from corners()
+
+
+def free(share):
+    a = tricorn(share)
+    asked, oracle = recipe(harmonic(3, a), files=FORMS, thickness=10), fourier(25, {3: a}, {})
+    what = f"p = 25 + a cos 3t, least radius {share:g} of the breadth"
+    files = made(asked)
+    profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+    yield Row(what, "profile, p to p'''", profile, 2e-15, "trigonometric sums, no quotient: nothing cancels")
+    most = max(off_file(contour, oracle, 1e-3) for contour in files.contours.values())
+    yield Row(what, "files within 0.001 mm", max(most, files.used()), 1.0, "share of the tolerance, proved and judged")
+
+
+def undercut(share):
+    a = tricorn(-share)
+    what = f"the same, least radius {-share:g} of the breadth"
+    found = made(recipe(harmonic(3, a)))
+    radius, cut = found.check("radius-of-curvature"), found.check("undercut-local")
+    assert not radius["ok"]
+    assert not cut["ok"]
+    exact = 25.0 - 8.0 * a  # the doubles' own value: both factors are exact, the difference is (Sterbenz)
+    text = cut["detail"].split(" would")[0].rsplit(" ", 1)[1]
+    start, end = (float(cut["detail"].split(word)[1].split()[0]) for word in ("from ", "to "))
+    off = max(abs(radius["value"] / exact - 1.0), abs(float(text) / -exact - 1.0))
+    why = "the rounding of 25, as a share of the radius; told with six digits"
+    yield Row(what, "radius, and the base radius that would be free", off, 1e-6 + 1e-14 / share, why)
+    # rho = 36 a x^2 - |rho_min| about its least value, and a swallowtail reaches sqrt 3 times its half width
+    width = 2.0 * math.sqrt(3.0) * math.degrees(math.sqrt(-exact / (36.0 * a)))
+    if share > 1e-7:  # below, the two angles are told with fewer digits than they differ by
+        off = abs(((end - start) % 360.0) / width - 1.0)
+        yield Row(what, "extent of the undercut", off, 20.0 * share + 5e-4 / width, "to first order in the radius")
+    left = made(recipe(harmonic(3, a, trim=True)))
+    yield Row(what, "trimmed, within 0.001 mm", left.used(), 1.0, "integrals of speed times tangent, not points")
+
+
+def many():
+    for k in (99, 199):
+        a = 25.0 * (1.0 + 1e-9) / (k * k - 1.0)
+        found = made(recipe(harmonic(k, a)))
+        what = f"p = 25 + a cos {k}t, least radius -1e-9 of the mean"
+        text = found.check("undercut-local")["detail"].split(" would")[0].rsplit(" ", 1)[1]
+        why = f"{k} equal swallowtails, each cut off by a crossing of its own"
+        yield Row(what, "the base radius that would be free", abs(float(text) / 2.5e-8 - 1.0), 1e-5, why)
+
+
+def corners():
+    for sides, rounding in ((3, 1e-6), (5, 1e-7), (99, 1e-7)):
+        cam = f"kind: support\nreuleaux: {{sides: {sides}, breadth: 50, rounding: {rounding!r}}}"
+        asked, oracle = recipe(cam, files=FORMS, thickness=10), reuleaux(sides, 50, rounding)
+        what = f"Reuleaux polygon of {sides} sides, breadth 50, rounded by {rounding:g} mm"
+        profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+        yield Row(what, "profile, p to p'''", profile, 1e-15 * sides, "circles; p' is small beside p")
+        files = made(asked)
+        most = max(off_file(contour, oracle, 1e-3) for contour in files.contours.values())
+        yield Row(what, "files within 0.001 mm", max(most, files.used()), 1.0, "share of the tolerance")
+    cam = "kind: support\nreuleaux: {sides: 3, breadth: 50, rounding: 1.0e-9}"
+    files = made(recipe(cam, files="dxf"))
+    off = max(f["measured_error"] for f in files.report["files"])
+    why = "mm; the corner's arc is 1e-9 mm long, and its ends point anywhere within 1e-5 rad"
+    yield Row("Reuleaux triangle rounded by 1e-9 mm", "the arcs of the file as judged", off, 1e-12, why)
+
+
+@pytest.mark.parametrize("row", rows_of(__name__), ids=lambda row: f"{row.case}: {row.asked}")
+def test_it_holds(row):
+    assert row.holds, row
+
+
+def test_short_arcs_do_not_bear_beyond_their_neighbours():
+    """A corner's arc whose ends point 1e-5 rad too far back once took the place of the side before it: 4.5e-9 mm."""
+    contour = made(recipe("kind: support\nreuleaux: {sides: 3, breadth: 50, rounding: 1.0e-9}")).contours["case.dxf"]
+    lift = lift_reuleaux(3, 50.0, 1e-9)
+    assert contour.is_convex
+    assert (contour.joints < -1e-6).any()
+    assert error_extremes(bearing_of(contour), lift).worst[0] < 1e-13
+    assert np.abs(bearing_of(contour).breaks).size >= 6

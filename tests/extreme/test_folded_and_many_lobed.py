@@ -1,0 +1,193 @@
+"""Double rollers at their edges: D next to l^2, necks, rollers as large as the tightest bend or as small as nothing."""
+
+import re
+
+import mpmath as mp
+import numpy as np
+import pytest
+from accuracy import Row, in_time, made, off_profile, recipe, refused, rows_of
+from extreme_oracle import Pitch, worst
+
+from camgeo.design import designed
+from kin.contour import Contour
+from kin.envelope import RollerEnvelope, TransmissionPitch
+from kin.roller import DoubleRoller
+from kin.transmission import from_delta
+
+ARCS = "{dxf: {as: arcs}}"
+ANGLES = 2.0 * np.pi * np.mod(0.1234 + 0.6180339887498949 * np.arange(12), 1.0)
+
+
+def roller(ratio, arm, radius, cos):
+    return f"kind: double-roller\nratio: {ratio}\narm: {arm}\nroller_radius: {radius!r}\ndelta: {{cos: {{1: {cos!r}}}}}"
+
+
+def rows():
+    yield from (one for share in (0.9, 0.99, 0.999999, 1.0 - 1e-12) for one in near_the_square(share))
+    yield from past_the_square()
+    for lam, mu, share in ((99, 97, 1e-4), (99, 1, 1e-6), (97, 3, 1e-4), (199, 197, 1e-6)):
+        yield from many_lobes(lam, mu, share)
+    yield from tightest()
+    yield from smallest()
+    yield from arcs()
+
+
+def motion_off(law, oracle, angles):
+    """Greatest error of psi at a polar angle; and of the shaft angle that is exact where phi was solved for; rad."""
+    exact = [oracle.motion(t) for t in angles]
+    phi, psi = law.at(angles, 0)
+    at = law.parameter(np.array([float(one[0]) for one in exact]))
+    back = max(abs(float(oracle.motion(t)[0] - mp.mpf(float(one[0])))) for t, one in zip(at, exact, strict=True))
+    return max(worst(phi[0], [[one[0]] for one in exact]), worst(psi[0], [[one[1]] for one in exact])), back
+
+
+def near_the_square(share):
+    """Booth's lemniscate, m^2 = share of l^2: with ever less of it the pitch curve folds into two circles."""
+    cos = 1600.0 * share
+    law, oracle = from_delta(2, 1, 40.0, {1: cos}, {}), Pitch(2, 1, 40.0, {1: cos}, 1.0)
+    what = f"D = m^2 cos 2t, 1 - m^2/l^2 = {1 - share:.1g}"
+    off, back = motion_off(law, oracle, ANGLES)
+    yield Row(what, "phi and psi, rad", off, 3e-15, "l^2 - D and l^2 + D are formed without a difference")
+    yield Row(
+        what, "the shaft angle solved for, rad", back, 3e-15, "psi itself leaps: psi'(phi) has no bound as m nears l"
+    )
+    envelope = RollerEnvelope(TransmissionPitch(law), 1.0)
+    frames = [oracle.frame(t) for t in ANGLES]
+    points = worst(envelope.points(ANGLES), [f[0] for f in frames]) / 80.0
+    yield Row(what, "the judge's contour, roller of 1 mm, share of the size", points, 1e-14, "from r, r' and r''")
+    if share < 0.95:
+        files = made(recipe(roller(2, 40, 1.0, cos), files=ARCS))
+        yield Row(what, "file within 0.001 mm", files.used(), 1.0, "share of the tolerance")
+    else:
+        words = "be proved"
+        said = re.sub(r"[0-9.]+(e[-+]\d+)?", "#", refused(roller(2, 40, 1.0, cos), files=ARCS))
+        yield Row(what, "file, roller of 1 mm", said, words, "bounds over intervals grow where r comes near 0")
+
+
+def past_the_square():
+    for over in (0.0, 1e-12, 1e-9):
+        said = refused(roller(2, 40, 1.0, 1600.0 * (1.0 + over)), files=ARCS)
+        yield Row(
+            f"D = m^2 cos 2t, m^2/l^2 - 1 = {over:g}", "file", said, "must stay below l^2 = 1600 mm^2", "no motion"
+        )
+    said = refused(roller("4/3", 40, 1.0, 1600.0 * (1.0 - 1e-12)), files=ARCS)
+    yield Row(
+        "the same with lambda/mu = 4/3, 1 - m^2/l^2 = 1e-12",
+        "file",
+        said,
+        "below 45 is possible",
+        "an arm meets the shaft first",
+    )
+
+
+def many_lobes(lam, mu, share):
+    cos = 3600.0 * share
+    radius = 0.05
+    asked = recipe(roller(f"{lam}/{mu}", 60, radius, cos), files=ARCS)
+    oracle = Pitch(lam, mu, 60.0, {1: cos}, radius)
+    what = f"lambda/mu = {lam}/{mu}, m^2/l^2 = {share:g}"
+    profile = off_profile(asked, oracle, ANGLES)
+    yield Row(what, "profile", profile, 2e-14 * lam, "the angle lambda t is rounded, and r small beside l")
+    law = designed(asked).intent
+    yield Row(what, "phi and psi, rad", max(motion_off(law, oracle, ANGLES)), 2e-16 * lam, "the same")
+    files = made(asked)
+    yield Row(what, "file within 0.001 mm", files.used(), 1.0, "share of the tolerance")
+
+
+def least_radius():
+    """Of the pitch curve D = 625 cos 4t, lambda/mu = 4/3, l = 60: in 50 digits, by golden sections about the tightest."""
+    oracle = Pitch(4, 3, 60.0, {1: 625.0}, 0.0)
+    t = np.linspace(0.0, np.pi / 2, 201)
+    rho = [oracle.frame(x)[2] for x in t]
+    middle = t[min(range(201), key=lambda i: rho[i] if rho[i] > 0 else mp.inf)]
+    low, high = mp.mpf(float(middle)) - mp.mpf("0.01"), mp.mpf(float(middle)) + mp.mpf("0.01")
+
+    def f(x):
+        return Exact.radius(oracle, x)
+
+    g = (mp.sqrt(5) - 1) / 2
+    for _ in range(70):
+        a, b = high - g * (high - low), low + g * (high - low)
+        low, high = (low, b) if f(a) < f(b) else (a, high)
+    return float(f((low + high) / 2))
+
+
+class Exact:
+    """The radius of curvature of the pitch curve at an mpmath angle."""
+
+    @staticmethod
+    def radius(oracle, t):
+        r, slope, bend = (c * mp.factorial(k) for k, c in enumerate(mp.taylor(oracle.distance, t, 2)))
+        return (r * r + slope * slope) ** mp.mpf(1.5) / (r * r + 2 * slope * slope - r * bend)
+
+
+def tightest():
+    least = least_radius()
+    for off in (-1e-9, 1e-9):
+        radius = least * (1.0 + off)
+        what = f"roller {abs(off):g} {'smaller' if off < 0 else 'larger'} than the least radius of curvature"
+        found = made(recipe(roller("4/3", 60, radius, 625.0), files=ARCS))
+        if off < 0:
+            yield Row(what, "file within 0.001 mm", found.used(), 1.0, "share of the tolerance; free of undercut")
+            continue
+        told = found.check("radius-of-curvature")["value"]
+        yield Row(
+            what,
+            "least radius, undercut told",
+            abs(told / least - 1.0),
+            1e-13,
+            "root-found, bounded to 1e-12 of the size",
+        )
+        assert not found.check("undercut-local")["ok"]
+
+
+def smallest():
+    for radius in (1e-3, 1e-6, 1e-9):
+        found = made(recipe(roller(2, 40, radius, 400.0), files=f"{ARCS}, stl", thickness=10))
+        what = f"roller of {radius:g} mm on arms of 40 mm"
+        yield Row(
+            what, "files within 0.001 mm, judged by contact", found.used(), 1.0, "crossings asked of the smaller circle"
+        )
+
+
+def arcs():
+    for lam, mu in (("3", "1"), ("2", "1")):
+        alpha = np.pi * float(mu) / float(lam)
+        least = float(2 * 60 * np.cos(alpha / 2) * np.tan(np.pi / float(lam) / 2))
+        arc = f"arc: {{radius: {least * (1 + 1e-12)!r}, side: concave}}"
+        cam = f"kind: double-roller\nratio: {lam}/{mu}\narm: 60\nroller_radius: 1\n{arc}"
+        said = refused(cam, files=ARCS)
+        yield Row(
+            f"concave arc 1e-12 above the least, {lam}/{mu}",
+            "file",
+            said,
+            "it reaches 2 at a shaft angle",
+            "as steep as can be",
+        )
+
+
+@pytest.mark.parametrize("row", rows_of(__name__), ids=lambda row: f"{row.case}: {row.asked}")
+def test_it_holds(row):
+    assert row.holds, row
+
+
+@pytest.mark.parametrize("share", [0.9, 0.99, 0.995])
+def test_feet_across_a_fold(share):
+    """Points of the contour itself lie on it: seen from the other side of the fold they once lay 8.6 mm outside."""
+    envelope = RollerEnvelope(TransmissionPitch(from_delta(2, 1, 40.0, {1: 1600.0 * share}, {})), 1.0)
+    with in_time(20):
+        feet = envelope.feet(envelope.points(np.linspace(0.0, 2.0 * np.pi, 2001)))
+    assert np.abs(feet.excess).max() < 1e-10
+
+
+@pytest.mark.parametrize("radius", [1e-4, 1e-6, 1e-9])
+def test_a_small_roller_meets_every_corner(radius):
+    """A square of arcs hardly larger than rounding: at the angles at which the roller stands on a corner."""
+    law = from_delta(2, 1, 40.0, {1: 400.0}, {})
+    pitch = TransmissionPitch(law)
+    tau = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
+    contour = Contour.from_vertices(RollerEnvelope(pitch, radius).points(tau))
+    phi, psi = law.at(tau, 0)
+    found = DoubleRoller(law, radius).contact(contour, phi[0])
+    assert np.abs(found - psi[0]).max() < 1e-3
+    assert np.abs(found[0] - psi[0]).max() < 1e-9 + 1e-2 * radius

@@ -1,0 +1,99 @@
+"""High harmonics, cams from a micrometre to a kilometre, the shaft on the contour, tolerances down to rounding."""
+
+import re
+
+import pytest
+from accuracy import Row, made, off_file, off_motion, off_profile, recipe, refused, rows_of
+from extreme_oracle import fourier
+
+from camgeo.design import designed
+
+FORMS = "{dxf: {as: arcs}}, {dxf: {as: polyline}}, stl"
+
+
+def rows():
+    yield from (one for k in (99, 199) for one in harmonics(k))
+    yield from (
+        one
+        for size, unit in ((1e-3, "mm"), (1e6, "mm"), (1e-3, "inch"), (39370.0, "inch"))
+        for one in sizes(size, unit)
+    )
+    yield from shaft_on_the_contour()
+    yield from tolerances()
+
+
+def harmonics(k):
+    for share in (0.5, 0.999999):
+        a = 25.0 * share / (k * k - 1)
+        asked = recipe(f"kind: support\nfourier: {{mean: 25, cos: {{{k}: {a!r}}}}}", files=FORMS, thickness=10)
+        oracle = fourier(25, {k: a}, {})
+        what = f"p = 25 + a cos {k}t, least radius {1 - share:.6g} of the mean"
+        profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+        yield Row(what, "profile, p to p'''", profile, 2e-16 * 7 * k, "the angle k t is rounded: k t eps, t up to 2 pi")
+        files = made(asked)
+        most = max(off_file(contour, oracle, 1e-3) for contour in files.contours.values())
+        yield Row(what, "files within 0.001 mm", max(most, files.used()), 1.0, "share of the tolerance")
+
+
+def sizes(breadth, unit):
+    mm = 25.4 if unit == "inch" else 1.0
+    size = 0.05 * breadth
+    cam = f"kind: support\nhypocycloid: {{cusps: 3, size: {size!r}, breadth: {breadth!r}}}"
+    oracle = fourier(breadth * mm / 2, {3: size * mm}, {})
+    what = f"breadth {breadth:g} {unit}"
+    for share, form in ((1e-6, FORMS), (1e-11, "dxf")):
+        asked = recipe(cam, files=form, units=unit, thickness=breadth / 5, tolerance=share * breadth)
+        files = made(asked)
+        if share == 1e-6:
+            profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+            yield Row(
+                what, "profile, p to p'''", profile, 2e-15, "everything scales; no length is compared with a constant"
+            )
+        most = max(off_file(contour, oracle, share * breadth * mm) for contour in files.contours.values())
+        why = "share of the tolerance; the judge resolves 2e-14 of the extent"
+        yield Row(what, f"files within {share:g} of the breadth", max(most, files.used()), 1.0, why)
+    said = refused(cam, files="stl", units=unit, thickness=breadth / 5, tolerance=1e-9 * breadth)
+    said = re.sub(r"[0-9.]+(e[-+]\d+)?", "#", said)
+    yield Row(what, "an STL within 1e-9 of the breadth", said, "rounding to single precision", "24 binary digits")
+
+
+def shaft_on_the_contour():
+    for x in (26.0, 26.0 * (1.0 - 1e-12), 26.0 + 1e-7):
+        asked = recipe(
+            f"kind: support\nfourier: {{mean: 25, cos: {{3: 1}}}}\npivot: [{x!r}, 0]", files=FORMS, thickness=10
+        )
+        oracle = fourier(25, {3: 1}, {}, pivot=(x, 0.0))
+        what = f"shaft {x - 26.0:.2g} mm outside the contour" if x != 26.0 else "shaft on the contour"
+        profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+        yield Row(
+            what, "profile, p to p'''", profile, 2e-15, "as a share of the size; the place of the shaft is added last"
+        )
+        files = made(asked)
+        most = max(off_file(contour, oracle, 1e-3) for contour in files.contours.values())
+        yield Row(what, "files within 0.001 mm", max(most, files.used()), 1.0, "share of the tolerance")
+
+
+CAM = "kind: constant-breadth\nbase_radius: 40\nmotion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]"
+REFUSALS = (
+    (1e-6, "stl", "rounding to single precision alone moves points by 2.7e-06 mm; at least 3.37e-06 mm"),
+    (1e-12, "{dxf: {as: polyline}}", "can be held"),
+    (1e-13, "{dxf: {as: polyline}}", "at least 8.53e-13 mm"),
+    (1e-13, "{dxf: {as: arcs}}", "at least 8.53e-13 mm"),
+    (1e-16, "{dxf: {as: spline}}", "at least 8.53e-13 mm"),
+    (1e-20, "stl", "at least 3.37e-06 mm"),
+)
+
+
+def tolerances():
+    for tolerance, form, words in REFUSALS:
+        said = refused(CAM, files=form, thickness=10, tolerance=tolerance)
+        what = f"{re.sub(r'[{}]|dxf: |as: ', '', form)} of a cam that reaches 60 mm"
+        yield Row(what, f"{tolerance:g} mm", said, words, "refused with what can be held")
+    files = made(recipe(CAM, files="dxf", tolerance=1e-10))
+    why = "share of the tolerance; about the least that doubles leave to arcs is 1e-11 mm"
+    yield Row("arcs of a cam that reaches 60 mm", "1e-10 mm", files.used(), 1.0, why)
+
+
+@pytest.mark.parametrize("row", rows_of(__name__), ids=lambda row: f"{row.case}: {row.asked}")
+def test_it_holds(row):
+    assert row.holds, row
