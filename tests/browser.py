@@ -9,6 +9,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -54,17 +55,14 @@ class Browser:
         self._read, to_write = os.pipe()
         ends = [fcntl.fcntl(fd, fcntl.F_DUPFD, 10) for fd in (to_read, to_write)]
 
-        def connect() -> None:
-            os.dup2(ends[0], 3)
-            os.dup2(ends[1], 4)
-
+        # the browser reads from 3 and writes to 4; a process that becomes it sets them, as this one may have threads
+        become = "import os, sys; r, w, *c = sys.argv[1:]; os.dup2(int(r), 3); os.dup2(int(w), 4); os.execv(c[0], c)"
         options = ["--headless=new", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe", "--hide-scrollbars"]
         options += ["--disable-background-networking", "--no-first-run", "--disable-dev-shm-usage", "--mute-audio"]
         options += ["--disable-component-update", "--force-color-profile=srgb", f"--user-data-dir={self._profile}"]
         self._process = subprocess.Popen(
-            [path, *options, "about:blank"],
-            preexec_fn=connect,  # noqa: PLW1509 - no other thread runs here; the pipe has fixed numbers
-            pass_fds=(3, 4),
+            [sys.executable, "-c", become, *map(str, ends), path, *options, "about:blank"],
+            pass_fds=ends,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )

@@ -176,8 +176,11 @@ def _dyad(driven: Driven, number: int, dyad: Dyad, size: float) -> tuple[list[Bo
     carrier = _carrier(driven, number)
     px, py = map(value, carrier.point(*dyad.point))
     thin = 1.3 * size
-    stub = Shape("rocker", (bar((0.0, 0.0), dyad.point, thin),), "link")
-    under = [Body(f"arm to dyad {number + 1}", "links", (stub,), _pose(carrier))]
+    # of an inverted slider-crank D slides along the frame, and the point with it: it belongs to the block
+    own = dyad.on == "coupler" and not isinstance(driven.mechanism.linkage, InvertedSliderCrank)
+    role = "follower" if own else "output" if dyad.on == "previous" else "rocker"
+    stub = Shape(role, (bar((0.0, 0.0), dyad.point, thin),), "link")
+    under = [Body(f"arm to dyad {number + 1}", "follower" if own else "links", (stub,), _pose(carrier))]
     over = [Body("joint", "links", (pin(size),), poses(px, py, 0.0))]
     if isinstance(dyad, RRR | RRP):
         length = dyad.links[0] if isinstance(dyad, RRR) else dyad.link
