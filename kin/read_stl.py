@@ -38,6 +38,8 @@ NUMBERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 LARGEST = 1e7
 # Share of a section's extent within which a point is on the straight between its neighbours.
 STRAIGHT = 1e-13
+# Sections that are looked at for the widest one.
+MOST_STEPS = 8
 
 
 class Section(NamedTuple):
@@ -100,8 +102,8 @@ class Solid:
 def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
     """Read a part. Costs about one sort of the corners.
 
-    The contour is that of the section at half the part's height, or of the first of `heights`, all of which become
-    `sections`.
+    The contour is that of the section at half the part's height, where a part has steps of the widest one midway
+    between two of them; or it is that of the first of `heights`, all of which become `sections`.
 
     Raises OSError as the file system does; ReadError where the file is cut short or damaged, and where the section
     does not close or is not one contour with holes. All other faults are in the Solid's fields.
@@ -120,8 +122,10 @@ def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
     prism = outline is not None or (not two_levels and walls_upright(mesh, z_min, z_max))
     whole = outline
+    levels = distinct(z[(z == z[:, :1]).all(axis=1), 0].astype(np.float64))
     if outline is None:
-        height, outline = cut(mesh, height, path)
+        stepped = len(levels) > 2 and not len(heights)
+        height, outline = widest(mesh, levels, path) if stepped else cut(mesh, height, path)
     contour, holes = sectioned(outline, path, across=whole is None)
     sections = []
     for asked in heights:
@@ -143,7 +147,7 @@ def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
         duplicate=mesh.duplicate,
         form=form,
         sections=tuple(sections),
-        faces=tuple(distinct(z[(z == z[:, :1]).all(axis=1), 0].astype(np.float64)).tolist()) if len(heights) else (),
+        faces=tuple(levels.tolist()),
     )
 
 
@@ -154,6 +158,13 @@ def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
         message = f"the part reaches from z = {z.min():.9g} to {z.max():.9g} mm: it has no section at {height:.9g}"
         raise ReadError("several", message, path)
     return section(mesh, height)
+
+
+def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
+    """Cut midway between horizontal faces at rising `levels`, where the box of the section is largest."""
+    thick = np.argsort(-np.diff(levels), kind="stable")[:MOST_STEPS]
+    found = [cut(mesh, float(0.5 * (levels[k] + levels[k + 1])), path) for k in thick]
+    return max(found, key=lambda one: float(np.prod(np.ptp(one[1].points, axis=0))))
 
 
 def sectioned(outline: Outline, path: Path, *, across: bool) -> tuple[Contour, tuple[Contour, ...]]:

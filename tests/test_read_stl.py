@@ -135,7 +135,7 @@ def test_parts_made_by_trimesh_and_manifold(tmp_path: Path, scale: float) -> Non
         assert solid.prism
 
 
-def test_a_stepped_part_is_cut_at_half_its_height(tmp_path: Path) -> None:
+def test_a_stepped_part_is_cut_where_it_is_widest(tmp_path: Path) -> None:
     trimesh = pytest.importorskip("trimesh")
     profile = np.array([[0, 0], [25, 0], [25, 6], [8, 6], [8, 20], [0, 20]], dtype=float)
     hub = trimesh.creation.revolve(profile, sections=64)
@@ -145,9 +145,15 @@ def test_a_stepped_part_is_cut_at_half_its_height(tmp_path: Path) -> None:
     assert not solid.prism
     assert solid.closed
     assert solid.oriented
-    assert solid.height == pytest.approx(10.0)
-    assert solid.contour.area == pytest.approx(32.0 * 64.0 * np.sin(2.0 * np.pi / 64), rel=1e-5)
+    assert solid.faces == (0.0, 6.0, 20.0)
+    assert solid.height == pytest.approx(3.0)
+    round_share = 32.0 * np.sin(2.0 * np.pi / 64)
+    assert solid.contour.area == pytest.approx(25.0**2 * round_share, rel=1e-5)
     assert solid.volume == pytest.approx(hub.volume, rel=1e-6)
+    at = read_stl(path, [10.0, 4.0])
+    assert [section.height for section in at.sections] == [10.0, 4.0]
+    assert at.contour.area == pytest.approx(8.0**2 * round_share, rel=1e-5)
+    assert at.sections[1].contour.area == pytest.approx(25.0**2 * round_share, rel=1e-5)
 
 
 def test_a_cone_is_no_prism_and_a_level_at_half_height_is_avoided(tmp_path: Path) -> None:
