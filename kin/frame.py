@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from kin.bearing import bearing_of
-from kin.check import degrees
+from kin.check import UnsettledError, degrees
 from kin.contour import apart
 from kin.distinct import distinct
 from kin.dwell import dwells
@@ -36,6 +36,8 @@ __all__ = ["DwellFound", "FrameError", "LinkageVerdict", "implied_limit", "judge
 Over = Literal["shaft", "relative"]
 RESOLUTION = 1e-11  # mm
 RESOLUTION_ANGLE = 1e-13  # rad
+ROUNDING = 64.0 * 2.0**-52  # of what is subtracted from one another, as a part of it
+SHARE = 1e-6  # of the greatest error: what is resolved at least
 FINE_STEP = 2e-4  # rad: within this a Taylor polynomial of third order is good to rounding
 LIMIT_STEPS = 720  # of a turn, from which the limit's extremes are looked for
 CORNERS = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
@@ -142,9 +144,19 @@ def judge_frame(
     """Let a contour drive the mechanism: extremes over the whole turn, rms and increments from shaft angles (n,).
 
     `band`, rad or mm, asks for dwells over the shaft angle or the relative one; None for none. Raises FrameError where
-    the contour does not drive it all round, and BindingError where the intended cam does not. Cost: a position of the
-    linkage for each break of the contour as each face has it, in each way of resting.
+    the contour does not drive it all round, or so suddenly that rounding hides the error, and BindingError where the
+    intended cam does not drive it. Cost: a position of the linkage for each break of the contour as each face has it,
+    in each way of resting.
     """
+    try:
+        return _judged(contour, mechanism, shaft, tolerance, band=band, over=over)
+    except UnsettledError as error:
+        raise FrameError(f"the error of the output cannot be told: {error}") from error
+
+
+def _judged(
+    contour: Contour, mechanism: Mechanism, shaft: Array, tolerance: float, *, band: float | None, over: Over
+) -> LinkageVerdict:
     bearing, intended = bearing_of(contour), _Intended(mechanism)
     unit: Unit = "deg" if mechanism.unit == "deg" else "mm"
     ways = [Resting.of(mechanism, bearing, rest) for rest in WAYS]
@@ -179,12 +191,16 @@ def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float
     def error(theta: Array, of: Indices) -> Array:
         return intended.error(theta, way.rows(theta, of), intended.rows(theta))
 
-    worst, at = extremes(low, high, at_low, at_high, error, resolution=_resolution(intended.mechanism)).worst
+    resolution = _resolution(intended.mechanism, rows[1, 0], at_low[0])
+    worst, at = extremes(low, high, at_low, at_high, error, resolution=resolution).worst
     return worst, way.shaft_at(at)
 
 
-def _resolution(mechanism: Mechanism) -> float:
-    return RESOLUTION if mechanism.unit == "mm" else RESOLUTION_ANGLE
+def _resolution(mechanism: Mechanism, output: Array, error: Array | None = None) -> float:
+    """What is to be resolved of the output, or of its error; their values at the nodes are given, rad or mm."""
+    least = RESOLUTION if mechanism.unit == "mm" else RESOLUTION_ANGLE
+    share = 0.0 if error is None else SHARE * float(np.abs(error).max())
+    return max(least, ROUNDING * float(np.abs(output).max()), share)
 
 
 def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
@@ -207,6 +223,7 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
         s1[0] += tolerance * off1
         return intended.error(theta, driven(mechanism, theta, s, s1), intended.rows(theta))
 
+    output = intended.rows(nodes)[1, 0]
     try:
         corners = []
         for off, off1 in CORNERS:
@@ -217,7 +234,7 @@ def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
                 at[:, :-1],
                 at[:, 1:],
                 lambda theta, _, off=off, off1=off1: error(theta, off, off1),  # type: ignore[misc]
-                resolution=_resolution(mechanism),
+                resolution=_resolution(mechanism, output, at[0]),
             )
             corners.append(found.worst[0])
         bulge = sum(np.abs(error(nodes, *d)[0] + error(nodes, -d[0], -d[1])[0]) for d in ((1.0, 0.0), (0.0, 1.0)))
@@ -268,7 +285,8 @@ def _plays(centred: Resting) -> tuple[Play, Play]:
     def width(theta: Array, of: Indices) -> Array:
         return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
 
-    found = extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, width, resolution=RESOLUTION)
+    resolution = max(RESOLUTION, ROUNDING * breadth)
+    found = extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, width, resolution=resolution)
 
     def play(turned: float) -> Play:
         least, most = (degrees(centred.shaft_at(at - turned)) for at in (found.greatest_at, found.least_at))
@@ -294,7 +312,7 @@ def _extremes(way: Resting, theta: Array, interval: Indices) -> Extremes:
         rows: Array = way.rows(x, of[i])[1]
         return rows
 
-    return extremes(low, high, at_low, at_high, output, resolution=_resolution(way.mechanism))
+    return extremes(low, high, at_low, at_high, output, resolution=_resolution(way.mechanism, at_low[0]))
 
 
 def _intended_dwell(intended: _Intended, band: float) -> Array:

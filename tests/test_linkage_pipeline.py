@@ -146,6 +146,28 @@ def test_a_motion_too_sudden_to_be_followed_is_refused(monkeypatch: pytest.Monke
     assert not list(tmp_path.iterdir())
 
 
+def test_an_acceleration_that_jumps_is_no_obstacle_to_the_limit(tmp_path: Path) -> None:
+    text = """\
+name: four-bar
+cam: {kind: constant-breadth, base_radius: 23.89452, motion: [{rise: 7.39933, over: 100, law: harmonic}, {dwell: 80}]}
+linkage: {kind: four-bar, ground: 92.7954, coupler: 84.05541, rocker: 92.11527, assembly: crossed}
+"""
+    outcome = pipeline.export(recipe(text=text), tmp_path)
+    assert outcome.ok
+    error = outcome.report["linkage"]["error"]
+    assert 0.5 * error["limit"] < error["max"] <= error["limit"]
+
+
+def test_an_error_lost_in_rounding_fails_the_file_and_says_so(tmp_path: Path) -> None:
+    # the block passes its pivot at a nanometre: within the tolerance it may take either side
+    text = FOUR_BAR.replace("dwell: {band: 0.1, at_least: 36}\n", "")
+    point = "rocker: 105, dyads: [{kind: rpr, on: coupler, point: [-70, 0], ground: [12.920854959934, 9.049803351048]}]"
+    outcome = pipeline.export(recipe("rocker: 105", point, text), tmp_path)
+    assert failed(outcome.report) == {("linkage-error", "four-bar.dxf")}
+    check = next(check for check in outcome.report["checks"] if check["name"] == "linkage-error")
+    assert "the error of the output cannot be told" in check["detail"]
+
+
 def test_an_output_that_stands_still_but_for_rounding_is_one_long_dwell(tmp_path: Path) -> None:
     # the slot of the second dyad lies along the slide of the first: 30 degrees, whatever the cam does
     dyads = (
