@@ -95,7 +95,7 @@ def many_lobes(lam, mu, share):
 
 
 def least_radius():
-    """Of the pitch curve D = 625 cos 4t, lambda/mu = 4/3, l = 60: in 50 digits, by golden sections about the tightest."""
+    """Of the pitch curve D = 625 cos 4t, lambda/mu = 4/3, l = 60: in 50 digits, by golden sections."""
     oracle = Pitch(4, 3, 60.0, {1: 625.0}, 0.0)
     t = np.linspace(0.0, np.pi / 2, 201)
     rho = [oracle.frame(x)[2] for x in t]
