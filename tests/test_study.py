@@ -138,6 +138,20 @@ def test_an_undercut_recipe_is_told_and_fails(tmp_path: Path, capsys: pytest.Cap
     assert "undercut" in text
 
 
+def test_a_linkage_that_binds_fails_and_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text(
+        "cam: {kind: support, p: 25 + cos(3*t), pivot: [12, 6]}\n"
+        "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 20}\n"
+    )
+    call = ["study", str(recipe), "--out", str(tmp_path), "--form", "polyline", "--patience", "1e-9"]
+    assert cli.main(call) == cli.main(["check", str(recipe)]) == 1
+    assert "FAILED before any file: mobility" in capsys.readouterr().out
+    found = json.loads((tmp_path / "cam" / "study.json").read_text(encoding="utf-8"))
+    assert found["failed"][0]["name"] == "mobility"
+    assert next(margin["value"] for margin in found["margins"] if margin["name"] == "binding") < 0.0
+
+
 def test_a_wrong_call_and_a_wrong_recipe(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recipe = tmp_path / "cam.yaml"
     recipe.write_text("cam: {kind: support, q: 10}\n")

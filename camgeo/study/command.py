@@ -45,7 +45,7 @@ def _seconds(text: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Study one recipe: 0 every rung's file holds, 1 one does not or there is no contour, 2 wrong, 3 surroundings."""
+    """Study one recipe: 0 the exact cam and every rung's file hold, 1 one does not, 2 wrong, 3 surroundings."""
     from camgeo.design import designed
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.load import load
@@ -61,10 +61,11 @@ def run(arguments: argparse.Namespace) -> int:
             found = _climbed(recipe, design, arguments, progress)
         finally:
             progress.clear()
+        failed = [check for check in design.checks if not check.ok]
         skipped = [] if design.contour is not None else [("files", "a check of the exact contour fails")]
         if recipe.part.thickness is None:
             skipped.append(("stl", "part.thickness is not given"))
-        study = document(recipe, found, margins(recipe, design), skipped)
+        study = document(recipe, found, margins(recipe, design), skipped, failed)
         _write(recipe, study, Path(arguments.out))
     except RecipeErrors as errors:
         print(errors, file=sys.stderr)
@@ -78,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(encoded(study), end="")
     else:
         print(f"{recipe.name}\n{table(study)}")
-    return OK if design.contour is not None and all(row["ok"] for row in study["rows"]) else FAILED
+    return FAILED if failed or not all(row["ok"] for row in study["rows"]) else OK
 
 
 def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | Ended]:

@@ -14,12 +14,17 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.model import Recipe
     from camgeo.study.margins import Margin
+    from kin.check import Check
 
 
 def document(
-    recipe: Recipe, found: Sequence[Rung | Ended], margins: Sequence[Margin], skipped: Sequence[tuple[str, str]]
+    recipe: Recipe,
+    found: Sequence[Rung | Ended],
+    margins: Sequence[Margin],
+    skipped: Sequence[tuple[str, str]],
+    failed: Sequence[Check] = (),
 ) -> dict[str, Any]:
-    """The study, keys as the contract of study.json fixes them, and more."""
+    """The study, keys as the contract of study.json fixes them, and more; `failed` are checks of the exact cam."""
     length = in_units(recipe, None, "mm")[1]
     rungs = [rung for rung in found if isinstance(rung, Rung)]
     return {
@@ -34,6 +39,7 @@ def document(
             if isinstance(end, Ended)
         ],
         "margins": [_margin(recipe, margin) for margin in margins],
+        "failed": [{"name": check.name, "why": check.detail} for check in failed],
         "skipped": [{"what": what, "why": why} for what, why in skipped],
     }
 
@@ -105,6 +111,9 @@ def table(study: dict[str, Any]) -> str:
     text = aligned(rows)
     ended = [f"{end['form']} ends at {end['tolerance']:.0e} {end['unit']}: {end['why']}" for end in study["ended"]]
     text += "\n\n" + "\n".join(ended)
+    if study["failed"]:
+        told = [f"{item['name']}: {item['why']}" if item["why"] else item["name"] for item in study["failed"]]
+        text += "\n\n" + "\n".join(f"FAILED before any file: {line}" for line in told)
     margins: list[Sequence[str]] = [("margin", "value", "", "at 0; or what grows by it")]
     margins += [(m["name"], f"{m['value']:.6g}", m["unit"], m["of"]) for m in study["margins"]]
     text += "\n\n" + aligned(margins)
