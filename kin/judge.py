@@ -94,7 +94,8 @@ class Limits:
 class Findings:
     """What was found on a contour; motion is None where the follower finds no contact.
 
-    `deviation` is None where it could not be told. `linkage` is None without a mechanism, or where the contour does not drive it all round.
+    `deviation` is None where it could not be told.
+    `linkage` is None without a mechanism, or where the contour does not drive it all round.
     """
 
     judged: Judged | None
