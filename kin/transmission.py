@@ -151,7 +151,8 @@ def from_arc(
             reached = 2 * steep / (max(room, 0.0) + steep)
             raise IntentError(
                 f"psi'(phi) must stay below 1, else the cam cannot be turned through; it reaches {reached:.9g} at a "
-                f"shaft angle of {math.degrees(alpha / 2):.6g} degrees, where the arc begins; a larger radius is less steep",
+                f"shaft angle of {math.degrees(alpha / 2):.6g} degrees, where the arc begins; a larger radius is less "
+                "steep",
                 "arc.radius",
                 math.degrees(alpha / 2),
             )
