@@ -20,11 +20,12 @@ FLOORS = {
         deviation flat layers resting
         envelope mechanism
         lift transmission
-        chain formula read
-        dyad forces hole possible read_dxf read_stl switches
+        chain formula possible read
+        dyad forces hole read_dxf read_stl switches transmission_law
+        drawing
         bearing bouncing bounding flaws floating integrated law linkage nesting roots routes syntax
-        contour dynamics expression frame_dwell loop piecewise
-        biarc dwell dxf_entities figures jet mobility peaks pieces
+        contour dxf_entities dynamics expression frame_dwell loop piecewise
+        biarc dwell figures jet mobility peaks pieces shape
         bezier monotone motion response series
         bernstein chaining contact drive extremes foot hull nearest taylor triangles
         arcs ball check chebyshev distinct oscillator read_error
