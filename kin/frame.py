@@ -39,6 +39,7 @@ RESOLUTION_ANGLE = 1e-13  # rad
 ROUNDING = 64.0 * 2.0**-52  # of what is subtracted from one another, as a part of it
 SHARE = 1e-6  # of the greatest error: what is resolved at least
 FINE_STEP = 2e-4  # rad: within this a Taylor polynomial of third order is good to rounding
+BESIDE = 1e-13  # rad: from a break, less than which is rounding
 LIMIT_STEPS = 720  # of a turn, from which the limit's extremes are looked for
 CORNERS = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
 
@@ -112,8 +113,9 @@ class _Intended(NamedTuple):
     def _break_between(self, a: Array, b: Array) -> NDArray[np.bool_]:
         breaks = self.mechanism.breaks
         ring = np.concatenate([breaks - TURN, breaks, breaks + TURN])
-        before = np.searchsorted(ring, np.minimum(a, b), side="left")
-        return np.not_equal(before, np.searchsorted(ring, np.maximum(a, b), side="right"))
+        # what is beside a break by rounding alone may have been taken on its other side
+        before = np.searchsorted(ring, np.minimum(a, b) - BESIDE, side="left")
+        return np.not_equal(before, np.searchsorted(ring, np.maximum(a, b) + BESIDE, side="right"))
 
 
 def _step(phi: Array, shaft: Array) -> Array:

@@ -146,12 +146,22 @@ def test_a_motion_too_sudden_to_be_followed_is_refused(monkeypatch: pytest.Monke
     assert not list(tmp_path.iterdir())
 
 
-def test_an_acceleration_that_jumps_is_no_obstacle_to_the_limit(tmp_path: Path) -> None:
-    text = """\
+HARMONIC = """\
 name: four-bar
 cam: {kind: constant-breadth, base_radius: 23.89452, motion: [{rise: 7.39933, over: 100, law: harmonic}, {dwell: 80}]}
 linkage: {kind: four-bar, ground: 92.7954, coupler: 84.05541, rocker: 92.11527, assembly: crossed}
 """
+REULEAUX = """\
+name: four-bar
+cam: {kind: support, reuleaux: {sides: 3, breadth: 53.51571, rounding: 4.00736}, pivot: [5.98678, 3.8523]}
+linkage: {kind: inverted-slider-crank, ground: 132.82878, rocker: 75.20437}
+rotation: ccw
+export: {files: [{dxf: {as: polyline}}]}
+"""
+
+
+@pytest.mark.parametrize("text", [HARMONIC, REULEAUX])
+def test_an_acceleration_that_jumps_is_no_obstacle(text: str, tmp_path: Path) -> None:
     outcome = pipeline.export(recipe(text=text), tmp_path)
     assert outcome.ok
     error = outcome.report["linkage"]["error"]
