@@ -1,17 +1,21 @@
-"""Designs a second on one core, and what the samples are worth: `python benchmarks/sweep.py [speed] [accuracy]`.
+"""Designs a second on one core, what the samples are worth: `python benchmarks/sweep.py [command] [speed] [accuracy]`.
 
 Speed is processor time, the least of several repeats, as a ratio too: to bare kinematics, the plain numpy expressions
 for the angles and positions of the same four-bars at as many samples, with nothing found from them. Take one core:
-OMP_NUM_THREADS=1, and nothing beside it.
+OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own.
 """
 
 from __future__ import annotations
 
 import math
+import os
+import subprocess
 import sys
+import tempfile
 import time
 from dataclasses import replace
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -104,6 +108,55 @@ def speed() -> None:
             print(f"{engine:9} {name:52} {DESIGNS / seconds:9.0f}, {base / seconds:5.2f} times bare kinematics")
 
 
+SEARCH = """
+sweep:
+  vary: {VARY}
+  method: random
+  count: 100000
+  limits: {LIMITS}
+  rank: dwell
+  keep: 5
+"""
+RUN = """
+import sys, time
+if sys.argv[1] == "numpy":
+    sys.modules["numba"] = None
+from camgeo.cli import main
+from camgeo.sweep import search
+spent = []
+def timed(*arguments, compute=search.compute, **named):
+    begun = time.process_time()
+    work = compute(*arguments, **named)
+    spent.append(time.process_time() - begun)
+    return work
+search.compute = timed
+status = main(["sweep", sys.argv[2], "--out", sys.argv[3], "--jobs", "1"])
+print(status, spent[0], time.process_time(), file=sys.stderr)
+"""
+
+
+def command() -> None:
+    print(
+        "\n`camgeo sweep --jobs 1`, 100,000 four-bars at 360 angles, designs a second of processor time; target 20,000"
+    )
+    vary = ", ".join(f"'{path}': {{from: {low}, to: {high}}}" for path, (low, high) in PLACES.items())
+    print(f"{'':42}{'computing':>10} {'whole process':>14}")
+    for limits in ("transmission-angle: {at_least: 34}, size: {at_most: 44}", "peak-velocity: {at_most: 22}"):
+        text = CAM_2A.text[: CAM_2A.text.index("sweep:")] + SEARCH.replace("VARY", vary).replace("LIMITS", limits)
+        for engine in ("numpy", "numba"):
+            if engine == "numba" and not find_spec("numba"):
+                continue
+            best = [math.inf, math.inf]
+            with tempfile.TemporaryDirectory() as folder:
+                (Path(folder) / "speed.yaml").write_text(text)
+                for repeat in range(3):
+                    call = [sys.executable, "-c", RUN, engine, f"{folder}/speed.yaml", f"{folder}/out-{repeat}"]
+                    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+                    told = subprocess.run(call, env=environment, capture_output=True, text=True, check=True).stderr
+                    best = [min(a, float(b)) for a, b in zip(best, told.split()[-2:], strict=True)]
+            print(f"{engine:6} limits on {limits.split(':')[0]:24} {100_000 / best[0]:10.0f} {100_000 / best[1]:14.0f}")
+
+
 SOME = ("dwell", "margin", "shaft-rate", "transmission-angle", "swing")
 
 
@@ -137,7 +190,7 @@ def accuracy() -> None:
 COUNTS = (120, 180, 360, 720, 1440)
 
 if __name__ == "__main__":
-    chosen = sys.argv[1:] or ["speed", "accuracy"]
-    for name, part in (("speed", speed), ("accuracy", accuracy)):
+    chosen = sys.argv[1:] or ["command", "speed", "accuracy"]
+    for name, part in (("command", command), ("speed", speed), ("accuracy", accuracy)):
         if name in chosen:
             part()
