@@ -104,7 +104,20 @@ def _roots(f: Array) -> Array:
     return real
 
 
-def spans_wanted(curve: Curve, stretches: Array) -> list[Density]:
+@dataclass(frozen=True)
+class Wanted:
+    """Spans wanted along each of some stretches; `side` to which the nearest cubic misses all along, 0 if to both."""
+
+    densities: list[Density]
+    side: float
+
+    @property
+    def totals(self) -> Array:
+        """The integral over each stretch (m,)."""
+        return np.array([density.total for density in self.densities])
+
+
+def spans_wanted(curve: Curve, stretches: Array) -> Wanted:
     """For each stretch (m, 2), none of which spans a break, the integral of (|c|/864)^(1/6) ds.
 
     Over the sixth root of a tolerance it is the least number of spans, to leading order. Where the curve stands still
@@ -127,4 +140,5 @@ def spans_wanted(curve: Curve, stretches: Array) -> list[Density]:
         at = mine.stop
         total = np.concatenate([[0.0], np.cumsum(value[mine] * width)])
         out.append(Density(part, total, float(np.abs(turn[0, mine] * width).sum())))
-    return out
+    sides = np.sign(miss)
+    return Wanted(out, float(sides[0]) if (sides == sides[0]).all() else 0.0)

@@ -3,7 +3,9 @@
 Each span takes points and tangents from the curve; the lengths of its two handles are free and set so that it strays
 least. Then the error falls as the sixth power of the span's length, and 1.06 of the fewest spans do that any such
 spline needs (`camgeo.fit.cubic`), which whole numbers of spans and places where the nearest cubic ceases to exist
-raise to about 1.1. Knots are spaced so that the spline is C1 in its own parameter.
+raise to about 1.1. A curve that all cubics miss to one side, such as an ellipse or a Reuleaux polygon, has its joints
+on the other side, on a parallel curve that the spans' middles touch as well: that saves the 0.06. Knots are spaced so
+that the spline is C1 in its own parameter.
 """
 
 from __future__ import annotations
@@ -24,21 +26,27 @@ if TYPE_CHECKING:
 
 HOPELESS = 1.02  # times the aim: spans seen farther off are given up; more than 1/USABLE, so none of them can pass
 USABLE = 0.985  # of the tolerance, that errors seen may use; the rest is left to the proof
-ON_CURVE = 604.39  # a span of length h with its ends on the curve errs by c h^6/604.2 (docs/theory.md 3)
-PLACES = (0.1, 0.3, 0.5, 0.7, 0.9)  # of a span, where its handles are judged
+OFFSET = 0.92  # of the aim, how far joints may lie off the curve: room for middles that do not quite touch
+NEAR_CENTRE = 0.25  # of the least radius of curvature, beyond which they lie on the curve instead
+ON_CURVE = 604.39  # a span of length h with its ends on the curve errs by c h^6/604.4 (docs/theory.md 3)
+PLACES = (0.1, 0.26, 0.5, 0.74, 0.9)  # of a span: least squares there make its error equal to both sides
 MOST_LEAN = 0.6  # by which the handles of the first guess differ
 LOOKS = 16  # steps of a span at which its error is seen
 PROOF_LOOKS = 24  # and at which it is first proved
 MOST_LOOKS = 384
 SLACK = 0.02  # of the tolerance: how far the proof may exceed what is seen before it is sharpened,
 OVER = 0.01  # and how far the tolerance, before that
-SHARINGS = 8  # of the nodes before there are more of them,
-GROWTH = 1.01  # by this factor at least
+SHARINGS = 10  # of the nodes before there are more of them,
+FULL = 0.97  # mean load above which sharing will not do
+GROWTH = 0.01  # by this share of them at least,
+FASTER = 1.6  # which itself grows by this factor each time
+LAST_TRIES = 8  # are spent on halving spans that fail, wherever they are
 DAMPED = 12.0  # power for the error where nodes were shared before, so that they come to rest
-HANDLE_STEPS = 12
-ENOUGH = 0.01  # of a span's error: handles that would change it by less are settled
+HANDLE_STEPS = 20
+ENOUGH = 0.001  # of a span's error: handles that would change it by less are settled
 STEP = 0.3  # of a handle's logarithm, that one such step may change
 FIRST_DAMPING = 1e-3
+HUMP = 0.2  # what humps still weigh where they do not count
 NEWTON = 5  # steps that settle feet of normals to rounding
 
 
@@ -93,13 +101,16 @@ def _fit_stretches(curve: Curve, stretches: Array, aim: float, limit: float) -> 
     """
     tolerance = min(aim, limit)
     wanted = spans_wanted(curve, stretches)
-    counts = np.array([one.total for one in wanted]) * ((LEAST / ON_CURVE) * tolerance) ** (-1.0 / ORDER)
+    out = _beside(curve, wanted.side, tolerance)
+    # what a span may leave its joints' parallel, over what it may leave the curve
+    room = 1.0 + abs(out) / tolerance
+    counts = wanted.totals * (tolerance * (0.5 * room if out else ON_CURVE / LEAST)) ** (-1.0 / ORDER)
     check_count(float(counts.sum()), "spline spans", tolerance, ORDER)
-    nodes = [one.nodes(max(1, math.ceil(count))) for one, count in zip(wanted, counts, strict=True)]
+    nodes = [one.nodes(max(1, math.ceil(count))) for one, count in zip(wanted.densities, counts, strict=True)]
     done: dict[int, tuple[Array, float, float]] = {}
-    shared = [0] * len(nodes)
+    states = [_State()] * len(nodes)
     best = math.inf
-    for _ in range(TRIES):
+    for attempt in range(TRIES):
         todo = [i for i in range(len(nodes)) if i not in done]
         if not todo:
             return [done[i] for i in range(len(nodes))]
@@ -107,57 +118,88 @@ def _fit_stretches(curve: Curve, stretches: Array, aim: float, limit: float) -> 
         check_count(2.0 * owner.size, "spline spans", tolerance, ORDER)
         low = np.concatenate([nodes[i][:-1] for i in todo])
         high = np.concatenate([nodes[i][1:] for i in todo])
-        control, worst = _handled(curve, low, high)
-        out = into = worst
+        control, worst, load = _handled(curve, low, high, out)
+        outer = inner = worst
         passed = [i for i in todo if float(worst[owner == i].max()) <= tolerance]
         if passed:
             mine = np.isin(owner, passed)
-            out, into = worst.copy(), worst.copy()
-            out[mine], into[mine] = _spline_range(curve, control[mine], low[mine], high[mine], tolerance)
-            worst = np.maximum(out, into)
+            outer, inner = worst.copy(), worst.copy()
+            outer[mine], inner[mine] = _spline_range(curve, control[mine], low[mine], high[mine], tolerance)
+            worst = np.maximum(outer, inner)
         for i in todo:
             mine = owner == i
             reached = float(worst[mine].max())
             best = min(best, reached)
             if i in passed and reached <= limit:
-                done[i] = control[mine], max(float(out[mine].max()), 0.0), max(float(into[mine].max()), 0.0)
+                done[i] = control[mine], max(float(outer[mine].max()), 0.0), max(float(inner[mine].max()), 0.0)
             else:
-                nodes[i], shared[i] = _denser(nodes[i], worst[mine], tolerance, shared[i])
+                strayed = np.maximum(load[mine] / room, np.where(np.isfinite(worst[mine]), 0.0, np.inf))
+                if attempt >= TRIES - LAST_TRIES:
+                    strayed[strayed > tolerance] = np.inf
+                nodes[i], states[i] = _denser(nodes[i], strayed, tolerance, states[i])
     raise ToleranceError(f"a spline within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
-def _denser(nodes: Array, worst: Array, tolerance: float, shared: int) -> tuple[Array, int]:
-    """Nodes for the next try: shared anew while the mean error allows it, then more of them; halved where unproved."""
-    if not math.isfinite(float(worst.max())):
+def _beside(curve: Curve, side: float, tolerance: float) -> float:
+    """How far joints lie outside the curve, mm: away from the `side` to which all spans stray, if they all do."""
+    if side == 0.0 or not curve.closed:
+        return 0.0
+    rows = curve.cells.rows
+    # speed over turn, the least there may be
+    tightest = float(rows[0].min() / np.maximum(np.abs(rows[2]), np.abs(rows[3])).max())
+    return -side * OFFSET * tolerance if OFFSET * tolerance < NEAR_CENTRE * tightest else 0.0
+
+
+@dataclass(frozen=True)
+class _State:
+    """How often a stretch's nodes were shared since there were more of them, and how often there were more."""
+
+    shared: int = 0
+    grown: int = 0
+
+
+def _denser(nodes: Array, load: Array, tolerance: float, state: _State) -> tuple[Array, _State]:
+    """Nodes for the next try: shared anew while the mean load allows it, then more of them; halved where infinite.
+
+    `load` (n,) is each span's error, times what of it must be within the tolerance.
+    """
+    if not math.isfinite(float(load.max())):
         middle = 0.5 * (nodes[:-1] + nodes[1:])
-        return np.sort(np.append(nodes, middle[~np.isfinite(worst)])), 0
-    mean = float(np.mean(worst ** (1.0 / ORDER))) ** ORDER
-    if shared < SHARINGS and mean < 0.97 * tolerance:
-        return reshared(nodes, worst, DAMPED if shared else ORDER), shared + 1
+        return np.sort(np.append(nodes, middle[~np.isfinite(load)])), replace(state, shared=0)
+    mean = float(np.mean(load ** (1.0 / ORDER))) ** ORDER
+    if state.shared < SHARINGS and mean < FULL * tolerance:
+        moved = reshared(nodes, load, DAMPED if state.shared else ORDER)
+        return moved, replace(state, shared=state.shared + 1)
     count = nodes.size - 1
-    growth = max(GROWTH if shared else 1.0, (mean / tolerance) ** (1.0 / ORDER))
-    return reshared(nodes, worst, ORDER, max(count + 1, math.ceil(count * growth))), 0
+    if state.shared:
+        share, grown = GROWTH * FASTER**state.grown, state.grown + 1
+    else:
+        share, grown = (mean / tolerance) ** (1.0 / ORDER) - 1.0, state.grown
+    more = max(count + 1, math.ceil(count * (1.0 + share)))
+    return reshared(nodes, load, ORDER, more), _State(grown=grown)
 
 
-def _handled(curve: Curve, low: Array, high: Array) -> tuple[Array, Array]:
-    """Cubic spans (n, 4, 2) between points of the curve, and how far each is seen to stray from it (n,).
+def _handled(curve: Curve, low: Array, high: Array, out: float) -> tuple[Array, Array, Array]:
+    """Cubic spans (n, 4, 2) between points `out` mm outside the curve.
 
-    Handles are sought from two beginnings, as the equations for them may have more than one solution; the closer span
-    counts.
+    With them comes how far each is seen to stray from the curve, and from the parallel through its ends (n,). Handles
+    are sought from two beginnings, as the equations for them may have more than one solution; the closer span counts.
     """
     a, b = curve.span(low, high)
-    chord = np.hypot(*(b.point - a.point).T)
+    start, end = a.point + out * a.normal, b.point + out * b.normal
+    chord = np.hypot(*(end - start).T)
     # handles of a circular arc with these ends, and how the nearest cubic's differ
     half_cosine = np.sqrt(np.maximum(0.25 * np.sum((a.tangent + b.tangent) ** 2, axis=1), 1e-12))
     third = chord * 2.0 / (3.0 * (1.0 + half_cosine))
     speed, turn = curve.shape.series(0.5 * (low + high), 4)
     lean = np.clip(np.nan_to_num(contact(speed, turn).lean) * chord, -MOST_LEAN, MOST_LEAN)
     leaning = np.column_stack([third * (1.0 - lean), third * (1.0 + lean)])
-    spans = _Spans(*(np.concatenate([x, x]) for x in (low, high, a.point, a.tangent, b.point, b.tangent)))
-    control = _control(spans, _settled(curve, spans, np.concatenate([leaning, np.column_stack([third, third])])))
-    worst = _seen(curve, control, spans)
-    chosen = np.argmin(worst.reshape(2, -1), axis=0) * low.size + np.arange(low.size)
-    return control[chosen], worst[chosen]
+    spans = _Spans(*(np.concatenate([x, x]) for x in (low, high, start, a.tangent, end, b.tangent)))
+    control = _control(spans, _settled(curve, spans, np.concatenate([leaning, np.column_stack([third, third])]), out))
+    gap = _seen(curve, control, spans)
+    worst, load = np.abs(gap).max(axis=1), np.abs(gap - out).max(axis=1)
+    chosen = np.argmin(load.reshape(2, -1), axis=0) * low.size + np.arange(low.size)
+    return control[chosen], worst[chosen], load[chosen]
 
 
 @dataclass(frozen=True)
@@ -172,11 +214,13 @@ class _Spans:
     arriving: Array
 
 
-def _settled(curve: Curve, spans: _Spans, handles: Array) -> Array:
+def _settled(curve: Curve, spans: _Spans, handles: Array, out: float) -> Array:
     """Handles (n, 2) whose span strays least from the curve, in the mean of squares at `PLACES`.
 
-    Levenberg's and Marquardt's steps, of the handles' logarithms: near places where the nearest cubic ceases to exist
-    the equations have no solution. Any handles will do, the proof takes them as they are.
+    Where the ends lie `out` mm outside, it is the parallel there that the span is to keep to, and the humps to both
+    sides of its middle, which go as far beyond the curve, hardly count. Levenberg's and Marquardt's steps, of the
+    handles' logarithms: near places where the nearest cubic ceases to exist the equations have no solution. Any handles
+    will do, the proof takes them as they are.
     """
     u = np.broadcast_to(np.array(PLACES), (len(handles), len(PLACES)))
     t = spans.low[:, None] + (spans.high - spans.low)[:, None] * u
@@ -188,7 +232,10 @@ def _settled(curve: Curve, spans: _Spans, handles: Array) -> Array:
         normal = at.normal.reshape(*t.shape, 2)
         pull_a = inner[0] * np.sum(spans.leaving[:, None] * normal, axis=2)
         pull_b = -inner[1] * np.sum(spans.arriving[:, None] * normal, axis=2)
-        return gap, np.stack([pull_a, pull_b], axis=2) * handles[:, None], moved
+        gain = np.stack([pull_a, pull_b], axis=2) * handles[:, None]
+        if out:
+            gap, gain = (gap - out) @ FREED, FREED @ gain
+        return gap, gain, moved
 
     gap, gain, t = looked(handles, looked(handles, t)[2])
     size = np.sum(gap * gap, axis=1)
@@ -247,14 +294,13 @@ def _gap(at: Frame, t: Array, low: Array, high: Array, point: Array) -> tuple[Ar
 
 
 def _seen(curve: Curve, control: Array, spans: _Spans) -> Array:
-    """Greatest distance of each span from the curve at a few places (n,): quick, from below, no proof."""
+    """Distance of each span outside the curve at a few places (n, m): quick, no proof."""
     u = np.broadcast_to(np.linspace(0.0, 1.0, LOOKS + 1)[1:-1], (len(control), LOOKS - 1))
     t = spans.low[:, None] + (spans.high - spans.low)[:, None] * u
     on = _bezier(control[:, None], u)
     for _ in range(2):
         gap, t = _gap(curve.sample(t.ravel()), t, spans.low, spans.high, on)
-    worst: Array = np.abs(gap).max(axis=1)
-    return worst
+    return gap
 
 
 def _spline_range(curve: Curve, control: Array, low: Array, high: Array, tolerance: float) -> tuple[Array, Array]:
@@ -346,3 +392,14 @@ def _bernstein_tables() -> tuple[Array, Array]:
 
 
 _RAISE, _PRODUCT = _bernstein_tables()
+
+
+def _freed() -> Array:
+    """Projection (m, m) of distances at `PLACES` that leaves little of the humps (x (x^2 - 1))^2."""
+    x = 2.0 * np.array(PLACES) - 1.0
+    hump = (x * (x * x - 1.0)) ** 2
+    freed: Array = np.eye(x.size) - (1.0 - HUMP) * hump[:, None] * hump / np.sum(hump * hump)
+    return freed
+
+
+FREED = _freed()

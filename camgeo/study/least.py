@@ -42,7 +42,7 @@ def least_spline(curve: Curve, tolerance: float) -> float:
     """Leading-order count of cubic spans with a continuous tangent, and one at least for each smooth stretch."""
     stretches = np.concatenate([run.stretches for run in curve.runs])
     scale = math.pow(tolerance, -1.0 / ORDER)
-    return sum(max(1.0, part.total * scale) for part in spans_wanted(curve, stretches))
+    return float(np.maximum(1.0, scale * spans_wanted(curve, stretches).totals).sum())
 
 
 def _arc_density(frame: Frame) -> Array:

@@ -1,0 +1,160 @@
+"""Spans of a spline against the least count of theory, and the theory against closed forms and small spans."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shapes import booth
+
+from camgeo.curve import Curve
+from camgeo.design import designed
+from camgeo.fit import spline as module
+from camgeo.fit.cubic import LEAST, contact, spans_wanted
+from camgeo.fit.spline import fit_spline
+from camgeo.profile.support import SupportShape
+from camgeo.recipe import load
+from camgeo.study.least import least_pieces, least_spline
+from kin.lift import lift_from_fourier
+
+RECIPES = Path(__file__).parents[1] / "recipes"
+# one recipe for each contour that is shipped
+CONTOURS = [
+    "as-figure-1", "as-figure-2a", "as-figure-2b", "as-figure-2c", "as-figure-2d", "fourier", "hypocycloid",
+    "long-dwell", "oscillating-yoke", "rabinowitz", "reuleaux", "reuleaux-nine", "shu-wu", "slider-crank",
+    "w-booth", "w-ellipse", "w-figure-5", "w-figure-9", "w-law", "w-rosette",
+]  # fmt: skip
+
+
+def support(mean: float, cos: dict[int, float], sin: dict[int, float] | None = None) -> Curve:
+    return Curve.whole(SupportShape(lift_from_fourier(mean, cos, sin or {})))
+
+
+def stretches(curve: Curve) -> np.ndarray:
+    return np.concatenate([run.stretches for run in curve.runs])
+
+
+def test_the_two_constants() -> None:
+    """Greatest values over [0, 1] of z (z - 1)^2 less half its greatest, and of (z - 1)^2 (z - m), over (1/2)^6."""
+    z = np.linspace(0, 1, 100_001)
+    even = z * (z - 1) ** 2
+    assert np.abs(even - 0.5 * even.max()).max() / 64 == pytest.approx(1 / LEAST, rel=1e-8)
+    m = 64 / module.ON_CURVE
+    on_curve = (z - 1) ** 2 * (z - m)
+    assert np.abs(on_curve).max() == pytest.approx(m, rel=1e-5)
+    assert on_curve.max() == pytest.approx(-on_curve.min(), rel=1e-4)
+
+
+@pytest.mark.parametrize("radius", [1e-3, 0.5, 25.0, 1e4])
+def test_a_circle_in_closed_form(radius: float) -> None:
+    curve = support(radius, {})
+    found = contact(*curve.shape.series(np.array([0.3]), 4))
+    assert found.miss[0] == pytest.approx(1 / (128 * radius**5), rel=1e-12)
+    assert found.lean[0] == pytest.approx(0.0, abs=1e-9 / radius)
+    e = 1e-6 * radius
+    assert least_spline(curve, e) == pytest.approx(2 * math.pi / (128 * 864 * 1e-6) ** (1 / 6), rel=1e-12)
+    assert least_pieces("spline", curve, e) == least_spline(curve, e)
+
+
+def test_a_parabola_and_a_cubic_are_met_for_good() -> None:
+    """Curves that are cubics themselves: y = x^2/2, and y = x^3 about its inflection, by speed and turn over x."""
+    from kin.jet import Jet
+
+    x = Jet.variable(np.array([-0.7, 0.1, 1.3]), 4)
+    for slope, bend in ((x, x.constant(1.0)), (x * x * 3.0, x * 6.0)):
+        square = slope * slope + 1.0
+        found = contact((square**0.5).c, (bend * square**-1).c)
+        assert np.abs(found.miss).max() < 1e-12
+    speed, turn = np.zeros((2, 5, 1))
+    speed[0], turn[1] = 1.0, 6.0  # at the inflection itself
+    assert np.isfinite(contact(speed, turn).miss).all()
+
+
+def test_small_spans_err_as_theory_says() -> None:
+    curve = support(25.0, {2: 1.0, 3: 0.2}, {3: 0.1})
+    for length in (4.0, 2.0, 1.0):
+        middle = np.linspace(0.1, 6.2, 40)
+        speed = curve.sample(middle).speed
+        low, high = middle - 0.5 * length / speed, middle + 0.5 * length / speed
+        miss = np.abs(contact(*curve.shape.series(middle, 4)).miss)
+        _, worst, _ = module._handled(curve, low, high, 0.0)
+        ratio = worst / (miss * length**6 / module.ON_CURVE)
+        clear = miss * length**6 / module.ON_CURVE > 1e-12  # of rounding
+        assert clear.sum() > 20
+        assert np.median(ratio[clear]) == pytest.approx(1.0, abs=0.02)
+
+
+def test_no_span_of_a_right_length_does_better() -> None:
+    """A span's handles are near the best there are: no others of a grid about them stray less by more than 2 %."""
+    curve = support(25.0, {3: 2.0})
+    low, high = np.array([0.9]), np.array([1.2])
+    control, worst, _ = module._handled(curve, low, high, 0.0)
+    a, b = curve.span(low, high)
+    spans = module._Spans(low, high, a.point, a.tangent, b.point, b.tangent)
+    own = np.array([np.hypot(*(control[0, i + 1] - control[0, i])) for i in (0, 2)])
+    for i in np.linspace(-0.02, 0.02, 21):
+        for j in np.linspace(-0.02, 0.02, 21):
+            other = module._control(spans, (own * (1 + np.array([i, j])))[None])
+            assert np.abs(module._seen(curve, other, spans)).max() > 0.98 * worst[0]
+
+
+@pytest.mark.parametrize("name", CONTOURS)
+def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
+    contour = designed(load(RECIPES / f"{name}.yaml")).contour
+    assert contour is not None
+    totals = spans_wanted(contour, stretches(contour)).totals
+    ratios = []
+    for exponent in (-3, -4, -5, -6):
+        tolerance = 10.0**exponent
+        found = fit_spline(contour, tolerance)
+        assert found.bound.worst <= tolerance
+        # a joint stands in every break, and so a whole number of spans between two
+        least = np.ceil(totals * tolerance ** (-1 / 6)).sum()
+        ratios.append(found.count / least)
+        assert 1.0 <= ratios[-1] <= 1.2
+        if len(totals) == 1:
+            assert found.count <= 1.2 * least_spline(contour, tolerance)
+    assert np.mean(ratios) <= 1.16
+
+
+def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
+    for name in ("reuleaux", "reuleaux-nine", "w-ellipse"):
+        contour = designed(load(RECIPES / f"{name}.yaml")).contour
+        assert contour is not None
+        totals = spans_wanted(contour, stretches(contour)).totals
+        for exponent in (-4, -6):
+            found = fit_spline(contour, 10.0**exponent)
+            assert found.count <= np.ceil(1.02 * totals * 10.0 ** (-exponent / 6)).sum() + 1
+
+
+@pytest.mark.parametrize("share", [0.5, 0.98, 0.999])
+@pytest.mark.parametrize("harmonic", [49, 97, 98, 99])
+def test_high_harmonics_near_undercut_are_held(harmonic: int, share: float) -> None:
+    curve = support(50.0, {harmonic: share * 50.0 / (harmonic**2 - 1)})
+    found = fit_spline(curve, 1e-3)
+    assert found.bound.worst <= 1e-3
+    # places where the nearest cubic ceases to exist, several to a wave, come as close together as spans
+    assert found.count <= 2.2 * least_spline(curve, 1e-3)
+
+
+def test_within_a_nanometre() -> None:
+    for curve in (support(25.0, {3: 2.0}), support(9.0, {3: 1.0}), Curve.whole(booth(60.0, 20.0))):
+        found = fit_spline(curve, 1e-9)
+        assert found.bound.worst <= 1e-9
+        assert found.count <= 1.2 * least_spline(curve, 1e-9)
+
+
+@pytest.mark.parametrize("name", ["as-figure-2a", "w-law", "reuleaux"])
+def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
+    contour = designed(load(RECIPES / f"{name}.yaml")).contour
+    assert contour is not None
+    found = fit_spline(contour, 1e-5)
+    pieces, steps = found.beziers(), np.diff(np.unique(found.knots))
+    leaving = 3 * (pieces[1:, 1] - pieces[1:, 0]) / steps[1:, None]
+    arriving = 3 * (pieces[:-1, 3] - pieces[:-1, 2]) / steps[:-1, None]
+    assert np.abs(leaving - arriving).max() < 1e-9 * np.abs(leaving).max()
+    # and at the seam in direction
+    first, last = pieces[0, 1] - pieces[0, 0], pieces[-1, 3] - pieces[-1, 2]
+    assert abs(first[0] * last[1] - first[1] * last[0]) < 1e-11 * np.hypot(*first) * np.hypot(*last)
