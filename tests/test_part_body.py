@@ -125,6 +125,7 @@ def test_a_wall_that_is_asked_for_is_kept_or_refused_at_its_edge():
         ("diameter: 4.8", "set screw and the disc's face: 0.1 mm"),
         ("diameter: 3, height: 1", "set screw and the disc's face: -0.5 mm"),
         ("diameter: 3, height: 4", "set screw and the hub's face: -0.5 mm"),
+        ("diameter: 3, at: 90}, dowel: {circle: 17, hole: 1.5, at: 90", "set screw and dowel hole: -1.5 mm at ("),
     ],
 )
 def test_walls_of_the_set_screw(screw, told):
@@ -202,6 +203,10 @@ def test_foreseen_checks_are_those_that_are_made():
         (
             "{thickness: 8, bore: 10, hub: {diameter: 20, height: 3}, set_screw: {diameter: 3}}",
             "part.set_screw.diameter: not below the hub's height, given 3 mm; give less than 3 mm",
+        ),
+        (
+            "{thickness: 8, bore: {square: 9}, hub: {diameter: 30, height: 20}, set_screw: {diameter: 9}}",
+            "part.set_screw.diameter: not below the bore's width, given 9 mm; give less than 9 mm",
         ),
         ("{thickness: 8, chamfer: 4}", "part.chamfer: not below half the thickness, given 4 mm; give less than 4 mm"),
         ("{thickness: 0.3, mark: {depth: 0.4}}", "part.mark.depth: not below the thickness"),

@@ -229,10 +229,24 @@ def test_solid_by_trimesh_manifold3d_and_closed_forms(tmp_path, side):
     assert again.genus() == 5
     # a chamfer's facets stand at 45 degrees, all of them
     x, y, z = mesh.triangles_center.T
-    band = (np.hypot(x, y) > 18.0) & (((0 < z) & (z < 0.5)) | ((7.5 < z) & (z < 8)))
+    band = (np.hypot(x, y) > 18.0) & (((z > 0) & (z < 0.5)) | ((z > 7.5) & (z < 8)))
     slanted = np.abs(mesh.face_normals[band & (np.abs(mesh.face_normals[:, 2] % 1.0) > 0.1), 2])
     assert slanted.size > 100
     assert np.abs(slanted - math.sqrt(0.5)).max() < 2e-3
+
+
+@pytest.mark.parametrize("bore", ["{square: 9, at: 20}", "{hexagon: 10}", "10, flat: {across: 9, at: 70}"])
+def test_screw_and_bolts_through_the_hub_of_a_shaped_bore(tmp_path, bore):
+    part = (
+        f"{{thickness: 8, bore: {bore}, hub: {{diameter: 32, height: 6}}, set_screw: {{diameter: 3, at: 70}}, "
+        "bolts: {count: 3, circle: 23, hole: 4, start: 10}, wall: 1}"
+    )
+    _, files = files_of(recipe_of(part), tmp_path)
+    mesh = trimesh.load(files["stl"][0])
+    assert mesh.is_watertight
+    assert mesh.euler_number == 2 - 2 * 5
+    bolts = mesh.section([0, 0, 1], [0, 0, 13.5])
+    assert len(bolts.discrete) == 5  # hub, bore, three holes
 
 
 def test_solids_have_the_same_bytes_each_time(tmp_path):

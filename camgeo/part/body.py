@@ -95,7 +95,7 @@ def body_of(part: Part, contour: Curve) -> Body:
     placed = None
     if part.lightening is not None:
         there = openings if hub is None else [*openings, hub]
-        found, placed = lightened(part.lightening, contour, [opening.chain for opening in there], edge)
+        found, placed = lightened(part.lightening, contour, there, edge)
         openings += found
     radius = math.inf if part.chamfer is None else least_radius(contour)[0]
     return Body(part.thickness, tuple(openings), part.bore, part.hub, part.set_screw, part.chamfer, placed, radius)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.part.shapes import Opening, disc
+from camgeo.part.shapes import Opening, disc, strip
 from camgeo.part.wall import Gap, contour_gap, inside_gap, outside_gap
 from camgeo.radius import least_radius
 from kin.check import Check
@@ -28,7 +28,7 @@ class Pair(NamedTuple):
 
     def __str__(self) -> str:
         """Tell the pair, the wall and the place."""
-        x, y = self.gap.place
+        x, y = (coordinate if abs(coordinate) > ROUNDING else 0.0 for coordinate in self.gap.place)
         place = "" if self.gap.place == NOWHERE else f" at ({x:.4g}, {y:.4g})"
         return f"{self.one} and {self.other}: {self.gap.wall:.4g} mm{place}"
 
@@ -114,6 +114,10 @@ def _hub_walls(body: Body, contour: Curve, edge: float) -> Iterator[Pair]:
         return
     beyond = -height if hub.side == "bottom" else height - body.thickness
     radius = 0.5 * body.screw.diameter
+    along = Opening("set screw", "HOLES", strip(0.5 * hub.diameter, body.screw.diameter, body.screw.at))
+    for opening in body.openings:
+        if opening.name != "bore" and opening.depth is None and _is_within(opening, hub.diameter):
+            yield Pair("set screw", opening.name, outside_gap(opening.chain, along.chain))
     yield Pair("set screw", "the disc's face", Gap(beyond - radius, NOWHERE))
     yield Pair("set screw", "the hub's face", Gap(hub.height - beyond - radius, NOWHERE))
 

@@ -44,7 +44,7 @@ class Placed:
         return 0.25 * math.pi * sum(d * d for d in self.diameters)
 
 
-def lightened(wanted: Lightening, contour: Curve, there: list[Arcs], edge: float) -> tuple[list[Opening], Placed]:
+def lightened(wanted: Lightening, contour: Curve, there: list[Opening], edge: float) -> tuple[list[Opening], Placed]:
     """Holes in a contour round openings and hub that are there, `edge` more from the contour for its chamfer."""
     room = _Room(contour, there, wanted.wall, edge)
     least = 2.0 * wanted.wall if wanted.least is None else wanted.least
@@ -63,8 +63,10 @@ Found = list[tuple[tuple[float, float], float]]
 class _Room:
     """The radius that a hole about a point can have; grows fuller as holes are added."""
 
-    def __init__(self, contour: Curve, there: list[Arcs], wall: float, edge: float) -> None:
-        self.contour, self.there, self.wall, self.edge = contour, list(there), wall, edge
+    def __init__(self, contour: Curve, there: list[Opening], wall: float, edge: float) -> None:
+        self.contour, self.wall, self.edge = contour, wall, edge
+        self.chains = [opening.chain for opening in there if opening.circle is None]
+        self.discs = [(*opening.circle[0], opening.circle[1]) for opening in there if opening.circle is not None]
         self.ring = contour.sample(intervals(contour)[0]).point
         step = np.roll(self.ring, -1, axis=0) - self.ring
         length = np.hypot(step[:, 0], step[:, 1])
@@ -74,21 +76,27 @@ class _Room:
 
     def about(self, points: Array) -> Array:
         """Radius (n,) about points (n, 2), the contour taken as a polygon; negative where there is none."""
-        least = -signed_distance(self.polygon, points) - self.edge
-        for chain in self.there:
-            least = np.minimum(least, signed_distance(chain, points))
+        least = np.minimum(-signed_distance(self.polygon, points) - self.edge, self.beside(points))
         radius: Array = least - self.wall
         return radius
+
+    def beside(self, points: Array) -> Array:
+        """Distance of points (n, 2) to the nearest opening (n,), infinite where there is none."""
+        least: Array = np.full(len(points), np.inf)
+        for x, y, radius in self.discs:
+            least = np.minimum(least, np.hypot(points[:, 0] - x, points[:, 1] - y) - radius)
+        for chain in self.chains:
+            least = np.minimum(least, signed_distance(chain, points))
+        return least
 
     def exactly(self, centre: tuple[float, float]) -> float:
         """The same about one point by the exact contour."""
         inside, _ = distance_inside(self.contour, centre)
-        others = [float(signed_distance(chain, np.array([centre]))[0]) for chain in self.there]
-        return min([inside - self.edge, *others]) - self.wall
+        return min(inside - self.edge, float(self.beside(np.array([centre]))[0])) - self.wall
 
     def fill(self, centre: tuple[float, float], diameter: float) -> None:
         """Take the room of a hole."""
-        self.there.append(disc("", "HOLES", centre, 0.5 * diameter).chain)
+        self.discs.append((*centre, 0.5 * diameter))
 
 
 def _down(value: float, step: float) -> float:

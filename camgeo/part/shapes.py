@@ -100,6 +100,13 @@ def slot(inner: float, outer: float, width: float) -> ArcSpline:
     return ArcSpline(points, np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
 
 
+def strip(reach: float, width: float, at: float) -> ArcSpline:
+    """Rectangle of this width along a ray, from the origin to a radius."""
+    half = 0.5 * width
+    points = np.array([[0.0, -half], [reach, -half], [reach, half], [0.0, half]])
+    return ArcSpline(_turned(points, at), np.zeros(4), EXACT)
+
+
 def polar(radius: float, angle: float) -> tuple[float, float]:
     """Point at a radius and angle; exact on the axes."""
     c, s = _direction(angle)

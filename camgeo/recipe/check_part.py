@@ -23,6 +23,10 @@ def check_part(part: Values, reader: Reader) -> None:
     if isinstance(bore, float):
         _round(part, bore, reader)
     elif bore is not None:
+        across = bore.get("square", bore.get("hexagon"))
+        if across is not None:
+            screw = part.get("set_screw", {}).get("diameter")
+            _below(reader, "part.set_screw.diameter", screw, across, "the bore's width")
         for name in ("keyway", "flat"):
             if name in part:
                 reader.fault_at(f"part.{name}", "needs a round bore", None, "give the bore's diameter, or leave it out")

@@ -13,6 +13,12 @@ FIELDS = {
     "undercut-global": "cam.roller_radius",
     "wall": "part.bore",
     "bore": "part.bore",
+    "holes": "part",
+    "mark": "part.mark",
+    "hub": "part.hub",
+    "chamfer": "part.chamfer",
+    "set-screw": "part.set_screw",
+    "lightening": "part.lightening",
     "thickness": "part.thickness",
     "units": "units",
     "contour": "export.tolerance",
@@ -61,6 +67,10 @@ def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str
         return ""
     if name == "radius-of-curvature":
         return _rounder(recipe, value, limit, unit)
+    if name == "wall" and check.get("detail"):
+        return ""  # the check names the edges
+    if name == "chamfer" and "file" not in check:
+        return f"a chamfer below {value:.6g} {unit}" if value > 0.0 else "no chamfer, or a contour without corners"
     if name == "wall":
         return f"a bore smaller by more than {2.0 * (limit - value):.6g} {unit}"
     if name == "motion" and recipe.verify.motion_error is not None and value > 0.0:
