@@ -143,6 +143,9 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
         monkeypatch.undo()
         assert others_key != plain.key
     assert len({plain.key, *(other.key for other in others)}) == 6
+    key = plain.key
+    monkeypatch.setattr(jobs, "REVISION", 99)
+    assert job().key != key
 
 
 def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:

@@ -26,10 +26,9 @@ from camgeo.recipe.model_part import Part
 from camgeo.recipe.spec import Kind
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.recipe.tables import field_at
-from camgeo.sweep.figures import Evaluator, asked_of
+from camgeo.sweep.figures import Evaluator, Scene, asked_of
 from camgeo.sweep.gather import Ranking
 from camgeo.sweep.plan import Axis, Plan, steps
-from camgeo.sweep.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from camgeo.sweep.linkages import Kind
     from camgeo.sweep.windows import Engine
 
-__all__ = ["REASONS", "Evaluator", "Found", "asked_of", "compute", "evaluate"]
+__all__ = ["REASONS", "Evaluator", "Found", "Scene", "asked_of", "compute", "evaluate"]
 
 Array: TypeAlias = NDArray[np.float64]
 Codes: TypeAlias = NDArray[np.uint8]
@@ -51,6 +51,22 @@ class Found(NamedTuple):
 
     figures: dict[str, Array]
     reason: Codes
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is computed of each design of a sweep: plain data that travels to any worker, and is part of the key.
+
+    A recipe with its sweep, without what has no bearing on a figure, and the names of the figures wanted.
+    """
+
+    recipe: Recipe
+    figures: tuple[str, ...]
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The fields that vary."""
+        return tuple(axis.path for axis in self.recipe.sweep.vary) if self.recipe.sweep else ()
 
 
 def compute(recipe: Recipe, values: Array) -> dict[str, Array]:

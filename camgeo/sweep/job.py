@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from camgeo.sweep.plan import Plan
 
+REVISION = 2  # raised with every change of what a figure comes to, as the version is with every release
+
 Compute = Callable[[Any, "NDArray[np.float64]"], Mapping[str, "NDArray[np.float64]"]]
 
 
@@ -39,11 +41,12 @@ class Job:
 
     @property
     def key(self) -> str:
-        """SHA-256 of the plan, the scene, the function's name, and the versions of what computes."""
+        """SHA-256 of the plan, the scene, the function's name, and revision and versions of what computes."""
         told = {
             "plan": repr(self.plan),
             "scene": repr(self.scene),
             "compute": f"{self.compute.__module__}.{self.compute.__qualname__}",
+            "revision": REVISION,
             "versions": versions(self.plan),
         }
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()

@@ -12,8 +12,8 @@ from camgeo.sweep.gather import REASON
 
 if TYPE_CHECKING:
     from camgeo.sweep.ask import Ask
+    from camgeo.sweep.figures import Scene
     from camgeo.sweep.gather import Floats
-    from camgeo.sweep.scene import Scene
 
 __all__ = ["REASONS", "figures", "measure"]
 
