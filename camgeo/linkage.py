@@ -161,7 +161,10 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
     would not swing, a band is lost in rounding, or the motion is too sudden to be followed.
     """
     if breadth is None:
-        raise recipe.error("linkage", "a square frame holds a cam of constant breadth alone, and this cam's varies")
+        remedy = "give p odd harmonics alone, or take another kind of cam"
+        raise recipe.error(
+            "linkage", "a square frame holds a cam of constant breadth alone, and this cam's varies", None, remedy
+        )
     mechanism = mechanism_of(recipe, lift, breadth)
     try:
         return _driven(recipe, mechanism)
