@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
 
 OK, FAILED, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
-KINDS = ("dxf", "stl", "csv", "html")
+KINDS = ("dxf", "svg", "stl", "csv", "html")
 PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
@@ -332,6 +332,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo import pipeline
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.load import load
+    from kin.read import KINDS
 
     try:
         recipe = load(arguments.recipe)
@@ -339,7 +340,8 @@ def _verify(arguments: argparse.Namespace) -> int:
             recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
         paths = [Path(name) for name in arguments.files]
         faults = [f"{path}: there is no such file" for path in paths if not path.is_file()]
-        faults += [f"{p}: neither a .dxf nor a .stl file" for p in paths if p.suffix.lower() not in {".dxf", ".stl"}]
+        known = ", ".join(f".{kind}" for kind in KINDS)
+        faults += [f"{p}: none of {known}" for p in paths if p.suffix.lower().lstrip(".") not in KINDS]
         if faults:
             for fault in faults:
                 _complain(fault)

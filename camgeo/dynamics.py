@@ -56,6 +56,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
     from kin.drive import DriveError
     from kin.dynamics import DynamicsError
     from kin.motion import ContactError
+    from kin.read import KINDS
 
     asked = recipe.dynamics
     if asked is None:
@@ -65,7 +66,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
     checks: list[Check] = []
     sources: list[Path | None] = [None]
     if recipe.linkage is None:
-        sources += [path for path in files if path.suffix in {".dxf", ".stl"}]
+        sources += [path for path in files if path.suffix.lstrip(".") in KINDS]
     for path in sources:
         try:
             entry, check = _one(scene, design, path)
@@ -131,13 +132,13 @@ def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
 
 
 def contour_of(path: Path, mm: float, *, mirrored: bool) -> Contour:
-    """Read the outer contour of a DXF or STL, in mm and as if not mirrored; `mm` is the unit of an R12 drawing."""
-    from kin.read import read_dxf, read_stl
+    """Read the outer contour of a drawing or a solid, in mm as if not mirrored; `mm` is the unit of an R12 drawing."""
+    from kin.read import SOLIDS, kind_of, read_drawing, read_solid
 
-    if path.suffix == ".stl":
-        contour = read_stl(path).contour
+    if kind_of(path) in SOLIDS:
+        contour = read_solid(path).contour
     else:
-        drawing = read_dxf(path)
+        drawing = read_drawing(path)
         contour = drawing.contour if drawing.units_mm is not None or mm == 1.0 else drawing.contour.scaled(mm)
     return contour.mirrored() if mirrored else contour
 

@@ -101,7 +101,7 @@ def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
         with clock.stage("judge"):
             tolerance = _tolerance_of(recipe, path)
             verdict = verify(path, intended(recipe, design), recipe.verify.angles, permitted(recipe, tolerance))
-        request = FileRequest("stl" if verdict.kind == "stl" else "dxf")
+        request = FileRequest(verdict.kind)
         measured = verdict.measured_error
         files.append(
             FileResult(path, request, tolerance, verdict.pieces, None, measured, verdict.motion, verdict.linkage)
@@ -207,7 +207,7 @@ def drawn(
     path: Path,
     outlines: Outlines,
 ) -> tuple[FileResult, list[Check]]:
-    """Fit, write, read back and judge one DXF or STL."""
+    """Fit, write, read back and judge one drawing or solid."""
     from camgeo.files.triangulate import RegionError
 
     clock = outlines.clock
@@ -220,12 +220,12 @@ def drawn(
             if request.kind == "stl":
                 bound, pieces = _write_stl(recipe, design, drawn, path, tolerance)
             else:
-                _write_dxf(recipe, design, drawn, request, path)
+                _write_drawing(recipe, design, drawn, request, path)
                 bound, pieces = outline.bound, outline.count
     except ToleranceError as error:
         raise _refused(recipe, request, error) from error
     except FormError as error:
-        where = f"export.files[{recipe.export.files.index(request)}].dxf.as"
+        where = f"export.files[{recipe.export.files.index(request)}].{request.kind}.as"
         raise recipe.error(where, str(error), f"'{request.as_}'", "give spline or arcs") from error
     except RegionError as error:
         field_path = "part" if design.body else "cam" if recipe.part.bore is None else "part.bore"
@@ -366,15 +366,29 @@ def _write_part(recipe: Recipe, body: Body, polygon: Polygon, path: Path, tolera
     return facts.bound, facts.vertices
 
 
-def _write_dxf(recipe: Recipe, design: Design, outline: Outline, request: FileRequest, path: Path) -> None:
-    from camgeo.files.dxf import write_dxf
-
+def _write_drawing(recipe: Recipe, design: Design, outline: Outline, request: FileRequest, path: Path) -> None:
     bore, cut, remarks = recipe.part.bore, [], []
     if design.body is not None:
         from camgeo.part import files
 
         body = design.body.mirrored() if recipe.rotation == "ccw" else design.body
         bore, cut, remarks = None, files.cutouts(body), files.remarks(body, recipe.mm)
+    if request.kind == "svg":
+        from camgeo.files.svg import write_svg
+
+        write_svg(
+            path,
+            outline,
+            bore=bore,
+            cutouts=cut,
+            remarks=remarks,
+            mm=recipe.mm,
+            name=recipe.name,
+            about=recipe.about,
+        )
+        return
+    from camgeo.files.dxf import write_dxf
+
     write_dxf(
         path,
         outline,
@@ -436,7 +450,7 @@ def _skipped(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     found = []
     asked = {request.kind for request in recipe.export.files}
     wanted = {request.kind for request in requests}
-    for kind in ("dxf", "stl", "csv", "html"):
+    for kind in ("dxf", "svg", "stl", "csv", "html"):
         if kind not in asked:
             found.append((kind, "the recipe's export.files does not list it"))
         elif kind not in wanted:

@@ -2,7 +2,7 @@
 
 Each function returns the figure it has measured and raises AssertionError with figure, limit and place. A file that
 cannot be read as a contour fails; a file that is not there raises OSError, a recipe with faults RecipeErrors. Paths are
-those of .dxf or .stl files, told apart by the suffix. Lengths are in mm where a function takes no recipe, else in the
+those of .dxf, .svg or .stl files, told apart so. Lengths are in mm where a function takes no recipe, else in the
 recipe's units, as in its report.
 """
 
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.model import Recipe
     from kin.contour import Contour
-    from kin.read_dxf import Drawing
-    from kin.read_stl import Solid
+    from kin.read import Drawing, Solid
 
     AnyPath: TypeAlias = str | PathLike[str]
     AnyRecipe: TypeAlias = Recipe | str | PathLike[str]
@@ -313,10 +312,10 @@ def _contour(path: Path, mm: float | None) -> Contour:
 
 def _drawing(path: Path, gap: float) -> Drawing:
     __tracebackhide__ = True
-    from kin.read import ReadError, read_dxf
+    from kin.read import ReadError, read_drawing
 
     try:
-        return read_dxf(path, gap)
+        return read_drawing(path, gap)
     except ReadError as error:
         raise AssertionError(str(error)) from None
 
@@ -332,7 +331,6 @@ def _solid(path: Path) -> Solid:
 
 
 def _kind(path: Path) -> str:
-    kind = path.suffix.lower().lstrip(".")
-    if kind not in ("dxf", "stl"):
-        raise ValueError(f"{path.name}: neither a .dxf nor a .stl file")
-    return kind
+    from kin.read import kind_of
+
+    return kind_of(path)

@@ -1,9 +1,57 @@
-"""Contours read back from files: DXF of any origin, STL of a plain part."""
+"""Contours read back from files, told apart by their suffix: drawings, DXF or SVG of any origin; solids of a part."""
 
 from __future__ import annotations
 
-from kin.read_dxf import Aside, Drawing, Fault, read_dxf
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+
+from kin.drawing import Aside, Drawing, Fault
+from kin.read_dxf import read_dxf
 from kin.read_error import ReadError
 from kin.read_stl import Solid, read_stl
 
-__all__ = ["Aside", "Drawing", "Fault", "ReadError", "Solid", "read_dxf", "read_stl"]
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = [
+    "KINDS",
+    "SOLIDS",
+    "Aside",
+    "Drawing",
+    "Fault",
+    "Kind",
+    "ReadError",
+    "Solid",
+    "kind_of",
+    "read_drawing",
+    "read_dxf",
+    "read_solid",
+    "read_stl",
+]
+
+Kind: TypeAlias = Literal["dxf", "svg", "stl"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+SOLIDS = frozenset({"stl"})
+
+
+def kind_of(path: Path | str) -> Kind:
+    """Tell a file's kind by its suffix; raises ValueError for one that is none of KINDS."""
+    path = Path(path)
+    for kind in KINDS:
+        if path.suffix.lower() == f".{kind}":
+            return kind
+    raise ValueError(f"{path.name}: none of {', '.join(f'.{kind}' for kind in KINDS)}")
+
+
+def read_drawing(path: Path | str, gap: float = 1e-6, *, engraved: bool = False) -> Drawing:
+    """Read a DXF or SVG; raises as `read_dxf` does."""
+    if kind_of(path) == "svg":
+        from kin.read_svg import read_svg
+
+        return read_svg(path, gap, engraved=engraved)
+    return read_dxf(path, gap, engraved=engraved)
+
+
+def read_solid(path: Path | str, heights: Sequence[float] = ()) -> Solid:
+    """Read a solid; raises as `read_stl` does."""
+    return read_stl(path, heights)

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from kin.contour import Box
 from kin.drawing import BESIDE, BORE, CUT, ENGRAVED, REFERENCE, Aside, Drawing, Fault, Found, drawing_of
-from kin.dxf_entities import CURVES, NOTES, UnfitError, shape_of
+from kin.dxf_entities import CURVES, NOTES, shape_of
 from kin.read_error import ReadError
+from kin.shape import UnfitError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

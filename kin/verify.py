@@ -15,6 +15,7 @@ from kin.check import Check, about, at_most, failed
 from kin.flaws import crossings
 from kin.judge import ROUNDING, DwellAsked, Intent, Limits, bore_check, judge_contour, volume_check
 from kin.motion import TURN, MotionError, Play
+from kin.read import SOLIDS, kind_of, read_drawing, read_solid
 from kin.read_error import ReadError
 
 if TYPE_CHECKING:
@@ -22,8 +23,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kin.contour import Contour
+    from kin.drawing import Drawing
     from kin.frame import LinkageVerdict
-    from kin.read_dxf import Drawing
+    from kin.read import Kind
     from kin.read_stl import Solid
 
 __all__ = ["DwellAsked", "Intent", "Limits", "Verdict", "verify"]
@@ -37,7 +39,7 @@ MOST_NAMED = 5  # faults named in a message
 class Verdict:
     """What was found of a file.
 
-    kind            dxf or stl
+    kind            dxf, svg or stl
     checks          units, closed, contour, motion, bore, ... ; or the one that says why the file cannot be read
     motion, play    as the contour gives them by contact; None without contact, play also for one-sided followers
     measured_error  two-sided distance from the exact contour, mm
@@ -45,7 +47,7 @@ class Verdict:
     linkage         what the contour makes of the mechanism; None without one, or where it does not drive it all round
     """
 
-    kind: str
+    kind: Kind
     checks: tuple[Check, ...]
     motion: MotionError | None = None
     play: Play | None = None
@@ -60,22 +62,20 @@ class Verdict:
 
 
 def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
-    """Judge a DXF or STL file, told apart by the suffix, at `angles` equal steps of the shaft.
+    """Judge a DXF, SVG or STL file, told apart by the suffix, at `angles` equal steps of the shaft.
 
     A file from which no contour can be read gets a verdict that says why. Raises OSError as the file system does, and
     ValueError for another suffix or no angles.
     """
-    kind = path.suffix.lower().lstrip(".")
-    if kind not in ("dxf", "stl"):
-        raise ValueError(f"{path.name}: neither a .dxf nor a .stl file")
+    kind = kind_of(path)
     if angles < 1:
         raise ValueError(f"a file is judged at one shaft angle at least, not {angles}")
     phi = TURN / angles * np.arange(angles, dtype=np.float64)
     try:
-        read = _of_drawing if kind == "dxf" else _of_solid
+        read = _of_solid if kind in SOLIDS else _of_drawing
         checks, contour, pieces = read(path, intent, limits)
     except ReadError as error:
-        unread = "watertight" if kind == "stl" else "closed" if error.reason in NOT_CLOSED else "readable"
+        unread = "watertight" if kind in SOLIDS else "closed" if error.reason in NOT_CLOSED else "readable"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
     found = judge_contour(contour, intent, phi, limits)
     return Verdict(
@@ -90,10 +90,8 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
 
 
 def _of_drawing(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
-    """Read a DXF file: the checks on what is drawn, the contour in mm as if not mirrored, the number of its pieces."""
-    from kin.read_dxf import read_dxf
-
-    drawing = read_dxf(path, engraved=any(hole.depth is not None for hole in intent.holes))
+    """Read a DXF or SVG: the checks on what is drawn, contour in mm as if not mirrored, number of its pieces."""
+    drawing = read_drawing(path, engraved=any(hole.depth is not None for hole in intent.holes))
     scale = intent.mm if drawing.units_mm is None else 1.0
     contour, *holes = (_placed(c, scale, intent.mirrored) for c in (drawing.contour, *drawing.holes))
     checks = [_units_check(drawing.units_mm, intent.mm), _closed_check(drawing, contour)]
@@ -140,13 +138,13 @@ def _count_check(name: str, faults: list[str]) -> Check:
 
 
 def _of_solid(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
-    """Read an STL file: the checks on the solid, its contour in mm as if not mirrored, and the number of its edges."""
-    from kin.read_stl import Section, read_stl
+    """Read a solid: the checks on the solid, its contour in mm as if not mirrored, and the number of its edges."""
+    from kin.read_stl import Section
 
     if intent.layers:
         from kin.part import levels, solid_checks
 
-        solid = read_stl(path, levels(intent))
+        solid = read_solid(path, levels(intent))
         sections = [
             Section(one.height, _placed(one.contour, 1.0, intent.mirrored), _all_placed(one.holes, intent))
             for one in solid.sections
@@ -154,7 +152,7 @@ def _of_solid(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], 
         contour = sections[0].contour
         checks = [_watertight_check(solid, contour)]
         return [*checks, *solid_checks(solid, sections, intent, limits.tolerance)], contour, len(contour)
-    solid = read_stl(path)
+    solid = read_solid(path)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (solid.contour, *solid.holes))
     checks = [_watertight_check(solid, contour)]
     bore = bore_check(holes, intent.bore, limits.tolerance)

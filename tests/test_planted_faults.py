@@ -449,9 +449,9 @@ def test_a_solid_with_a_corner_moved(tmp_path, cam):
 def test_a_missing_file_and_another_suffix_are_the_callers_affair(tmp_path, cam):
     with pytest.raises(FileNotFoundError):
         verify(tmp_path / "cam.dxf", cam[0], ANGLES, LIMITS)
-    (tmp_path / "cam.svg").write_text("<svg/>")
-    with pytest.raises(ValueError, match=r"cam\.svg: neither a \.dxf nor a \.stl file"):
-        verify(tmp_path / "cam.svg", cam[0], ANGLES, LIMITS)
+    (tmp_path / "cam.png").write_text("<svg/>")
+    with pytest.raises(ValueError, match=r"cam\.png: none of \.dxf, \.svg, \.stl"):
+        verify(tmp_path / "cam.png", cam[0], ANGLES, LIMITS)
     with pytest.raises(ValueError, match="one shaft angle at least, not 0"):
         verify(tmp_path / "cam.dxf", cam[0], 0, LIMITS)
 

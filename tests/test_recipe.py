@@ -456,7 +456,7 @@ def test_a_starter_is_a_cam_as_it_stands(kind: str) -> None:
     recipe = text(starter(kind))
     assert recipe.cam is not None
     assert intent_of(recipe.cam) is not None
-    assert {file.kind for file in recipe.export.files} == {"dxf", "stl", "csv", "html"}
+    assert {file.kind for file in recipe.export.files} == {"dxf", "svg", "stl", "csv", "html"}
 
 
 def test_starters_show_every_kind_of_cam() -> None:

@@ -39,7 +39,7 @@ cam:
   roller_radius: -8
   delta: {cos: {2: 625}}
 dynamics: {mass: 1, stiffness: 1e5, rpm: 100}
-part: {bore: 10mm, keyway: 3}
+part: {bore: 10mm, follower: 3}
 export: {files: [dxf, {dxf: {as: spline, version: R12}}, stl, step]}
 verify: {angles: 010}
 tolerance: 4
@@ -61,7 +61,7 @@ tolerance: 4
             "give arcs or polyline, or a later version"
         ),
         "cams/a.yaml:11:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
-        "cams/a.yaml:11:63: export.files[3]: not available in this version, given 'step'; give dxf, stl, csv or html",
+        "cams/a.yaml:11:63: export.files[3]: not available in this version, given 'step'; give dxf, svg, stl, csv or html",
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, the file dxf or the file stl",
     ]
@@ -637,8 +637,8 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         ("[~]", [f"18: export.files[0]: not a file, given nothing; {CHOOSE}"]),
         ("[[dxf]]", [f"18: export.files[0]: not a file, given a list of 1; {CHOOSE}"]),
         ("[{dxf: {}, csv: {}}]", [f"18: export.files[0]: not a file, given a mapping of 2; {CHOOSE}"]),
-        ("[3mf]", ["18: export.files[0]: not available in this version, given '3mf'; give dxf, stl, csv or html"]),
-        ("[DXF]", ["18: export.files[0]: no such file format, given 'DXF'; give dxf, stl, csv or html"]),
+        ("[3mf]", ["18: export.files[0]: not available in this version, given '3mf'; give dxf, svg, stl, csv or html"]),
+        ("[DXF]", ["18: export.files[0]: no such file format, given 'DXF'; give dxf, svg, stl, csv or html"]),
         (
             "[{dxf: }]",
             [

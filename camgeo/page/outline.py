@@ -58,16 +58,16 @@ class Read:
 
 
 def read(recipe: Recipe, path: Path) -> Read | None:
-    """Read a DXF or STL; None where no contour can be read from it, which a check of it tells."""
-    from kin.read import read_dxf, read_stl
+    """Read a drawing or a solid; None where no contour can be read from it, which a check of it tells."""
+    from kin.read import SOLIDS, kind_of, read_drawing, read_solid
     from kin.read_error import ReadError
 
     try:
-        if path.suffix.lower() == ".stl":
-            found: Drawing | Solid = read_stl(path)
+        if kind_of(path) in SOLIDS:
+            found: Drawing | Solid = read_solid(path)
             unit = 1.0
         else:
-            found = drawing = read_dxf(path)
+            found = drawing = read_drawing(path)
             unit = recipe.mm if drawing.units_mm is None else 1.0
     except ReadError:
         return None

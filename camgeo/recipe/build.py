@@ -82,6 +82,8 @@ def requests(files: list[Values]) -> tuple[FileRequest, ...]:
     return tuple(
         FileRequest("dxf", file.get("as", "arcs"), file.get("version", "R2010"), file.get("tolerance"))
         if file["kind"] == "dxf"
+        else FileRequest("svg", file.get("as", "arcs"), tolerance=file.get("tolerance"))
+        if file["kind"] == "svg"
         else FileRequest(file["kind"], tolerance=file.get("tolerance"))
         for file in files
     )

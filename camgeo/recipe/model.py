@@ -314,9 +314,9 @@ NO_CONTOUR = frozenset({"csv", "html"})
 
 @dataclass(frozen=True)
 class FileRequest:
-    """One file to write. `as_` and `version` belong to DXF; `tolerance` (mm) stands in for the export's own."""
+    """One file to write. `as_` is of DXF and SVG, `version` of DXF; `tolerance` (mm) stands in for the export's own."""
 
-    kind: Literal["dxf", "stl", "csv", "html"]
+    kind: Literal["dxf", "svg", "stl", "csv", "html"]
     as_: Literal["arcs", "polyline", "spline", "exact"] | None = None
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None

@@ -32,11 +32,23 @@ FILES: dict[str, Table] = {
             _TOLERANCE,
         ),
     ),
+    "svg": Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of",
+                default="arcs",
+                choices=("arcs", "polyline", "spline"),
+            ),
+            _TOLERANCE,
+        ),
+    ),
     "stl": Table((_TOLERANCE,)),
     "csv": Table(()),
     "html": Table(()),
 }
-LATER_FILES = ("3mf", "step", "svg")
+LATER_FILES = ("3mf", "step")
 
 RECIPE = Table(
     (
@@ -57,7 +69,12 @@ RECIPE = Table(
             "export",
             "the files",
             length("tolerance", "greatest distance between a file's contour and the exact one", default="0.001 mm"),
-            Field("files", Kind.FILES, "dxf, stl, csv, html, or mappings such as {dxf: {as: spline}}", default="[dxf]"),
+            Field(
+                "files",
+                Kind.FILES,
+                "dxf, svg, stl, csv, html, or mappings such as {dxf: {as: spline}}",
+                default="[dxf]",
+            ),
         ),
         mapping(
             "verify",

@@ -125,6 +125,8 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
     mm = recipe.mm
     if file.request.kind == "dxf":
         entry |= {"as": file.request.as_, "version": file.request.version}
+    elif file.request.kind == "svg":
+        entry["as"] = file.request.as_
     entry |= {
         "pieces": file.pieces,
         "tolerance": None if file.tolerance is None else file.tolerance / mm,
@@ -187,16 +189,17 @@ def summary(report: dict[str, Any]) -> str:
 
 
 def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:
-    """The linkage's worst output error, and the longest dwell that was asked for."""
+    """The linkage's worst output error, and the dwell that was asked for: as the files have it, where there are any."""
     if linkage is None:
         return []
     parts = []
     error = linkage.get("error")
     if error is not None:
         parts.append(f"output {error['max']:.3g} {error['unit']}")
-    dwells = [dwell for dwell in linkage["dwells"] if dwell["from"] == "intended"]
-    if dwells:
-        parts.append(f"dwell {dwells[0]['length_deg']:.2f} deg")
+    made = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] != "intended"]
+    meant = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] == "intended"][:1]
+    if made or meant:
+        parts.append(f"dwell {min(made or meant):.2f} deg")
     return parts
 
 

@@ -1,0 +1,156 @@
+"""Contours as SVG drawings at true size: one closed path in the group CUT, what else is cut in groups of its own.
+
+The groups have the names of a DXF's layers, and the numbers are those of a DXF: in drawing units, from the shaft, y
+upwards by a transform. Reference geometry is left out, since many machines cut whatever a drawing shows.
+
+SVG gives an arc by its ends, radius and flags, from which near half a turn nothing can be told exactly: an error e of
+the radius moves the arc by up to sqrt(2 r e). Every arc is cut into such of a quarter turn at most. There the half
+chord is the radius times the sine of up to 45 degrees, and rounding of the numbers moves the arc by no more than a few
+roundings of its size, some 1e-15 of it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from camgeo.files.dxf import UNITS, Circle
+from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.files.dxf import Cutout
+    from camgeo.fit.bound import Box
+    from camgeo.fit.pieces import Array
+
+_PAGE_UNIT = {"mm": "mm", "inch": "in"}
+_COLOURS = {"CUT": "#000000", "BORE": "#0000ff", "HOLES": "#0000ff", "MARK": "#ff0000", "ENGRAVE": "#00aa00"}
+_MARGIN = 1.0  # mm round what is drawn
+_PLACES = 100  # the page's corners lie on whole hundredths of a drawing unit
+_HAIRLINE = 0.1  # mm
+_QUARTER = 0.5 * math.pi
+
+
+def write_svg(
+    path: Path,
+    outline: Outline,
+    *,
+    bore: float | None = None,
+    cutouts: Sequence[Cutout] = (),
+    mm: float = 1.0,
+    name: str = "",
+    about: str = "",
+    remarks: Sequence[str] = (),
+) -> None:
+    """Write a contour, with its bore and openings, as an SVG whose user space has the shaft at its origin.
+
+    A polygon becomes lines, arcs become arcs of a quarter turn at most, a cubic B-spline cubics. `bore` is a diameter
+    and all lengths are given in mm; a unit of the drawing is `mm` mm long (1.0 or 25.4), which the page's width and
+    height and its viewBox state. `name` becomes the title; `about` and `remarks` the description.
+
+    Raises ValueError for a unit or a spline that SVG does not have, and for a circle without extent; OSError as the
+    file system does.
+    """
+    if mm not in UNITS:
+        raise ValueError(f"a drawing unit must be 1.0 or 25.4 mm, not {mm!r}")
+    unit = UNITS[mm][0]
+    drawn: dict[str, list[str]] = {"CUT": [_path(outline, mm)]}
+    if bore is not None:
+        drawn["BORE"] = [_circle(Circle("bore", (0.0, 0.0), 0.5 * bore), mm)]
+    for cutout in cutouts:
+        shape = cutout.shape
+        text = _circle(shape, mm) if isinstance(shape, Circle) else _path(shape, mm)
+        drawn.setdefault(cutout.layer, []).append(text)
+    low_x, low_y, wide, high = _page(outline.box(), mm)
+    size = _PAGE_UNIT[unit]
+    description = "; ".join(filter(None, (f"camgeo units: {unit}", about, *remarks)))
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"',
+        f'  width="{wide}{size}" height="{high}{size}" viewBox="{low_x} {low_y} {wide} {high}">',
+        f"<title>{_text(name or 'cam')}</title>",
+        f"<desc>{_text(description)}</desc>",
+        '<g transform="scale(1 -1)">',
+    ]
+    for layer, shapes in drawn.items():
+        style = f"fill:none;stroke:{_COLOURS[layer]};stroke-width:{_number(round(_HAIRLINE / mm, 4))}"
+        lines += [f'<g id="{layer}" inkscape:groupmode="layer" inkscape:label="{layer}" style="{style}">', *shapes]
+        lines.append("</g>")
+    lines += ["</g>", "</svg>", ""]
+    path.write_bytes("\n".join(lines).encode("utf-8"))
+
+
+def _page(box: Box, mm: float) -> tuple[str, str, str, str]:
+    """Left, top, width and height of the page in drawing units, y downwards, as the viewBox has it."""
+    margin = _MARGIN / mm
+    x_min, y_min, x_max, y_max = (value / mm for value in box)
+    left, right = math.floor(_PLACES * (x_min - margin)), math.ceil(_PLACES * (x_max + margin))
+    top, bottom = math.floor(_PLACES * (-y_max - margin)), math.ceil(_PLACES * (-y_min + margin))
+    x, y, wide, high = (_number(value / _PLACES) for value in (left, top, right - left, bottom - top))
+    return x, y, wide, high
+
+
+def _path(outline: Outline, mm: float) -> str:
+    """One closed path."""
+    match outline:
+        case Polygon():
+            first = outline.vertices[0] / mm
+            pieces = [f"L{_numbers(point)}" for point in outline.vertices[1:] / mm]
+        case ArcSpline():
+            first, pieces = outline.points[0] / mm, _arcs(outline.points / mm, outline.bulges)
+        case BSpline(degree=3):
+            beziers = outline.beziers() / mm
+            beziers[-1, -1] = beziers[0, 0]
+            first, pieces = beziers[0, 0], [f"C{_numbers(row[1:].ravel())}" for row in beziers]
+        case _:
+            raise ValueError("an SVG holds lines, arcs and cubic splines; export one of these")
+    data = "\n".join([f"M{_numbers(first)}", *pieces, "Z"])
+    return f'<path d="{data}"/>'
+
+
+def _arcs(points: Array, bulges: Array) -> list[str]:
+    """Lines and arcs from point to point and back to the first (n, 2), arcs of at most a quarter turn each."""
+    found = []
+    ends = np.roll(points, -1, axis=0)
+    for start, end, bulge in zip(points, ends, bulges.tolist(), strict=True):
+        if bulge == 0.0:
+            found.append(f"L{_numbers(end)}")
+            continue
+        chord = end - start
+        length, sweep = math.hypot(*chord.tolist()), 4.0 * math.atan(bulge)
+        radius = length * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
+        head = f"A{_numbers(np.array([radius, radius]))} 0 0 {int(bulge > 0.0)} "
+        count = max(math.ceil(abs(sweep) / _QUARTER), 1)
+        # from the start along chords of the arc: nothing is lost where the centre is far away
+        part = sweep * np.arange(1, count) / count
+        heading = math.atan2(chord[1], chord[0]) - 0.5 * sweep + 0.5 * part
+        share = length * np.sin(0.5 * part) / math.sin(0.5 * sweep)
+        between = start + share[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
+        found += [head + _numbers(point) for point in (*between, end)]
+    return found
+
+
+def _circle(circle: Circle, mm: float) -> str:
+    if not circle.radius > 0.0:
+        raise ValueError(f"{circle.name}: radius must be > 0, not {circle.radius!r}")
+    x, y, r = (_number(value / mm) for value in (*circle.centre, circle.radius))
+    return f'<circle cx="{x}" cy="{y}" r="{r}"/>'
+
+
+def _numbers(values: Array) -> str:
+    return " ".join(map(_number, values.tolist()))
+
+
+def _number(value: float) -> str:
+    """The shortest text that gives back the same double."""
+    return repr(value + 0.0).removesuffix(".0")
+
+
+def _text(text: str) -> str:
+    """One line that XML takes."""
+    return escape(" ".join("".join(c if c.isprintable() else " " for c in text).split()))
