@@ -61,9 +61,12 @@ tolerance: 4
             "give arcs or polyline, or a later version"
         ),
         "cams/a.yaml:11:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
-        "cams/a.yaml:11:63: export.files[3]: not available in this version, given 'step'; give dxf, svg, stl, csv or html",
+        (
+            "cams/a.yaml:11:63: export.files[3]: not available in this version, given 'step'; "
+            "give dxf, svg, stl, csv or html"
+        ),
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
-        "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, the file dxf or the file stl",
+        "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, the file dxf, the file svg or the file stl",
     ]
 
 
@@ -659,7 +662,18 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
                 f"62: export.files[0].dxf.tolerance: not above 0, given 0; {LENGTH}",
             ],
         ),
-        ("[{csv: {as: arcs}}]", ["25: export.files[0].csv.as: unknown key; it belongs under the file dxf"]),
+        (
+            "[{csv: {as: arcs}}]",
+            ["25: export.files[0].csv.as: unknown key; it belongs under the file dxf or the file svg"],
+        ),
+        (
+            "[{svg: {as: exact, version: R12}}]",
+            [
+                "29: export.files[0].svg.as: not one of the choices, given 'exact'; give arcs, polyline or spline",
+                "36: export.files[0].svg.version: unknown key; it belongs under the file dxf",
+            ],
+        ),
+        ("[svg, {svg: {as: arcs}}]", ["23: export.files[1]: the same file twice; leave one out"]),
         (
             "[dxf, stl]",
             ["23: export.files[1]: stl needs a thickness; give part.thickness, or leave stl out"],

@@ -54,7 +54,7 @@ class Content:
 
 
 def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
-    """Gather what a page shows; `paths` are the DXF and STL files that were made, and still lie there."""
+    """Gather what a page shows; `paths` are the drawings and solids that were made, and still lie there."""
     files = [found for path in paths if (found := outline.read(recipe, path)) is not None]
     exact = outline.Exact.of(design, outline.Exact.looks(files))
     drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
