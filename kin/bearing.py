@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kin.contour import Contour
 
 TURN = 2.0 * np.pi
+ROUNDED = 1e-12  # rad: normals this close to 2 pi may be those of edges in one line with one at 0
 NEAR_CENTRE = 20.0  # of the extent; a point found from a centre farther away would lose too much to rounding
 FLATTEST = 1e9  # mm; larger radii of curvature are all alike
 
@@ -139,8 +140,11 @@ def _overlap(contour: Contour) -> bool:
 def _of_convex(contour: Contour, breaks: Array, middle: Array) -> Bearing:
     """In order: each piece bears over its own normals, its end from there to the first normal of the next piece."""
     first = np.mod(contour.directions[0] - 0.5 * np.pi, TURN)
-    order = np.roll(np.arange(len(contour)), -int(np.argmin(first)))
-    piece = order[np.searchsorted(first[order], middle, side="right") - 1]
+    first = np.where(first > TURN - ROUNDED, first - TURN, first)
+    # all round the normals rise, but for the step back where they pass 2 pi, and for the rounding of edges in one line
+    step = np.diff(first, append=first[:1])
+    order = np.roll(np.arange(len(contour)), -1 - int(np.argmin(step)))
+    piece = order[np.searchsorted(np.maximum.accumulate(first[order]), middle, side="right") - 1]
     own = np.mod(middle - first[piece], TURN) < contour.turns[piece]
     own &= contour.kind[piece] != LINE
     return Bearing(contour, breaks, contour.end[piece], np.where(own, piece, -1))

@@ -81,6 +81,21 @@ def test_regular_polygon_where_the_given_angles_miss_the_worst(sides):
     assert np.abs(normals - motion.at_deg).min() < 1e-9
 
 
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7])
+@pytest.mark.parametrize("count", [3, 7, 40])
+@pytest.mark.parametrize("turn", [0.0, -1e-17, 1e-17, 0.4, np.pi / 2])
+def test_points_on_straight_edges_change_nothing(count, turn, share):
+    angle = turn - np.pi / 2 + 2 * np.pi * (np.arange(count) + 0.5) / count  # with an edge whose normal is about 0
+    corners = 10 * unit(angle) + [1.0, 0.5]
+    between = corners + share * (np.roll(corners, -1, axis=0) - corners)
+    lift = lift_from_fourier(10.0, {}, {}, (0.0, 0.0))
+    motion = [
+        FlatFace(lift).judge(polygon(points), PHI).motion.max
+        for points in (corners, np.stack([corners, between], axis=1).reshape(-1, 2))
+    ]
+    assert motion[1] == pytest.approx(motion[0], abs=1e-11)
+
+
 def test_extremes_between_the_breaks_are_found():
     """Polygon with corners 0.01 mm outside a circle: the error is greatest at each corner's own direction."""
     contour = polygon(30.01 * circle_points(24, offset=0.37))
