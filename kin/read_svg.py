@@ -33,6 +33,7 @@ UNIT_MM |= {"": UNIT_MM["px"]}
 LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z]*)\s*")
 STEP = re.compile(r"\s*([A-Za-z]+)\s*\(([^()]*)\)[\s,]*")
 VALUE = re.compile(NUMBER)
+HIDDEN = re.compile(r"(?:^|;)\s*display\s*:\s*none\s*(?:;|$)")
 # Scales along the width and the height of the page may differ by so much.
 SQUARE = 1e-6
 # Least and greatest unit, mm, and number of groups within groups: bounds against nonsense.
@@ -56,7 +57,8 @@ def read_svg(path: Path | str, gap: float = 1e-6, *, engraved: bool = False) -> 
     """Read the outer contour and the holes that an SVG file gives to cut.
 
     Groups named CUT, BORE, HOLES, MARK and ENGRAVE (by id, or by Inkscape's label) are the layers of a DXF; where
-    nothing stands on CUT all elements are cut but those on REFERENCE. `gap`, mm, and `engraved` as in `read_dxf`.
+    nothing stands on CUT all elements are cut but those on REFERENCE. What is hidden is left out. `gap`, mm, and
+    `engraved` as in `read_dxf`.
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs of circles and cubics, and for elements and transforms that are not read.
@@ -127,7 +129,10 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
         kind = tag.removeprefix(SVG)
         if not tag or kind.rpartition("}")[2] in SILENT:
             continue
-        if "transform" in element.get("style", ""):
+        style = element.get("style", "")
+        if element.get("display") == "none" or HIDDEN.search(style):
+            continue
+        if "transform" in style:
             raise ReadError("unsupported", f"{kind} is transformed by its style", path)
         here = to.after(_transform(element.get("transform", ""), path))
         if kind != "g":
