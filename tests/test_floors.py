@@ -54,7 +54,8 @@ FLOORS = {
         design recipe.load
         foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim
-        crossing files.stl files.svg fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build recipe.readers
+        crossing files.stl files.svg fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
+        recipe.readers
         part.wall recipe.build_part recipe.check_part recipe.read_part
         causes fit.cubic fit.exact fit.free_arcs report.document report.failure
         fit.trigonometric recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep

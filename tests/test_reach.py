@@ -7,11 +7,11 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from shapes import PEAR, Polar, booth, waves
 
-from camgeo.curve import Curve
+from camgeo.curve import Curve, CurveError
 from camgeo.offset import Parallel
 from camgeo.radius import least_radius
 from camgeo.reach import NECK_SHARPNESS, Pitch, narrowest_necks, neck_from, rolling_radius
@@ -99,7 +99,10 @@ def test_no_pair_of_points_lies_closer_than_is_proved(terms, below):
     curve = pitch(shape, 0.5)
     least = least_radius(Curve.whole(shape))[0]
     below = min(below, least)
-    necks = narrowest_necks(curve, below)
+    try:
+        necks = narrowest_necks(curve, below)
+    except CurveError:  # it may leave open whether there is a neck, but tell of none that is not, and miss none
+        reject()
     seen = least_of_pairs(curve)
     proved = min([below, *(n.half for n in necks)])
     assert seen >= proved * (1.0 - NECK_SHARPNESS) - 1e-9

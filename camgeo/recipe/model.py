@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 from camgeo.recipe.errors import RecipeError, RecipeErrors
-from camgeo.recipe.model_dynamics import Dynamics
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     import kin.law
+    from camgeo.recipe.model_dynamics import Dynamics
     from camgeo.recipe.model_part import Part
 
 Undercut: TypeAlias = Literal["refuse", "trim"]
