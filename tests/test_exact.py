@@ -301,6 +301,15 @@ def test_a_tolerance_below_rounding_is_refused_with_the_figure() -> None:
     assert fit_exact(curve, caught.value.reached).bound.worst == caught.value.reached
 
 
+def test_a_high_power_of_a_sum_is_not_multiplied_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "25 + (cos(t) + cos(2*t) + cos(9*t)/3)**99/1e60"
+    with pytest.raises(FormError, match=r"a product of sums of \d+ and \d+ harmonics \(character"):
+        polynomial(text)
+    # the longest product of a power of one wave is within the limit many times over
+    monkeypatch.setattr("camgeo.fit.trigonometric.MOST_PRODUCTS", 30_000)
+    assert polynomial("25 + cos(t)**198/1e6").order <= 198
+
+
 def test_a_trimmed_contour_has_corners_and_is_refused() -> None:
     source = b"cam: {kind: support, p: 16 - 2.2*cos(3*t), undercut: trim}"
     contour = designed(read(source, Path("cam.yaml"))).contour

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 UNIT = 2.0**-53  # of rounding
 WIDEST_DENOMINATOR = 64  # of a frequency inside a formula, such as the 3/2 of cos(3*t/2)**2
 MOST_TERMS = 2000  # within a formula; one with more is of no use as a spline
+MOST_PRODUCTS = 100_000  # of harmonics, in one product of a formula: about a second
 
 
 @runtime_checkable
@@ -247,6 +248,8 @@ def _product(first: Waves | _Angle, second: Waves | _Angle, step: Instruction) -
         if number is None:
             raise FormError(f"t stands outside cos and sin{_at(step)}")
         return _scaled(angle, number)
+    if len(first) * len(second) > MOST_PRODUCTS:
+        raise FormError(f"a product of sums of {len(first)} and {len(second)} harmonics{_at(step)} is too long")
     out: Waves = {}
     for f, a in first.items():
         for g, b in second.items():
