@@ -198,7 +198,11 @@ def test_the_dwell_over_the_angle_asked_for_comes_first(over: str, length: float
     report = pipeline.check(recipe("at_least: 36", f"over: {over}")).report
     first = report["linkage"]["dwells"][0]
     assert (first["over"], first["from"]) == (over, "intended")
-    assert f"dwell {length} deg" in summary(report)
+    assert first["length_deg"] == pytest.approx(length, abs=0.005)
+    # the one line tells what the file makes of it, over the same angle
+    made = next(row["length_deg"] for row in report["linkage"]["dwells"] if row["from"] == "four-bar.dxf")
+    assert made == pytest.approx(length, abs=0.05)
+    assert f"dwell {made:.2f} deg" in summary(report)
 
 
 def test_a_limit_of_the_output_error_of_one_s_own(tmp_path: Path) -> None:
