@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.figures import breadth_of
-from camgeo.linkage import dwells_over, mechanism_of
+from camgeo.linkage import mechanism_of
 from camgeo.profile.build import intent_of
 from camgeo.recipe.load import load_text
 from camgeo.recipe.model import Limit
@@ -170,8 +170,8 @@ def accuracy() -> None:
         mechanism = mechanism_of(made, lift, breadth_of(lift)[0])
         told = mechanism.figures()
         one = {
-            "dwell": dwells_over(mechanism, made.dwell.band, "shaft")[0].length,
-            "dwell-relative": dwells_over(mechanism, made.dwell.band, "relative")[0].length,
+            "dwell": mechanism.dwells(made.dwell.band, "shaft")[0].length,
+            "dwell-relative": mechanism.dwells(made.dwell.band, "relative")[0].length,
             "swing": told.swing,
             "peak-velocity": abs(told.velocity.value),
             "peak-acceleration": abs(told.acceleration.value),

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
 Over: TypeAlias = Literal["shaft", "relative"]
 OVER: tuple[Over, ...] = ("shaft", "relative")
-MOST_DWELLS = 8
 TURN = 2.0 * math.pi
 DEGREES = 180.0 / math.pi
 
@@ -107,21 +106,6 @@ def _spans(spans: Sequence[tuple[float, float]]) -> str:
     return " and ".join(f"from {math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in spans)
 
 
-def dwells_over(mechanism: Mechanism, band: float, over: str, most: int = MOST_DWELLS) -> tuple[Dwell, ...]:
-    """Dwells of the output of a mechanism that turns, over the shaft or the relative angle, rad; the longest first."""
-    from kin.dwell import dwells
-
-    if over == "relative":
-        return dwells(lambda x, order: mechanism.at(x, order).output, mechanism.breaks, band, most=most)
-
-    def over_shaft(x: Array, order: int) -> Array:
-        at = mechanism.at(mechanism.relative(x), order)
-        return at.over_shaft(at.output)
-
-    breaks = mechanism.at(mechanism.breaks, 0).shaft[0] if len(mechanism.breaks) else mechanism.breaks
-    return dwells(over_shaft, breaks, band, most=most)
-
-
 def _dwell_check(asked: DwellAsked, longest: Dwell) -> list[Check]:
     """That the intended output dwells for as long as the recipe wants; nothing if it wants no certain length."""
     if asked.at_least is None:
@@ -180,7 +164,7 @@ def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
     asked = recipe.dwell
     if asked is not None and mechanism.mobility().turns:
         try:
-            found = {over: dwells_over(mechanism, asked.band, over) for over in OVER}
+            found = {over: mechanism.dwells(asked.band, over) for over in OVER}
         except ValueError as error:
             unit = "rad" if mechanism.unit == "deg" else "mm"
             raise recipe.error("dwell.band", f"{error} {unit}", None, "give a wider band") from error
@@ -194,9 +178,10 @@ def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
 def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...], Array]:
     """Column names and rows (angles + 1, k) over equal steps of the shaft, for a mechanism that turns.
 
-    Shaft, relative and frame angle and the output, each output's velocity and acceleration by radian of shaft, those of
-    the frame, and the output's by radian of the relative angle, which AS plot. Angles in degrees, lengths in the
-    recipe's unit. At a break the derivatives are those that follow, at the end of the turn those that precede.
+    Shaft, relative and frame angle and the output, each output's velocity and acceleration by radian of shaft,
+    those of the frame, and the output's by radian of the relative angle, which AS plot; places of the joints, D
+    first, with the pivot B on +x. Angles in degrees, lengths in the recipe's unit. At a break the derivatives are
+    those that follow, at the end of the turn those that precede.
     """
     count = recipe.verify.angles
     shaft = np.linspace(0.0, TURN, count + 1)
@@ -217,4 +202,8 @@ def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...],
             relative = scale * np.concatenate([part.output for part in parts], axis=1)
     columns |= {"frame_velocity": frame[1], "frame_acceleration": frame[2]}
     columns |= {"velocity_by_relative": relative[1], "acceleration_by_relative": relative[2]}
+    for index in range(len(units)):
+        mark = "" if index == 0 else f"_{index}"
+        x, y = np.concatenate([part.joints[index][:, 0] for part in parts], axis=1) / recipe.mm
+        columns |= {f"joint{mark}_x_{length}": x, f"joint{mark}_y_{length}": y}
     return tuple(columns), np.column_stack(list(columns.values()))

@@ -27,6 +27,11 @@ class Solved(NamedTuple):
     dyads: tuple[Reached, ...]
 
     @property
+    def joints(self) -> tuple[tuple[Jet, Jet], ...]:
+        """Joint D of the linkage, then the joint that each dyad's point drives; mm."""
+        return (self.linkage.joint, *(reached.joint for reached in self.dyads))
+
+    @property
     def outputs(self) -> tuple[Jet, ...]:
         """Output of the linkage, then of each dyad; rad or mm."""
         return (self.linkage.output, *(reached.output for reached in self.dyads))

@@ -64,15 +64,21 @@ class Motion:
     """A mechanism at relative angles theta (n,): derivatives by theta, (order + 1, n) each; rad and mm.
 
     `shaft` is phi; `frame` is theta_3; `output` is that of the last link; `outputs` are those of the linkage and of
-    each dyad; `joint` (2, order + 1, n) is D; `faces` (2, order + 1, n) are the lifts S and S1.
+    each dyad; `joints` (2, order + 1, n) each are D and the joint that each dyad's point drives, in the fixed axes;
+    `faces` (2, order + 1, n) are the lifts S and S1.
     """
 
     theta: Array
     shaft: Array
     frame: Array
     outputs: tuple[Array, ...]
-    joint: Array
+    joints: tuple[Array, ...]
     faces: Array
+
+    @property
+    def joint(self) -> Array:
+        """Joint D between frame and output link."""
+        return self.joints[0]
 
     @property
     def output(self) -> Array:
@@ -150,7 +156,7 @@ class Mechanism:
         return self._motion(theta, s, s1, solved)
 
     def _motion(self, theta: Array, s: Jet, s1: Jet, solved: Solved) -> Motion:
-        at, frame = solved.linkage, solved.linkage.frame
+        frame = solved.linkage.frame
         shaft = -frame.derivatives()
         shaft[0] += theta + self.start
         if frame.order > 0:
@@ -160,7 +166,7 @@ class Mechanism:
             shaft,
             frame.derivatives(),
             tuple(output.derivatives() for output in solved.outputs),
-            np.stack([row.derivatives() for row in at.joint]),
+            tuple(np.stack([row.derivatives() for row in joint]) for joint in solved.joints),
             np.stack([s.derivatives(), s1.derivatives()]),
         )
 

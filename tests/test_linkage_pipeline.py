@@ -104,6 +104,9 @@ def test_the_table_holds_both_angles_and_true_derivatives(exported: tuple[Path, 
     # d/d(shaft) = d/d(relative) * d(relative)/d(shaft), and relative = shaft + frame
     turn = 1.0 + np.radians(found["frame_velocity"])
     assert found["velocity"] == pytest.approx(found["velocity_by_relative"] * turn, rel=1e-9, abs=1e-9)
+    # the joint D of AS eqs. 11 and 12: on the rocker's circle about B = (80, 0), at theta_4 from BA
+    assert np.hypot(found["joint_x_mm"] - 80, found["joint_y_mm"]) == pytest.approx(np.full(361, 105.0), abs=1e-9)
+    assert found["joint_y_mm"] == pytest.approx(105 * np.sin(np.radians(output)), abs=1e-9)
     inside = report["linkage"]["output"]
     assert inside["min"] <= output.min() <= inside["min"] + 0.01
     assert inside["max"] - 0.01 <= output.max() <= inside["max"]

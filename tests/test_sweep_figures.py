@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camgeo.figures import breadth_of
-from camgeo.linkage import dwells_over, mechanism_of
+from camgeo.linkage import mechanism_of
 from camgeo.profile.build import intent_of
 from camgeo.recipe.load import load_text
 from camgeo.recipe.table_sweep import FIGURES
@@ -53,8 +53,8 @@ def exact(recipe):
     t = np.linspace(0, 2 * math.pi, 20_001)
     p = lift.derivatives(t, 2)
     return {
-        "dwell": math.degrees(dwells_over(mechanism, recipe.dwell.band, "shaft")[0].length),
-        "dwell-relative": math.degrees(dwells_over(mechanism, recipe.dwell.band, "relative")[0].length),
+        "dwell": math.degrees(mechanism.dwells(recipe.dwell.band, "shaft")[0].length),
+        "dwell-relative": math.degrees(mechanism.dwells(recipe.dwell.band, "relative")[0].length),
         "swing": scale * told.swing,
         "peak-velocity": scale * abs(told.velocity.value),
         "peak-acceleration": scale * abs(told.acceleration.value),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from camgeo.figures import breadth_of
-from camgeo.linkage import dwells_over, mechanism_of
+from camgeo.linkage import mechanism_of
 from camgeo.profile.build import intent_of
 from camgeo.recipe.load import load, load_text
 from camgeo.sweep import refine
@@ -130,7 +130,7 @@ def test_designs_made_one_by_one(monkeypatch):
 def exact(recipe):
     lift = intent_of(recipe.cam)
     mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])
-    both = (dwells_over(mechanism, math.radians(0.1), over)[0].length for over in ("shaft", "relative"))
+    both = (mechanism.dwells(math.radians(0.1), over)[0].length for over in ("shaft", "relative"))
     return mechanism, [math.degrees(length) for length in both]
 
 

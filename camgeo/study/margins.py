@@ -87,10 +87,9 @@ def _linkage(design: Design) -> list[Margin]:
     found = [Margin("binding", mobility.margin, "mm", "a loop of the linkage binds: its square root's edge")]
     if not math.isnan(mobility.least_rate):
         found.append(Margin("reversal", mobility.least_rate, "", "the shaft would have to turn back"))
-    if not mobility.turns:
+    if design.driven.figures is None:
         return found
-    figures = mechanism.figures()
-    force = math.degrees(figures.force_least.value)
+    force = math.degrees(design.driven.figures.force_least.value)
     found.append(Margin("force-angle", force, "deg", "the force on the output link runs along it"))
     from kin.frame import implied_limit
 

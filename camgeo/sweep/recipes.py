@@ -102,7 +102,7 @@ def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
         (_, name, *_), rows = motion_table(replace(recipe, verify=replace(recipe.verify, angles=_POINTS)), intent)
         word, _, unit = name.partition("_")
         return Curve(label, rows[:, 0], rows[:, 1]), f"{word} ({unit})"
-    from camgeo.linkage import dwells_over, mechanism_of
+    from camgeo.linkage import mechanism_of
     from kin.lift import Lift
 
     if not isinstance(intent, Lift):
@@ -116,6 +116,6 @@ def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
     unit = "deg" if swings else {"mm": "mm", "inch": "in"}[recipe.units]
     dwell = None
     if recipe.dwell is not None:
-        longest = dwells_over(mechanism, recipe.dwell.band, "shaft", 1)[0]
+        longest = mechanism.dwells(recipe.dwell.band, most=1)[0]
         dwell = math.degrees(longest.start), math.degrees(longest.length)
     return Curve(label, np.degrees(shaft), output * scale, dwell), f"output ({unit})"
