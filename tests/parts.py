@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from camgeo.design import Clock, designed, intended
-from camgeo.pipeline import Outlines, drawn
+from camgeo.outlines import Outlines
+from camgeo.pipeline import drawn
 from camgeo.recipe import read
 from kin.judge import Limits
 from kin.verify import verify

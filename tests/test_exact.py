@@ -20,7 +20,8 @@ from camgeo.fit.exact import fit_exact, spline_of
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.rational import RationalSpline
 from camgeo.fit.trigonometric import Polynomial, polynomial_of
-from camgeo.pipeline import Outlines, drawn, export
+from camgeo.outlines import Outlines
+from camgeo.pipeline import drawn, export
 from camgeo.profile.support import SupportShape
 from camgeo.recipe import RecipeErrors, load, read
 from camgeo.recipe.model import FileRequest

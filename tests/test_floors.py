@@ -45,6 +45,7 @@ FLOORS = {
         sweep.ends sweep.linkages
         sweep.windows
         pipeline recipe
+        outlines
         page.png page.watch
         page.page
         page.content page.tables

@@ -14,7 +14,8 @@ from camgeo.cli import main
 from camgeo.design import Clock, designed, intended
 from camgeo.files.svg import write_svg
 from camgeo.fit.pieces import ArcSpline, Bound, BSpline, Polygon
-from camgeo.pipeline import Outlines, drawn
+from camgeo.outlines import Outlines
+from camgeo.pipeline import drawn
 from camgeo.recipe import read
 from kin.contour import Contour
 from kin.judge import Limits

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from camgeo import pipeline
 from camgeo.design import Clock
+from camgeo.outlines import Outlines, formula_rounding
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.model import FileRequest
 from camgeo.study.least import least_pieces
@@ -160,7 +161,7 @@ def _once(
         raise ValueError(f"{recipe.name}: there is no contour to be drawn")
     recipe = replace(recipe, export=replace(recipe.export, files=(request,)))
     clock = Clock()
-    outlines = pipeline.Outlines(design.contour, clock, pipeline.formula_rounding(design.intent, design.contour))
+    outlines = Outlines(design.contour, clock, formula_rounding(design.intent, design.contour))
     file, checks = pipeline.drawn(recipe, design, request, path, outlines)
     stages = dict.fromkeys(("fit", "write", "judge"), 0.0)
     for name, seconds in clock.stages:
