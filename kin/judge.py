@@ -272,16 +272,20 @@ def _distance_range(contour: Contour) -> tuple[float, float]:
     return found.least, found.greatest
 
 
-def volume_check(volume: float, height: float, contour: Contour, intent: Intent, tolerance: float) -> Check:
-    """Check a solid's volume against the exact area times its height, within the tolerance times the area of the walls.
+def exact_area(contour: Contour, intent: Intent) -> tuple[float, float, str]:
+    """Area and perimeter, mm^2 and mm, and whose they are: the intent's, or the file's contour's.
 
-    The exact area comes from the intent; that of a trimmed contour, which has no closed form, from the file's contour.
+    The contour's are those of a trimmed cam, for which there is no closed form.
     """
     envelope = intent.follower.envelope
     if envelope.regular:
-        (area, perimeter), source = envelope.area_and_perimeter(), "intent"
-    else:
-        (area, perimeter), source = (contour.area, contour.length), "contour"
+        return (*envelope.area_and_perimeter(), "intent")
+    return contour.area, contour.length, "contour"
+
+
+def volume_check(volume: float, height: float, contour: Contour, intent: Intent, tolerance: float) -> Check:
+    """Check a solid's volume against the area times its height, within the tolerance times the area of the walls."""
+    area, perimeter, source = exact_area(contour, intent)
     bore = intent.bore or 0.0
     expected = (area - 0.25 * np.pi * bore**2) * height
     limit = tolerance * (perimeter + np.pi * bore + 2.0 * np.pi * tolerance) * height  # to second order

@@ -9,6 +9,7 @@ import numpy as np
 from kin.check import Check, at_most
 from kin.deviation import deviation
 from kin.hole import FINE, Tallies, Tally, apart, tally
+from kin.judge import exact_area
 from kin.layers import faces, heights, inset, slotted, volume, wall_area
 
 if TYPE_CHECKING:
@@ -125,15 +126,8 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Section, int
 
 
 def _volume(solid: Solid, contour: Contour, intent: Intent, tolerance: float) -> Check:
-    """Check the volume against closed forms, within the tolerance times the area of the walls.
-
-    The exact area comes from the intent; that of a trimmed contour, which has no closed form, from the file's contour.
-    """
-    envelope = intent.follower.envelope
-    if envelope.regular:
-        (area, perimeter), source = envelope.area_and_perimeter(), "intent"
-    else:
-        (area, perimeter), source = (contour.area, contour.length), "contour"
+    """Check the volume against closed forms, within the tolerance times the area of the walls."""
+    area, perimeter, source = exact_area(contour, intent)
     expected = volume(intent.layers, intent.cross_holes, area, perimeter)
     limit = tolerance * wall_area(intent.layers, intent.cross_holes, perimeter)
     detail = f"{solid.volume:.9g} mm^3, by the {source} {expected:.9g}"
