@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo.page import command as page_command
 from camgeo.progress import Progress
+from camgeo.recipe.model import KINDS
 from camgeo.study import command as study_command
 from camgeo.sweep import command as sweep_command
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
 
 OK, FAILED, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
-KINDS = ("dxf", "svg", "stl", "csv", "html")
 PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
@@ -332,7 +332,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo import pipeline
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.load import load
-    from kin.read import KINDS
+    from kin.read import KINDS as READ
 
     try:
         recipe = load(arguments.recipe)
@@ -340,8 +340,8 @@ def _verify(arguments: argparse.Namespace) -> int:
             recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
         paths = [Path(name) for name in arguments.files]
         faults = [f"{path}: there is no such file" for path in paths if not path.is_file()]
-        known = ", ".join(f".{kind}" for kind in KINDS)
-        faults += [f"{p}: none of {known}" for p in paths if p.suffix.lower().lstrip(".") not in KINDS]
+        known = ", ".join(f".{kind}" for kind in READ)
+        faults += [f"{p}: none of {known}" for p in paths if p.suffix.lower().lstrip(".") not in READ]
         if faults:
             for fault in faults:
                 _complain(fault)
@@ -359,10 +359,11 @@ def _verify(arguments: argparse.Namespace) -> int:
 
 def _new(arguments: argparse.Namespace) -> int:
     """Print a starter recipe, or write it where no file is yet."""
-    from camgeo.recipe.starter import KINDS, starter
+    from camgeo.recipe.starter import KINDS as STARTERS
+    from camgeo.recipe.starter import starter
 
-    if arguments.kind not in KINDS:
-        _complain(f"no recipe is called {arguments.kind}; there are: {', '.join(KINDS)}")
+    if arguments.kind not in STARTERS:
+        _complain(f"no recipe is called {arguments.kind}; there are: {', '.join(STARTERS)}")
         return WRONG
     text = starter(arguments.kind)
     if arguments.file is None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from camgeo.design import Clock, designed, intended
-from camgeo.outlines import Outlines
-from camgeo.pipeline import drawn
+from camgeo.design import designed, intended
+from camgeo.making.job import Job
+from camgeo.making.make import make
 from camgeo.recipe import read
 from kin.judge import Limits
 from kin.verify import verify
@@ -34,7 +34,7 @@ def files_of(recipe, folder, *, sound=True):
     made = {}
     for request in recipe.export.files:
         path = folder / request.filename(recipe.name, recipe.export.files)
-        _, checks = drawn(recipe, design, request, path, Outlines(design.contour, Clock()))
+        _, checks = make(Job.of(recipe, design), request, path)
         if sound:
             assert all(check.ok for check in checks), [check for check in checks if not check.ok]
         made[request.kind] = (path, {check.name: check for check in checks})

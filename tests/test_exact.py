@@ -13,15 +13,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camgeo.curve import Curve
-from camgeo.design import Clock, designed
+from camgeo.design import designed
 from camgeo.fit import exact
 from camgeo.fit.bound import Bound, FormError
 from camgeo.fit.exact import fit_exact, spline_of
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.rational import RationalSpline
 from camgeo.fit.trigonometric import Polynomial, polynomial_of
-from camgeo.outlines import Outlines
-from camgeo.pipeline import drawn, export
+from camgeo.making.job import Job
+from camgeo.making.make import make
+from camgeo.pipeline import export
 from camgeo.profile.support import SupportShape
 from camgeo.recipe import RecipeErrors, load, read
 from camgeo.recipe.model import FileRequest
@@ -140,7 +141,7 @@ def test_shipped_recipes_through_the_file(name: str, tmp_path: Path) -> None:
     recipe = replace(recipe, export=replace(recipe.export, files=(request,)), verify=replace(recipe.verify, angles=360))
     design = designed(recipe)
     path = tmp_path / "cam.dxf"
-    file, checks = drawn(recipe, design, request, path, Outlines(design.contour, Clock()))
+    (file,), checks = make(Job.of(recipe, design), request, path)
     assert [check.name for check in checks if not check.ok] == []
     assert file.pieces == 4
     assert file.bound.worst < 2e-12

@@ -45,6 +45,9 @@ FLOORS = {
         sweep.ends sweep.linkages
         sweep.windows
         pipeline recipe
+        making.left_out making.make
+        making.drawing making.solid making.table
+        making.job
         outlines
         page.png page.watch
         page.page
@@ -68,7 +71,7 @@ FLOORS = {
         curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
         page.followers page.pack page.svg
         page.scene
-        files.missing page fit.rational part recipe.din6885 recipe.model_part study study.picture sweep
+        files.missing making page fit.rational part recipe.din6885 recipe.model_part study study.picture sweep
         fit.bound
     """,
 }

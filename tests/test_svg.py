@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from parts import CAM, failures
 
 from camgeo.cli import main
-from camgeo.design import Clock, designed, intended
+from camgeo.design import designed, intended
 from camgeo.files.svg import write_svg
 from camgeo.fit.pieces import ArcSpline, Bound, BSpline, Polygon
-from camgeo.outlines import Outlines
-from camgeo.pipeline import drawn
+from camgeo.making.job import Job
+from camgeo.making.make import make
 from camgeo.recipe import read
 from kin.contour import Contour
 from kin.judge import Limits
@@ -37,7 +37,7 @@ def made(folder, *, part=ENGRAVED, form="arcs", tolerance=0.01, more="", cam=CAM
     design = designed(recipe)
     (request,) = recipe.export.files
     path = folder / "part.svg"
-    result, checks = drawn(recipe, design, request, path, Outlines(design.contour, Clock()))
+    (result,), checks = make(Job.of(recipe, design), request, path)
     assert all(check.ok for check in checks), checks
     return recipe, design, path, {check.name: check for check in checks}, result
 

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from camgeo.recipe.model import FileKind
     from camgeo.recipe.reader import Values
     from camgeo.recipe.source import Mark
 
@@ -52,6 +53,10 @@ TOLERANCE = 0.001  # mm
 ANGLES = 3600
 KEEP = 10  # designs of a sweep
 SAMPLES = 360  # angles at which a sweep looks at a design
+CHOSEN: dict[FileKind, Values] = {  # what a file is where its options do not say
+    "dxf": {"as": "arcs", "version": "R2010"},
+    "svg": {"as": "arcs"},
+}
 
 
 def build(values: Values, path: Path, marks: Mapping[str, Mark], text: str) -> Recipe:
@@ -79,14 +84,12 @@ def build(values: Values, path: Path, marks: Mapping[str, Mark], text: str) -> R
 
 def requests(files: list[Values]) -> tuple[FileRequest, ...]:
     """Make the list of files."""
-    return tuple(
-        FileRequest("dxf", file.get("as", "arcs"), file.get("version", "R2010"), file.get("tolerance"))
-        if file["kind"] == "dxf"
-        else FileRequest("svg", file.get("as", "arcs"), tolerance=file.get("tolerance"))
-        if file["kind"] == "svg"
-        else FileRequest(file["kind"], tolerance=file.get("tolerance"))
-        for file in files
-    )
+    return tuple(_request(file["kind"], file) for file in files)
+
+
+def _request(kind: FileKind, file: Values) -> FileRequest:
+    chosen = {**CHOSEN.get(kind, {}), **file}
+    return FileRequest(kind, chosen.get("as"), chosen.get("version"), chosen.get("tolerance"))
 
 
 def _cam(cam: Values, mm: float) -> Cam:

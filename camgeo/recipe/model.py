@@ -7,7 +7,7 @@ are in the recipe's units, and `scale` (mm per unit) turns those into mm.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, get_args
 
 from camgeo.recipe.errors import RecipeError, RecipeErrors
 
@@ -308,6 +308,8 @@ class Sweep:
     refine: bool
 
 
+FileKind: TypeAlias = Literal["dxf", "svg", "stl", "csv", "html"]
+KINDS: tuple[FileKind, ...] = get_args(FileKind)
 NO_CONTOUR = frozenset({"csv", "html"})
 """Kinds of file that hold no contour to be judged."""
 
@@ -316,7 +318,7 @@ NO_CONTOUR = frozenset({"csv", "html"})
 class FileRequest:
     """One file to write. `as_` is of DXF and SVG, `version` of DXF; `tolerance` (mm) stands in for the export's own."""
 
-    kind: Literal["dxf", "svg", "stl", "csv", "html"]
+    kind: FileKind
     as_: Literal["arcs", "polyline", "spline", "exact"] | None = None
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None

@@ -14,9 +14,8 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from camgeo import pipeline
-from camgeo.design import Clock
-from camgeo.outlines import Outlines, formula_rounding
+from camgeo.making.job import Job
+from camgeo.making.make import make
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.model import FileRequest
 from camgeo.study.least import least_pieces
@@ -160,10 +159,9 @@ def _once(
     if design.contour is None:
         raise ValueError(f"{recipe.name}: there is no contour to be drawn")
     recipe = replace(recipe, export=replace(recipe.export, files=(request,)))
-    clock = Clock()
-    outlines = Outlines(design.contour, clock, formula_rounding(design.intent, design.contour))
-    file, checks = pipeline.drawn(recipe, design, request, path, outlines)
+    job = Job.of(recipe, design)
+    (file,), checks = make(job, request, path)
     stages = dict.fromkeys(("fit", "write", "judge"), 0.0)
-    for name, seconds in clock.stages:
+    for name, seconds in job.clock.stages:
         stages[name.split()[0]] += seconds
     return file, stages, tuple(check.name for check in checks if not check.ok)

@@ -1,0 +1,93 @@
+"""Drawings: the contour as arcs, a spline or a polyline, with what is cut inside it; DXF and SVG."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.files.dxf import Reference
+    from camgeo.fit.pieces import Outline
+    from camgeo.making.job import Job, Made
+    from camgeo.recipe.model import FileRequest
+
+COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which nothing is cut by
+
+
+def make_drawing(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge one drawing."""
+    with job.refusals(request):
+        outline = job.outline(request.as_ or "polyline", job.tolerance(request))
+        with job.clock.stage(f"write {request.kind}"):
+            _write(job, outline, request, path)
+    return job.judged(request, path, outline.bound, outline.count)
+
+
+def _write(job: Job, outline: Outline, request: FileRequest, path: Path) -> None:
+    recipe, design = job.recipe, job.design
+    bore, cut, remarks = recipe.part.bore, [], []
+    if design.body is not None:
+        from camgeo.part import files
+
+        body = design.body.mirrored() if recipe.rotation == "ccw" else design.body
+        bore, cut, remarks = None, files.cutouts(body), files.remarks(body, recipe.mm)
+    if request.kind == "svg":
+        from camgeo.files.svg import write_svg
+
+        write_svg(
+            path,
+            outline,
+            bore=bore,
+            cutouts=cut,
+            remarks=remarks,
+            mm=recipe.mm,
+            name=recipe.name,
+            about=recipe.about,
+        )
+        return
+    from camgeo.files.dxf import write_dxf
+
+    write_dxf(
+        path,
+        outline,
+        bore=bore,
+        cutouts=cut,
+        remarks=remarks,
+        reference=_reference(job),
+        mm=recipe.mm,
+        version=request.version or "R2010",
+        name=recipe.name,
+        about=recipe.about,
+    )
+
+
+def _reference(job: Job) -> list[Reference]:
+    """Centre, base or prime circle, and the pitch curve: to look at, not to cut."""
+    import numpy as np
+
+    from camgeo.files.dxf import Circle, Point, Trace
+    from camgeo.fit.arcs import fit_arcs
+
+    recipe, profile = job.recipe, job.design.profile
+    cam = recipe.cam
+    found: list[Reference] = [Point("shaft", (0.0, 0.0))]
+    if recipe.part.hub is not None:
+        found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
+    base = profile.base.sample(profile.base.cells.low).point
+    if isinstance(cam, ConstantBreadthCam):
+        found.append(Circle("base circle", (0.0, 0.0), cam.base_radius))
+    elif isinstance(cam, SupportCam):
+        radius = float(np.hypot(base[:, 0], base[:, 1]).min())
+        if radius > 0.0:  # the shaft may stand on the contour itself
+            found.append(Circle("base circle", (0.0, 0.0), radius))
+    elif isinstance(cam, DoubleRollerCam):
+        found.append(Circle("prime circle", (0.0, 0.0), float(np.hypot(base[:, 0], base[:, 1]).min())))
+        pitch = fit_arcs(profile.base, COARSE)
+        found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
+        found.append(Circle("pivot circle", (0.0, 0.0), cam.arm))
+    elif isinstance(cam, FlatPairCam):
+        found.append(Circle("pivot circle", (0.0, 0.0), 2.0 * cam.arm))
+    return found

@@ -1,0 +1,113 @@
+"""What every maker of files is given, and how its refusals become errors at a field of the recipe."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.curve import CurveError
+from camgeo.design import Clock, intended, permitted
+from camgeo.files.missing import MissingExtraError
+from camgeo.files.triangulate import RegionError
+from camgeo.fit.bound import FormError
+from camgeo.fit.nodes import ToleranceError
+from camgeo.outlines import Outlines, formula_rounding
+from camgeo.report.document import FileResult
+from camgeo.store import SurroundingsError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from camgeo.curve import Curve
+    from camgeo.design import Design
+    from camgeo.fit.pieces import Bound, Outline
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.recipe.model import FileRequest, Recipe
+    from kin.check import Check
+
+
+class Made(NamedTuple):
+    """The files of one request, and the verdicts on them."""
+
+    files: tuple[FileResult, ...]
+    checks: tuple[Check, ...] = ()
+
+
+@dataclass(frozen=True)
+class Job:
+    """A cam that can be made: its recipe, its exact design, and the fits that its files share."""
+
+    recipe: Recipe
+    design: Design
+    outlines: Outlines
+
+    @staticmethod
+    def of(recipe: Recipe, design: Design, clock: Clock | None = None) -> Job:
+        """Begin the files of a design that has a contour; raises ValueError for one that has none."""
+        if design.contour is None:
+            raise ValueError(f"{recipe.name}: there is no contour to be made")
+        rounding = formula_rounding(design.intent, design.contour)
+        return Job(recipe, design, Outlines(design.contour, clock or Clock(), rounding))
+
+    @property
+    def clock(self) -> Clock:
+        """What times the stages."""
+        return self.outlines.clock
+
+    @property
+    def contour(self) -> Curve:
+        """The exact contour."""
+        return self.outlines.contour
+
+    def field(self, request: FileRequest) -> str:
+        """Path of a request in the recipe; that of the list for one that does not stand there."""
+        files = self.recipe.export.files
+        return f"export.files[{files.index(request)}]" if request in files else "export.files"
+
+    def tolerance(self, request: FileRequest) -> float:
+        """Tolerance of a file, mm: its own, or the export's."""
+        return request.tolerance or self.recipe.export.tolerance
+
+    def outline(self, form: str, tolerance: float) -> Outline:
+        """The contour in a form, within a tolerance, mirrored as the recipe has it."""
+        outline = self.outlines.within(form, tolerance)
+        return outline.mirrored() if self.recipe.rotation == "ccw" else outline
+
+    @contextmanager
+    def refusals(self, request: FileRequest) -> Iterator[None]:
+        """Turn what a fit or a writer raises into RecipeErrors at the field to blame, or SurroundingsError."""
+        recipe = self.recipe
+        try:
+            yield
+        except ToleranceError as error:
+            raise self.refused(request, error) from error
+        except FormError as error:
+            where = f"{self.field(request)}.{request.kind}.as"
+            raise recipe.error(where, str(error), f"'{request.as_}'", "give spline or arcs") from error
+        except RegionError as error:
+            where = "part" if self.design.body else "cam" if recipe.part.bore is None else "part.bore"
+            raise recipe.error(where, f"within the tolerance, {error}") from error
+        except CurveError as error:
+            raise recipe.error("cam", str(error)) from error
+        except MissingExtraError as error:
+            raise SurroundingsError(str(error), recipe.path) from error
+
+    def refused(self, request: FileRequest, error: ToleranceError) -> RecipeErrors:
+        """Turn a tolerance that cannot be held into an error at the field that asks for it."""
+        where = self.field(request) if request.tolerance is not None else "export.tolerance"
+        recipe = self.recipe
+        reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
+        return recipe.error(where, str(error), None, reached)
+
+    def judged(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
+        """Read a file back and hold it against the recipe's motion."""
+        from kin.verify import verify
+
+        recipe, tolerance = self.recipe, self.tolerance(request)
+        with self.clock.stage(f"judge {request.kind}"):
+            verdict = verify(path, intended(recipe, self.design), recipe.verify.angles, permitted(recipe, tolerance))
+        measured = verdict.measured_error
+        file = FileResult(path, request, tolerance, pieces, bound, measured, verdict.motion, verdict.linkage)
+        return Made((file,), tuple(verdict.checks))

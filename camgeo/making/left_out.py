@@ -1,0 +1,67 @@
+"""What a run leaves out, with the reason."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.model import KINDS
+
+if TYPE_CHECKING:
+    from camgeo.design import Design
+    from camgeo.recipe.model import FileRequest, Recipe
+
+Skipped = tuple[str, str]
+
+
+def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> tuple[Skipped, ...]:
+    """Name what was left out of a run that was asked for these files, and say why."""
+    found = [*_files(recipe, requests, design)]
+    if recipe.part.bore is None:
+        found.append(("bore", "part.bore is not given"))
+    if recipe.dynamics is None:
+        found.append(("dynamics", "dynamics is not given"))
+    found += [*_checks(design), *_of_linkage(recipe, design)]
+    if design.trimmed and recipe.verify.motion_error is None:
+        found.append(("motion", "the contour is trimmed and verify.motion_error is not given: told, not judged"))
+    return tuple(found)
+
+
+def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> list[Skipped]:
+    asked = {request.kind for request in recipe.export.files}
+    wanted = {request.kind for request in requests}
+    found: list[Skipped] = []
+    for kind in KINDS:
+        if kind not in asked:
+            found.append((kind, "the recipe's export.files does not list it"))
+        elif kind not in wanted:
+            found.append((kind, "left out by --only"))
+    if design.contour is None:
+        found.append(("files", "a check of the exact contour fails"))
+    return found
+
+
+def _checks(design: Design) -> list[Skipped]:
+    found: list[Skipped] = []
+    if design.follower == "flat face":
+        found.append(("constant-breadth", "the breadth is not constant: a single flat face follows"))
+    if design.follower != "double roller":
+        found.append(("pressure-angle", "a flat face is pushed along its normal"))
+        found.append(("undercut-global", "a convex profile meets itself nowhere else"))
+    if design.follower in {"double roller", "flat pair"}:
+        found.append(("face-length", "the follower has no plate that moves along its normal"))
+    else:
+        found += [(name, "the follower does not swing") for name in ("closing-equation", "transmission")]
+    return found
+
+
+def _of_linkage(recipe: Recipe, design: Design) -> list[Skipped]:
+    if design.driven is None:
+        return [("linkage", "linkage is not given")]
+    if not design.driven.turns:
+        why = "the mechanism does not turn: it has no motion over the shaft angle"
+        asked = ["csv"] if any(request.kind == "csv" for request in recipe.export.files) else []
+        return [(what, why) for what in ("linkage-error", *asked)]
+    found = [("dwell", "dwell is not given")] if recipe.dwell is None else []
+    if design.trimmed and recipe.verify.output_error is None:
+        found.append(("linkage-error", "the contour is trimmed and verify.output_error is not given: told, not judged"))
+    return found

@@ -1,0 +1,41 @@
+"""Which maker a request goes to; each is imported when a recipe asks for it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.making.job import Job, Made
+    from camgeo.recipe.model import FileRequest
+
+
+def make(job: Job, request: FileRequest, path: Path) -> Made:
+    """Make the files of one request, the first at `path`, any others beside it.
+
+    Raises RecipeErrors where a tolerance cannot be held or no such file can be made, SurroundingsError where the disk
+    or a missing extra stands in the way. A page is no such request: it tells of all other files.
+    """
+    match request.kind:
+        case "dxf" | "svg":
+            from camgeo.making.drawing import make_drawing
+
+            return make_drawing(job, request, path)
+        case "stl":
+            from camgeo.making.solid import make_solid
+
+            return make_solid(job, request, path)
+        case "csv":
+            from camgeo.making.table import make_table
+
+            return make_table(job, request, path)
+    raise ValueError(f"nothing makes {request.kind} alone")
+
+
+def foresee(job: Job, request: FileRequest) -> None:
+    """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
+    if request.kind == "stl":
+        from camgeo.making.solid import aim
+
+        aim(job, request)

@@ -1,0 +1,33 @@
+"""Tables: the intended motion, row by row; CSV."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.files.table import write_table
+from camgeo.making.job import Made
+from camgeo.report.document import FileResult
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.making.job import Job
+    from camgeo.recipe.model import FileRequest
+
+
+def make_table(job: Job, request: FileRequest, path: Path) -> Made:
+    """Write one table; that of a mechanism that does not turn is left out, as the report tells."""
+    driven = job.design.driven
+    if driven is not None and not driven.turns:
+        return Made(())
+    with job.clock.stage("table"):
+        if driven is not None:
+            from camgeo import linkage
+
+            columns, rows = linkage.motion_table(job.recipe, driven.mechanism)
+        else:
+            from camgeo.motion import motion_table
+
+            columns, rows = motion_table(job.recipe, job.design.intent)
+        write_table(path, columns, rows)
+    return Made((FileResult(path, request, None, None, None, None, None),))
