@@ -63,7 +63,7 @@ FLOORS = {
         part.wall recipe.build_part recipe.check_part recipe.read_part
         causes fit.cubic fit.exact fit.free_arcs report.document report.failure
         fit.trigonometric recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
-        files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius reach
+        bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius reach
         part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         recipe.model recipe.scalars recipe.source recipe.tables
         recipe.model_dynamics recipe.table_part
@@ -71,7 +71,7 @@ FLOORS = {
         curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
         page.followers page.pack page.svg
         page.scene
-        files.missing making page fit.rational part recipe.din6885 recipe.model_part study study.picture sweep
+        bodies files.missing making page fit.rational part recipe.din6885 recipe.model_part study study.picture sweep
         fit.bound
     """,
 }
