@@ -66,8 +66,8 @@ FLOORS = {
         bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius reach
         part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         recipe.model recipe.scalars recipe.source recipe.tables
-        recipe.model_dynamics recipe.table_part
-        recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_sweep
+        recipe.model_dynamics recipe.model_mechanism recipe.table_part
+        recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_mechanism recipe.table_sweep
         curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
         page.followers page.pack page.svg
         page.scene

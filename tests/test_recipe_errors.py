@@ -15,7 +15,7 @@ from kin.formula import Formula, FormulaError
 from kin.law import LAWS
 
 SUPPORT = "cam: {kind: support, p: 9}\n"
-KEYS = "name, about, units, rotation, cam, linkage, part, export, verify, dwell, sweep and dynamics"
+KEYS = "name, about, units, rotation, cam, linkage, part, export, verify, mechanism, dwell, sweep and dynamics"
 PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark and wall"
 BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10}"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"

@@ -40,6 +40,7 @@ from camgeo.recipe.model import (
     Verify,
 )
 from camgeo.recipe.model_dynamics import Dynamics
+from camgeo.recipe.model_mechanism import MechanismAsked
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -77,6 +78,7 @@ def build(values: Values, path: Path, marks: Mapping[str, Mark], text: str) -> R
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         sweep=_sweep(values["sweep"]) if "sweep" in values else None,
         dynamics=Dynamics(**values["dynamics"]) if "dynamics" in values else None,
+        mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,
         marks=marks,
         text=text,
     )

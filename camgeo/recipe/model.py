@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     import kin.law
     from camgeo.recipe.model_dynamics import Dynamics
+    from camgeo.recipe.model_mechanism import MechanismAsked
     from camgeo.recipe.model_part import Part
 
 Undercut: TypeAlias = Literal["refuse", "trim"]
@@ -380,6 +381,7 @@ class Recipe:
     dwell: DwellAsked | None = None
     sweep: Sweep | None = None
     dynamics: Dynamics | None = None
+    mechanism: MechanismAsked | None = None
     marks: Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
 

@@ -8,6 +8,7 @@ from camgeo.recipe.spec import MOST, Field, Kind, Table, either, length, mapping
 from camgeo.recipe.table_cam import CAMS
 from camgeo.recipe.table_dynamics import DYNAMICS
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
+from camgeo.recipe.table_mechanism import MECHANISM
 from camgeo.recipe.table_part import PART
 from camgeo.recipe.table_sweep import DWELL, SWEEP
 
@@ -104,6 +105,7 @@ RECIPE = Table(
                 at_most=MOST,
             ),
         ),
+        mapping("mechanism", "sizes of the printable bodies round the cam, for files with `parts: all`", *MECHANISM),
         mapping("dwell", "dwells of the linkage's output", *DWELL),
         mapping("sweep", "a search among designs", *SWEEP),
         Field(
