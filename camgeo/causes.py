@@ -12,23 +12,30 @@ from camgeo.radius import least_radius, reversals
 if TYPE_CHECKING:
     from camgeo.curve import Curve
     from camgeo.radius import Reversal
-    from camgeo.reach import Neck
+    from camgeo.reach import Neck, OpenNeckError
 
 
 class UndercutError(ValueError):
-    """No single contour is left by trimming; `parameter` says where the reason lies, None if all round."""
+    """No single contour is left by trimming; `parameter` says where the reason lies, None if all round.
 
-    def __init__(self, message: str, parameter: float | None = None) -> None:
+    `free_at` is the value that would be free of undercut, as `Undercut.free_at`, None where it was not asked for.
+    """
+
+    def __init__(self, message: str, parameter: float | None = None, free_at: float | None = None) -> None:
         super().__init__(message)
-        self.parameter = parameter
+        self.parameter, self.free_at = parameter, free_at
 
 
 @dataclass(frozen=True)
 class Causes:
-    """Why contact is lost: reversals of the contour, and the narrowest necks of a pitch curve."""
+    """Why contact is lost: reversals of the contour, and the narrowest necks of a pitch curve.
+
+    `open` is set where there is undercut, but whether there are narrower necks could not be decided.
+    """
 
     reversals: tuple[Reversal, ...]
     necks: tuple[Neck, ...]
+    open: OpenNeckError | None = None
 
     @property
     def none(self) -> bool:
@@ -48,7 +55,8 @@ def follower_radius(curve: Curve) -> float:
 def causes(curve: Curve) -> Causes:
     """Find reversals and the narrowest necks a roller does not pass; what is proved: `reversals`, `narrowest_necks`.
 
-    Raises ValueError for a curve that a flat face cannot work, as its tangent turns back.
+    Raises ValueError for a curve that a flat face cannot work, as its tangent turns back; CurveError where it is open
+    whether there is any undercut.
     """
     radius = follower_radius(curve)
     found = reversals(curve)
@@ -57,7 +65,16 @@ def causes(curve: Curve) -> Causes:
         if hollow.any():
             raise ValueError(f"a flat face cannot touch the hollow near parameter {curve.cells.low[hollow][0]:.9g}")
         return Causes(found, ())
-    from camgeo.reach import Pitch, narrowest_necks
+    from camgeo.pairs import Pitch
+    from camgeo.reach import OpenNeckError, narrowest_necks, neck_from
 
     below = radius if not found else min(radius, radius + least_radius(curve)[0])
-    return Causes(found, narrowest_necks(Pitch(curve, radius), below))
+    pitch = Pitch.of(curve)
+    try:
+        return Causes(found, narrowest_necks(pitch, below))
+    except OpenNeckError as error:
+        # a pair of points that the roller does not pass is undercut, whatever else there is
+        neck = neck_from(pitch, *error.pair) if error.seen else None
+        if not found and (neck is None or not neck.half < radius):
+            raise
+        return Causes(found, () if neck is None or not neck.half < radius else (neck,), error)

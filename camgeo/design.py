@@ -85,7 +85,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         with clock.stage("undercut"):
             checks, contour = _sound(recipe, profile, intent)
     except CurveError as error:
-        raise recipe.error("cam", str(error)) from error
+        raise recipe.error("cam", _unproved(recipe, error, intent)) from error
     with clock.stage("figures"):
         breadth, follower, more = _figures(recipe, intent, profile)
     driven = None
@@ -125,7 +125,8 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
         found = undercuts(profile.curve)
     except UndercutError as error:
         kind = "global" if roomy else "local"
-        return [bent, Check(f"undercut-{kind}", False, None, 0.0, "mm", None, detail=str(error))], None
+        free = "" if error.free_at is None else f"; {_free(recipe, profile, error.free_at)}"
+        return [bent, Check(f"undercut-{kind}", False, None, 0.0, "mm", None, detail=f"{error}{free}")], None
     outcome, contour = "", None if found else profile.curve
     if trim and found:
         try:
@@ -138,13 +139,8 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
     cut_off = bool(found and contour)
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
-    free_at = (min if profile.roller_radius else max)((cut.free_at for cut in found), default=0.0) / recipe.mm
-    if isinstance(recipe.cam, FlatPairCam):
-        free = "a smaller swing would be free of it"  # r + const closes no pair: there is no base radius to enlarge
-    elif profile.roller_radius:
-        free = f"a roller radius of {free_at:.6g} would be free of it"
-    else:
-        free = f"a base radius larger by {free_at:.6g} would be free of it"
+    free_at = (min if profile.roller_radius else max)((cut.free_at for cut in found), default=0.0)
+    free = _free(recipe, profile, free_at)
     for kind in ("local", "global"):
         cuts = [cut for cut in found if cut.kind == kind]
         if kind == "global" and profile.roller_radius == 0.0 and not cuts:
@@ -162,6 +158,32 @@ def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tup
         limit = None if cut_off else 0.0
         checks.append(Check(f"undercut-{kind}", ok, depth, limit, "mm", at_deg, detail=detail))
     return checks, contour
+
+
+def _free(recipe: Recipe, profile: Profile, free_at: float) -> str:
+    """Say what would be free of undercut; `free_at` in mm."""
+    value = free_at / recipe.mm
+    if isinstance(recipe.cam, FlatPairCam):
+        return "a smaller swing would be free of it"  # r + const closes no pair: there is no base radius to enlarge
+    if profile.roller_radius:
+        return f"a roller radius of {value:.6g} would be free of it"
+    return f"a base radius larger by {value:.6g} would be free of it"
+
+
+def _unproved(recipe: Recipe, error: CurveError, intent: Lift | Transmission) -> str:
+    """Say what could not be proved of a curve, and what would do."""
+    from camgeo.reach import OpenNeckError
+
+    if not isinstance(error, OpenNeckError):
+        return str(error)
+    first, second = (_shaft_deg(intent, t) for t in error.pair)
+    most, least = error.most / recipe.mm, error.least / recipe.mm
+    half = f"lies between {least:.9g} and {most:.9g}" if error.seen else f"is at least {least:.9g}"
+    return (
+        f"whether a roller radius of {most:.9g} is free of undercut between {first:.6g} and {second:.6g} deg cannot be "
+        f"proved: half the width of the neck there {half}; "
+        f"a roller radius of {least * (1.0 - 1e-5):.6g} is proved to be free of it"  # not rounded upward
+    )
 
 
 def _trimmed(curve: Curve) -> Curve:

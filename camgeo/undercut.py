@@ -8,7 +8,7 @@ there is any is proved (`reversals`, `narrowest_necks`); the extent and depth ar
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -33,7 +33,7 @@ class Undercut:
     radius of curvature is least (local) or one end of the neck (global). `depth` is how far the follower hangs free at
     the worst, in mm along its normal, infinite where nothing is left of the contour. `free_at`, in mm, is the value
     at which this stretch would just be free: the largest roller radius, or for a flat face by how much the base radius
-    must grow.
+    must grow. Where it was left open whether there are narrower necks, it is a radius that is proved to be free.
     """
 
     kind: Literal["local", "global"]
@@ -59,7 +59,11 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
     from camgeo.trim import remains
 
     found: list[Undercut] = []
-    for lost in remains(curve, why).lost:
+    try:
+        what = remains(curve, why)
+    except UndercutError as error:
+        raise UndercutError(str(error), error.parameter, _free_at(curve, why)) from error
+    for lost in what.lost:
         inside = [r for r in why.reversals if not r.still and _within(curve, lost, 0.5 * (r.start + r.end))]
         necks = [n for n in why.necks if _within(curve, lost, n.first) or _within(curve, lost, n.second)]
         if inside:
@@ -68,7 +72,19 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
             found.append(_global(curve, lost, min(necks, key=lambda n: n.half)))
         if not inside and not necks and not _still(curve, lost, why):
             found.append(_global(curve, lost, _neck_of(curve, lost)))
-    return tuple(found)
+    return tuple(found) if why.open is None else tuple(_no_more(cut, why.open.least) for cut in found)
+
+
+def _no_more(cut: Undercut, least: float) -> Undercut:
+    return replace(cut, free_at=min(cut.free_at, least))
+
+
+def _free_at(curve: Curve, why: Causes) -> float:
+    """The value at which all undercut would be free, whatever its extent."""
+    least, roller = least_radius(curve)[0], follower_radius(curve)
+    if math.isinf(roller):
+        return -least
+    return min([roller + least, *(n.half for n in why.necks), *([] if why.open is None else [why.open.least])])
 
 
 def _within(curve: Curve, lost: Lost, t: float) -> bool:
@@ -99,10 +115,11 @@ def _global(curve: Curve, lost: Lost, neck: Neck) -> Undercut:
 
 def _neck_of(curve: Curve, lost: Lost) -> Neck:
     """Neck for which a stretch is lost that is nowhere bent too much: the least rolling radius on it."""
-    from camgeo.reach import Pitch, neck_from, rolling_radius
+    from camgeo.pairs import Pitch
+    from camgeo.reach import neck_from, rolling_radius
 
     radius = follower_radius(curve)
-    pitch = Pitch(curve, radius)
+    pitch = Pitch.of(curve)
     t = np.linspace(lost.start, lost.end, LOOKS)
     s = curve.runs[0].low + curve.shape.period * np.arange(4 * LOOKS) / (4 * LOOKS)
     seen = rolling_radius(pitch, t, s)

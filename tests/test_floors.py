@@ -21,6 +21,7 @@ FLOORS = {
         envelope mechanism
         lift transmission
         chain formula possible read
+        read_3mf
         dyad forces hole read_dxf read_stl read_svg switches transmission_law
         drawing svg_path
         bearing bouncing bounding flaws floating integrated law linkage nesting roots routes syntax
@@ -58,17 +59,18 @@ FLOORS = {
         design recipe.load
         foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim
-        crossing files.stl files.svg fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
+        crossing files.prism files.stl files.svg files.three_mf fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
         recipe.readers
-        part.wall recipe.build_part recipe.check_part recipe.read_part
-        causes fit.cubic fit.exact fit.free_arcs report.document report.failure
-        fit.trigonometric recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
-        bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius reach
+        files.mesh part.wall recipe.build_part recipe.check_part recipe.read_part
+        causes files.precision fit.cubic fit.exact fit.free_arcs report.document report.failure
+        reach
+        fit.trigonometric pairs recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
+        bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius turning
         part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         recipe.model recipe.scalars recipe.source recipe.tables
-        recipe.model_dynamics recipe.model_mechanism recipe.table_part
-        recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_mechanism recipe.table_sweep
-        curve files files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
+        recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.table_part
+        recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism recipe.table_sweep
+        curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
         page.followers page.pack page.svg
         page.scene
         bodies files.missing making page fit.rational part recipe.din6885 recipe.model_part study study.picture sweep

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import mpmath
 import numpy as np
@@ -11,17 +12,18 @@ from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from shapes import PEAR, Polar, booth, waves
 
-from camgeo.curve import Curve, CurveError
+from camgeo.curve import Bounds, Curve, CurveError, Frame
 from camgeo.offset import Parallel
+from camgeo.pairs import Pitch
 from camgeo.radius import least_radius
-from camgeo.reach import NECK_SHARPNESS, Pitch, narrowest_necks, neck_from, rolling_radius
+from camgeo.reach import NECK_SHARPNESS, OpenNeckError, narrowest_necks, neck_from, rolling_radius
 from kin import jet
 
 LENGTH = 60.0
 
 
 def pitch(shape, e=1.0):
-    return Pitch(Curve.whole(Parallel(shape, e)), e)
+    return Pitch.of(Curve.whole(Parallel(shape, e)))
 
 
 def least_of_pairs(curve, count=700):
@@ -46,7 +48,7 @@ def test_the_waist_of_booths_lemniscate(share, e):
 def test_a_convex_curve_has_no_neck():
     # half of the narrowest double normal is 53.7 mm, but the ends are bent more
     curve = pitch(booth(LENGTH, 0.55 * LENGTH))
-    assert narrowest_necks(curve, least_radius(Curve.whole(curve.contour.shape.base))[0]) == ()
+    assert narrowest_necks(curve, least_radius(curve.curve)[0]) == ()
 
 
 def test_the_neck_of_a_pear_is_a_double_normal():
@@ -69,7 +71,7 @@ def test_opposite_notches_make_a_neck(place):
 
     curve = pitch(Polar(notched), 0.3)
     half = 10.0 - 20.0 * math.exp(-10.0)
-    assert least_radius(curve.contour)[0] + 0.3 > half
+    assert least_radius(curve.curve)[0] > half
     (neck,) = narrowest_necks(curve, half + 1e-3)
     assert neck.half == pytest.approx(half, rel=1e-13)
     assert narrowest_necks(curve, half - 1e-6) == ()
@@ -83,7 +85,7 @@ def test_alike_necks_are_all_found():
 
     at = mpmath.findroot(lambda t: mpmath.diff(height, t), (1.2, 1.4), solver="anderson")
     curve = pitch(waves(20.0, (2, 10.85, 0.0), (4, 0.89, 0.0), (6, 0.77, math.pi)), 0.5)
-    necks = narrowest_necks(curve, least_radius(curve.contour)[0] + 0.5)
+    necks = narrowest_necks(curve, least_radius(curve.curve)[0])
     assert [n.half for n in necks] == pytest.approx([float(height(at))] * 2, rel=1e-13)
     assert [n.first for n in necks] == pytest.approx([float(at), math.pi - float(at)], abs=1e-8)
     assert [n.second for n in necks] == pytest.approx([2 * math.pi - float(at), math.pi + float(at)], abs=1e-8)
@@ -117,3 +119,79 @@ def test_newtons_method_tells_inside_from_outside():
     # two lobes of a star face each other across the outside
     star = pitch(waves(20.0, (5, 8.0, 0.0)), 0.1)
     assert neck_from(star, 0.1, 2 * math.pi / 5 - 0.1) is None
+
+
+@pytest.mark.parametrize("share", [0.98, 0.99, 0.999])
+def test_a_waist_almost_folded_is_measured(share):
+    # bent on its outer side to a hundredth of its width and less
+    waist = LENGTH * math.sqrt(2.0 * (1.0 - share))
+    curve = pitch(booth(LENGTH, LENGTH * math.sqrt(share)))
+    (neck,) = narrowest_necks(curve, 1.001 * waist)
+    assert neck.half == pytest.approx(waist, rel=1e-12)
+    assert narrowest_necks(curve, 0.999 * waist) == ()
+    assert narrowest_necks(curve, 1e-3 * waist) == ()
+
+
+@dataclass(frozen=True)
+class Arcs:
+    """A chain of circular arcs (length, turning), each over a unit of the parameter, from (0, 0) along the x axis."""
+
+    arcs: tuple[tuple[float, float], ...]
+
+    repeats = 1
+
+    @property
+    def period(self):
+        return float(len(self.arcs))
+
+    @property
+    def breaks(self):
+        return np.arange(len(self.arcs), dtype=float)
+
+    @property
+    def steady(self):
+        return np.array(self.arcs)
+
+    @property
+    def radii(self):
+        return np.array([length / turn for length, turn in self.arcs])
+
+    def sample(self, t, side=1):
+        t = np.mod(t, self.period)
+        i = np.where(side > 0, np.floor(t), np.ceil(t) - 1.0).astype(int) % len(self.arcs)
+        x = np.where((t == 0.0) & (np.asarray(side) < 0), 1.0, t - i)
+        length, turn = np.array(self.arcs).T
+        ahead = np.concatenate([[0.0], np.cumsum(turn)])
+        start = np.concatenate([[0.0], np.cumsum(length / turn * (np.exp(1j * ahead[1:]) - np.exp(1j * ahead[:-1])))])
+        theta = ahead[i] + turn[i] * x
+        z = -1j * (start[i] + length[i] / turn[i] * (np.exp(1j * theta) - np.exp(1j * ahead[i])))
+        none = np.zeros_like(t)
+        return Frame(
+            np.column_stack([z.real, z.imag]),
+            np.column_stack([np.cos(theta), np.sin(theta)]),
+            length[i],
+            turn[i],
+            none,
+            none,
+        )
+
+    def bounds(self, low, high):
+        at = self.sample(0.5 * (low + high))
+        return Bounds(at.speed, at.speed, at.turn, at.turn, *[np.zeros_like(low)] * 4)
+
+
+def bent_slot(outer, inner, over):
+    """Two arcs about one centre, closed by half circles: each disc of half their distance passes, no larger one."""
+    end = 0.5 * (outer - inner)
+    return Arcs(((outer * over, over), (math.pi * end, math.pi), (inner * over, -over), (math.pi * end, math.pi)))
+
+
+def test_what_is_left_open_is_told_in_figures():
+    curve = Pitch(Curve.whole(bent_slot(40.0, 20.0, 2.0)))
+    with pytest.raises(OpenNeckError) as told:
+        narrowest_necks(curve, 10.0)
+    error = told.value
+    assert 9.0 < error.least <= error.most == pytest.approx(10.0, rel=1e-8)
+    assert f"{error.least:.9g} mm is proved to pass" in str(error)
+    # anything smaller is proved
+    assert narrowest_necks(curve, 9.9) == ()

@@ -14,9 +14,10 @@ from shapes import PEAR, STAR, Moved, booth, waves
 from camgeo.causes import UndercutError
 from camgeo.curve import Curve
 from camgeo.offset import Parallel
+from camgeo.pairs import Pitch
 from camgeo.profile.support import SupportShape
 from camgeo.radius import least_radius
-from camgeo.reach import Pitch, rolling_radius
+from camgeo.reach import rolling_radius
 from camgeo.trim import trimmed
 from camgeo.undercut import undercuts
 from kin.law import Segment, law, programme
@@ -168,7 +169,7 @@ def test_lobes_too_sharp_for_the_roller(e):
         assert at.speed[0] / at.turn[0] == pytest.approx(u.free_at, rel=1e-13)
     assert all(within(x, found) for x in t[tight])
     # contact is lost just where the rolling disc would be larger than is free
-    reach = rolling_radius(Pitch(roller(STAR, e), e), t, t + 1e-4).min(axis=1)
+    reach = rolling_radius(Pitch.of(roller(STAR, e)), t, t + 1e-4).min(axis=1)
     assert [within(x, found, -2e-3) for x in t[reach > 1.001 * e]].count(True) == 0
     assert all(within(x, found, 2e-3) for x in t[reach < 0.999 * e])
 
@@ -249,7 +250,7 @@ def test_a_neck_is_reported_beside_sharper_lobes():
 def test_the_largest_roller_is_the_least_over_all_pairs(terms, e):
     shape = waves(30.0, *((k, 10.0 * a / k, b) for k, a, b in terms))
     t = np.linspace(0.0, TURN, 700, endpoint=False)
-    reach = rolling_radius(Pitch(roller(shape, e), e), t, t)
+    reach = rolling_radius(Pitch.of(roller(shape, e)), t, t)
     np.fill_diagonal(reach, np.inf)
     seen = reach.min()
     assume(abs(seen - e) > 0.02 * e)
