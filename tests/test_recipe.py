@@ -35,6 +35,7 @@ from camgeo.recipe.model import (
     SupportCam,
     Verify,
 )
+from camgeo.recipe.model_manufacture import Compensation, Manufacture
 from camgeo.recipe.model_part import Part
 from camgeo.recipe.scalars import Complaint, read_number
 from camgeo.recipe.schema import json_schema
@@ -94,7 +95,7 @@ verify: {angles: 720, motion_error: 0.002}
                 FileRequest("dxf", "arcs", "R2010", None),
                 FileRequest("dxf", "spline", "R2013", 0.001),
                 FileRequest("stl", tolerance=0.01),
-                FileRequest("csv"),
+                FileRequest("csv", "motion"),
             ),
         ),
         verify=Verify(720, 0.002),
@@ -378,7 +379,7 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
         assert recipe.about
         assert {file.kind for file in recipe.export.files} == {"dxf", "stl", "csv"}
     files = [file for recipe in recipes.values() for file in recipe.export.files]
-    assert {file.as_ for file in files} == {"arcs", "polyline", "spline", None}
+    assert {file.as_ for file in files} == {"arcs", "polyline", "spline", "motion", None}
     assert {file.version for file in files} == {"R12", "R2000", "R2010", "R2013", None}
     assert {recipe.units for recipe in recipes.values()} == {"mm", "inch"}
     assert {recipe.rotation for recipe in recipes.values()} == {"cw", "ccw"}
@@ -609,3 +610,87 @@ def test_the_json_schema_refuses_what_load_refuses(body: str) -> None:
 def test_the_model_is_frozen() -> None:
     with pytest.raises(dataclasses.FrozenInstanceError):
         text(BODY).name = "other"
+
+
+def test_milling_and_compensation() -> None:
+    body = """\
+units: inch
+cam: {kind: support, p: 1}
+part: {thickness: 0.5}
+export: {files: [dxf, {dxf: {kerf: 0.01}}, {stl: {clearance: 0.004, shrinkage: 0.4}}, {csv: {as: inspection}}, gcode]}
+manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.1, safe_height: 0.2, start: 90}
+"""
+    recipe = read(body.encode(), "c.yaml")
+    assert recipe.manufacture == Manufacture(
+        6.35, feed=508.0, plunge=127.0, spindle=9000.0, depth_of_cut=2.54, safe_height=5.08, start=math.pi / 2
+    )
+    assert recipe.manufacture.lead == recipe.manufacture.radius == 3.175
+    files = recipe.export.files
+    names = [file.filename("c", files) for file in files]
+    assert names == ["c-arcs-R2010.dxf", "c-arcs-R2010-kerf.dxf", "c.stl", "c.csv", "c.ngc"]
+    assert [file.compensation for file in files] == [
+        None,
+        Compensation(kerf=0.254),
+        Compensation(clearance=pytest.approx(0.1016), shrinkage=0.004),
+        None,
+        None,
+    ]
+    kerf, both = files[1].compensation, files[2].compensation
+    assert kerf is not None
+    assert both is not None
+    assert (kerf.out, kerf.scale, kerf.told(25.4)) == (0.127, 1.0, "kerf 0.01")
+    assert both.out == pytest.approx(-0.1016)
+    assert both.scale == 1 / 0.996
+    assert (both.tags, both.told(25.4)) == ("clearance-shrinkage", "clearance 0.004, shrinkage 0.4 percent")
+
+
+@pytest.mark.parametrize(
+    ("more", "messages"),
+    [
+        (
+            "export: {files: [gcode]}",
+            [
+                (
+                    "2:18: export.files[0]: gcode needs manufacture; give manufacture with cutter, feed, plunge, "
+                    "spindle, depth_of_cut and safe_height, or leave gcode out"
+                ),
+                "2:18: export.files[0]: gcode needs a thickness; give part.thickness, or leave gcode out",
+            ],
+        ),
+        (
+            "export: {files: [gcode]}\npart: {thickness: 4}\nmanufacture: {cutter: 6, feed: 300, spindle: 9000}",
+            ["4:14: manufacture: gcode needs plunge; give plunge, depth_of_cut and safe_height, or leave gcode out"],
+        ),
+        (
+            "manufacture: {diameter: 6, direction: down}",
+            [
+                (
+                    "2:14: manufacture.cutter: missing; give a length above 0 in mm: diameter of the cutter that mills "
+                    "the contour"
+                ),
+                (
+                    "2:15: manufacture.diameter: unknown key; the keys here are cutter, feed, plunge, spindle, "
+                    "depth_of_cut, safe_height, lead_in, direction, allowance, start, holes, unreached and layer"
+                ),
+                "2:39: manufacture.direction: not one of the choices, given 'down'; give climb or conventional",
+            ],
+        ),
+        (
+            "export: {files: [{gcode: {kerf: 0.2}}, {dxf: {kerf: -1}}, {stl: {shrinkage: 30}}]}\npart: {thickness: 4}",
+            None,
+        ),
+    ],
+)
+def test_milling_that_cannot_be(more: str, messages: list[str] | None) -> None:
+    with pytest.raises(RecipeErrors) as caught:
+        read(f"cam: {{kind: support, p: 9}}\n{more}\n".encode(), "c.yaml")
+    found = str(caught.value).splitlines()
+    if messages is None:
+        assert [line.split(";")[0].split(" ", 1)[1] for line in found] == [
+            "export.files[0]: gcode needs manufacture",
+            "export.files[0].gcode.kerf: unknown key",
+            "export.files[1].dxf.kerf: not above 0, given -1",
+            "export.files[2].stl.shrinkage: above 20, given 30",
+        ]
+    else:
+        assert found == [f"c.yaml:{message}" for message in messages]

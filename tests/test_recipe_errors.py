@@ -15,11 +15,15 @@ from kin.formula import Formula, FormulaError
 from kin.law import LAWS
 
 SUPPORT = "cam: {kind: support, p: 9}\n"
-KEYS = "name, about, units, rotation, cam, linkage, part, export, verify, mechanism, dwell, sweep and dynamics"
+KEYS = (
+    "name, about, units, rotation, cam, linkage, part, export, verify, mechanism, dwell, sweep, dynamics "
+    "and manufacture"
+)
 PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark and wall"
 BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10}"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 LENGTH = "give a length above 0 in mm"
+FORMATS = "give dxf, svg, stl, csv, html or gcode"
 
 
 def told(body: str | bytes, path: str = "c.yaml") -> list[str]:
@@ -63,10 +67,13 @@ tolerance: 4
         "cams/a.yaml:11:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
         (
             "cams/a.yaml:11:63: export.files[3]: not available in this version, given 'step'; "
-            "give dxf, svg, stl, csv or html"
+            "give dxf, svg, stl, csv, html or gcode"
         ),
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
-        "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, the file dxf, the file svg or the file stl",
+        (
+            "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, the file dxf, the file svg, "
+            "the file stl or the file gcode"
+        ),
     ]
 
 
@@ -225,8 +232,8 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         (SUPPORT + "part: {units: mm}\n", "2:8: part.units: unknown key; it belongs at the top level"),
         (SUPPORT + "part: {x: 1}\n", f"2:8: part.x: unknown key; the keys here are {PART}"),
         (
-            SUPPORT + "export: {files: [{csv: {x: 1}}]}\n",
-            "2:25: export.files[0].csv.x: unknown key; there are no keys here",
+            SUPPORT + "export: {files: [{html: {x: 1}}]}\n",
+            "2:26: export.files[0].html.x: unknown key; there are no keys here",
         ),
         (FLAT_PAIR, "1:43: cam.roller_radius: unknown key; it belongs under cam of kind double-roller"),
         (
@@ -640,14 +647,14 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         ("[~]", [f"18: export.files[0]: not a file, given nothing; {CHOOSE}"]),
         ("[[dxf]]", [f"18: export.files[0]: not a file, given a list of 1; {CHOOSE}"]),
         ("[{dxf: {}, csv: {}}]", [f"18: export.files[0]: not a file, given a mapping of 2; {CHOOSE}"]),
-        ("[3mf]", ["18: export.files[0]: not available in this version, given '3mf'; give dxf, svg, stl, csv or html"]),
-        ("[DXF]", ["18: export.files[0]: no such file format, given 'DXF'; give dxf, svg, stl, csv or html"]),
+        ("[3mf]", [f"18: export.files[0]: not available in this version, given '3mf'; {FORMATS}"]),
+        ("[DXF]", [f"18: export.files[0]: no such file format, given 'DXF'; {FORMATS}"]),
         (
             "[{dxf: }]",
             [
                 (
-                    "23: export.files[0].dxf: nothing given; give a mapping with as, version and tolerance, "
-                    "or leave the key out"
+                    "23: export.files[0].dxf: nothing given; give a mapping with as, version, tolerance, kerf, "
+                    "clearance and shrinkage, or leave the key out"
                 )
             ],
         ),
@@ -664,7 +671,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         ),
         (
             "[{csv: {as: arcs}}]",
-            ["25: export.files[0].csv.as: unknown key; it belongs under the file dxf or the file svg"],
+            ["29: export.files[0].csv.as: not one of the choices, given 'arcs'; give motion or inspection"],
         ),
         (
             "[{svg: {as: exact, version: R12}}]",

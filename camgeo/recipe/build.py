@@ -40,6 +40,7 @@ from camgeo.recipe.model import (
     Verify,
 )
 from camgeo.recipe.model_dynamics import Dynamics
+from camgeo.recipe.model_manufacture import Compensation, Manufacture
 from camgeo.recipe.model_mechanism import MechanismAsked
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ SAMPLES = 360  # angles at which a sweep looks at a design
 CHOSEN: dict[FileKind, Values] = {  # what a file is where its options do not say
     "dxf": {"as": "arcs", "version": "R2010"},
     "svg": {"as": "arcs"},
+    "csv": {"as": "motion"},
 }
 
 
@@ -78,6 +80,7 @@ def build(values: Values, path: Path, marks: Mapping[str, Mark], text: str) -> R
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         sweep=_sweep(values["sweep"]) if "sweep" in values else None,
         dynamics=Dynamics(**values["dynamics"]) if "dynamics" in values else None,
+        manufacture=Manufacture(**values["manufacture"]) if "manufacture" in values else None,
         mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,
         marks=marks,
         text=text,
@@ -91,7 +94,16 @@ def requests(files: list[Values]) -> tuple[FileRequest, ...]:
 
 def _request(kind: FileKind, file: Values) -> FileRequest:
     chosen = {**CHOSEN.get(kind, {}), **file}
-    return FileRequest(kind, chosen.get("as"), chosen.get("version"), chosen.get("tolerance"))
+    return FileRequest(
+        kind, chosen.get("as"), chosen.get("version"), chosen.get("tolerance"), compensation=_compensation(file)
+    )
+
+
+def _compensation(file: Values) -> Compensation | None:
+    given = {name: file[name] for name in ("kerf", "clearance", "shrinkage") if name in file}
+    if "shrinkage" in given:
+        given["shrinkage"] /= 100.0
+    return Compensation(**given) if given else None
 
 
 def _cam(cam: Values, mm: float) -> Cam:

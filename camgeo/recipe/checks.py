@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 from camgeo.recipe.build import requests
 from camgeo.recipe.check_part import check_part
 from camgeo.recipe.check_sweep import check_sweep
+from camgeo.recipe.spec import either
 from camgeo.recipe.table_cam import SWINGING
+from camgeo.recipe.table_manufacture import NEEDED
 
 if TYPE_CHECKING:
     from camgeo.recipe.reader import Reader, Values
@@ -81,6 +83,18 @@ def _linkage(values: Values, reader: Reader) -> None:
         reader.fault_at("linkage.dyads[0].on", "there is no dyad before the first", "'previous'", remedy)
 
 
+def _milling(path: str, reader: Reader) -> None:
+    """Note what a program for a machine lacks."""
+    if "manufacture" not in reader.marks:
+        remedy = f"give manufacture with cutter, {', '.join(NEEDED[:-1])} and {NEEDED[-1]}, or leave gcode out"
+        reader.fault_at(path, "gcode needs manufacture", None, remedy)
+    elif missing := [name for name in NEEDED if f"manufacture.{name}" not in reader.marks]:
+        remedy = f"give {either(tuple(missing), 'and')}, or leave gcode out"
+        reader.fault_at("manufacture", f"gcode needs {missing[0]}", None, remedy)
+    if "part.thickness" not in reader.marks:
+        reader.fault_at(path, "gcode needs a thickness", None, "give part.thickness, or leave gcode out")
+
+
 def _train(train: Values, reader: Reader) -> None:
     if "play" in train and "rate" in train:
         reader.fault_at(
@@ -104,6 +118,8 @@ def _files(values: Values, reader: Reader) -> None:
         path = file["path"]
         if request.kind == "stl" and "part.thickness" not in reader.marks:
             reader.fault_at(path, "stl needs a thickness", None, "give part.thickness, or leave stl out")
+        if request.kind == "gcode":
+            _milling(path, reader)
         if request.as_ in {"spline", "exact"} and request.version == "R12":
             remedy = "give arcs or polyline, or a later version"
             reader.fault_at(f"{path}.dxf.as", "R12 has no splines", f"'{request.as_}'", remedy)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     import kin.law
     from camgeo.recipe.model_dynamics import Dynamics
+    from camgeo.recipe.model_manufacture import Compensation, Manufacture
     from camgeo.recipe.model_mechanism import MechanismAsked
     from camgeo.recipe.model_part import Part
 
@@ -309,34 +310,45 @@ class Sweep:
     refine: bool
 
 
-FileKind: TypeAlias = Literal["dxf", "svg", "stl", "csv", "html"]
+FileKind: TypeAlias = Literal["dxf", "svg", "stl", "csv", "html", "gcode"]
 KINDS: tuple[FileKind, ...] = get_args(FileKind)
 NO_CONTOUR = frozenset({"csv", "html"})
 """Kinds of file that hold no contour to be judged."""
+NO_PART = NO_CONTOUR | {"gcode"}
+"""Kinds of file that do not show the part itself."""
+SUFFIXES: dict[FileKind, str] = {"gcode": "ngc"}  # of kinds that are not their own
 
 
 @dataclass(frozen=True)
 class FileRequest:
-    """One file to write. `as_` is of DXF and SVG, `version` of DXF; `tolerance` (mm) stands in for the export's own."""
+    """One file to write.
+
+    `as_` is of DXF, SVG and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that is made
+    different from the nominal one has its `compensation`.
+    """
 
     kind: FileKind
-    as_: Literal["arcs", "polyline", "spline", "exact"] | None = None
+    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "inspection"] | None = None
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
+    compensation: Compensation | None = None
 
     def filename(self, name: str, requests: Sequence[FileRequest]) -> str:
         """Name the file among all `requests` of recipe `name`.
 
         `<name>.<kind>`; where a kind is asked for more than once `<name>-<as>.<kind>`, and where that still leaves two
-        alike `<name>-<as>-<version>.<kind>`.
+        alike `<name>-<as>-<version>.<kind>`, and `-kerf` and the like behind for a part that is not nominal.
         """
         kin = [request for request in requests if request.kind == self.kind]
         parts = [name]
+        alike = [request for request in kin if request.as_ == self.as_]
         if len(kin) > 1 and self.as_:
             parts.append(self.as_)
-            if sum(request.as_ == self.as_ for request in kin) > 1 and self.version:
+            if len(alike) > 1 and self.version:
                 parts.append(self.version)
-        return f"{'-'.join(parts)}.{self.kind}"
+        if len(alike) > 1 and self.compensation:
+            parts.append(self.compensation.tags)
+        return f"{'-'.join(parts)}.{SUFFIXES.get(self.kind, self.kind)}"
 
 
 @dataclass(frozen=True)
@@ -381,6 +393,7 @@ class Recipe:
     dwell: DwellAsked | None = None
     sweep: Sweep | None = None
     dynamics: Dynamics | None = None
+    manufacture: Manufacture | None = None
     mechanism: MechanismAsked | None = None
     marks: Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)

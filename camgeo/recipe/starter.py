@@ -140,7 +140,7 @@ _REST: Given = {
     "units": "mm",
     "rotation": "cw",
     "part": {"thickness": "8", "bore": "10"},
-    "export": {"tolerance": "0.001", "files": f"[{', '.join(FILES)}]"},
+    "export": {"tolerance": "0.001", "files": f"[{', '.join(kind for kind in FILES if kind != 'gcode')}]"},
     "verify": {"angles": "3600"},
 }
 

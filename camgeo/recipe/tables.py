@@ -8,6 +8,7 @@ from camgeo.recipe.spec import MOST, Field, Kind, Table, either, length, mapping
 from camgeo.recipe.table_cam import CAMS
 from camgeo.recipe.table_dynamics import DYNAMICS
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
+from camgeo.recipe.table_manufacture import COMPENSATION, MANUFACTURE
 from camgeo.recipe.table_mechanism import MECHANISM
 from camgeo.recipe.table_part import PART
 from camgeo.recipe.table_sweep import DWELL, SWEEP
@@ -31,6 +32,7 @@ FILES: dict[str, Table] = {
                 choices=("R12", "R2000", "R2010", "R2013"),
             ),
             _TOLERANCE,
+            *COMPENSATION,
         ),
     ),
     "svg": Table(
@@ -43,11 +45,13 @@ FILES: dict[str, Table] = {
                 choices=("arcs", "polyline", "spline"),
             ),
             _TOLERANCE,
+            *COMPENSATION,
         ),
     ),
-    "stl": Table((_TOLERANCE,)),
-    "csv": Table(()),
+    "stl": Table((_TOLERANCE, *COMPENSATION)),
+    "csv": Table((Field("as", Kind.CHOICE, "which table it is", default="motion", choices=("motion", "inspection")),)),
     "html": Table(()),
+    "gcode": Table((_TOLERANCE,)),
 }
 LATER_FILES = ("3mf", "step")
 
@@ -73,7 +77,7 @@ RECIPE = Table(
             Field(
                 "files",
                 Kind.FILES,
-                "dxf, svg, stl, csv, html, or mappings such as {dxf: {as: spline}}",
+                "dxf, svg, stl, csv, html, gcode, or mappings such as {dxf: {as: spline}}",
                 default="[dxf]",
             ),
         ),
@@ -115,6 +119,7 @@ RECIPE = Table(
             default="none",
             table=DYNAMICS,
         ),
+        Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
     ),
 )
 
