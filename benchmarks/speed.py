@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.files.stl import bore_polygon, write_stl
+from camgeo.files.precision import SINGLE
+from camgeo.files.prism import bore_polygon, extruded
+from camgeo.files.stl import write_stl
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
@@ -80,7 +82,8 @@ def stl() -> None:
             path, other = Path(folder) / "ours.stl", Path(folder) / "numpy.stl"
 
             def ours(polygon: Polygon = polygon, path: Path = path) -> None:
-                write_stl(path, polygon, bore=10.0, thickness=8.0, tolerance=1e-3)
+                mesh, _ = extruded(polygon, bore=10.0, thickness=8.0, tolerance=1e-3, precision=SINGLE)
+                write_stl(path, mesh)
 
             ours()
             data = np.fromfile(path, dtype=np.uint8)

@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from kin.arcs import Array, Indices
 
     Corners = NDArray[np.float32] | NDArray[np.float64]
+    Form = Literal["binary", "text", "3mf"]
 
-__all__ = ["Section", "Solid", "read_stl"]
+__all__ = ["Section", "Solid", "read_stl", "solid_of"]
 
 HEADER = 84
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -52,7 +53,7 @@ class Section(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A part as an STL file holds it, mm.
+    """A part as an STL or 3MF file holds it, mm.
 
     contour, holes      polygons of the section at `height`, counter-clockwise all of them
     z_min, z_max        least and greatest height
@@ -63,7 +64,7 @@ class Solid:
     edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
     degenerate          triangles without area
     duplicate           triangles that another one covers
-    form                "binary" or "text"
+    form                "binary" or "text", or "3mf"
     sections            those that were asked for, by height as asked for
     faces               heights of the horizontal faces, rising
     """
@@ -79,7 +80,7 @@ class Solid:
     edges: EdgeFaults
     degenerate: int
     duplicate: int
-    form: Literal["binary", "text"]
+    form: Form
     sections: tuple[Section, ...] = ()
     faces: tuple[float, ...] = ()
 
@@ -110,6 +111,11 @@ def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
     """
     path = Path(path)
     corners, form = triangles_of(path.read_bytes(), path)
+    return solid_of(corners, form, heights, path)
+
+
+def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path) -> Solid:
+    """Make the part of triangles (t, 3, 3), mm, as `read_stl` does."""
     if not bool((np.abs(corners) <= LARGEST).all()):
         raise ReadError("range", "a coordinate is not finite or beyond all measure", path)
     z = corners[:, :, 2]

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from parts import CAM, files_of, found, recipe_of
 
 from camgeo.cli import main
+from camgeo.files.prism import loop_polygon
 from camgeo.files.solid import inset
-from camgeo.files.stl import loop_polygon
 from camgeo.files.triangulate import RegionError, region
 from camgeo.part.shapes import disc, flattened, keyed, polygonal, slot
 from kin.contour import Contour

@@ -11,13 +11,22 @@ import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from camgeo.files.stl import bore_polygon, fit_tolerance, single_precision_bound, write_stl
+from camgeo.files import stl
+from camgeo.files.precision import SINGLE
+from camgeo.files.prism import bore_polygon, extruded
 from camgeo.files.triangulate import RegionError, clip, disc, ring, sides, star_shaped
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
 
 NONE = Bound(0.0, 0.0)
+fit_tolerance, single_precision_bound = SINGLE.fit_tolerance, SINGLE.bound
 RECORD = np.dtype([("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def write_stl(path, polygon, *, about="", **shape):
+    mesh, facts = extruded(polygon, **shape, precision=SINGLE)
+    stl.write_stl(path, mesh, about=about)
+    return facts
 
 
 def single(points):

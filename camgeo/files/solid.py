@@ -1,8 +1,8 @@
-"""Parts with a hub, a chamfer, a set screw or an engraved mark as binary STL, made of prisms by manifold3d.
+"""Parts with a hub, a chamfer, a set screw or an engraved mark as meshes, made of prisms by manifold3d.
 
-Every outline is a polygon in single precision before bodies are joined, and planes are horizontal or vertical, so that
-almost all corners of the result are numbers that an STL holds; only where a set screw's hole meets a round wall are new
-ones rounded. manifold3d computes in double precision. What it returns is checked once more as it is written.
+Every outline is a polygon of numbers that the file holds before bodies are joined, and planes are horizontal or
+vertical, so that almost all corners of the result are such numbers; only where a set screw's hole meets a round wall
+are new ones rounded. manifold3d computes in double precision. What it returns is checked once more after rounding.
 """
 
 from __future__ import annotations
@@ -13,16 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.files.mesh import MeshFacts, settled
 from camgeo.files.missing import MissingExtraError
-from camgeo.files.stl import RECORD, StlFacts, bore_polygon, fit_tolerance, rounded, rounded_loop, save, within
+from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import RegionError, disc
 from camgeo.fit.pieces import Bound, Polygon
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
+    from collections.abc import Callable, Sequence
 
-    from camgeo.files.stl import Records
+    from camgeo.files.mesh import Mesh
+    from camgeo.files.precision import Precision
     from camgeo.files.triangulate import Array, Triangles
     from camgeo.fit.pieces import ArcSpline
 
@@ -65,75 +66,83 @@ class Solid:
     drill: Drill | None
 
 
-def write_solid(path: Path, polygon: Polygon, solid: Solid, *, tolerance: float, about: str = "") -> StlFacts:
-    """Write the solid over a polygon as a closed, oriented mesh; see the module.
+def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
+    """Closed, oriented mesh of the solid over a polygon; see the module.
 
     With a chamfer the polygon is taken to be fitted finely enough that its parallel inside is within the tolerance too.
-    Raises MissingExtraError without manifold3d, ToleranceError where the tolerance cannot be held in single precision,
-    RegionError where an outline is not simple or the chamfer too wide for the contour; OSError as the file system does.
+    Raises MissingExtraError without manifold3d, ToleranceError where the tolerance cannot be held in the precision,
+    RegionError where an outline is not simple or the chamfer too wide for the contour.
     """
-    try:
-        import manifold3d
-    except ImportError as error:
-        message = "a hub, a chamfer, a set screw and an engraved mark need manifold3d: pip install 'camgeo[solid]'"
-        raise MissingExtraError(message) from error
-
-    outer, moved = rounded(polygon.vertices)
-    kept = np.any(outer != np.roll(outer, 1, axis=0), axis=1)
-    outer = outer[kept]
+    manifold = manifold_maker("a hub, a chamfer, a set screw and an engraved mark")
+    outer, moved, dropped = rounded_contour(polygon, precision)
     bound = polygon.bound.widened(moved)
-    within("the contour", bound.worst, tolerance)
+    precision.within("the contour", bound.worst, tolerance)
     for height in (solid.thickness, solid.low, solid.high, solid.chamfer or 0.0):
-        within("a height", abs(float(np.float32(height)) - height), tolerance)
-
-    def body(mesh: tuple[Array, Triangles]) -> Any:  # noqa: ANN401 - manifold3d has no types
-        points, triangles = mesh
-        made = manifold3d.Manifold(manifold3d.Mesh64(points, triangles.astype(np.uint64)))
-        if made.status() != manifold3d.Error.NoError:
-            raise RegionError(f"a body is not sound: {made.status().name}")
-        return made
+        precision.within("a height", abs(precision.number(height) - height), tolerance)
 
     # a corner between two walls that are off by e each is off by up to 2 e over the sine of its angle
     fine = tolerance if solid.drill is None else 0.5 * tolerance * solid.drill.slope
-    part = body(_disc(outer, solid.thickness, solid.chamfer))
+    part = manifold(*_disc(outer, solid.thickness, solid.chamfer, precision))
     off = 0.0
     if solid.hub is not None:
-        circle, straddle = bore_polygon(solid.hub, fit_tolerance(fine, 0.5 * solid.hub))
-        ring, ring_moved = rounded(circle)
+        circle, straddle = bore_polygon(solid.hub, precision.fit_tolerance(fine, 0.5 * solid.hub))
+        ring, ring_moved = precision.rounded(circle)
         off, moved = max(off, straddle + ring_moved), max(moved, ring_moved)
         # the hub begins inside the disc, so that no two faces lie on each other
         low = solid.low if solid.low < 0.0 else 0.5 * solid.thickness
         high = solid.high if solid.high > solid.thickness else 0.5 * solid.thickness
-        part += body(prism(ring, low, high))
+        part += manifold(*prism(ring, low, high, precision))
     for cut in solid.cuts:
         loop, loop_off, loop_moved = rounded_loop(
-            cut.outline, fine if cut.high > solid.thickness or cut.low < 0.0 else tolerance
+            cut.outline, fine if cut.high > solid.thickness or cut.low < 0.0 else tolerance, precision
         )
         off, moved = max(off, loop_off), max(moved, loop_moved)
         low = cut.low - BEYOND if cut.low <= solid.low else cut.low
-        part -= body(prism(loop, low, cut.high + BEYOND))
+        part -= manifold(*prism(loop, low, cut.high + BEYOND, precision))
     if solid.drill is not None:
-        part -= body(_drill(solid.drill, fine))
+        part -= manifold(*_drill(solid.drill, fine, precision))
+    mesh = meshed(part, precision)
+    return mesh, MeshFacts(len(mesh.triangles), len(outer), 0, dropped, moved, bound, Bound(off, off))
+
+
+def manifold_maker(what: str) -> Callable[[Array, Triangles], Any]:
+    """What makes a manifold3d body of points (v, 3) and triangles (t, 3), raising RegionError where it is not sound.
+
+    Raises MissingExtraError, saying what needs it, without manifold3d.
+    """
+    try:
+        import manifold3d
+    except ImportError as error:
+        raise MissingExtraError(f"{what} need manifold3d: pip install 'camgeo[solid]'") from error
+
+    def made(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - manifold3d has no types
+        body = manifold3d.Manifold(manifold3d.Mesh64(points, triangles.astype(np.uint64)))
+        if body.status() != manifold3d.Error.NoError:
+            raise RegionError(f"a body is not sound: {body.status().name}")
+        return body
+
+    return made
+
+
+def meshed(part: Any, precision: Precision) -> Mesh:  # noqa: ANN401 - manifold3d has no types
+    """Mesh of a manifold3d body; raises RegionError where it does not close once rounded."""
     mesh = part.to_mesh64()
-    triangles = np.asarray(mesh.tri_verts, dtype=np.int64)
-    points, _ = rounded(np.asarray(mesh.vert_properties, dtype=np.float64)[:, :3])
-    records = _records(points, triangles)
-    save(path, records, about)
-    return StlFacts(len(records), len(outer), 0, int(np.count_nonzero(~kept)), moved, bound, Bound(off, off))
+    points = np.asarray(mesh.vert_properties, dtype=np.float64)[:, :3]
+    return settled(points, np.asarray(mesh.tri_verts, dtype=np.int64), precision)
 
 
-def prism(loop: Array, low: float, high: float) -> tuple[Array, Triangles]:
-    """Points (2 n, 3) and triangles of the prism over a counter-clockwise loop (n, 2)."""
-    return _stacked([(loop, low), (loop, high)], disc(loop))
+def prism(loop: Array, low: float, high: float, precision: Precision) -> tuple[Array, Triangles]:
+    """Points (2 n, 3) and triangles of the prism over a rounded counter-clockwise loop (n, 2)."""
+    return _stacked([(loop, low), (loop, high)], disc(loop), precision)
 
 
-def _disc(outer: Array, thickness: float, chamfer: float | None) -> tuple[Array, Triangles]:
+def _disc(outer: Array, thickness: float, chamfer: float | None, precision: Precision) -> tuple[Array, Triangles]:
     """The disc over a rounded contour, its edges chamfered by parallels of the polygon itself: every facet is plane."""
     if chamfer is None:
-        return prism(outer, 0.0, thickness)
-    inner, _ = rounded(inset(outer, chamfer))
+        return prism(outer, 0.0, thickness, precision)
+    inner, _ = precision.rounded(inset(outer, chamfer))
     layers = [(inner, 0.0), (outer, chamfer), (outer, thickness - chamfer), (inner, thickness)]
-    return _stacked(layers, disc(inner))
+    return _stacked(layers, disc(inner), precision)
 
 
 def inset(loop: Array, distance: float) -> Array:
@@ -153,10 +162,10 @@ def inset(loop: Array, distance: float) -> Array:
     return moved
 
 
-def _stacked(layers: list[tuple[Array, float]], lid: Triangles) -> tuple[Array, Triangles]:
+def _stacked(layers: list[tuple[Array, float]], lid: Triangles, precision: Precision) -> tuple[Array, Triangles]:
     """Body between loops of equally many vertices at rising heights; `lid` triangulates the first and the last."""
     n = len(layers[0][0])
-    points = np.concatenate([np.column_stack([loop, np.full(n, float(np.float32(z)))]) for loop, z in layers])
+    points = np.concatenate([np.column_stack([loop, np.full(n, precision.number(z))]) for loop, z in layers])
     here = np.arange(n)
     following = np.roll(here, -1)
     faces = [lid[:, ::-1], lid + (len(layers) - 1) * n]
@@ -167,36 +176,11 @@ def _stacked(layers: list[tuple[Array, float]], lid: Triangles) -> tuple[Array, 
     return points, np.concatenate(faces)
 
 
-def _drill(drill: Drill, tolerance: float) -> tuple[Array, Triangles]:
+def _drill(drill: Drill, tolerance: float, precision: Precision) -> tuple[Array, Triangles]:
     """Cylinder along a radius, from the shaft outward: a prism over its circle, laid down."""
-    circle, _ = bore_polygon(drill.diameter, fit_tolerance(tolerance, drill.reach))
-    points, triangles = prism(circle.astype(np.float32).astype(np.float64), 0.0, 1.0)
+    circle, _ = bore_polygon(drill.diameter, precision.fit_tolerance(tolerance, drill.reach))
+    points, triangles = prism(precision.rounded(circle)[0], 0.0, 1.0, precision)
     across, up, along = points[:, 0], points[:, 1], drill.reach * points[:, 2]
     c, s = math.cos(drill.at), math.sin(drill.at)
     # across to the left of the radius, up, along it: a right-handed turn of the prism's own axes
     return np.column_stack([along * c - across * s, along * s + across * c, up + drill.z]), triangles
-
-
-def _records(points: Array, triangles: Triangles) -> Records:
-    """STL records of a mesh whose points (n, 3) are in single precision.
-
-    Triangles whose corners rounding has made one are left out: their neighbours then meet. Raises RegionError where
-    what is left is not closed or a triangle has no area.
-    """
-    points, number = np.unique(points, axis=0, return_inverse=True)
-    corners = number.reshape(-1)[triangles]
-    a, b, c = corners.T
-    corners = corners[(a != b) & (b != c) & (c != a)]
-    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    way, back = np.sort(start * len(points) + end), np.sort(end * len(points) + start)
-    if not np.array_equal(way, back) or bool((way[1:] == way[:-1]).any()):
-        raise RegionError("the solid does not close in single precision")
-    corner = points[corners]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    size = np.sqrt(np.sum(normal * normal, axis=1))
-    if bool((size == 0.0).any()):
-        raise RegionError("a triangle of the solid has no area in single precision")
-    records = np.zeros(len(corners), dtype=RECORD)
-    records["normal"] = normal / size[:, None]
-    records["vertices"] = corner
-    return records

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import escape
 
 import numpy as np
 
 from camgeo.files.dxf import UNITS, Circle
+from camgeo.files.markup import number, one_line
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
 
 if TYPE_CHECKING:
@@ -73,12 +73,12 @@ def write_svg(
         '<?xml version="1.0" encoding="UTF-8"?>',
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"',
         f'  width="{wide}{size}" height="{high}{size}" viewBox="{low_x} {low_y} {wide} {high}">',
-        f"<title>{_text(name or 'cam')}</title>",
-        f"<desc>{_text(description)}</desc>",
+        f"<title>{one_line(name or 'cam')}</title>",
+        f"<desc>{one_line(description)}</desc>",
         '<g transform="scale(1 -1)">',
     ]
     for layer, shapes in drawn.items():
-        style = f"fill:none;stroke:{_COLOURS[layer]};stroke-width:{_number(round(_HAIRLINE / mm, 4))}"
+        style = f"fill:none;stroke:{_COLOURS[layer]};stroke-width:{number(round(_HAIRLINE / mm, 4))}"
         lines += [f'<g id="{layer}" inkscape:groupmode="layer" inkscape:label="{layer}" style="{style}">', *shapes]
         lines.append("</g>")
     lines += ["</g>", "</svg>", ""]
@@ -91,7 +91,7 @@ def _page(box: Box, mm: float) -> tuple[str, str, str, str]:
     x_min, y_min, x_max, y_max = (value / mm for value in box)
     left, right = math.floor(_PLACES * (x_min - margin)), math.ceil(_PLACES * (x_max + margin))
     top, bottom = math.floor(_PLACES * (-y_max - margin)), math.ceil(_PLACES * (-y_min + margin))
-    x, y, wide, high = (_number(value / _PLACES) for value in (left, top, right - left, bottom - top))
+    x, y, wide, high = (number(value / _PLACES) for value in (left, top, right - left, bottom - top))
     return x, y, wide, high
 
 
@@ -138,19 +138,9 @@ def _arcs(points: Array, bulges: Array) -> list[str]:
 def _circle(circle: Circle, mm: float) -> str:
     if not circle.radius > 0.0:
         raise ValueError(f"{circle.name}: radius must be > 0, not {circle.radius!r}")
-    x, y, r = (_number(value / mm) for value in (*circle.centre, circle.radius))
+    x, y, r = (number(value / mm) for value in (*circle.centre, circle.radius))
     return f'<circle cx="{x}" cy="{y}" r="{r}"/>'
 
 
 def _numbers(values: Array) -> str:
-    return " ".join(map(_number, values.tolist()))
-
-
-def _number(value: float) -> str:
-    """The shortest text that gives back the same double."""
-    return repr(value + 0.0).removesuffix(".0")
-
-
-def _text(text: str) -> str:
-    """One line that XML takes."""
-    return escape(" ".join("".join(c if c.isprintable() else " " for c in text).split()))
+    return " ".join(map(number, values.tolist()))

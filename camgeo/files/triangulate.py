@@ -1,7 +1,7 @@
 """Plane regions as triangles on their own vertices: no vertex added, none left out, so neighbours always match.
 
-Coordinates are single-precision numbers held as doubles, since that is what an STL stores. Then products of two
-coordinates are exact, and the side of a line on which a point lies is decided exactly.
+Coordinates are the numbers that the file will hold, as doubles; the side of a line on which a point lies is decided
+exactly for any doubles.
 
 Why checking the sense of each triangle is enough: the triangles of `ring` and `clip` are joined by their edges, and
 the edges left over are the region's boundary by construction. If every triangle runs counter-clockwise, the map of
@@ -11,7 +11,7 @@ about it: once inside, not at all outside.
 
 from __future__ import annotations
 
-import math
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,17 +30,18 @@ class RegionError(ValueError):
 
 
 def sides(a: Array, b: Array, c: Array) -> NDArray[np.int64]:
-    """Exact side of line a b on which c lies, (n,): 1 left, -1 right, 0 on it. Points (n, 2) in single precision.
+    """Exact side of line a b on which c lies, (n,): 1 left, -1 right, 0 on it. Points (n, 2).
 
     The determinant is evaluated in doubles; where rounding could turn its sign (Shewchuk 1997, bound A of orient2d,
-    taken three times as wide), its six products, each exact, are summed exactly.
+    taken three times as wide), it is evaluated in fractions.
     """
     left = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1])
     right = (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     determinant = left - right
     for i in np.flatnonzero(np.abs(determinant) <= 1e-15 * (np.abs(left) + np.abs(right))):
-        (ax, ay), (bx, by), (cx, cy) = a[i].tolist(), b[i].tolist(), c[i].tolist()
-        determinant[i] = math.fsum((ax * by, -ay * bx, bx * cy, -by * cx, cx * ay, -cy * ax))
+        (ax, ay), (bx, by), (cx, cy) = (map(Fraction, point[i].tolist()) for point in (a, b, c))
+        first, second = (bx - ax) * (cy - ay), (by - ay) * (cx - ax)
+        determinant[i] = (first > second) - (first < second)
     sign: NDArray[np.int64] = np.sign(determinant).astype(np.int64)
     return sign
 
@@ -84,7 +85,7 @@ def disc(outer: Array) -> Triangles:
     a hollow takes one for each two of its vertices. What no round can cut goes to `clip`, and so do
     other contours. Raises RegionError where the loop is not simple.
     """
-    centre: Array = outer.mean(axis=0).astype(np.float32).astype(np.float64)
+    centre: Array = outer.mean(axis=0)
     cut, left = _cut_rounds(outer, centre) if star_shaped(outer, centre) else ([], np.arange(len(outer)))
     return np.concatenate([*cut, left[clip(outer[left])]])
 

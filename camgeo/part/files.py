@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 from camgeo.files.dxf import Circle, Cutout
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from camgeo.files.stl import StlFacts
+    from camgeo.files.mesh import Mesh, MeshFacts
+    from camgeo.files.precision import Precision
     from camgeo.fit.pieces import Polygon
     from camgeo.part.body import Body
 
@@ -44,19 +43,19 @@ def remarks(body: Body, mm: float) -> list[str]:
     return found
 
 
-def write_part(path: Path, polygon: Polygon, body: Body, *, tolerance: float, about: str) -> StlFacts:
-    """Write a body round a polygon as an STL: a prism by camgeo's own triangles, anything else by manifold3d.
+def part_mesh(polygon: Polygon, body: Body, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
+    """Mesh of a body round a polygon: a prism by camgeo's own triangles, anything else by manifold3d.
 
-    Raises as `write_stl` and `write_solid` do.
+    Raises as `extruded` and `joined` do.
     """
     if body.thickness is None:
         raise ValueError("a solid needs a thickness")
     if body.prism:
-        from camgeo.files.stl import write_stl
+        from camgeo.files.prism import extruded
 
         outlines = [opening.outline for opening in body.openings]
-        return write_stl(path, polygon, holes=outlines, thickness=body.thickness, tolerance=tolerance, about=about)
-    from camgeo.files.solid import Cut, Drill, Solid, write_solid
+        return extruded(polygon, holes=outlines, thickness=body.thickness, tolerance=tolerance, precision=precision)
+    from camgeo.files.solid import Cut, Drill, Solid, joined
 
     cuts = [
         Cut(opening.outline, body.bottom if opening.depth is None else body.thickness - opening.depth, top)
@@ -70,4 +69,4 @@ def write_part(path: Path, polygon: Polygon, body: Body, *, tolerance: float, ab
         drill = Drill(body.screw.at, body.screw.diameter, body.screw_height, 0.5 * body.hub.diameter + 1.0, slope)
     hub = None if body.hub is None else body.hub.diameter
     solid = Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill)
-    return write_solid(path, polygon, solid, tolerance=tolerance, about=about)
+    return joined(polygon, solid, tolerance=tolerance, precision=precision)

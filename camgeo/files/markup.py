@@ -1,0 +1,16 @@
+"""What XML formats share: numbers and text as they stand there."""
+
+from __future__ import annotations
+
+from xml.sax.saxutils import escape
+
+
+def number(value: float) -> str:
+    """The shortest text that gives back the same double."""
+    return repr(value + 0.0).removesuffix(".0")
+
+
+def one_line(text: str) -> str:
+    """One line that XML takes, in an attribute too."""
+    plain = " ".join("".join(c if c.isprintable() else " " for c in text).split())
+    return escape(plain, {'"': "&quot;"})

@@ -1,0 +1,74 @@
+"""Closed surfaces of triangles, before they are a file of any format."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.files.triangulate import RegionError
+
+if TYPE_CHECKING:
+    from camgeo.files.precision import Precision
+    from camgeo.files.triangulate import Array, Triangles
+    from camgeo.fit.bound import Bound
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A solid's surface: points (v, 3), mm, and triangles (t, 3), counter-clockwise seen from outside."""
+
+    points: Array
+    triangles: Triangles
+
+    @property
+    def area_vectors(self) -> Array:
+        """Twice the area of each triangle times its outward normal, mm^2, (t, 3)."""
+        a, b, c = (np.take(self.points, corner, axis=0).T for corner in self.triangles.T)
+        (ux, uy, uz), (vx, vy, vz) = b - a, c - a
+        return np.column_stack((uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx))
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume, mm^3, by the divergence theorem."""
+        return float(np.sum(self.points[self.triangles[:, 0]] * self.area_vectors)) / 6.0
+
+
+@dataclass(frozen=True)
+class MeshFacts:
+    """What a solid's mesh holds and how far it is from what was meant.
+
+    `vertices` and `bore_vertices` count the corners of the two loops; `dropped` vertices of the contour fell together
+    with their neighbours when they were rounded, which leaves the drawn line as it is. `displacement` is the farthest
+    that rounding moved a vertex; `bound` is the contour's bound and `bore_bound` the openings', both with it, in mm.
+    """
+
+    triangles: int
+    vertices: int
+    bore_vertices: int
+    dropped: int
+    displacement: float
+    bound: Bound
+    bore_bound: Bound | None
+
+
+def settled(points: Array, triangles: Triangles, precision: Precision) -> Mesh:
+    """Mesh of rounded points (v, 3), each there once, checked to be closed.
+
+    Triangles whose corners rounding has made one are left out: their neighbours then meet. Raises RegionError where
+    what is left is not closed or a triangle has no area.
+    """
+    points, _ = precision.rounded(points)
+    points, number = np.unique(points, axis=0, return_inverse=True)
+    corners = number.reshape(-1)[triangles]
+    a, b, c = corners.T
+    corners = corners[(a != b) & (b != c) & (c != a)]
+    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    way, back = np.sort(start * len(points) + end), np.sort(end * len(points) + start)
+    if not np.array_equal(way, back) or bool((way[1:] == way[:-1]).any()):
+        raise RegionError(f"the solid does not close in {precision.name}")
+    mesh = Mesh(points, corners)
+    if not bool(mesh.area_vectors.any(axis=1).all()):
+        raise RegionError(f"a triangle of the solid has no area in {precision.name}")
+    return mesh

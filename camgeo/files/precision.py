@@ -1,0 +1,96 @@
+"""The numbers a format holds: how far a vertex moves when it is written, and what that leaves to the fit.
+
+An STL holds single-precision numbers, so that at 50 mm a vertex moves by up to 2.7e-6 mm. A 3MF holds decimals, of
+which nine are written: 7.1e-10 mm.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.nodes import ToleranceError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+# Least tolerance that is accepted, in worst displacements of a vertex. The quarter that is left to the fit makes the
+# sagitta over two edges (8 e) twice the displacement, which rounding cannot turn into a dent.
+_LEAST = 1.25
+
+
+@dataclass(frozen=True)
+class Precision:
+    """What coordinates a file holds.
+
+    file, name   as messages have them: "an STL", "single precision"
+    nearest      the number that is written for each of any array
+    spacing      at most how far two neighbouring numbers of a size (mm) are apart
+    """
+
+    file: str
+    name: str
+    nearest: Callable[[Array], Array]
+    spacing: Callable[[float], float]
+
+    def rounded(self, points: Array) -> tuple[Array, float]:
+        """Points (n, d) as written, without negative zeros, and the farthest that one moved."""
+        held: Array = self.nearest(points) + 0.0
+        return held, float(np.sqrt(np.sum((held - points) ** 2, axis=1)).max())
+
+    def number(self, value: float) -> float:
+        """One number as written."""
+        return float(self.nearest(np.array([value]))[0])
+
+    def bound(self, size: float) -> float:
+        """Farthest in mm that a plane point with coordinates up to `size` mm moves."""
+        return math.sqrt(0.5) * self.spacing(abs(size))
+
+    def fit_tolerance(self, tolerance: float, size: float) -> float:
+        """Return what a file's tolerance leaves to the fit of a polygon with coordinates up to `size` mm.
+
+        Raises ToleranceError, with the least tolerance that can be held, where too little is left.
+        """
+        moved = self.bound(size + tolerance)
+        if not tolerance >= _LEAST * moved:
+            # a tolerance of the refused size no longer widens the contour, the least one does
+            least = _LEAST * self.bound(size + 2.0 * _LEAST * self.bound(size))
+            raise ToleranceError(
+                f"{self.file} of a contour that reaches {size:.6g} mm from the shaft cannot hold {tolerance:.3g} mm: "
+                f"rounding to {self.name} alone moves points by {moved:.3g} mm; at least {least:.3g} mm",
+                least,
+            )
+        return tolerance - moved
+
+    def within(self, what: str, deviation: float, tolerance: float) -> None:
+        """Raise ToleranceError for a deviation, in mm, above the tolerance or not a number."""
+        if not deviation <= tolerance:
+            raise ToleranceError(
+                f"{self.file}: {what} would be off by {deviation:.6g} mm in {self.name}, more than {tolerance:.6g} mm",
+                deviation,
+            )
+
+
+def _single(values: Array) -> Array:
+    return values.astype(np.float32).astype(np.float64)
+
+
+_UNIT = 1e9
+
+
+def _nine_decimals(values: Array) -> Array:
+    # a quotient is rounded once: what is read back from nine decimals is this very double
+    held: Array = np.round(values * _UNIT) / _UNIT
+    return held
+
+
+SINGLE = Precision("an STL", "single precision", _single, lambda size: float(np.spacing(np.float32(size))))
+# the product above is rounded too, which tells beyond 4.5 km
+DECIMALS = Precision("a 3MF", "nine decimals", _nine_decimals, lambda size: 1.0 / _UNIT + 2.0 * float(np.spacing(size)))
