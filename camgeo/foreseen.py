@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.recipe.model import NO_CONTOUR, ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from camgeo.recipe.model import NO_CONTOUR, SOLIDS, ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
 
 if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
@@ -59,7 +59,7 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
             continue
         file = request.filename(recipe.name, recipe.export.files)
         own = ["units", "closed", *bore]
-        if request.kind == "stl":
+        if request.kind in SOLIDS:
             own = ["watertight", *bore, "thickness", *solid, "volume"]
         driven = ["linkage-error", *dwell] if linkage else []
         found += [Foreseen(name, file) for name in (*own, "contour", "motion", *play, *driven)]

@@ -1,8 +1,8 @@
-"""Assertions for one's own tests of cams: on any DXF or STL file, and on recipes.
+"""Assertions for one's own tests of cams: on any DXF, SVG, STL or 3MF file, and on recipes.
 
 Each function returns the figure it has measured and raises AssertionError with figure, limit and place. A file that
 cannot be read as a contour fails; a file that is not there raises OSError, a recipe with faults RecipeErrors. Paths are
-those of .dxf, .svg or .stl files, told apart so. Lengths are in mm where a function takes no recipe, else in the
+those of .dxf, .svg, .stl or .3mf files, told apart so. Lengths are in mm where a function takes no recipe, else in the
 recipe's units, as in its report.
 """
 
@@ -73,12 +73,12 @@ class Motion:
 def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     """Assert that the cut contour closes, without crossing itself and without anything drawn twice or without length.
 
-    Returns the widest gap between two entities, mm; at most `gap` is permitted. Of an STL its whole surface has to be
+    Returns the widest gap between two entities, mm; at most `gap` is permitted. Of a solid its whole surface has to be
     closed, as `assert_watertight` has it, and the gap is 0.
     """
     __tracebackhide__ = True
     path = Path(path)
-    if _kind(path) == "stl":
+    if _is_solid(path):
         assert_watertight(path)
         return 0.0
     drawing = _drawing(path, gap)
@@ -88,14 +88,14 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
 
 
 def assert_watertight(path: AnyPath) -> float:
-    """Assert that an STL is closed, its triangles facing outward, none of them without area or there twice.
+    """Assert that an STL or 3MF is closed, its triangles facing outward, none of them without area or there twice.
 
     Returns the enclosed volume, mm^3.
     """
     __tracebackhide__ = True
     path = Path(path)
-    if _kind(path) != "stl":
-        raise ValueError(f"{path.name}: not a .stl file")
+    if not _is_solid(path):
+        raise ValueError(f"{path.name}: not a .stl or .3mf file")
     solid = _solid(path)
     counts = {
         "edges with one triangle": solid.edges.open,
@@ -300,7 +300,7 @@ def _crossings(contour: Contour) -> list[str]:
 def _contour(path: Path, mm: float | None) -> Contour:
     """Outer contour of a file, mm."""
     __tracebackhide__ = True
-    if _kind(path) == "stl":
+    if _is_solid(path):
         return _solid(path).contour
     drawing = _drawing(path, GAP)
     if drawing.units_mm is not None:
@@ -322,15 +322,15 @@ def _drawing(path: Path, gap: float) -> Drawing:
 
 def _solid(path: Path) -> Solid:
     __tracebackhide__ = True
-    from kin.read import ReadError, read_stl
+    from kin.read import ReadError, read_solid
 
     try:
-        return read_stl(path)
+        return read_solid(path)
     except ReadError as error:
         raise AssertionError(str(error)) from None
 
 
-def _kind(path: Path) -> str:
-    from kin.read import kind_of
+def _is_solid(path: Path) -> bool:
+    from kin.read import SOLIDS, kind_of
 
-    return kind_of(path)
+    return kind_of(path) in SOLIDS

@@ -29,9 +29,9 @@ __all__ = [
     "read_stl",
 ]
 
-Kind: TypeAlias = Literal["dxf", "svg", "stl"]
+Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
-SOLIDS = frozenset({"stl"})
+SOLIDS = frozenset({"stl", "3mf"})
 
 
 def kind_of(path: Path | str) -> Kind:
@@ -53,5 +53,9 @@ def read_drawing(path: Path | str, gap: float = 1e-6, *, engraved: bool = False)
 
 
 def read_solid(path: Path | str, heights: Sequence[float] = ()) -> Solid:
-    """Read a solid; raises as `read_stl` does."""
+    """Read an STL or 3MF; raises as `read_stl` and `read_3mf` do."""
+    if kind_of(path) == "3mf":
+        from kin.read_3mf import read_3mf
+
+        return read_3mf(path, heights)
     return read_stl(path, heights)

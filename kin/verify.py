@@ -39,7 +39,7 @@ MOST_NAMED = 5  # faults named in a message
 class Verdict:
     """What was found of a file.
 
-    kind            dxf, svg or stl
+    kind            dxf, svg, stl or 3mf
     checks          units, closed, contour, motion, bore, ... ; or the one that says why the file cannot be read
     motion, play    as the contour gives them by contact; None without contact, play also for one-sided followers
     measured_error  two-sided distance from the exact contour, mm
@@ -62,7 +62,7 @@ class Verdict:
 
 
 def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
-    """Judge a DXF, SVG or STL file, told apart by the suffix, at `angles` equal steps of the shaft.
+    """Judge a DXF, SVG, STL or 3MF file, told apart by the suffix, at `angles` equal steps of the shaft.
 
     A file from which no contour can be read gets a verdict that says why. Raises OSError as the file system does, and
     ValueError for another suffix or no angles.

@@ -192,7 +192,7 @@ def test_an_stl_cut_short(tmp_path, vertices):
 
 
 def test_calls_that_are_wrong_are_no_verdict(tmp_path, vertices):
-    with pytest.raises(ValueError, match=r"cam\.dxf: not a \.stl file"):
+    with pytest.raises(ValueError, match=r"cam\.dxf: not a \.stl or \.3mf file"):
         testing.assert_watertight(dxf(tmp_path, vertices))
     with pytest.raises(ValueError, match=r"cam\.step: none of"):
         testing.assert_closed(tmp_path / "cam.step")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.recipe.model import SOLIDS
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -22,7 +24,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
             from camgeo.making.drawing import make_drawing
 
             return make_drawing(job, request, path)
-        case "stl":
+        case "stl" | "3mf":
             from camgeo.making.solid import make_solid
 
             return make_solid(job, request, path)
@@ -35,7 +37,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
 
 def foresee(job: Job, request: FileRequest) -> None:
     """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
-    if request.kind == "stl":
+    if request.kind in SOLIDS:
         from camgeo.making.solid import aim
 
         aim(job, request)

@@ -95,7 +95,12 @@ def requests(files: list[Values]) -> tuple[FileRequest, ...]:
 def _request(kind: FileKind, file: Values) -> FileRequest:
     chosen = {**CHOSEN.get(kind, {}), **file}
     return FileRequest(
-        kind, chosen.get("as"), chosen.get("version"), chosen.get("tolerance"), compensation=_compensation(file)
+        kind,
+        chosen.get("as"),
+        chosen.get("version"),
+        chosen.get("tolerance"),
+        _compensation(file),
+        chosen.get("parts", "cam"),
     )
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from camgeo.recipe.build import requests
 from camgeo.recipe.check_part import check_part
 from camgeo.recipe.check_sweep import check_sweep
+from camgeo.recipe.model import SOLIDS
 from camgeo.recipe.spec import either
 from camgeo.recipe.table_cam import SWINGING
 from camgeo.recipe.table_manufacture import NEEDED
@@ -116,8 +117,9 @@ def _files(values: Values, reader: Reader) -> None:
     names = [request.filename("NAME", listed) for request in listed]
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
         path = file["path"]
-        if request.kind == "stl" and "part.thickness" not in reader.marks:
-            reader.fault_at(path, "stl needs a thickness", None, "give part.thickness, or leave stl out")
+        if request.kind in SOLIDS and "part.thickness" not in reader.marks:
+            remedy = f"give part.thickness, or leave {request.kind} out"
+            reader.fault_at(path, f"{request.kind} needs a thickness", None, remedy)
         if request.kind == "gcode":
             _milling(path, reader)
         if request.as_ in {"spline", "exact"} and request.version == "R12":

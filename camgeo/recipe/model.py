@@ -310,12 +310,16 @@ class Sweep:
     refine: bool
 
 
-FileKind: TypeAlias = Literal["dxf", "svg", "stl", "csv", "html", "gcode"]
+FileKind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "glb", "csv", "html", "gcode"]
 KINDS: tuple[FileKind, ...] = get_args(FileKind)
-NO_CONTOUR = frozenset({"csv", "html"})
+NO_CONTOUR = frozenset({"csv", "html", "glb"})
 """Kinds of file that hold no contour to be judged."""
 NO_PART = NO_CONTOUR | {"gcode"}
 """Kinds of file that do not show the part itself."""
+SOLIDS = frozenset({"stl", "3mf", "glb"})
+"""Kinds of file that hold a solid, which needs a thickness."""
+ALL_PARTS: dict[FileKind, str] = {"stl": "cam", "3mf": "parts", "glb": "assembly"}
+"""Ends of the name of the first file of all bodies."""
 SUFFIXES: dict[FileKind, str] = {"gcode": "ngc"}  # of kinds that are not their own
 
 
@@ -324,7 +328,8 @@ class FileRequest:
     """One file to write.
 
     `as_` is of DXF, SVG and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that is made
-    different from the nominal one has its `compensation`.
+    different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all
+    bodies of the mechanism.
     """
 
     kind: FileKind
@@ -332,15 +337,17 @@ class FileRequest:
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
     compensation: Compensation | None = None
+    parts: Literal["cam", "all"] = "cam"
 
     def filename(self, name: str, requests: Sequence[FileRequest]) -> str:
         """Name the file among all `requests` of recipe `name`.
 
         `<name>.<kind>`; where a kind is asked for more than once `<name>-<as>.<kind>`, and where that still leaves two
-        alike `<name>-<as>-<version>.<kind>`, and `-kerf` and the like behind for a part that is not nominal.
+        alike `<name>-<as>-<version>.<kind>`, and `-kerf` and the like behind for a part that is not nominal. Of
+        all bodies of a mechanism it is the first: `<name>-cam.stl`, `<name>-parts.3mf` or `<name>-assembly.glb`.
         """
         kin = [request for request in requests if request.kind == self.kind]
-        parts = [name]
+        parts = [name] if self.parts == "cam" else [name, ALL_PARTS[self.kind]]
         alike = [request for request in kin if request.as_ == self.as_]
         if len(kin) > 1 and self.as_:
             parts.append(self.as_)

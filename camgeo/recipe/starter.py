@@ -9,7 +9,7 @@ from camgeo.recipe.errors import suggestion
 from camgeo.recipe.spec import Field, Kind, Table, either
 from camgeo.recipe.table_cam import CAMS, SWINGING
 from camgeo.recipe.table_linkage import LINKAGES
-from camgeo.recipe.tables import FILES, RECIPE
+from camgeo.recipe.tables import RECIPE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -140,7 +140,7 @@ _REST: Given = {
     "units": "mm",
     "rotation": "cw",
     "part": {"thickness": "8", "bore": "10"},
-    "export": {"tolerance": "0.001", "files": f"[{', '.join(kind for kind in FILES if kind != 'gcode')}]"},
+    "export": {"tolerance": "0.001", "files": "[dxf, svg, stl, csv, html]"},
     "verify": {"angles": "3600"},
 }
 

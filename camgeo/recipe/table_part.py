@@ -98,7 +98,7 @@ def _optional(name: str, about: str, *fields: Field) -> Field:
 PART = mapping(
     "part",
     "the part round the contour",
-    length("thickness", "thickness of the disc along the shaft; STL needs it"),
+    length("thickness", "thickness of the disc along the shaft; solids need it"),
     Field("bore", Kind.BORE, "diameter of the bore around the shaft, or its form", default="none", table=BORE),
     Field("keyway", Kind.KEYWAY, "keyway in a round bore", default="none", table=KEYWAY),
     _optional(

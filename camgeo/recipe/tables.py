@@ -14,6 +14,7 @@ from camgeo.recipe.table_part import PART
 from camgeo.recipe.table_sweep import DWELL, SWEEP
 
 _TOLERANCE = length("tolerance", "greatest distance between this file's contour and the exact one", default="export's")
+_PARTS = Field("parts", Kind.CHOICE, "the cam, or every body of the mechanism", default="cam", choices=("cam", "all"))
 FILES: dict[str, Table] = {
     "dxf": Table(
         (
@@ -48,12 +49,14 @@ FILES: dict[str, Table] = {
             *COMPENSATION,
         ),
     ),
-    "stl": Table((_TOLERANCE, *COMPENSATION)),
+    "stl": Table((_PARTS, _TOLERANCE, *COMPENSATION)),
+    "3mf": Table((_PARTS, _TOLERANCE, *COMPENSATION)),
+    "glb": Table((_PARTS, _TOLERANCE)),
     "csv": Table((Field("as", Kind.CHOICE, "which table it is", default="motion", choices=("motion", "inspection")),)),
     "html": Table(()),
     "gcode": Table((_TOLERANCE,)),
 }
-LATER_FILES = ("3mf", "step")
+LATER_FILES = ("step",)
 
 RECIPE = Table(
     (
@@ -77,7 +80,7 @@ RECIPE = Table(
             Field(
                 "files",
                 Kind.FILES,
-                "dxf, svg, stl, csv, html, gcode, or mappings such as {dxf: {as: spline}}",
+                "dxf, svg, stl, 3mf, glb, csv, html, gcode, or mappings such as {dxf: {as: spline}}",
                 default="[dxf]",
             ),
         ),

@@ -205,7 +205,7 @@ def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:
 
 def pieces_word(file: dict[str, Any]) -> str:
     """What the pieces of a file's contour are called."""
-    if file["kind"] == "stl":
+    if file["kind"] in {"stl", "3mf"}:
         return "edges"
     words = {"arcs": "arcs", "polyline": "edges", "spline": "spans", "exact": "spans"}
     return words.get(file.get("as") or "", "pieces")
