@@ -55,7 +55,7 @@ FLOORS = {
         page.content page.tables
         page.curves
         page.linked page.outline
-        dynamics
+        dynamics manufacture.inspection
         design recipe.load
         foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim
@@ -73,7 +73,7 @@ FLOORS = {
         curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
         page.followers page.pack page.svg
         page.scene
-        bodies files.missing making page fit.rational part recipe.din6885 recipe.model_part study study.picture sweep
+        bodies files.missing making manufacture page fit.rational part recipe.din6885 recipe.model_part study study.picture sweep
         fit.bound
     """,
 }

@@ -1,4 +1,4 @@
-"""Tables: the intended motion, row by row; CSV."""
+"""Tables: the intended motion, or the contact on the exact cam, row by row; CSV."""
 
 from __future__ import annotations
 
@@ -20,8 +20,13 @@ def make_table(job: Job, request: FileRequest, path: Path) -> Made:
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())
-    with job.clock.stage("table"):
-        if driven is not None:
+    inspected = request.as_ == "inspection"
+    with job.clock.stage("inspection" if inspected else "table"):
+        if inspected:
+            from camgeo.manufacture.inspection import inspection_table
+
+            columns, rows = inspection_table(job.recipe, job.design)
+        elif driven is not None:
             from camgeo import linkage
 
             columns, rows = linkage.motion_table(job.recipe, driven.mechanism)
@@ -29,5 +34,5 @@ def make_table(job: Job, request: FileRequest, path: Path) -> Made:
             from camgeo.motion import motion_table
 
             columns, rows = motion_table(job.recipe, job.design.intent)
-        write_table(path, columns, rows)
+        write_table(path, columns, rows, gaps=inspected)
     return Made((FileResult(path, request, None, None, None, None, None),))
