@@ -270,10 +270,10 @@ each what it measures. An area is that of the contour in mm^2 (of an SVG with it
 `off` is the share by which it differs from the exact cam's own, so it holds the file's tolerance and the program's
 rounding.
 
-In short: FreeCAD, LibreCAD and Inkscape take the drawings with their arcs, FreeCAD splines too. OpenSCAD takes meshes and
-polylines; of a DXF's arcs it draws the chords, of an SVG's it makes coarse polygons and fills the openings. PrusaSlicer
-slices every solid. (FreeCAD's own area of a face within one long spline is out by up to four percent; taken span by span
-it is right, so that is what is told.)
+In short: FreeCAD, LibreCAD and Inkscape take the drawings with their arcs, FreeCAD splines too. OpenSCAD takes meshes
+and polylines; of a DXF's arcs it draws the chords, of an SVG's it makes coarse polygons, and it fills an SVG's openings.
+PrusaSlicer slices every solid. (FreeCAD's area of a face within one long spline is out by up to four percent; taken span
+by span it is right, and that is what is told.)
 """
 
 
