@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from camgeo.design import Design
     from camgeo.recipe.model import Recipe
     from camgeo.recipe.model_dynamics import Dynamics
-    from kin.bouncing import Course, Turn
+    from kin.bouncing import Course
     from kin.contour import Contour
     from kin.drive import Drive, Motion
     from kin.driven import Faces
     from kin.dynamics import Steady, Train
+    from kin.turn import Turn
 
 TURNS = 20  # that are followed from rest, unless one repeats the one before
 MOST_FOR_FLOAT = 150  # stretches of a drive for which the speed at which float begins is searched

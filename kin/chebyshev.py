@@ -84,6 +84,22 @@ def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
     return found
 
 
+def together(coefficients: Array, x: Array) -> Array:
+    """Values (r, n) of all rows of `coefficients` (r, DEGREE + 1) at the same x (n,) in [-1, 1]."""
+    angle = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
+    found: Array = coefficients @ np.cos(_ORDERS[:, None] * angle)
+    return found
+
+
+def value(coefficients: list[float], x: float) -> float:
+    """Value of one series at one x in plain floats, by Clenshaw's recurrence."""
+    ahead = further = 0.0
+    twice = 2.0 * x
+    for k in range(len(coefficients) - 1, 0, -1):
+        ahead, further = coefficients[k] + twice * ahead - further, ahead
+    return coefficients[0] + x * ahead - further
+
+
 def degrees(coefficients: Array, floor: float) -> Indices:
     """Highest degree (m,) at which a coefficient of each row exceeds `floor`; 0 where none does."""
     above = np.abs(coefficients) > floor

@@ -74,21 +74,42 @@ class Oscillator:
         # a - sqrt(a^2 - r^2), which would cancel
         return self.square / (self.decay + self.split) if self.square else 0.0
 
-    def propagator(self, time: Array) -> Propagator:
-        """Move states on by times (n,), 0 or above."""
+    @property
+    def weights(self) -> tuple[float, float]:
+        """The p and q of zz = one + p other, vv = one - q other, where zv = other and vz = -r^2 other; see `basis`."""
+        if self.swings:
+            return self.decay, self.decay
+        return self.decay + self.split, self._gentle if self.split else self.decay
+
+    def basis(self, time: Array) -> tuple[Array, Array]:
+        """Two motions after times (n,), 0 or above, of which every free one is a sum.
+
+        Where it swings e^(-at) cos bt and e^(-at) sin(bt)/b; else e^(-(a + b) t) and e^(-at) sinh(bt)/b.
+        """
         a, b = self.decay, self.split
         if self.swings:
             fade, phase = np.exp(-a * time), b * time
-            cosine = fade * np.cos(phase)
-            sine = fade * np.sin(phase) / b
-            return Propagator(cosine + a * sine, sine, -self.square * sine, cosine - a * sine)
-        # with E = exp(-(a + b) t) and S = exp(-a t) sinh(b t)/b both of cosh's combinations are E and S
-        steep = np.exp(-(a + b) * time)
+            return fade * np.cos(phase), fade * np.sin(phase) / b
         x = 2.0 * b * time
         with np.errstate(invalid="ignore", divide="ignore"):
             share = np.where(x > 0.0, -np.expm1(-x) / np.where(x > 0.0, x, 1.0), 1.0)
-        sinh = np.exp(-self._gentle * time) * time * share
-        return Propagator(steep + (a + b) * sinh, sinh, -self.square * sinh, steep - (self._gentle if b else a) * sinh)
+        return np.exp(-(a + b) * time), np.exp(-self._gentle * time) * time * share
+
+    def basis_at(self, time: float) -> tuple[float, float]:
+        """As `basis`, at one time, for searches that ask again and again."""
+        a, b = self.decay, self.split
+        if self.swings:
+            fade, phase = math.exp(-a * time), b * time
+            return fade * math.cos(phase), fade * math.sin(phase) / b
+        x = 2.0 * b * time
+        share = -math.expm1(-x) / x if x > 0.0 else 1.0
+        return math.exp(-(a + b) * time), math.exp(-self._gentle * time) * time * share
+
+    def propagator(self, time: Array) -> Propagator:
+        """Move states on by times (n,), 0 or above."""
+        one, other = self.basis(time)
+        p, q = self.weights
+        return Propagator(one + p * other, other, -self.square * other, one - q * other)
 
     def moved(self, states: Array, time: Array) -> Array:
         """States (2, n) of the free motion after times (n,), from states (2, n)."""
@@ -143,6 +164,28 @@ class Oscillator:
             raise ValueError("a turn brings every free motion back to itself")
         z, v = gained
         return np.array([(1.0 - vv) * z + zv * v, vz * z + (1.0 - zz) * v]) / determinant
+
+
+@dataclass(frozen=True)
+class Free:
+    """The free motion from a state (z, v) at the time `since`: a sum of the two of `Oscillator.basis`."""
+
+    oscillator: Oscillator
+    since: float
+    z: float
+    v: float
+
+    def summed(self, z: float, v: float) -> tuple[float, float]:
+        """Factors of the two motions in z * place + v * velocity."""
+        p, q = self.oscillator.weights
+        other = z * (p * self.z + self.v) + v * (-self.oscillator.square * self.z - q * self.v)
+        return z * self.z + v * self.v, other
+
+    def after(self, time: float) -> tuple[float, float]:
+        """State at a time."""
+        one, other = self.oscillator.basis_at(time - self.since)
+        (a, b), (c, d) = self.summed(1.0, 0.0), self.summed(0.0, 1.0)
+        return a * one + b * other, c * one + d * other
 
 
 def _sine_of_half_turns(x: float) -> float:

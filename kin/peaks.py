@@ -54,11 +54,11 @@ class Figure:
             series = series + more
         return Figure(response, series, z, v)
 
-    def at(self, starts: Array, at: Samples, since: Array | None = None) -> Array:
-        """Values (n,) from the states at the starts (2, m), or at times `since` (m,) in the stretches."""
+    def at(self, starts: Array, at: Samples) -> Array:
+        """Values (n,) from the states at the starts (2, m)."""
         response = self.response
-        free_z, free_v = response.free(starts, at, since)
-        x = at.time / response.drive.half[at.stretch] - 1.0
+        free_z, free_v = response.rung(starts, at)
+        x = at.time / response.half[at.stretch] - 1.0
         found: Array = evaluated(self.series, at.stretch, x) + self.z * free_z + self.v * free_v
         return found
 

@@ -23,7 +23,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kin.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated
+from kin.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated, value
+from kin.oscillator import Free
 
 if TYPE_CHECKING:
     from kin.drive import Drive
@@ -87,6 +88,11 @@ class Response:
         return len(self.p)
 
     @cached_property
+    def half(self) -> Array:
+        """Half widths of the stretches (m,)."""
+        return self.drive.half
+
+    @cached_property
     def _steps(self) -> tuple[Array, Array, Array]:
         """Of each stretch: p, p' at its start (m, 2) and end (m, 2), and the matrix of the free motion (m, 4)."""
         at_start = np.stack([self.p @ AT_START, self.v @ AT_START], axis=1)
@@ -122,13 +128,20 @@ class Response:
             z, v = p1 + zz * z + zv * v, v1 + vz * z + vv * v
         return np.array(found).T.reshape(2, -1), np.array([z, v])
 
-    def after(self, stretch: int, time: float, state: Array) -> Array:
-        """State (2,) at the end of a stretch, from that at a time since its start."""
-        one = np.array([stretch])
-        left = np.array([2.0 * self.drive.half[stretch] - time])
-        free = self.oscillator.moved(state - self.particular(Samples(one, np.array([time])))[:, 0], left)[:, :1]
-        at_end: Array = self._steps[1][stretch] + free[:, 0]
-        return at_end
+    def free(self, stretch: int, time: float, state: Array) -> Free:
+        """The free motion on a stretch from the state (2,) at a time since its start."""
+        p, v = self._driven(stretch, time)
+        return Free(self.oscillator, time, float(state[0]) - p, float(state[1]) - v)
+
+    def _driven(self, stretch: int, time: float) -> tuple[float, float]:
+        x = time / self.half[stretch] - 1.0
+        return value(self.p[stretch].tolist(), x), value(self.v[stretch].tolist(), x)
+
+    def moved(self, stretch: int, free: Free, time: float) -> Array:
+        """State (2,) at a time since the start of a stretch, of the free motion there and what is driven."""
+        p, v = self._driven(stretch, time)
+        z, rate = free.after(time)
+        return np.array([p + z, v + rate])
 
     def periodic(self) -> Array:
         """State (2,) at the end of the turn that a turn brings back to itself; ValueError at exact resonance.
@@ -143,49 +156,55 @@ class Response:
 
     def particular(self, at: Samples) -> Array:
         """Values of p and p' (2, n)."""
-        x = at.time / self.drive.half[at.stretch] - 1.0
+        x = at.time / self.half[at.stretch] - 1.0
         return np.stack([evaluated(self.p, at.stretch, x), evaluated(self.v, at.stretch, x)])
 
-    def states(self, starts: Array, at: Samples, since: Array | None = None) -> Array:
-        """Values z and z' (2, n), from the states (2, m) at all starts, or at times `since` (m,) in them."""
-        found: Array = self.particular(at) + self.free(starts, at, since)
+    def states(self, starts: Array, at: Samples) -> Array:
+        """Values z and z' (2, n), from the states (2, m) at all starts."""
+        found: Array = self.particular(at) + self.rung(starts, at)
         return found
 
-    def free(self, starts: Array, at: Samples, since: Array | None = None) -> Array:
+    def rung(self, starts: Array, at: Samples) -> Array:
         """The free part of z and z' (2, n), as `states`."""
-        used, index = np.unique(at.stretch, return_inverse=True)
-        begun = np.zeros(len(used)) if since is None else since[used]
-        free = starts[:, used] - self.particular(Samples(used, begun))
-        return self.oscillator.moved(free[:, index], at.time - begun[index])
+        return self.oscillator.moved((starts - self._steps[0].T)[:, at.stretch], at.time)
 
-    def samples(self, starts: Array, stretches: Indices, since: Array | None = None) -> Samples:
-        """Places that show every swing of z on the given stretches, ends included, from the states at the starts."""
-        begun = np.zeros(len(self)) if since is None else since
-        left = 2.0 * self.drive.half[stretches] - begun[stretches]
-        count = np.full(len(stretches), _SAMPLES)
-        at_start = self.particular(Samples(stretches, begun[stretches]))
-        bound = self.oscillator.bound(starts[:, stretches] - at_start)
-        size = np.abs(self.p[stretches]).sum(axis=1).max(initial=0.0) + bound.max(initial=0.0)
-        fine = np.zeros(len(stretches), dtype=np.intp)
-        alive = self.slow[stretches] & (bound > _SILENT * size)
-        lasting = left.copy()
-        if alive.any() and self.oscillator.fading > 0.0:
-            lasting[alive] = np.log(bound[alive] / (_SILENT * size)) / self.oscillator.fading
-            lasting = np.minimum(lasting, left)
-        fine[alive] = np.ceil(lasting[alive] * self.oscillator.fast / _STEP).astype(np.intp) + 1
-        owner = np.repeat(np.arange(len(stretches)), count + fine)
-        number = np.arange(len(owner)) - np.repeat(np.cumsum(count + fine) - count - fine, count + fine)
-        coarse = number < count[owner]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            time = np.where(
-                coarse,
-                left[owner] * number / (count[owner] - 1),
-                lasting[owner] * (number - count[owner] + 1) / (fine[owner] + 1.0),
-            )
+    def lasting(self, bound: Array, stretches: Indices) -> Array:
+        """How long (n,) free motions, of bounds (n,), shake p visibly on the given stretches; 0 where p is no slow one.
+
+        Seen from the greatest p and the greatest free motion of all given.
+        """
+        size = _SILENT * (np.abs(self.p[stretches]).sum(axis=1).max(initial=0.0) + bound.max(initial=0.0))
+        alive = self.slow[stretches] & (bound > size)
+        found = np.where(alive, np.inf, 0.0)
+        if self.oscillator.fading > 0.0:
+            found[alive] = np.log(bound[alive] / size) / self.oscillator.fading
+        return found
+
+    @property
+    def step(self) -> float:
+        """Time between samples that show every swing of the free motion; infinite where there is none."""
+        return _STEP / self.oscillator.fast if self.oscillator.fast > 0.0 else np.inf
+
+    def swings(self, starts: Array, stretches: Indices) -> tuple[Array, Indices]:
+        """Time (n,) for which free motion is sampled on the given stretches, and how many samples (n,) that takes."""
+        bound = self.oscillator.bound((starts - self._steps[0].T)[:, stretches])
+        lasting = np.minimum(self.lasting(bound, stretches), 2.0 * self.half[stretches])
+        fine = np.where(lasting > 0.0, np.ceil(lasting / self.step) + 1.0, 0.0).astype(np.intp)
+        return lasting, fine
+
+    def samples(self, starts: Array, stretches: Indices) -> Samples:
+        """Places that show every swing of z on the given stretches, ends included, from the states at all starts."""
+        width = 2.0 * self.half[stretches]
+        lasting, fine = self.swings(starts, stretches)
+        each = fine + _SAMPLES
+        owner = np.repeat(np.arange(len(stretches)), each)
+        number = np.arange(len(owner)) - np.repeat(np.cumsum(each) - each, each)
+        time = width[owner] * number / (_SAMPLES - 1)
         if fine.any():
-            order = np.lexsort((time, owner))
-            time = time[order]
-        return Samples(stretches[owner], begun[stretches[owner]] + time)
+            swinging = lasting[owner] * (number - _SAMPLES + 1) / (fine[owner] + 1.0)
+            time = np.where(number < _SAMPLES, time, swinging)
+            time = time[np.lexsort((time, owner))]
+        return Samples(stretches[owner], time)
 
 
 def response(oscillator: Oscillator, drive: Drive, forcing: Forcing) -> Response:

@@ -27,8 +27,8 @@ FLOORS = {
         bearing bouncing bounding flaws floating integrated law linkage nesting roots routes syntax
         contour dxf_entities dynamics expression frame_dwell loop piecewise
         biarc dwell figures jet mobility peaks pieces shape
-        bezier monotone motion response series
-        bernstein chaining contact drive extremes foot hull nearest taylor triangles
+        bezier monotone motion response series turn
+        bernstein chaining contact drive extremes foot hull instants nearest taylor triangles
         arcs ball check chebyshev distinct oscillator read_error
     """,
     "camgeo": """
