@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 CELLS_PER_TURN = 96  # proved bounds are kept for about this many stretches; more cost time, fewer cost sharpness
 CELLS_PER_STRETCH = 6  # and for at least this many between two breaks
 SHARP_ENOUGH = 4.0  # a cell is halved while its bound is this many times what its own ends and middle show
-HALVINGS = 7
+HALVINGS = 24
+MOST_CELLS = 20_000  # where halving does not help
 SHIFT = 1e-12  # relative and rad: far above the rounding by which parts of a turn are moved onto each other
 
 
@@ -274,7 +275,7 @@ class Cells:
     def of(curve: Curve) -> Cells:
         """Partition a curve, halving cells whose bounds are far from what the curve does in them.
 
-        Raises CurveError where no finite bound is found after `HALVINGS` halvings.
+        Raises CurveError where no finite bound is found after `HALVINGS` halvings, or with `MOST_CELLS` cells.
         """
         stretches = [stretch for run in curve.runs for stretch in run.stretches]
         period, repeats = curve.shape.period, curve.shape.repeats
@@ -312,7 +313,7 @@ def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], d
     rows = curve.shape.bounds(low, high).rows()
     for _ in range(HALVINGS):
         loose = _loose(curve, low, high, rows)
-        if not loose.any():
+        if not loose.any() or low.size > MOST_CELLS:
             break
         middle = 0.5 * (low[loose] + high[loose])
         new_low = np.concatenate([low[loose], middle])

@@ -165,6 +165,8 @@ def _free(recipe: Recipe, profile: Profile, free_at: float) -> str:
     value = free_at / recipe.mm
     if isinstance(recipe.cam, FlatPairCam):
         return "a smaller swing would be free of it"  # r + const closes no pair: there is no base radius to enlarge
+    if profile.roller_radius and not value > 0.0:
+        return "no roller radius is proved to be free of it"
     if profile.roller_radius:
         return f"a roller radius of {value:.6g} would be free of it"
     return f"a base radius larger by {value:.6g} would be free of it"
@@ -182,8 +184,8 @@ def _unproved(recipe: Recipe, error: CurveError, intent: Lift | Transmission) ->
     return (
         f"whether a roller radius of {most:.9g} is free of undercut between {first:.6g} and {second:.6g} deg cannot be "
         f"proved: half the width of the neck there {half}; "
-        f"a roller radius of {least * (1.0 - 1e-5):.6g} is proved to be free of it"  # not rounded upward
-    )
+        f"{f'a roller radius of {least * (1.0 - 1e-5):.6g}' if least > 0.0 else 'none'} is proved to be free of it"
+    )  # not rounded upward
 
 
 def _trimmed(curve: Curve) -> Curve:

@@ -12,6 +12,7 @@ import numpy as np
 
 from camgeo.curve import Curve
 from camgeo.offset import Parallel
+from camgeo.radius import ROUNDING
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -109,13 +110,15 @@ class Boxes:
 class Pairs:
     """What is known of the pairs of n boxes about their centres (n, 2); rows are one point's and the other's.
 
-    `radius` (2, n) holds R at the centres, `reach` (2, n) how far along the curve a box extends to either side, `chord`
-    (n,) a lower bound of |x - y|, `bowl` (n,) the least eigenvalue of the Hessian of |x - y|^2 / 2 in arc length.
+    `radius` (2, n) holds what R at the centres is not above, `reach` (2, n) how far along the curve a box extends to
+    either side, `doubt` (2, n) by how much that and the turning there move the pair against each other, `chord` (n,) a
+    lower bound of |x - y|, `bowl` (n,) the least eigenvalue of the Hessian of |x - y|^2 / 2 in arc length.
     """
 
     centre: Array
     radius: Array
     reach: Array
+    doubt: Array
     chord: Array
     bowl: Array
     square: Array
@@ -144,10 +147,12 @@ class Pairs:
         across = np.stack([np.sum(d * x.normal, axis=1), -np.sum(d * y.normal, axis=1)])
         # how far these may change over the box: d moves by `room`, the frames turn by bend * reach
         turned = np.maximum(np.abs(bend_low), np.abs(bend_high)) * reach
+        doubt = np.nan_to_num(reach + turned * length, nan=np.inf)
         along_room = room + turned * (length + room)
         across_room = room + turned * (np.abs(along) + along_room)
         radius = np.full(across.shape, np.inf)
-        np.divide(square, 2.0 * across, out=radius, where=across > 0.0)
+        sure = across - ROUNDING * pitch.curve.size  # points of a fold differ by less than they are rounded
+        np.divide(square, 2.0 * sure, out=radius, where=sure > 0.0)
         # Hessian of |d|^2 / 2 in arc length: [[1 - k across, -T.T'], [-T.T', 1 - k' across']]
         diagonal = 1.0 - np.maximum(
             np.maximum(bend_low * (across - across_room), bend_low * (across + across_room)),
@@ -162,7 +167,7 @@ class Pairs:
         chord = np.maximum(length - room, np.sqrt(np.fmax(least, 0.0)))
         slanted = np.abs(np.sum(x.normal * y.tangent, axis=1)) + turned.sum(axis=0)
         return Pairs(
-            centre, radius, reach, chord, bowl, square, along, along_room, across, bend_low, bend_high, slanted
+            centre, radius, reach, doubt, chord, bowl, square, along, along_room, across, bend_low, bend_high, slanted
         )
 
     def free(self, aim: float) -> NDArray[np.bool_]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.curve import CurveError
+from camgeo.curve import SHIFT, CurveError
 from kin.distinct import distinct
 
 if TYPE_CHECKING:
@@ -55,6 +55,8 @@ def least_radius(curve: Curve) -> tuple[float, float]:
     """
     cells = curve.cells
     possible = _may_hold_least(cells)
+    if curve.closed and curve.shape.repeats > 1:  # all parts are alike
+        possible &= cells.low < cells.low[0] + curve.shape.period / curve.shape.repeats * (1.0 - SHIFT)
     if not possible.any():
         return math.inf, float(cells.low[0])
     # circular arcs need no search, and would not end one

@@ -190,7 +190,7 @@ class _Search:
             narrowest = min(found, key=lambda n: n.half, default=None)
             if narrowest is not None and narrowest.half < least[0]:
                 least = narrowest.half, (narrowest.first, narrowest.second)
-        return _divided(boxes, pairs.centre, pairs.reach.T, ~free), least
+        return _divided(boxes, pairs.centre, pairs.doubt.T, ~free), least
 
     def left_open(self, boxes: Boxes, least: _Least) -> OpenNeckError:
         """Say what is proved of pairs that were left, and how close the least was seen to be."""
@@ -218,16 +218,16 @@ def _pair(at: Array) -> tuple[float, float]:
     return float(at[0]), float(at[1])
 
 
-def _divided(boxes: Boxes, centre: Array, reach: Array, kept: NDArray[np.bool_]) -> Boxes:
-    """Halve the kept boxes, along both intervals unless one is much the shorter."""
-    low, high, centre, reach = boxes.low[kept], boxes.high[kept], centre[kept], reach[kept]
+def _divided(boxes: Boxes, centre: Array, doubt: Array, kept: NDArray[np.bool_]) -> Boxes:
+    """Halve the kept boxes, along both intervals unless one leaves much less in doubt."""
+    low, high, centre, doubt = boxes.low[kept], boxes.high[kept], centre[kept], doubt[kept]
     for side in (0, 1):
-        cut = reach[:, side] > 0.5 * reach[:, 1 - side]
+        cut = doubt[:, side] > 0.5 * doubt[:, 1 - side]
         upper, lower = low[cut].copy(), high[cut].copy()
         upper[:, side] = lower[:, side] = centre[cut, side]
         whole = ~cut
         low, high = np.concatenate([low[whole], low[cut], upper]), np.concatenate([high[whole], lower, high[cut]])
-        centre, reach = (np.concatenate([a[whole], a[cut], a[cut]]) for a in (centre, reach))
+        centre, doubt = (np.concatenate([a[whole], a[cut], a[cut]]) for a in (centre, doubt))
     return Boxes(low, high)
 
 

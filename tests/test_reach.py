@@ -121,13 +121,13 @@ def test_newtons_method_tells_inside_from_outside():
     assert neck_from(star, 0.1, 2 * math.pi / 5 - 0.1) is None
 
 
-@pytest.mark.parametrize("share", [0.98, 0.99, 0.999])
+@pytest.mark.parametrize("share", [0.98, 0.999, 1.0 - 1e-6])
 def test_a_waist_almost_folded_is_measured(share):
     # bent on its outer side to a hundredth of its width and less
     waist = LENGTH * math.sqrt(2.0 * (1.0 - share))
     curve = pitch(booth(LENGTH, LENGTH * math.sqrt(share)))
     (neck,) = narrowest_necks(curve, 1.001 * waist)
-    assert neck.half == pytest.approx(waist, rel=1e-12)
+    assert neck.half == pytest.approx(waist, rel=1e-9)
     assert narrowest_necks(curve, 0.999 * waist) == ()
     assert narrowest_necks(curve, 1e-3 * waist) == ()
 
