@@ -84,7 +84,7 @@ def trimmed(curve: Curve) -> Curve:
     if what.pieces > 1:
         middle = 0.5 * (what.lost[0].start + what.lost[0].end)
         raise UndercutError(f"the undercut parts the metal into {what.pieces} pieces", middle)
-    result = Curve(curve.shape, _runs(curve, what))
+    result = Curve(curve.shape, kept_runs(curve, what))
     if not _encloses_shaft(result):
         raise UndercutError("the shaft lies outside of what the undercut leaves", where)
     return result
@@ -345,7 +345,7 @@ def _depth(curve: Curve, contact: _Contact, points: Array, start: float, end: fl
     return best
 
 
-def _runs(curve: Curve, what: Remains) -> tuple[Run, ...]:
+def kept_runs(curve: Curve, what: Remains) -> tuple[Run, ...]:
     """Kept runs in order, from the end of each lost stretch to the beginning of the next."""
     period = curve.shape.period
     runs = []

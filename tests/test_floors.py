@@ -55,7 +55,7 @@ FLOORS = {
         page.content page.tables
         page.curves
         page.linked page.outline
-        dynamics manufacture.inspection
+        dynamics manufacture.cutter manufacture.inspection
         design recipe.load
         foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim

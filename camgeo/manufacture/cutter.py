@@ -1,0 +1,172 @@
+"""The path of a round cutter's centre about a contour, and the metal that it does not reach (docs/manufacture.md).
+
+The path is the contour's parallel outside, exact in the moving frame. Whether the cutter reaches everything is the
+question whether a roller of its radius, with the contour for its pitch curve run through the other way, undercuts: the
+same proofs decide it, of the bends of hollow stretches and of the gaps between far-apart ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.causes import UndercutError, causes
+from camgeo.curve import Bounds, Curve, Frame, Run, Shape
+from camgeo.fit.arcs import fit_arcs
+from camgeo.fit.pieces import ArcSpline
+from camgeo.offset import Parallel
+from camgeo.radius import least_radius
+
+if TYPE_CHECKING:
+    from camgeo.curve import Array, Side
+    from camgeo.undercut import Undercut
+
+
+@dataclass(frozen=True)
+class Backwards:
+    """A shape run through the other way, its parameter negated: what was outside lies on its inner side."""
+
+    base: Shape
+
+    @property
+    def period(self) -> float:
+        """Length of the parameter's turn."""
+        return self.base.period
+
+    @property
+    def breaks(self) -> Array:
+        """Breaks of the base."""
+        return np.sort(np.mod(-np.asarray(self.base.breaks, dtype=np.float64), self.period))
+
+    @property
+    def repeats(self) -> int:
+        """Equal parts of the base."""
+        return self.base.repeats
+
+    def _stretches(self) -> Array:
+        """Which stretch of the base each one is (m,)."""
+        count = max(len(self.base.breaks), 1)
+        order = np.arange(count)[::-1]
+        at_zero = len(self.base.breaks) > 0 and float(self.base.breaks[0]) == 0.0
+        # a break at 0 stays the first one, any other first break becomes the last
+        return order if at_zero or count == 1 else np.roll(order, -1)
+
+    @property
+    def steady(self) -> Array:
+        """Stretches of constant speed and turn (m, 2)."""
+        table: Array = self.base.steady[self._stretches()] * np.array([1.0, -1.0])
+        return table
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,)."""
+        radii: Array = -self.base.radii[self._stretches()]
+        return radii
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,)."""
+        at = self.base.sample(-t, -side)
+        return Frame(at.point, -at.tangent, at.speed, -at.turn, -at.speed_slope, at.turn_slope)
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
+        speed, turn = self.base.series(-t, order, -side)
+        sign = (-1.0) ** np.arange(order + 1)[:, None]
+        return sign * speed, -sign * turn
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over intervals (n,)."""
+        b = self.base.bounds(-high, -low)
+        return replace(b, turn_low=-b.turn_high, turn_high=-b.turn_low)
+
+
+@dataclass(frozen=True)
+class CutterPath:
+    """The path of a cutter's centre, counter-clockwise.
+
+    `curve` is the contour's parallel, in runs that meet where something is not reached; `corners` says that they are
+    those of a trimmed contour instead, about whose corners the cutter swings. `lost` tells what is not reached, by the
+    contour's own parameters.
+    """
+
+    curve: Curve
+    radius: float
+    corners: bool = False
+    lost: tuple[Undercut, ...] = ()
+
+    def within(self, tolerance: float) -> ArcSpline:
+        """Arcs within `tolerance` mm of the path; raises as `fit_arcs` does."""
+        if not self.corners:
+            return fit_arcs(self.curve, tolerance)
+        fits = [fit_arcs(Curve(self.curve.shape, (run,)), tolerance) for run in self.curve.runs]
+        run_ends = np.array([run.high for run in self.curve.runs])
+        leave = self.curve.sample(run_ends, -1)
+        enter = self.curve.sample(np.array([run.low for run in self.curve.runs]))
+        after = np.roll(enter.tangent, -1, axis=0)
+        cosine = np.sum(leave.tangent * after, axis=1)
+        sine = leave.tangent[:, 0] * after[:, 1] - leave.tangent[:, 1] * after[:, 0]
+        bulges = np.tan(0.25 * np.arctan2(sine, cosine))
+        points = [row for fit, end in zip(fits, leave.point, strict=True) for row in (fit.points, end[None])]
+        turns = [row for fit, bulge in zip(fits, bulges, strict=True) for row in (fit.bulges, np.array([bulge]))]
+        bound = max((fit.bound for fit in fits), key=lambda bound: bound.worst)
+        return ArcSpline(np.concatenate(points), np.concatenate(turns), bound)
+
+
+def cutter_path(contour: Curve, radius: float) -> CutterPath:
+    """Path of the centre of a cutter of `radius`, mm, about a contour, and what it does not reach.
+
+    Raises UndercutError where no single path is left of it, CurveError where what is reached cannot be proved.
+    """
+    outside = Parallel(contour.shape, -radius)
+    if isinstance(contour.shape, Parallel):  # one parallel in place of two: nothing is added up and taken off again
+        outside = Parallel(contour.shape.base, contour.shape.distance - radius)
+    whole = CutterPath(Curve(outside, contour.runs), radius, corners=not contour.closed)
+    if is_convex(contour) or radius <= rolled_by(contour):
+        return whole
+    if not contour.closed:
+        across = 2.0 * rolled_by(contour)
+        raise UndercutError(f"a trimmed contour with hollows takes a cutter no wider than its roller, {across:.6g} mm")
+    turned = Curve.whole(Parallel(Backwards(contour.shape), radius))
+    why = causes(turned)
+    if why.none:
+        return whole
+    from camgeo.trim import kept_runs, remains
+    from camgeo.undercut import undercuts
+
+    lost = tuple(_forward(cut) for cut in undercuts(turned))
+    what = remains(turned, why)
+    if not what.corners:
+        raise UndercutError("the cutter comes to no place of the contour")
+    if what.pieces > 1:
+        raise UndercutError("the cutter does not come through to all of the contour", lost[0].at)
+    runs = tuple(
+        Run(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), closed=False)
+        for run in reversed(kept_runs(turned, what))
+    )
+    return CutterPath(Curve(outside, runs), radius, lost=lost)
+
+
+def is_convex(contour: Curve) -> bool:
+    """Whether a contour is proved to turn left throughout."""
+    return bool((contour.cells.rows[2] >= 0.0).all())
+
+
+def rolled_by(contour: Curve) -> float:
+    """Radius of the roller that has touched all of a contour from outside, mm; 0 for that of a flat face."""
+    return max(contour.shape.distance, 0.0) if isinstance(contour.shape, Parallel) else 0.0
+
+
+def least_hollow(contour: Curve) -> tuple[float, float]:
+    """Least radius of the hollow stretches of a contour, mm, and its parameter; infinite without a hollow."""
+    runs = tuple(
+        Run(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), run.closed) for run in reversed(contour.runs)
+    )
+    radius, at = least_radius(Curve(Backwards(contour.shape), runs))
+    return radius, -at
+
+
+def _forward(cut: Undercut) -> Undercut:
+    """What was found running backwards, in the contour's own parameters."""
+    return replace(cut, start=-cut.end, end=-cut.start, at=-cut.at)
