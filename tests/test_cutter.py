@@ -1,5 +1,6 @@
-"""The cutter's path: at its distance from kin's own envelope all round, and what it leaves, against a second library."""
+"""The cutter's path: at its distance from kin's envelope all round; what it leaves, against a second library."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 import shapely
 
 from camgeo.causes import UndercutError
+from camgeo.curve import Curve, Run
 from camgeo.design import designed, intended
 from camgeo.manufacture.cutter import Backwards, cutter_path, least_hollow
 from camgeo.recipe import read
@@ -48,7 +50,7 @@ def test_a_shape_run_backwards_is_the_same_shape(body):
     breaks = back.breaks if len(back.breaks) else np.zeros(1)
     assert len(back.steady) == len(back.radii) == len(breaks)
     ends = np.append(breaks, breaks[0] + back.period)
-    for i, (low, high) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+    for i, (low, high) in enumerate(pairwise(ends)):
         t = low + (high - low) * np.array([0.1, 0.5, 0.83])
         here, there = back.sample(t), shape.sample(-t)
         assert np.allclose(here.point, there.point, rtol=0.0, atol=1e-12)
@@ -124,8 +126,9 @@ def test_a_hollow_is_reached_by_a_cutter_just_small_enough():
 def test_no_hollow_and_none_trimmed():
     _, design = design_of(SHU_WU)
     assert least_hollow(design.contour)[0] == np.inf
-    body = "cam: {kind: double-roller, ratio: 2, arm: 40, roller_radius: 20, delta: {cos: {1: 1440}}, undercut: trim}\n"
-    _, design = design_of(body)
-    assert not design.contour.closed
-    with pytest.raises(UndercutError, match="no wider than its roller, 40 mm"):
-        cutter_path(design.contour, 60.0)
+    _, design = design_of(DEEP)
+    low = design.contour.runs[0].low
+    part = Curve(design.contour.shape, (Run(low, low + 6.0, (), closed=False),))
+    assert cutter_path(part, 4.0).corners
+    with pytest.raises(UndercutError, match="no wider than its roller, 8 mm"):
+        cutter_path(part, 4.1)

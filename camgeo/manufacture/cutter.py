@@ -20,6 +20,8 @@ from camgeo.offset import Parallel
 from camgeo.radius import least_radius
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from camgeo.curve import Array, Side
     from camgeo.undercut import Undercut
 
@@ -45,7 +47,7 @@ class Backwards:
         """Equal parts of the base."""
         return self.base.repeats
 
-    def _stretches(self) -> Array:
+    def _stretches(self) -> NDArray[np.intp]:
         """Which stretch of the base each one is (m,)."""
         count = max(len(self.base.breaks), 1)
         order = np.arange(count)[::-1]
