@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from camgeo.design import Clock, Design, designed, intended, permitted
-from camgeo.recipe.model import NO_CONTOUR
 from camgeo.report.document import FileResult, Findings, document, encoded
 
 if TYPE_CHECKING:
@@ -147,7 +146,7 @@ def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> C
     from camgeo.page.content import content
 
     with clock.stage("page"):
-        return content(recipe, design, [file.path for file in found.files if file.request.kind not in NO_CONTOUR])
+        return content(recipe, design, [file.path for file in found.files if file.shows_cam])
 
 
 def _findings(
@@ -171,7 +170,7 @@ def _findings(
         from camgeo.dynamics import dynamics_of
 
         with clock.stage("dynamics"):
-            train = dynamics_of(recipe, design, [file.path for file in files])
+            train = dynamics_of(recipe, design, [file.path for file in files if file.shows_cam])
         checks = [*checks, *train.checks]
     return Findings(
         tuple(checks),

@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[1]
 # Top floor first. A module imports from floors below its own only; neighbours on one floor do not import each other.
 FLOORS = {
     "kin": """
-        verify
+        printed verify
         part
         driven judge
         follower
@@ -47,27 +47,28 @@ FLOORS = {
         sweep.windows
         pipeline recipe
         making.left_out making.make
-        making.drawing making.solid making.table
+        making.drawing making.parts making.view making.table
+        making.solid
         making.job
-        outlines
+        bodies.build outlines
         page.png page.watch
         page.page
         page.content page.tables
         page.curves
-        page.linked page.outline
+        bodies.linked page.linked page.outline
         dynamics manufacture.cutter manufacture.inspection
-        design recipe.load
-        foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
+        bodies.site bodies.guide design recipe.load
+        bodies.shaft files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim
-        crossing files.prism files.stl files.svg files.three_mf fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
+        crossing files.prism files.glb files.stl files.svg files.three_mf fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
         recipe.readers
         files.mesh part.wall recipe.build_part recipe.check_part recipe.read_part
         causes files.precision fit.cubic fit.exact fit.free_arcs report.document report.failure
-        reach
-        fit.trigonometric pairs recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
+        bodies.places bodies.linked_places bodies.collide reach
+        bodies.forms bodies.assembly fit.trigonometric pairs recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
         bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius turning
         part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
-        recipe.model recipe.scalars recipe.source recipe.tables
+        bodies.sizes recipe.model recipe.scalars recipe.source recipe.tables
         recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.table_part
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism recipe.table_sweep
         curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store

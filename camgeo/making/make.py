@@ -28,6 +28,10 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
             from camgeo.making.solid import make_solid
 
             return make_solid(job, request, path)
+        case "glb":
+            from camgeo.making.view import make_view
+
+            return make_view(job, request, path)
         case "csv":
             from camgeo.making.table import make_table
 

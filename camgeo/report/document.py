@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from camgeo import __version__
-from camgeo.recipe.model import NO_CONTOUR
+from camgeo.recipe.model import NO_CONTOUR, NO_PART
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +26,10 @@ UNIT_NAMES = {"mm": "mm", "inch": "in"}
 
 @dataclass(frozen=True)
 class FileResult:
-    """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees)."""
+    """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
+
+    `body` is the one that it is judged as.
+    """
 
     path: Path
     request: FileRequest
@@ -36,6 +39,12 @@ class FileResult:
     measured_error: float | None
     motion: MotionError | None
     linkage: LinkageVerdict | None = None
+    body: str = "cam"
+
+    @property
+    def shows_cam(self) -> bool:
+        """Whether the file has the cam's contour, and not another body's or none."""
+        return self.body == "cam" and self.request.kind not in NO_PART
 
 
 @dataclass(frozen=True)
@@ -123,6 +132,8 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
     if file.request.kind in NO_CONTOUR:
         return entry
     mm = recipe.mm
+    if file.body != "cam":
+        entry["body"] = file.body
     if file.request.kind == "dxf":
         entry |= {"as": file.request.as_, "version": file.request.version}
     elif file.request.kind == "svg":

@@ -1,0 +1,145 @@
+"""Meshes as binary glTF 2.0, to look at: one node a body, coloured, with its motion over one turn of the shaft.
+
+glTF is in metres with y upward, so a point (x, y, z) in mm stands there at (x, z, -y)/1000 in single precision, and an
+angle about z becomes one about its y. Normals are left out: a viewer then shades every triangle flat.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from camgeo.files.mesh import Mesh
+    from camgeo.files.triangulate import Array
+
+TURN = 4.0  # seconds
+_METRE = 1e-3  # of a mm
+_FLOAT, _INDEX = 5126, 5125  # single precision, unsigned whole numbers of 32 bits
+_POINTS, _TRIANGLES = 34962, 34963  # what a part of the buffer is for
+_JSON, _BIN = b"JSON", b"BIN\0"
+_ROUGHNESS, _METAL = 0.6, 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Actor:
+    """A named mesh, mm, its colour "#rrggbb", and its pose (n, 3) at equal steps of a turn, or (1, 3) at rest.
+
+    The pose is x and y, mm, and an angle, rad, that goes on from step to step without jumps of a turn.
+    """
+
+    name: str
+    mesh: Mesh
+    pose: Array
+    colour: str
+
+
+def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
+    """Write bodies and their motion over one turn; raises OSError as the file system does."""
+    buffer = _Buffer()
+    nodes: list[dict[str, Any]] = []
+    meshes: list[dict[str, Any]] = []
+    materials: list[dict[str, Any]] = []
+    channels: list[dict[str, Any]] = []
+    samplers: list[dict[str, Any]] = []
+    times: dict[int, int] = {}
+    for k, actor in enumerate(actors):
+        points = _turned_up(actor.mesh.points)
+        position = buffer.added(points, "VEC3", _POINTS, bounds=True)
+        triangles = buffer.added(actor.mesh.triangles.astype("<u4").reshape(-1, 1), "SCALAR", _TRIANGLES)
+        meshes.append(
+            {
+                "name": actor.name,
+                "primitives": [{"attributes": {"POSITION": position}, "indices": triangles, "material": k}],
+            }
+        )
+        materials.append(_material(actor))
+        shift = _turned_up(np.column_stack((actor.pose[:, :2], np.zeros(len(actor.pose)))))
+        half = 0.5 * actor.pose[:, 2]
+        zero = np.zeros(len(half))
+        turn = np.column_stack((zero, np.sin(half), zero, np.cos(half))).astype("<f4")
+        nodes.append({"name": actor.name, "mesh": k, "translation": shift[0].tolist(), "rotation": turn[0].tolist()})
+        steps = len(actor.pose)
+        if steps == 1:
+            continue
+        if steps not in times:
+            clock = np.linspace(0.0, TURN, steps).astype("<f4").reshape(-1, 1)
+            times[steps] = buffer.added(clock, "SCALAR", None, bounds=True)
+        for what, values, shape in (("translation", shift, "VEC3"), ("rotation", turn, "VEC4")):
+            channels.append({"sampler": len(samplers), "target": {"node": k, "path": what}})
+            output = buffer.added(values, shape, None)
+            samplers.append({"input": times[steps], "interpolation": "LINEAR", "output": output})
+    document: dict[str, Any] = {
+        "asset": {"version": "2.0", "generator": "camgeo"},
+        "scene": 0,
+        "scenes": [{"name": title, "nodes": list(range(len(nodes)))}],
+        "nodes": nodes,
+        "meshes": meshes,
+        "materials": materials,
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [{"byteLength": len(buffer.data)}],
+    }
+    if channels:
+        document["animations"] = [{"name": "one turn", "channels": channels, "samplers": samplers}]
+    text = json.dumps(document, separators=(",", ":"), ensure_ascii=False).encode("utf-8")
+    chunks = _chunk(_JSON, text, b" ") + _chunk(_BIN, bytes(buffer.data), b"\0")
+    path.write_bytes(b"glTF" + _word(2) + _word(12 + len(chunks)) + chunks)
+
+
+class _Buffer:
+    """The binary part as it grows, with the views and accessors that tell what lies where in it."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def added(self, values: NDArray[Any], shape: str, target: int | None, *, bounds: bool = False) -> int:
+        """Append an array (n, k) of 4-byte numbers; return the number of its accessor."""
+        view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes}
+        if target is not None:
+            view["target"] = target
+        accessor: dict[str, Any] = {
+            "bufferView": len(self.views),
+            "componentType": _INDEX if values.dtype == np.dtype("<u4") else _FLOAT,
+            "count": len(values),
+            "type": shape,
+        }
+        if bounds:
+            accessor |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
+        self.views.append(view)
+        self.accessors.append(accessor)
+        self.data += values.tobytes()
+        return len(self.accessors) - 1
+
+
+def _turned_up(points: Array) -> NDArray[np.float32]:
+    """Points (n, 3) in mm with z upward as glTF has them."""
+    x, y, z = _METRE * points.T
+    return np.column_stack((x, z, 0.0 - y)).astype("<f4")
+
+
+def _material(actor: Actor) -> dict[str, Any]:
+    """Colours are given as screens have them; glTF counts light."""
+    red, green, blue = (int(actor.colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5))
+    light = [round(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4, 4) for c in (red, green, blue)]
+    surface = {"baseColorFactor": [*light, 1.0], "metallicFactor": _METAL, "roughnessFactor": _ROUGHNESS}
+    return {"name": actor.name, "pbrMetallicRoughness": surface}
+
+
+def _chunk(kind: bytes, data: bytes, filler: bytes) -> bytes:
+    padded = data + filler * (-len(data) % 4)
+    return _word(len(padded)) + kind + padded
+
+
+def _word(number: int) -> bytes:
+    return number.to_bytes(4, "little")
