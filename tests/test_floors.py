@@ -56,7 +56,7 @@ FLOORS = {
         page.content page.tables
         page.curves
         bodies.linked page.linked page.outline
-        dynamics manufacture.cutter manufacture.inspection
+        bodies.dyads bodies.roller bodies.yoke dynamics manufacture.cutter manufacture.inspection
         bodies.site bodies.guide design recipe.load
         bodies.shaft files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim

@@ -1,0 +1,48 @@
+"""The printable bodies of a recipe's mechanism, of whichever kind it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from camgeo.bodies.shaft import Drive, disk_of, shaft_of
+from camgeo.bodies.sizes import sizes_of
+from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
+from camgeo.recipe.model_mechanism import MechanismAsked
+
+if TYPE_CHECKING:
+    from camgeo.bodies.assembly import Assembly
+    from camgeo.design import Design
+    from camgeo.fit.pieces import ArcSpline, Polygon
+    from camgeo.recipe.model import Recipe
+    from kin.lift import Lift
+    from kin.transmission import Transmission
+
+
+def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline | Polygon, reach: float) -> Assembly:
+    """Make the bodies round a cam's contour, as drawn for a shaft that turns clockwise; `reach` is the cam's, mm.
+
+    Raises BodyError where one of them cannot be made.
+    """
+    part = recipe.part
+    cam = recipe.cam
+    roller = cam.roller_radius if isinstance(cam, DoubleRollerCam) else None
+    s = sizes_of(recipe.mechanism or MechanismAsked(), reach, part.bore or 0.0, roller)
+    drive = Drive(disk_of(part, design.body, contour), reach, shaft_of(part, s), s)
+    if isinstance(cam, DoubleRollerCam):
+        from camgeo.bodies.roller import double_roller
+
+        return double_roller(cast("Transmission", design.intent), cam.roller_radius, drive)
+    if isinstance(cam, FlatPairCam):
+        from camgeo.bodies.roller import flat_pair
+
+        return flat_pair(cast("Transmission", design.intent), drive)
+    if design.driven is not None:
+        from camgeo.bodies.linked import linked
+
+        return linked(design.driven.mechanism, drive)
+    from camgeo.bodies.yoke import flat_face, yoke
+
+    lift = cast("Lift", design.intent)  # the kind of cam decides the kind of intent
+    if design.yoke_breadth is None:
+        return flat_face(lift, drive)
+    return yoke(lift, design.yoke_breadth, drive)

@@ -1,0 +1,96 @@
+"""Bodies of a mechanism in the words of kin's collision, and what it finds over the whole turn as checks."""
+
+from __future__ import annotations
+
+import math
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.bodies.assembly import TURN
+from camgeo.fit.pieces import Polygon
+from kin.check import Check
+from kin.collision import Allowed, Mover, Slab, clearances
+from kin.contour import Contour
+from kin.poses import Sampled, Still
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from camgeo.bodies.assembly import Assembly, Place
+    from camgeo.bodies.body import Plate
+    from camgeo.fit.pieces import ArcSpline
+    from kin.collision import Clearance
+    from kin.poses import Motion
+
+STEPS = 720  # of a turn, at which the exact motion and its rates are taken
+AXIAL = 1e-6  # mm, by which rounding may make an axial gap less
+
+
+def collision_checks(assembly: Assembly) -> list[Check]:
+    """Check that no two bodies meet at any angle, and tell the least running clearance that they are made with.
+
+    One check for each pair that has something at common heights; bodies less than the axial gap apart in height count
+    as that. What is pressed together, and what touches by design, is left out: the rollers and a single face are held
+    against the file of the cam itself.
+    """
+    found = clearances(movers(assembly), exempt(assembly), axial=assembly.sizes.gap - AXIAL)
+    return [clearance_check(assembly), *(_checked(pair) for pair in found)]
+
+
+def clearance_check(assembly: Assembly) -> Check:
+    """Tell all fits; the least clearance among those that run must be above 0."""
+    running = [fit for fit in assembly.fits if not fit.pressed]
+    least = min(fit.clearance for fit in running)
+    told = [f"{fit.name} {'-' if fit.pressed else ''}{fit.clearance:.6g}" for fit in assembly.fits]
+    detail = "; ".join([f"mm wider by construction: {', '.join(told)}", *assembly.remarks])
+    return Check("clearance", least > 0.0, least, 0.0, "mm", None, "at_least", detail=detail)
+
+
+def exempt(assembly: Assembly) -> Iterable[Allowed]:
+    """Pairs that are not held against each other."""
+    for one, other in combinations(assembly.members, 2):
+        if one.group == other.group or frozenset({one.name, other.name}) in assembly.touching:
+            yield Allowed(one.name, other.name, -math.inf)
+
+
+def movers(assembly: Assembly) -> list[Mover]:
+    """Bodies with their motions; those that share a place share the motion."""
+    motions: dict[int, Motion] = {}
+    found = []
+    for member in assembly.members:
+        key = id(member.place)
+        if key not in motions:
+            motions[key] = Still() if member.place is None else _sampled(member.place)
+        found.append(Mover(member.name, tuple(map(_slab, member.plates)), motions[key]))
+    return found
+
+
+def _sampled(place: Place) -> Sampled:
+    """The exact places and rates at steps of a turn; between them they are interpolated, and by how much is told."""
+    rows = place(TURN * np.arange(STEPS + 1) / STEPS, 1)
+    pose, rate = rows[:, 0].T.copy(), rows[:, 1].T.copy()
+    pose[:, 2] = np.unwrap(pose[:, 2])
+    return Sampled(pose, rate)
+
+
+def _slab(plate: Plate) -> Slab:
+    return Slab(_contour(plate.outline), tuple(map(_contour, plate.holes)), plate.low, plate.high)
+
+
+def _contour(outline: ArcSpline | Polygon) -> Contour:
+    bulges = np.zeros(outline.count) if isinstance(outline, Polygon) else outline.bulges
+    return Contour.from_bulges(outline.vertices if isinstance(outline, Polygon) else outline.points, bulges)
+
+
+def _checked(pair: Clearance) -> Check:
+    x, y = pair.place
+    least = min(pair.least, pair.proved) - pair.slack
+    if pair.holds:
+        detail = f"{pair.a} and {pair.b}"
+    elif pair.collides:
+        detail = f"{pair.a} and {pair.b} meet, near ({x:.4g}, {y:.4g}) mm"
+    else:
+        detail = f"{pair.a} and {pair.b}: no clearance is proved, {pair.least:.4g} mm was found"
+    return Check("collision", pair.holds, least, 0.0, "mm", pair.at_deg, "at_least", detail=detail)

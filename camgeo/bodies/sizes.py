@@ -1,0 +1,108 @@
+"""Sizes of a printable mechanism: what a recipe gives, and what follows from the cam where it gives nothing; mm."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from camgeo.recipe.model_mechanism import MechanismAsked
+
+HALF = 0.5  # mm: what follows from the cam is a multiple of it
+LEAST_PIN = 3.0  # mm: a thinner one breaks between its layers
+MOST_PIN = 12.0
+THIN = 0.8  # mm: two lines of a common nozzle, the least that is printed
+
+
+class BodyError(ValueError):
+    """A body that cannot be made as asked: `field` of the recipe to blame, and what would do."""
+
+    def __init__(self, field: str, message: str, remedy: str) -> None:
+        super().__init__(message)
+        self.field = field
+        self.message = message
+        self.remedy = remedy
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Every size that bodies share, as `MechanismAsked` has them, and none of them None."""
+
+    clearance: float
+    gap: float
+    press: float
+    space: float
+    pin: float
+    bar: float
+    plate: float
+    link: float
+    wall: float
+    clip: float
+    knob: float
+
+    @property
+    def hole(self) -> float:
+        """Diameter of a hole that turns on a pin."""
+        return self.pin + self.clearance
+
+    @property
+    def play(self) -> float:
+        """What a body is apart from its neighbour to each side when it stands in the middle: half the clearance."""
+        return 0.5 * self.clearance
+
+    @property
+    def boss(self) -> float:
+        """Radius of what carries a pin where it is not a bar."""
+        return 0.5 * self.pin + self.wall
+
+    @property
+    def sunk(self) -> float:
+        """Depth of the sink under the base in which the shaft's retainer turns."""
+        return self.clip + 2.0 * self.gap
+
+
+def sizes_of(asked: MechanismAsked, reach: float, bore: float, roller: float | None = None) -> Sizes:
+    """Fill in what a recipe leaves open, for a cam of this reach from the shaft and this bore, and such rollers.
+
+    Raises BodyError where sizes do not go together.
+    """
+    most = MOST_PIN if roller is None else roller  # its wall is then a quarter of its diameter
+    pin = asked.pin or _half(min(max(0.11 * reach, LEAST_PIN), most))
+    wall = asked.wall or _half(max(2.0, 0.7 * pin))
+    clip = asked.clip or _half(max(2.0, 0.4 * pin))
+    sizes = Sizes(
+        clearance=asked.clearance,
+        gap=asked.gap,
+        press=asked.press,
+        space=asked.space,
+        pin=pin,
+        bar=asked.bar or pin + 2.0 * wall,
+        plate=asked.plate or _half(clip + 2.0 * asked.gap + max(3.0, 0.8 * pin)),
+        link=asked.link or max(pin, 4.0),
+        wall=wall,
+        clip=clip,
+        knob=asked.knob or _half(max(0.9 * reach, 1.6 * bore + 2.0 * wall)),
+    )
+    _go_together(sizes, bore)
+    return sizes
+
+
+def _half(length: float) -> float:
+    """Round up to whole halves of a millimetre."""
+    return HALF * math.ceil(length / HALF - 1e-9)
+
+
+def _go_together(s: Sizes, bore: float) -> None:
+    least = s.hole + 2.0 * THIN
+    if s.bar < least:
+        raise BodyError("mechanism.bar", "too narrow for the hole of a pin", f"give at least {least:.6g} mm")
+    least = s.sunk + 2.0 * THIN
+    if s.plate < least:
+        message = "too thin for the sink of the shaft's retainer"
+        raise BodyError("mechanism.plate", message, f"give at least {least:.6g} mm, or a thinner clip")
+    if s.press >= min(s.pin, bore):
+        raise BodyError("mechanism.press", "no hole is left", "give less, such as 0.1 mm")
+    least = 1.2 * bore + 2.0 * THIN  # a square's corners reach farther than its width
+    if s.knob < least:
+        raise BodyError("mechanism.knob", "does not reach beyond the bore", f"give at least {least:.6g} mm")
