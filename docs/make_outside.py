@@ -271,9 +271,9 @@ each what it measures. An area is that of the contour in mm^2 (of an SVG with it
 rounding.
 
 In short: FreeCAD, LibreCAD and Inkscape take the drawings with their arcs, FreeCAD splines too. OpenSCAD takes meshes
-and polylines; of a DXF's arcs it draws the chords, of an SVG's it makes coarse polygons, and it fills an SVG's openings.
-PrusaSlicer slices every solid. (FreeCAD's area of a face within one long spline is out by up to four percent; taken span
-by span it is right, and that is what is told.)
+and polylines; of a DXF's arcs it draws the chords, of an SVG's coarse polygons, and it fills an SVG's openings.
+PrusaSlicer slices every solid. (FreeCAD's area of a face within one long spline is out by up to four percent; taken
+span by span it is right, and that is what is told.)
 """
 
 
