@@ -15,11 +15,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from camgeo.curve import Curve
-from camgeo.fit import spline
 from camgeo.fit.arcs import arc_density, fit_arcs
 from camgeo.fit.nodes import Density, ToleranceError
 from camgeo.fit.polygon import fit_polygon, least_vertices
-from camgeo.fit.spline import fit_spline
+from camgeo.fit.spans import HOPELESS
+from camgeo.fit.spline import USABLE, fit_spline
 from camgeo.profile.support import SupportShape
 from kin.law import Segment, law, programme
 from kin.lift import Lift, lift_constant_breadth, lift_from_fourier, lift_reuleaux
@@ -219,7 +219,7 @@ def test_too_many_pieces_are_refused_with_what_can_be_held() -> None:
 
 
 def test_a_spline_span_that_is_given_up_cannot_pass() -> None:
-    assert spline.HOPELESS * spline.USABLE > 1.0
+    assert HOPELESS * USABLE > 1.0
 
 
 @settings(max_examples=25, deadline=None)

@@ -47,6 +47,7 @@ FLOORS = {
         sweep.windows
         pipeline recipe
         making.left_out making.make
+        making.mechanism
         making.drawing making.parts making.view making.table
         making.solid
         making.job
@@ -63,9 +64,9 @@ FLOORS = {
         crossing files.prism files.glb files.stl files.svg files.three_mf fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
         recipe.readers
         files.mesh part.wall recipe.build_part recipe.check_part recipe.read_part
-        causes files.precision fit.cubic fit.exact fit.free_arcs report.document report.failure
+        causes files.precision fit.exact fit.handles fit.free_arcs report.document report.failure
         bodies.places bodies.linked_places bodies.collide reach
-        bodies.forms bodies.assembly fit.trigonometric pairs recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
+        bodies.forms bodies.assembly fit.cubic fit.spans fit.trigonometric pairs recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
         bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius turning
         part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         bodies.sizes recipe.model recipe.scalars recipe.source recipe.tables

@@ -13,6 +13,9 @@ from camgeo.curve import Curve
 from camgeo.design import designed
 from camgeo.fit import spline as module
 from camgeo.fit.cubic import LEAST, contact, spans_wanted
+from camgeo.fit.handles import LOOKS, PLACES, Spans, handled, seen
+from camgeo.fit.nodes import ToleranceError
+from camgeo.fit.spans import plane
 from camgeo.fit.spline import fit_spline
 from camgeo.profile.support import SupportShape
 from camgeo.recipe import load
@@ -79,7 +82,7 @@ def test_small_spans_err_as_theory_says() -> None:
         speed = curve.sample(middle).speed
         low, high = middle - 0.5 * length / speed, middle + 0.5 * length / speed
         miss = np.abs(contact(*curve.shape.series(middle, 4)).miss)
-        _, worst, _ = module._handled(curve, low, high, 0.0)
+        _, worst, _ = handled(curve, low, high, 0.0)
         ratio = worst / (miss * length**6 / module.ON_CURVE)
         clear = miss * length**6 / module.ON_CURVE > 1e-12  # of rounding
         assert clear.sum() > 20
@@ -90,14 +93,16 @@ def test_no_span_of_a_right_length_does_better() -> None:
     """A span's handles are near the best there are: no others of a grid about them stray less by more than 2 %."""
     curve = support(25.0, {3: 2.0})
     low, high = np.array([0.9]), np.array([1.2])
-    control, worst, _ = module._handled(curve, low, high, 0.0)
+    control, worst, _ = handled(curve, low, high, 0.0)
     a, b = curve.span(low, high)
-    spans = module._Spans(low, high, a.point, a.tangent, b.point, b.tangent)
+    spans = Spans(low, high, *(plane(x) for x in (a.point, a.tangent, b.point, b.tangent)))
     own = np.array([np.hypot(*(control[0, i + 1] - control[0, i])) for i in (0, 2)])
+    feet = (low + (high - low) * PLACES)[None]
     for i in np.linspace(-0.02, 0.02, 21):
         for j in np.linspace(-0.02, 0.02, 21):
-            other = module._control(spans, (own * (1 + np.array([i, j])))[None])
-            assert np.abs(module._seen(curve, other, spans)).max() > 0.98 * worst[0]
+            gap = seen(curve, spans, (own * (1 + np.array([i, j])))[None], feet)
+            assert gap.shape == (1, LOOKS - 1)
+            assert np.abs(gap).max() > 0.98 * worst[0]
 
 
 @pytest.mark.parametrize("name", CONTOURS)
@@ -158,3 +163,43 @@ def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
     # and at the seam in direction
     first, last = pieces[0, 1] - pieces[0, 0], pieces[-1, 3] - pieces[-1, 2]
     assert abs(first[0] * last[1] - first[1] * last[0]) < 1e-11 * np.hypot(*first) * np.hypot(*last)
+
+
+@pytest.mark.parametrize("name", ["as-figure-2b", "reuleaux", "shu-wu", "w-booth"])
+@pytest.mark.parametrize("times", [1.0, 2.0, 20.0])
+def test_any_tolerance_above_the_floor_is_held_after_a_few_attempts(
+    name: str, times: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    contour = designed(load(RECIPES / f"{name}.yaml")).contour
+    assert contour is not None
+    floor = module.FLOOR * 64 * float(np.finfo(np.float64).eps) * contour.size
+    found_anew = []
+
+    def counted(curve: Curve, low: np.ndarray, *rest: object) -> tuple[np.ndarray, ...]:
+        found_anew.append(low.size)
+        return handled(curve, low, *rest)
+
+    monkeypatch.setattr(module, "handled", counted)
+    found = fit_spline(contour, times * floor)
+    assert found.bound.worst <= times * floor
+    assert sum(found_anew) <= 30 * found.count
+    with pytest.raises(ToleranceError, match="at least") as caught:
+        fit_spline(contour, 0.99 * floor)
+    assert caught.value.reached == pytest.approx(floor, rel=1e-9)
+
+
+def test_spans_between_nodes_that_stay_are_not_sought_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = support(25.0, {3: 2.0})
+    nodes = np.linspace(0.0, 6.0, 13)
+    first = module._Spans.none().between(curve, nodes[:-1], nodes[1:], 0.0, 1.0)
+    first = first.proved(curve, np.ones(12, dtype=bool), 1.0)
+    sought = []
+    monkeypatch.setattr(module, "handled", lambda *a: sought.append(a[1:3]) or handled(*a))
+    finer = np.sort(np.append(nodes, [0.75, 5.1]))
+    again = first.between(curve, finer[:-1], finer[1:], 0.0, 1.0)
+    assert [x.tolist() for x in sought[0]] == [[0.5, 0.75, 5.0, 5.1], [0.75, 1.0, 5.1, 5.5]]
+    assert np.count_nonzero(np.isnan(again.outward)) == 4
+    old = ~np.isnan(again.outward)
+    kept = np.isin(first.low, again.low[old])
+    assert np.array_equal(again.control[old], first.control[kept])
+    assert np.array_equal(again.worst[old], first.worst[kept])

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 ORDER = 6.0  # power of a span's length with which its error falls
 LEAST = 864.0  # a span of length h errs by c h^6/864 at least
-STEPS_PER_CELL = 8  # of the curve, at whose middles the density is taken
+STEPS_PER_CELL = 4  # of the curve, at whose middles the density is taken
 VANISHING = 1e-14  # relative: a leading coefficient below is rounding
 REAL = 1e-6  # relative: roots with less of an imaginary part are a double root, split by rounding
 

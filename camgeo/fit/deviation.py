@@ -178,15 +178,15 @@ def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array
     correction = bounds.speed_slope * beta_room + speed * (extra + 0.5 * m * beta_room**2) + square * product_bend
     high_bend = np.maximum(-speed_a * ma, -speed_b * mb) + correction
     low_bend = np.minimum(-speed_a * ma, -speed_b * mb) - correction
-    top = _peak(fa, fb, step, -low_bend)
-    bottom = -_peak(-fa, -fb, step, high_bend)
+    top = peak(fa, fb, step, -low_bend)
+    bottom = -peak(-fa, -fb, step, high_bend)
     top = np.where(confirmed, top, np.inf).reshape(count, nodes).max(axis=1)
     bottom = np.where(confirmed, bottom, -np.inf).reshape(count, nodes).min(axis=1)
     top[backwards], bottom[backwards] = np.inf, -np.inf
     return bottom, top, f.min(axis=1), f.max(axis=1)
 
 
-def _peak(fa: Array, fb: Array, step: Array, bend: Array) -> Array:
+def peak(fa: Array, fb: Array, step: Array, bend: Array) -> Array:
     """Greatest value over a step of a function with end values fa, fb whose second derivative is at least -bend."""
     bend = np.maximum(bend, 0.0)
     sag = bend * step**2

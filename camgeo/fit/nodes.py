@@ -33,12 +33,13 @@ def rounding(size: float) -> float:
     return 0.5 * ROUNDING_STEPS * float(np.finfo(np.float64).eps) * size
 
 
-def check_precision(size: float, tolerance: float) -> None:
+def check_precision(size: float, tolerance: float, times: float = 1.0) -> None:
     """Refuse a tolerance (mm) that double precision cannot hold on a contour that reaches `size` mm from the shaft.
 
-    Raises ToleranceError with the least tolerance that it can.
+    A form that needs more than points and distances needs so many `times` as much. Raises ToleranceError with the least
+    tolerance that is held.
     """
-    least = ROUNDING_STEPS * float(np.finfo(np.float64).eps) * size
+    least = times * ROUNDING_STEPS * float(np.finfo(np.float64).eps) * size
     if not tolerance >= least:
         raise ToleranceError(
             f"a tolerance of {tolerance:.3g} mm is below what double precision holds on a contour that reaches "

@@ -1,0 +1,224 @@
+"""Cubic spans between two points of a curve, or of a parallel beside it: the handles with which they stray least.
+
+Points and directions are complex numbers here, x + iy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.cubic import contact
+from camgeo.fit.spans import plane
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from camgeo.curve import Array, Curve
+    from camgeo.fit.spans import Complex
+
+PLACES = np.array([0.1, 0.26, 0.5, 0.74, 0.9])  # of a span: least squares there make its error equal to both sides
+MOST_LEAN = 0.6  # by which the handles of the first guess differ
+LOOKS = 16  # steps of a span at which its error is seen
+ROUNDS = 4  # of sampling the curve at the feet of the places,
+NEAR = 0.01  # of a span's length: feet that moved no more are not looked at again
+HANDLE_STEPS = 4  # for each round
+ENOUGH = 0.003  # of a span's error: handles that would change it by less are settled
+STEP = 0.3  # of a handle's logarithm, that one such step may change
+SHORTEST, LONGEST = 0.1, 2.5  # handles, times a third of the chord: beyond, a span all but folds
+FIRST_DAMPING = 1e-5  # of the equations, times their trace
+LIGHTER, HEAVIER = 0.1, 30.0  # times, after a step that served and one that did not
+HUMP = 0.2  # what humps still weigh where they do not count
+
+
+def _weights(u: Array) -> tuple[Array, Array]:
+    """Bernstein weights of a span's two inner control points at u."""
+    return 3.0 * u * (1.0 - u) ** 2, 3.0 * u**2 * (1.0 - u)
+
+
+def _freed() -> Array:
+    """Projection (m, m) of distances at `PLACES` that leaves little of the humps (x (x^2 - 1))^2."""
+    x = 2.0 * PLACES - 1.0
+    hump = (x * (x * x - 1.0)) ** 2
+    freed: Array = np.eye(x.size) - (1.0 - HUMP) * hump[:, None] * hump / np.sum(hump * hump)
+    return freed
+
+
+def _between() -> tuple[Array, Array]:
+    """Places in a span at which its error is seen, and the matrix that interpolates there from 0, `PLACES` and 1."""
+    known = np.concatenate([[0.0], PLACES, [1.0]])
+    u = np.linspace(0.0, 1.0, LOOKS + 1)[1:-1]
+    others = [np.delete(known, i) for i in range(known.size)]
+    rows = [np.prod((u[:, None] - other) / (own - other), axis=1) for own, other in zip(known, others, strict=True)]
+    return u, np.array(rows)
+
+
+FREED = _freed()
+SEEN_AT, BETWEEN = _between()
+
+
+@dataclass(frozen=True)
+class Spans:
+    """Spans over parameters [low, high] (n,): end points and unit tangents, complex (n,)."""
+
+    low: Array
+    high: Array
+    start: Complex
+    leaving: Complex
+    end: Complex
+    arriving: Complex
+
+    def take(self, rows: NDArray[np.intp]) -> Spans:
+        """Return some of them."""
+        return Spans(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
+
+    def control(self, handles: Array) -> Array:
+        """Bezier points (n, 4, 2) with handles (n, 2)."""
+        first, last = self.start + handles[:, 0] * self.leaving, self.end - handles[:, 1] * self.arriving
+        points = np.stack([self.start, first, last, self.end], axis=1)
+        control: Array = points.view(np.float64).reshape(-1, 4, 2)
+        return control
+
+
+def handled(curve: Curve, low: Array, high: Array, out: float) -> tuple[Array, Array, Array]:
+    """Cubic spans (n, 4, 2) between points `out` mm outside the curve.
+
+    With them comes how far each is seen to stray from the curve, and from the parallel through its ends (n,). Handles
+    are sought from two beginnings, as the equations for them may have more than one solution; the closer span counts.
+    """
+    a, b = curve.span(low, high)
+    leaving, arriving = plane(a.tangent), plane(b.tangent)
+    start, end = plane(a.point) - 1j * out * leaving, plane(b.point) - 1j * out * arriving
+    chord = np.abs(end - start)
+    # handles of a circular arc with these ends, and how the nearest cubic's differ
+    third = chord * 2.0 / (3.0 * (1.0 + np.maximum(0.5 * np.abs(leaving + arriving), 1e-6)))
+    speed, turn = curve.shape.series(0.5 * (low + high), 4)
+    lean = np.clip(np.nan_to_num(contact(speed, turn).lean) * chord, -MOST_LEAN, MOST_LEAN)
+    leaning = np.column_stack([third * (1.0 - lean), third * (1.0 + lean)])
+    spans = Spans(low, high, start, leaving, end, arriving)
+    both = np.tile(np.arange(low.size), 2)
+    guess = np.concatenate([leaning, np.column_stack([third, third])])
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        # at a cusp nothing is finite: the error comes out unknown, and the span is divided
+        handles, t, size = settled(curve, spans.take(both), guess, out)
+        first = np.nan_to_num(size.reshape(2, -1), nan=np.inf)
+        chosen = np.argmin(first, axis=0) * low.size + np.arange(low.size)
+        gap = seen(curve, spans, handles[chosen], t[chosen])
+    return spans.control(handles[chosen]), np.abs(gap).max(axis=1), np.abs(gap - out).max(axis=1)
+
+
+@dataclass(frozen=True)
+class _Near:
+    """Points of spans seen from the curve near their feet at t (n, m): ``offset + first h0 - second h1``, complex.
+
+    The real part is along the curve's tangent there, the imaginary part to its left.
+    """
+
+    t: Array
+    speed: Array
+    curvature: Array
+    slope: Array
+    offset: Complex
+    first: Complex
+    second: Complex
+
+    @staticmethod
+    def of(curve: Curve, spans: Spans, u: Array, t: Array) -> _Near:
+        """See the places u (m,) of spans from the curve at t (n, m)."""
+        at = curve.sample(t.ravel())
+        along = plane(at.tangent).conj().reshape(t.shape)
+        one, two = _weights(u)
+        share = u * u * (3.0 - 2.0 * u)
+        base = spans.start[:, None] + share * (spans.end - spans.start)[:, None]
+        return _Near(
+            t,
+            at.speed.reshape(t.shape),
+            at.curvature.reshape(t.shape),
+            at.curvature_slope.reshape(t.shape),
+            (base - plane(at.point).reshape(t.shape)) * along,
+            one * spans.leaving[:, None] * along,
+            two * spans.arriving[:, None] * along,
+        )
+
+    def gaps(self, handles: Array) -> tuple[Array, Array, Array, Array]:
+        """Distance outside the curve with handles (n, 2), its gradient along and outward, and how far the feet are off.
+
+        By the circle of curvature and the curvature's own slope: off by the fourth power of the last. All (n, m).
+        """
+        at = self.offset + handles[:, :1] * self.first - handles[:, 1:] * self.second
+        x, y = at.real, -at.imag
+        up, across = 1.0 + self.curvature * y, self.curvature * x
+        root = np.hypot(up, across)
+        foot = x / np.maximum(up, 1e-3)
+        gap = (2.0 * y + self.curvature * (x * x + y * y)) / (1.0 + root) + self.slope * foot**3 / 6.0
+        return gap, across / root, up / root, foot
+
+
+def settled(curve: Curve, spans: Spans, handles: Array, out: float) -> tuple[Array, Array, Array]:
+    """Handles (n, 2) whose span strays least from the curve, in the mean of squares at `PLACES`.
+
+    With them come the feet of the places (n, m) and the squares' sum (n,). Where the ends lie `out` mm outside, it is
+    the parallel there that the span is to keep to, and the humps to both sides of its middle, which go as far beyond
+    the curve, hardly count. Levenberg's and Marquardt's steps, of the handles' logarithms: near places where the
+    nearest cubic ceases to exist the equations have no solution. Any handles will do, the proof takes them as they are.
+    """
+    width = spans.high - spans.low
+    low, high = spans.low[:, None], spans.high[:, None]
+    near = _Near.of(curve, spans, PLACES, low + width[:, None] * PLACES)
+    third = np.abs(spans.end - spans.start)[:, None] / 3.0
+    size = np.zeros(len(handles))
+    for number in range(ROUNDS):
+        foot = near.gaps(handles)[3]
+        t = np.clip(near.t + foot / np.maximum(near.speed, 1e-300), low, high)
+        if number > 1 and not (np.abs(t - near.t).max(axis=1) > NEAR * width).any():
+            break
+        near = _Near.of(curve, spans, PLACES, t)
+        handles, size = _stepped(near, handles, third, out)
+    return handles, t, size
+
+
+def _stepped(near: _Near, handles: Array, third: Array, out: float) -> tuple[Array, Array]:
+    """Handles (n, 2) that stray least by what is known near the feet, and the sum of squares (n,)."""
+
+    def looked(handles: Array) -> tuple[Array, Complex]:
+        gap, along, outward, _ = near.gaps(handles)
+        slope = along + 1j * outward
+        first, second = (slope * near.first).real * handles[:, :1], (slope * near.second).real * handles[:, 1:]
+        gain: Complex = first - 1j * second
+        if out:
+            gap, gain = (gap - out) @ FREED, gain @ FREED
+        return gap, gain
+
+    # the two columns of the gain are one complex number, so that half as many sums do
+    gap, gain = looked(handles)
+    size = (gap * gap).sum(axis=1)
+    damping = np.full(len(handles), FIRST_DAMPING)
+    for _ in range(HANDLE_STEPS):
+        difference, product = (gain * gain).sum(axis=1), (gain * gap).sum(axis=1)
+        trace = (gain.real**2 + gain.imag**2).sum(axis=1)
+        # of the matrix (a b; b c) of the normal equations: a + c, and a - c + 2 i b
+        whole = trace * (1.0 + 2.0 * damping) + 1e-300
+        change = 2.0 * (whole * product - difference * product.conj()) / (whole**2 - np.abs(difference) ** 2)
+        moved = (gain * change[:, None].conj()).real
+        if not ((moved * moved).sum(axis=1) > ENOUGH**2 * size).any():
+            break
+        step = np.clip(np.stack([change.real, change.imag], axis=1), -STEP, STEP)
+        tried = np.clip(handles * np.exp(-step), SHORTEST * third, LONGEST * third)
+        gap_, gain_ = looked(tried)
+        size_ = (gap_ * gap_).sum(axis=1)
+        better = size_ < size
+        row = better[:, None]
+        handles, gap, gain = np.where(row, tried, handles), np.where(row, gap_, gap), np.where(row, gain_, gain)
+        size = np.where(better, size_, size)
+        damping = np.where(better, LIGHTER * damping, HEAVIER * damping)
+    return handles, size
+
+
+def seen(curve: Curve, spans: Spans, handles: Array, t: Array) -> Array:
+    """Distance of spans outside the curve at a few places (n, m): quick, no proof; `t` (n, m) are feet of `PLACES`."""
+    known = np.column_stack([spans.low, t, spans.high])
+    feet = np.clip(known @ BETWEEN, spans.low[:, None], spans.high[:, None])
+    gap: Array = _Near.of(curve, spans, SEEN_AT, feet).gaps(handles)[0]
+    return gap

@@ -1,0 +1,240 @@
+"""How far cubic spans lie from the exact curve: proved, not sampled.
+
+A span covers a parameter interval of the curve. Let g be how far outside the curve it meets the normal at t, gamma the
+angle from the curve's tangent to its own, v its speed and k its curvature there. Then
+
+    v cos gamma = sigma + g omega,    g' = -v sin gamma,    gamma' = k v - omega,
+
+so g'' is known at every node, and is -sigma m but for small terms, m = k sigma - omega. Between two nodes m differs
+from its chord by what the second derivatives of k, sigma and omega allow, and g from its own chord by what g'' allows:
+the error falls as the fourth power of the step. Nodes are added where that still matters.
+
+First gamma and g are confined: no place is farther than half a step from a node, so as long as gamma stays within some
+bound and g within another, gamma' is bounded, and if gamma and g then keep within less than assumed, neither can ever
+leave (continuity). With those bounds m is bounded over the whole step, and with m gamma and g once more, more closely.
+As v stays above 0 the span's point runs forward from one node to the next: every normal of the curve between the two
+meets the span between the two, and every point of the span lies on such a normal. So the range of g bounds both
+distances, from the span to the curve and back.
+
+Points and directions are complex numbers here, x + iy.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.deviation import TURN, peak
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from camgeo.curve import Array, Bounds, Curve
+
+    Complex = NDArray[np.complex128]
+
+HOPELESS = 1.02  # times the tolerance: a span seen farther off needs no proof, and is more than a fit's limit off
+SLACK = 0.02  # of the tolerance: how far the proof may exceed what is seen before it is sharpened,
+OVER = 0.01  # and how far the tolerance, before that
+FIRST_STEPS = 24  # of a span, between nodes
+MOST_STEPS = 1024
+MOST_FINER = 8  # times, at once
+NEWTON = 6  # steps, at most, that settle feet of normals to rounding
+SETTLED = 2.0 * float(np.finfo(np.float64).eps)  # of the distance from the origin
+SPARE = 1.25  # times the rate of turning expected: what is assumed of it
+CLOSER = 3  # times the bounds of angle and distance are drawn closer
+
+
+def plane(points: Array) -> Complex:
+    """Points (..., 2) as complex numbers (...)."""
+    return np.ascontiguousarray(points).view(np.complex128)[..., 0]
+
+
+@dataclass(frozen=True)
+class Cubics:
+    """Cubics ``start + u (a + u (b + u c))``, u from 0 to 1: (n,) each."""
+
+    start: Complex
+    a: Complex
+    b: Complex
+    c: Complex
+
+    @staticmethod
+    def of(control: Array) -> Cubics:
+        """Bezier spans (n, 4, 2)."""
+        z = plane(control)
+        leg = np.diff(z, axis=1)
+        bend = np.diff(leg, axis=1)
+        return Cubics(z[:, 0], 3.0 * leg[:, 0], 3.0 * bend[:, 0], bend[:, 1] - bend[:, 0])
+
+    def column(self) -> Cubics:
+        """Give the same, to be used at several places of each (n, 1)."""
+        return Cubics(self.start[:, None], self.a[:, None], self.b[:, None], self.c[:, None])
+
+    def ahead(self, u: Array) -> Complex:
+        """Points less the start."""
+        return u * (self.a + u * (self.b + u * self.c))
+
+    def velocity(self, u: Array) -> Complex:
+        """First derivative by u."""
+        return self.a + u * (2.0 * self.b + u * (3.0 * self.c))
+
+    def acceleration(self, u: Array) -> Complex:
+        """Second derivative by u; the third is 6 c."""
+        return 2.0 * self.b + u * (6.0 * self.c)
+
+
+def spans_deviation(curve: Curve, control: Array, low: Array, high: Array, tolerance: float) -> tuple[Array, Array]:
+    """Proved greatest outward and inward distance (n,) of Bezier spans (n, 4, 2) from the curve over [low, high] (n,).
+
+    Each span meets the normals at its two ends in its own ends, and no interval holds a break. Infinite where unproved;
+    spans farther off than the tolerance are not proved any closer than it takes to see that.
+    """
+    count = low.size
+    out, into = np.full(count, np.inf), np.full(count, np.inf)
+    todo, steps = np.arange(count), FIRST_STEPS
+    while todo.size and steps <= MOST_STEPS:
+        top, bottom, seen = _ranges(curve, Cubics.of(control[todo]), low[todo], high[todo], steps)
+        out[todo], into[todo] = top, bottom
+        proved = np.maximum(top, bottom)
+        loose = (proved - seen > SLACK * tolerance) | (proved > (1.0 + OVER) * tolerance)
+        hopeless = seen > HOPELESS * tolerance
+        far = todo[hopeless]
+        out[far], into[far] = np.minimum(out[far], seen[hopeless]), np.minimum(into[far], seen[hopeless])
+        open_ = loose & ~hopeless
+        # what is proved beyond what is seen falls as the fourth power of the step
+        beyond = np.minimum(proved[open_] - seen[open_], MOST_FINER**4 * SLACK * tolerance)
+        steps *= 2 ** max(1, math.ceil(0.25 * math.log2(float(beyond.max(initial=0.0)) / (SLACK * tolerance) + 1e-9)))
+        todo = todo[open_]
+    return out, into
+
+
+def _ranges(curve: Curve, spans: Cubics, low: Array, high: Array, steps: int) -> tuple[Array, Array, Array]:
+    """Proved greatest outward and inward distance of each span, and the greatest seen at nodes (each (n,))."""
+    count = low.size
+    share = np.linspace(0.0, 1.0, steps + 1)
+    t = low[:, None] + (high - low)[:, None] * share
+    t[:, -1] = high
+    at = curve.sample(t.ravel(), np.tile(np.where(share < 1.0, 1, -1), count))
+    point, tangent = plane(at.point).reshape(t.shape), plane(at.tangent).reshape(t.shape)
+    speed, turn = at.speed.reshape(t.shape), at.turn.reshape(t.shape)
+    cubic = spans.column()
+    offset = cubic.start - point
+    u = np.broadcast_to(share, t.shape).copy()
+    along = tangent.conj()
+    enough = SETTLED * float(np.abs(point).max())
+    for _ in range(NEWTON):
+        miss = ((offset + cubic.ahead(u)) * along).real
+        if not (np.abs(miss) > enough).any():
+            break
+        pace = (cubic.velocity(u) * along).real
+        u = np.clip(u - miss / np.where(pace > 0.0, pace, np.inf), 0.0, 1.0)
+    u[:, 0], u[:, -1] = 0.0, 1.0
+    beside = (offset + cubic.ahead(u)) * along
+    g, left = -beside.imag, np.abs(beside.real)
+    velocity, acceleration = cubic.velocity(u), cubic.acceleration(u)
+    pace = np.abs(velocity)
+    wedge = (velocity.conj() * acceleration).imag
+    angle = np.angle(velocity * along)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        # a span that stands still somewhere has no curvature there, and is not proved
+        excess = wedge / pace**3 * speed - turn
+        bounds = curve.cells.over(t[:, :-1].ravel(), t[:, 1:].ravel())
+        rates = _curvature_bounds(cubic, u, pace, wedge)
+        bend, sane = _bend(np.diff(t), bounds, rates, g=g, angle=angle, speed=speed, turn=turn, excess=excess)
+    pull = speed * excess
+    step = np.diff(t)
+    slip = np.maximum(left[:, :-1], left[:, 1:])
+    a, b = g[:, :-1], g[:, 1:]
+    top = peak(a, b, step, np.maximum(pull[:, :-1], pull[:, 1:]) + bend) + slip
+    bottom = peak(-a, -b, step, np.maximum(-pull[:, :-1], -pull[:, 1:]) + bend) + slip
+    sane &= np.isfinite(top) & np.isfinite(bottom)
+    sane &= np.diff(u) > 0.0
+    top, bottom = np.where(sane, top, np.inf), np.where(sane, bottom, np.inf)
+    return top.max(axis=1), bottom.max(axis=1), np.abs(g).max(axis=1)
+
+
+@dataclass(frozen=True)
+class _Rates:
+    """Bounds over steps of a span's curvature and of its first two derivatives by the arc length, absolute values."""
+
+    curvature: Array
+    slope: Array
+    bend: Array
+
+
+def _curvature_bounds(cubic: Cubics, u: Array, pace: Array, wedge: Array) -> _Rates:
+    """Bounds between nodes at u (n, m), from those of what curvature is made of: (n, m - 1).
+
+    With p, a, j the derivatives of the cubic, N = p x a and w = p.a: k = N/|p|^3, k_s = N'/|p|^4 - 3 N w/|p|^6 and
+    k_ss = N''/|p|^5 - (7 N' w + 3 N w')/|p|^7 + 18 N w^2/|p|^9.
+    """
+    velocity, acceleration, jerk = cubic.velocity(u), cubic.acceleration(u), 6.0 * cubic.c
+    step = np.diff(u)
+    most_a, most_j = _greater(np.abs(acceleration)), np.abs(jerk)
+    slowest = np.minimum(pace[:, :-1], pace[:, 1:]) - 0.5 * step * most_a
+    fastest = _greater(pace) + 0.5 * step * most_a
+    slowest = np.where(slowest > 0.0, slowest, np.nan)
+    square = step**2 / 8.0
+    twist = np.abs((acceleration.conj() * jerk).imag)[:, 1:]  # N'', the same all along
+    wedges = _greater(np.abs(wedge)) + square * twist
+    wedge_slopes = _greater(np.abs((velocity.conj() * jerk).imag))
+    gains = _greater(np.abs((velocity.conj() * acceleration).real)) + 3.0 * square * most_a * most_j
+    gain_slopes = most_a**2 + fastest * most_j
+    over = 1.0 / slowest
+    gain = gains * over**2
+    return _Rates(
+        wedges * over**3,
+        (wedge_slopes + 3.0 * wedges * gain) * over**4,
+        (twist + 7.0 * wedge_slopes * gain + 3.0 * wedges * (gain_slopes * over**2 + 6.0 * gain**2)) * over**5,
+    )
+
+
+def _bend(
+    step: Array, bounds: Bounds, rates: _Rates, *, g: Array, angle: Array, speed: Array, turn: Array, excess: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """By how much g'' may differ from what -sigma m is at the step's ends, and where that is confirmed: (n, m)."""
+    shape, square = step.shape, step**2 / 8.0
+    speed_slope, speed_bend = bounds.speed_slope.reshape(shape), bounds.speed_bend.reshape(shape)
+    turn_slope, turn_bend = bounds.turn_slope.reshape(shape), bounds.turn_bend.reshape(shape)
+    most = np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)).reshape(shape)
+    speeds = np.minimum(_greater(np.abs(speed)) + square * speed_bend, most)
+    slowest = np.maximum(-_greater(-speed) - square * speed_bend, bounds.speed_low.reshape(shape))
+    most = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high)).reshape(shape)
+    turns = np.minimum(_greater(np.abs(turn)) + square * turn_bend, most)
+    off, lean, half = _greater(np.abs(g)), _greater(np.abs(angle)), 0.5 * step
+
+    def within(rate: Array) -> tuple[Array, Array, Array]:
+        """Bounds of gamma and g where gamma' is at most `rate`, and of what k (v - sigma) is then."""
+        most_lean = lean + half * rate + 1e-15
+        tangent, secant = np.tan(np.minimum(most_lean, TURN)), 1.0 / np.cos(np.minimum(most_lean, TURN))
+        room = 1.0 - half * tangent * turns
+        most_off = (off + half * tangent * speeds) / np.where(room > 0.0, room, np.nan)
+        return most_lean, most_off, rates.curvature * (speeds * (secant - 1.0) + most_off * turns * secant)
+
+    rate = SPARE * (rates.curvature * (speeds + off * turns) + turns)
+    most_lean, most_off, lag = within(rate)
+    sane = (rates.curvature * speeds + lag + turns <= rate) & (most_lean < TURN) & (slowest > most_off * turns)
+    # how fast the span runs, and its second derivative of m, from the first bounds
+    secant, tangent = 1.0 / np.cos(np.minimum(most_lean, TURN)), np.tan(np.minimum(most_lean, TURN))
+    pace = (speeds + most_off * turns) * secant
+    pace_slope = (speed_slope + pace * tangent * turns + most_off * turn_slope) * secant + pace * tangent * rate
+    bend = (rates.bend * pace**2 + rates.slope * pace_slope) * speeds + 2.0 * rates.slope * pace * speed_slope
+    bend += rates.curvature * speed_bend + turn_bend
+    most_excess = _greater(np.abs(excess)) + square * bend
+    for _ in range(CLOSER):
+        rate = np.minimum(rate, most_excess + lag)
+        most_lean, most_off, lag = within(rate)
+    tangent = np.tan(np.minimum(most_lean, TURN))
+    small = pace_slope * tangent + most_off * turns * rate + speeds * lag
+    excess_slope = np.abs(np.diff(excess)) / step + half * bend
+    product = speed_bend * most_excess + 2.0 * speed_slope * excess_slope + speeds * bend
+    return small + square * product, sane
+
+
+def _greater(value: Array) -> Array:
+    """Greater of the values (n, m) at both ends of each step (n, m - 1)."""
+    return np.maximum(value[:, :-1], value[:, 1:])
