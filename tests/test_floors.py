@@ -48,6 +48,7 @@ FLOORS = {
         pipeline recipe
         making.left_out making.make
         making.mechanism
+        making.mechanism
         making.drawing making.parts making.view making.table
         making.solid
         making.job

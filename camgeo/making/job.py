@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.curve import CurveError
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from camgeo.bodies.assembly import Assembly
     from camgeo.curve import Curve
     from camgeo.design import Design
     from camgeo.fit.pieces import Bound, Outline
@@ -37,11 +38,15 @@ class Made(NamedTuple):
 
 @dataclass(frozen=True)
 class Job:
-    """A cam that can be made: its recipe, its exact design, and the fits that its files share."""
+    """A cam that can be made: its recipe, its exact design, and the fits that its files share.
+
+    `assemblies` holds the mechanism's bodies once a file has asked for them.
+    """
 
     recipe: Recipe
     design: Design
     outlines: Outlines
+    assemblies: list[Assembly] = field(default_factory=list, repr=False)
 
     @staticmethod
     def of(recipe: Recipe, design: Design, clock: Clock | None = None) -> Job:

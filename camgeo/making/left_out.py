@@ -20,6 +20,8 @@ def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
         found.append(("bore", "part.bore is not given"))
     if recipe.dynamics is None:
         found.append(("dynamics", "dynamics is not given"))
+    if not any(request.parts == "all" for request in requests):
+        found.append(("mechanism", "no file is asked for with parts: all"))
     found += [*_checks(design), *_of_linkage(recipe, design)]
     if design.trimmed and recipe.verify.motion_error is None:
         found.append(("motion", "the contour is trimmed and verify.motion_error is not given: told, not judged"))
@@ -59,7 +61,9 @@ def _of_linkage(recipe: Recipe, design: Design) -> list[Skipped]:
         return [("linkage", "linkage is not given")]
     if not design.driven.turns:
         why = "the mechanism does not turn: it has no motion over the shaft angle"
-        asked = ["csv"] if any(request.kind == "csv" for request in recipe.export.files) else []
+        files = recipe.export.files
+        asked = ["csv"] if any(request.kind == "csv" for request in files) else []
+        asked += ["mechanism"] if any(request.parts == "all" for request in files) else []
         return [(what, why) for what in ("linkage-error", *asked)]
     found = [("dwell", "dwell is not given")] if recipe.dwell is None else []
     if design.trimmed and recipe.verify.output_error is None:

@@ -19,6 +19,10 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     Raises RecipeErrors where a tolerance cannot be held or no such file can be made, SurroundingsError where the disk
     or a missing extra stands in the way. A page is no such request: it tells of all other files.
     """
+    if request.parts == "all":
+        from camgeo.making.mechanism import make_mechanism
+
+        return make_mechanism(job, request, path)
     match request.kind:
         case "dxf" | "svg":
             from camgeo.making.drawing import make_drawing
