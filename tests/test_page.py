@@ -556,3 +556,18 @@ def test_a_watch_by_the_command_ends_with_130_on_an_interrupt(tmp_path: Path) ->
 def test_a_watch_takes_one_recipe(more: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "a.yaml", *more, "--watch"]) == 2
     assert "--watch takes one recipe" in capsys.readouterr().err
+
+
+def test_hub_and_timing_mark_are_drawn_on_the_cam(tmp_path: Path) -> None:
+    part = "part: {thickness: 8, bore: 8, hub: {diameter: 16, height: 6}, mark: {as: engrave}}\n"
+    cam = "cam: {kind: support, p: 25 + 2*cos(3*t)}\n"
+    path = tmp_path / "a.yaml"
+    path.write_text(f"{cam}{part}export: {{tolerance: 0.01, files: [dxf]}}\nverify: {{angles: 8}}\n")
+    recipe = load(path)
+    disk = content(recipe, designed(recipe), []).scene.bodies[0]
+    roles = [shape.role for shape in disk.shapes]
+    assert roles == ["metal", "hub", "timing mark"]  # no line shows the zero besides
+    low, high = disk.shapes[2].rings[0].points.min(axis=0), disk.shapes[2].rings[0].points.max(axis=0)
+    assert low[0] > 8.0
+    assert high[0] < 27.0
+    assert (low[1], high[1]) == pytest.approx((-0.25, 0.25))

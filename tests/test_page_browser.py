@@ -130,7 +130,7 @@ def test_the_cam_can_be_dragged(browser: Browser, tmp_path: Path, name: str, sen
     x, y, one = page_.ask(
         "(() => { const m = document.querySelector('#drawing > g').getScreenCTM(); return [m.e, m.f, m.a]; })()"
     )
-    reach = 28.0 * one  # within the metal of either cam, outside the bore
+    reach = 13.0 * one  # within the metal of either cam, between the bore and what is cut round it
     angles = np.radians(np.linspace(100.0, 150.0, 9))
     page_.drag([(x + reach * math.cos(a), y - reach * math.sin(a)) for a in angles])
     degrees = float(page_.ask("document.documentElement.dataset.degrees"))

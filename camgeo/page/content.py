@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.page import curves, outline
 from camgeo.page.followers import SHAFT, cam, double_roller, flat, flat_pair
-from camgeo.page.scene import Scene, disc, pivot
+from camgeo.page.scene import Ring, Scene, Shape, disc, pivot
 from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.design import Design
-    from camgeo.page.scene import Array, Ring
+    from camgeo.page.scene import Array
     from camgeo.recipe.model import Recipe
     from kin.lift import Lift
     from kin.transmission import Transmission
@@ -71,6 +71,20 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
     return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
 
 
+def _on_face(design: Design) -> list[Shape]:
+    """Hub and timing mark of a part; a file's outline shows neither, or does not tell which hole is the mark."""
+    if design.body is None:
+        return []
+    found = []
+    if design.body.hub is not None:
+        found.append(Shape("hub", (disc(0.0, 0.0, 0.5 * design.body.hub.diameter),), "hub"))
+    for opening in design.body.openings:
+        if opening.name == "mark":
+            ring = Ring(opening.outline.points, opening.outline.bulges)
+            found.append(Shape("timing mark", (ring,), "zero of the motion"))
+    return found
+
+
 def _exact_rings(recipe: Recipe, design: Design) -> tuple[Ring, ...]:
     bore = recipe.part.bore
     holes = (disc(0.0, 0.0, 0.5 * bore),) if bore else ()
@@ -86,7 +100,8 @@ def _mechanism(
     reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contour is not None else "No such cam is made: a check of the exact contour fails."
-    disk = cam(drawn, bore, size, -SHAFT)
+    on_it = _on_face(design)
+    disk = cam(drawn, bore, size, -SHAFT, on_it)
     if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
         law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
         if isinstance(recipe.cam, DoubleRollerCam):
@@ -105,7 +120,7 @@ def _mechanism(
         from camgeo.page.linked import Driven, linked
 
         driven = Driven.of(design.driven.mechanism)
-        disk = cam(drawn, bore, size, driven.cam)
+        disk = cam(drawn, bore, size, driven.cam, on_it)
         bodies = linked(driven, size)
         return (
             Scene((disk, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
@@ -113,6 +128,8 @@ def _mechanism(
             driven.theta,
         )
     if design.driven is not None:
-        note = "The mechanism does not turn right round: the cam is shown in a frame that only slides. " + note
+        where = "; ".join(check.detail for check in design.driven.checks if not check.ok and check.detail)
+        slides = "The mechanism does not turn right round: the cam is shown in a frame that only slides. "
+        note = f"{slides}{where[0].upper()}{where[1:]}. {note}" if where else slides + note
     bodies = flat(lift, design.yoke_breadth, reach, size)
     return Scene((disk, pivot("shaft", 0.0, 0.0, size), *bodies), note), curves.motion(recipe, design), SHAFT

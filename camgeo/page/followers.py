@@ -28,6 +28,8 @@ from camgeo.page.scene import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from camgeo.page.scene import Array
     from kin.lift import Lift
     from kin.transmission import Transmission
@@ -35,8 +37,17 @@ if TYPE_CHECKING:
 SHAFT = TURN * np.arange(STEPS + 1) / STEPS
 
 
-def cam(drawn: list[tuple[str, tuple[Ring, ...]]], bore: float | None, size: float, turned: Array) -> Body:
-    """Return the cam: contours with holes by name, of which the first shows, and a mark along its own x axis."""
+def cam(
+    drawn: list[tuple[str, tuple[Ring, ...]]],
+    bore: float | None,
+    size: float,
+    turned: Array,
+    on_it: Sequence[Shape] = (),
+) -> Body:
+    """Return the cam: contours with holes by name, of which the first shows, and what stands `on_it`.
+
+    A line along its own x axis shows the zero of the motion where no mark of the part does.
+    """
     hole = 0.5 * bore if bore else 0.0
     shapes = [Shape("metal other" if index else "metal", rings, name) for index, (name, rings) in enumerate(drawn)]
     beyond = drawn[0][1][0].flattened()
@@ -44,10 +55,10 @@ def cam(drawn: list[tuple[str, tuple[Ring, ...]]], bore: float | None, size: flo
     ahead = beyond[beyond[:, 0] > 0.0]
     edge = float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(reach)
     first = max(hole, 1.2 * size)
-    if edge - first > size:
+    if edge - first > size and not any(shape.role == "timing mark" for shape in on_it):
         mark = Ring.through([(edge - 0.45 * (edge - first), 0.0), (edge, 0.0)], closed=False)
         shapes.append(Shape("mark", (mark,), "zero of the motion"))
-    return Body("cam", "cam", tuple(shapes), poses(0.0, 0.0, turned))
+    return Body("cam", "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
 
 
 def touched(lift: Lift, theta: Array) -> tuple[Array, Array]:

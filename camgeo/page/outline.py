@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.page.scene import Array
     from camgeo.recipe.model import Recipe
     from kin.arcs import Arcs
-    from kin.read import Drawing, Solid
+    from kin.read import AnySolid, Drawing
 
 POINTS = 1440  # of an exact contour
 MOST_PIECES = 1600  # of a file's contour that a page draws; of more, every second or third node
@@ -64,7 +64,7 @@ def read(recipe: Recipe, path: Path) -> Read | None:
 
     try:
         if kind_of(path) in SOLIDS:
-            found: Drawing | Solid = read_solid(path)
+            found: Drawing | AnySolid = read_solid(path)
             unit = 1.0
         else:
             found = drawing = read_drawing(path)
