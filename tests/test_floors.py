@@ -21,14 +21,14 @@ FLOORS = {
         envelope mechanism
         lift transmission
         chain formula possible read
-        read_3mf
+        read_3mf read_step
         dyad forces hole read_dxf read_stl read_svg switches transmission_law
         drawing svg_path
-        bearing bouncing bounding flaws floating integrated law linkage nesting roots routes syntax
-        contour dxf_entities dynamics expression frame_dwell loop piecewise
+        bearing bouncing bounding flaws floating integrated law linkage nesting roots routes step_face syntax
+        contour dxf_entities dynamics expression frame_dwell loop piecewise step_curve
         biarc dwell figures jet mobility peaks pieces shape
         bezier monotone motion response series turn
-        bernstein chaining contact drive extremes foot hull instants nearest taylor triangles
+        bernstein chaining contact drive extremes foot hull instants nearest part21 taylor triangles
         arcs ball check chebyshev distinct oscillator read_error
     """,
     "camgeo": """
@@ -48,8 +48,7 @@ FLOORS = {
         pipeline recipe
         making.left_out making.make
         making.mechanism
-        making.mechanism
-        making.drawing making.parts making.view making.table
+        making.drawing making.parts making.step making.view making.table
         making.solid
         making.job
         bodies.build outlines
@@ -59,10 +58,10 @@ FLOORS = {
         page.curves
         bodies.linked page.linked page.outline
         bodies.dyads bodies.roller bodies.yoke dynamics manufacture.cutter manufacture.inspection
-        bodies.site bodies.guide design recipe.load
-        bodies.shaft files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
+        bodies.site bodies.guide design recipe.load files.step
+        bodies.shaft files.brep files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim
-        crossing files.prism files.glb files.stl files.svg files.three_mf fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
+        crossing files.curves files.prism files.glb files.stl files.svg files.three_mf fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
         recipe.readers
         files.mesh part.wall recipe.build_part recipe.check_part recipe.read_part
         causes files.precision fit.exact fit.handles fit.free_arcs report.document report.failure
@@ -81,7 +80,7 @@ FLOORS = {
     """,
 }
 HEAVY = {
-    *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis"),
+    *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis", "lib3mf"),
     *("pyarrow", "numba", "dask", "distributed"),
 }
 
