@@ -180,9 +180,7 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
     found = steady(train, drive, rpm, scene.rests)
     entry["steady"] = _steady(scene, found)
     followed = course(train, (drive, None), rpm, TURNS)
-    entry["transient"] = _transient(followed, rpm, train)
-    entry |= _float_speed(train, drive)
-    entry["impacts"] = _impacts(followed)
+    entry |= _followed(followed, rpm, train) | _float_speed(train, drive)
     least = found.force.least
     detail = f"greatest {found.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
     unit = "N m" if scene.name == "deg" else "N"
@@ -192,12 +190,14 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
 
 def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
     from kin.bouncing import course, least_gap
+    from kin.dynamics import DynamicsError
 
     least, at = least_gap(lower, upper)
     if least > 0.0:
         followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS)
-        entry["transient"] = _transient(followed, scene.asked.rpm, scene.train)
-        entry["impacts"] = _impacts(followed)
+        if not followed.turns and followed.stopped is not None:
+            raise DynamicsError(followed.stopped)
+        entry |= _followed(followed, scene.asked.rpm, scene.train)
     swings = scene.name == "deg"
     value, unit = (math.degrees(least), "deg") if swings else (1e3 * least, "mm")
     return entry, Check("play", least > 0.0, value, 0.0, unit, degrees(at), "at_least")
@@ -213,8 +213,8 @@ def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:
         "least_at_deg": degrees(force.least_at),
         "residual": [
             {
-                "dwell_from_deg": degrees(rest.start),
-                "dwell_to_deg": degrees(rest.end),
+                "dwell_from_deg": round(degrees(rest.start), 9),
+                "dwell_to_deg": _end(rest.start, rest.end),
                 "amplitude": scene.unit * rest.amplitude,
             }
             for rest in found.residual
@@ -222,21 +222,38 @@ def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:
     }
 
 
+def _end(start: float, end: float) -> float:
+    """End of a dwell, degrees in (0, 360], or beyond 360 where it runs over 0; free of the last bits' rounding."""
+    turn = degrees(start)
+    return round(turn + math.degrees(end - start), 9)
+
+
+def _followed(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
+    """Entries for a course: `transient` and `impacts`, both None where not one turn could be followed."""
+    if not followed.turns:
+        return {"transient": None, "impacts": None, "transient_why": followed.stopped}
+    entry = {"transient": _transient(followed, rpm, train), "impacts": _impacts(followed)}
+    return entry if followed.stopped is None else entry | {"transient_why": followed.stopped}
+
+
 def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
     """From rest: the extremes of all turns, and how many turns the free motion takes to fall to a hundredth."""
     turns = followed.turns
     peak = max(range(len(turns)), key=lambda i: turns[i].greatest)
     low = min(range(len(turns)), key=lambda i: turns[i].least)
-    fading = train.at(rpm).bound.fading
-    return {
+    found = {
         "turns": len(turns),
         "settled": followed.settled,
         "peak_force": turns[peak].greatest,
         "peak_at_deg": math.degrees(turns[peak].greatest_at) + 360.0 * peak,
         "least_force": turns[low].least,
         "least_at_deg": math.degrees(turns[low].least_at) + 360.0 * low,
-        "turns_to_one_percent": math.log(100.0) / (2.0 * math.pi * fading) if fading > 0.0 else None,
     }
+    fading = train.at(rpm).bound.fading
+    # of a free motion in contact: where contact is lost it says nothing of the course
+    if fading > 0.0 and not turns[-1].free:
+        found["turns_to_one_percent"] = math.log(100.0) / (2.0 * math.pi * fading)
+    return found
 
 
 def _impacts(followed: Course) -> dict[str, Any]:
@@ -264,6 +281,14 @@ def _float_speed(train: Train, drive: Drive) -> dict[str, Any]:
     except DynamicsError as error:
         return {"float_rpm": None, "float_why": str(error)}
     entry: dict[str, Any] = {"float_rpm": found.rpm, "float_rigid_rpm": found.rigid_rpm}
-    if found.rpm is None:
+    if found.between is not None:
+        holds, floats = found.between
+        above = f"above {holds:.6g} rpm" if floats is None else f"between {holds:.6g} and {floats:.6g} rpm"
+        entry["float_between_rpm"] = list(found.between)
+        entry["float_why"] = (
+            f"not settled: it begins {above}; with {train.damping_ratio:.3g} times the critical damping there are too "
+            "many resonances to look at; more damping or less stiffness has fewer"
+        )
+    elif found.rpm is None:
         entry["float_why"] = "contact holds up to a shaft at twice the natural frequency"
     return entry

@@ -172,24 +172,23 @@ class Steady:
         return self.response.starts(np.array(self.state), 0, len(self.response))
 
 
-def steady(
-    train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, float]] = (), *, rough: bool = False
-) -> Steady:
+def steady(train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, float]] = ()) -> Steady:
     """Find the steady state of a train in contact, exactly; `rests` are dwells (from, to) in radians.
 
     The ends of rests should be knots of the drive (`drives(..., also=...)`). Raises DynamicsError at resonance without
-    damping, where there is no steady state. `rough` leaves the extremes of the force at samples of it.
+    damping, where there is no steady state.
     """
     running = train.at(rpm)
     found = running.response(drive)
-    state = _periodic(running, found)
+    state = periodic(running, found)
     starts = found.starts(state, 0, len(found))
-    force = running.force(found).peaks(starts, np.arange(len(found)), rough=rough)
+    force = running.force(found).peaks(starts, np.arange(len(found)))
     residual = tuple(_residual(running, found, starts, begin, end) for begin, end in rests)
     return Steady(force, residual, (float(state[0]), float(state[1])), found)
 
 
-def _periodic(running: Running, found: Response) -> Array:
+def periodic(running: Running, found: Response) -> Array:
+    """State (2,) at shaft angle 0 that a turn brings back to itself; DynamicsError where there is none."""
     oscillator = found.oscillator
     if oscillator.detuning < _LEAST_DETUNING * max(1.0, 1e-6 * oscillator.natural):
         raise DynamicsError(

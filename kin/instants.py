@@ -246,13 +246,15 @@ def _dip(span: Span, low: float, high: float, work: Work) -> float | None:
     return None
 
 
-def crossing(level: Callable[[float], float], low: float, high: float, limit: float, work: Work) -> float:
-    """Where a level falls below `limit` between two times, narrowed to the last bits; the later side of that.
+def crossing(
+    level: Callable[[float], float], low: float, high: float, limit: float, work: Work, *, room: float = 2.0 * _EPS
+) -> float:
+    """Where a level falls below `limit` between two times, narrowed to `room` of the later; the later side of that.
 
     Chandrupatla's method, Adv. Eng. Softw. 28, 1997: inverse interpolation where it is safe, else halving.
     """
     work.take(0)
-    room = 2.0 * _EPS * max(abs(low), abs(high))
+    room *= max(abs(low), abs(high))
     b, at_b, a, at_a = low, level(low) - limit, high, level(high) - limit
     if at_b < 0.0:
         return low

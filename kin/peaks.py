@@ -62,11 +62,11 @@ class Figure:
         found: Array = evaluated(self.series, at.stretch, x) + self.z * free_z + self.v * free_v
         return found
 
-    def peaks(self, starts: Array, stretches: Indices, *, rough: bool = False) -> Peaks:
+    def peaks(self, starts: Array, stretches: Indices) -> Peaks:
         """Extremes over the given stretches, ends included, from the states at their starts.
 
         Found by sampling every swing, and closer and closer between the neighbours of each sample that may be the
-        highest; `rough` stops at the samples, which miss less than a hundredth of the range.
+        highest.
         """
         parts: list[tuple[Samples, Array]] = []
         for chosen in np.array_split(stretches, max(1, len(stretches) * 64 // _AT_ONCE)):
@@ -74,13 +74,9 @@ class Figure:
             for first in range(0, len(at.time), _AT_ONCE):
                 part = Samples(at.stretch[first : first + _AT_ONCE + 2], at.time[first : first + _AT_ONCE + 2])
                 parts.append((part, self.at(starts, part)))
-        high = self._highest(starts, parts, 1.0, 0 if rough else _ROUNDS)
-        low = self._highest(starts, parts, -1.0, 0 if rough else _ROUNDS)
-        return Peaks(*high, *low)
+        return Peaks(*self._highest(starts, parts, 1.0), *self._highest(starts, parts, -1.0))
 
-    def _highest(
-        self, starts: Array, parts: list[tuple[Samples, Array]], sign: float, rounds: int
-    ) -> tuple[float, float]:
+    def _highest(self, starts: Array, parts: list[tuple[Samples, Array]], sign: float) -> tuple[float, float]:
         """Greatest value times sign, and where."""
         best = max(float((sign * values).max()) for _, values in parts)
         spread = best + max(float((-sign * values).max()) for _, values in parts)
@@ -98,9 +94,9 @@ class Figure:
             highest = np.argsort(-sign * values[near], kind="stable")[:_MOST_NEAR]
             columns = at.stretch[near], at.time[before], at.time[after]
             brackets += zip(*(column[highest].tolist() for column in columns), strict=True)
-        if brackets and rounds:
+        if brackets:
             stretch, low, high = (np.array(column) for column in zip(*brackets, strict=True))
-            tops, times = narrowed(lambda at: self.at(starts, at), stretch, (low, high), sign, rounds)
+            tops, times = narrowed(lambda at: self.at(starts, at), stretch, (low, high), sign)
             found += zip(tops.tolist(), stretch.tolist(), times.tolist(), strict=True)
         value, which, time = max(found, key=lambda one: sign * one[0])
         return value, float(self.response.drive.knots[which]) + time
@@ -111,13 +107,12 @@ def narrowed(
     stretch: Indices,
     between: tuple[Array, Array],
     sign: float,
-    rounds: int = _ROUNDS,
 ) -> tuple[Array, Array]:
     """Greatest value times sign between two times in each stretch (n,), and its time: (n,), (n,)."""
     low, high = between
     grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))
     best, where = np.empty(len(stretch)), low
-    for _ in range(rounds):
+    for _ in range(_ROUNDS):
         time = low[:, None] + (high - low)[:, None] * grid
         values = value(Samples(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
         top = np.argmax(sign * values, axis=1)
