@@ -1,9 +1,9 @@
-"""Assertions for one's own tests of cams: on any DXF, SVG, STL or 3MF file, and on recipes.
+"""Assertions for one's own tests of cams: on any DXF, SVG, STL, 3MF or STEP file, and on recipes.
 
 Each function returns the figure it has measured and raises AssertionError with figure, limit and place. A file that
 cannot be read as a contour fails; a file that is not there raises OSError, a recipe with faults RecipeErrors. Paths are
-those of .dxf, .svg, .stl or .3mf files, told apart so. Lengths are in mm where a function takes no recipe, else in the
-recipe's units, as in its report.
+those of .dxf, .svg, .stl, .3mf or .step files, told apart so. Lengths are in mm where a function takes no recipe, else
+in the recipe's units, as in its report.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.model import Recipe
     from kin.contour import Contour
-    from kin.read import Drawing, Solid
+    from kin.read import AnySolid, Drawing
 
     AnyPath: TypeAlias = str | PathLike[str]
     AnyRecipe: TypeAlias = Recipe | str | PathLike[str]
@@ -88,26 +88,16 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
 
 
 def assert_watertight(path: AnyPath) -> float:
-    """Assert that an STL or 3MF is closed, its triangles facing outward, none of them without area or there twice.
+    """Assert that an STL, 3MF or STEP is closed, its faces looking outward, none of them without area or there twice.
 
     Returns the enclosed volume, mm^3.
     """
     __tracebackhide__ = True
     path = Path(path)
     if not _is_solid(path):
-        raise ValueError(f"{path.name}: not a .stl or .3mf file")
+        raise ValueError(f"{path.name}: not a .stl, .3mf or .step file")
     solid = _solid(path)
-    counts = {
-        "edges with one triangle": solid.edges.open,
-        "edges with more than two triangles": solid.edges.crowded,
-        "edges between triangles that face opposite sides": solid.edges.misdirected,
-        "triangles without area": solid.degenerate,
-        "triangles drawn twice": solid.duplicate,
-    }
-    faults = [f"{number} {what}, none allowed" for what, number in counts.items() if number]
-    if not solid.volume > 0.0:
-        faults.append(f"the volume is {solid.volume:.6g} mm^3: the triangles face inward")
-    _no_faults(path, faults + _crossings(solid.contour))
+    _no_faults(path, [*(f"{fault}, none allowed" for fault in solid.faults), *_crossings(solid.contour)])
     return solid.volume
 
 
@@ -320,7 +310,7 @@ def _drawing(path: Path, gap: float) -> Drawing:
         raise AssertionError(str(error)) from None
 
 
-def _solid(path: Path) -> Solid:
+def _solid(path: Path) -> AnySolid:
     __tracebackhide__ = True
     from kin.read import ReadError, read_solid
 

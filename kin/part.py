@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from kin.envelope import Envelope
     from kin.judge import Intent
     from kin.layers import Layer
-    from kin.read_stl import Section, Solid
+    from kin.read import AnySolid
+    from kin.read_stl import Section
 
 ORDER = ("bore", "holes", "mark", "thickness", "hub", "chamfer", "set-screw")
 ROUNDING = 1e-12
@@ -44,7 +45,7 @@ def levels(intent: Intent) -> list[float]:
     return [z for z, _ in heights(intent.layers, intent.cross_holes)] if intent.layers else []
 
 
-def solid_checks(solid: Solid, sections: Sequence[Section], intent: Intent, tolerance: float) -> list[Check]:
+def solid_checks(solid: AnySolid, sections: Sequence[Section], intent: Intent, tolerance: float) -> list[Check]:
     """Check the openings, faces and sections of a solid, in mm and no longer mirrored, and its volume.
 
     The plain disc's contour is judged elsewhere; here its sections need only be the same all along.
@@ -70,7 +71,7 @@ def _told(tallies: Tallies, tolerance: float) -> list[Check]:
     return [tallies[name].check(name, tolerance) for name in ORDER if name in tallies]
 
 
-def _faces(tallies: Tallies, solid: Solid, layers: Sequence[Layer], tolerance: float) -> None:
+def _faces(tallies: Tallies, solid: AnySolid, layers: Sequence[Layer], tolerance: float) -> None:
     """Hold the horizontal faces against those that are meant."""
     meant = faces(layers)
     found = np.array(solid.faces)
@@ -125,7 +126,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Section, int
     told.measured(off, f"{bored.name}{where} is off by {off:.3g} mm")
 
 
-def _volume(solid: Solid, contour: Contour, intent: Intent, tolerance: float) -> Check:
+def _volume(solid: AnySolid, contour: Contour, intent: Intent, tolerance: float) -> Check:
     """Check the volume against closed forms, within the tolerance times the area of the walls."""
     area, perimeter, source = exact_area(contour, intent)
     expected = volume(intent.layers, intent.cross_holes, area, perimeter)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 from kin.drawing import Aside, Drawing, Fault
 from kin.read_dxf import read_dxf
 from kin.read_error import ReadError
+from kin.read_step import StepSolid, read_step
 from kin.read_stl import Solid, read_stl
 
 if TYPE_CHECKING:
@@ -16,29 +17,36 @@ if TYPE_CHECKING:
 __all__ = [
     "KINDS",
     "SOLIDS",
+    "AnySolid",
     "Aside",
     "Drawing",
     "Fault",
     "Kind",
     "ReadError",
     "Solid",
+    "StepSolid",
     "kind_of",
     "read_drawing",
     "read_dxf",
     "read_solid",
+    "read_step",
     "read_stl",
 ]
 
-Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf"]
+Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
-SOLIDS = frozenset({"stl", "3mf"})
+SOLIDS = frozenset({"stl", "3mf", "step"})
+OTHERS: dict[str, Kind] = {".stp": "step"}
+"""Suffixes that are not the kind's own."""
+AnySolid: TypeAlias = Solid | StepSolid
 
 
 def kind_of(path: Path | str) -> Kind:
     """Tell a file's kind by its suffix; raises ValueError for one that is none of KINDS."""
     path = Path(path)
+    suffix = path.suffix.lower()
     for kind in KINDS:
-        if path.suffix.lower() == f".{kind}":
+        if suffix == f".{kind}" or OTHERS.get(suffix) == kind:
             return kind
     raise ValueError(f"{path.name}: none of {', '.join(f'.{kind}' for kind in KINDS)}")
 
@@ -52,8 +60,10 @@ def read_drawing(path: Path | str, gap: float = 1e-6, *, engraved: bool = False)
     return read_dxf(path, gap, engraved=engraved)
 
 
-def read_solid(path: Path | str, heights: Sequence[float] = ()) -> Solid:
-    """Read an STL or 3MF; raises as `read_stl` and `read_3mf` do."""
+def read_solid(path: Path | str, heights: Sequence[float] = ()) -> AnySolid:
+    """Read an STL, 3MF or STEP; raises as `read_stl`, `read_3mf` and `read_step` do."""
+    if kind_of(path) == "step":
+        return read_step(path, heights)
     if kind_of(path) == "3mf":
         from kin.read_3mf import read_3mf
 

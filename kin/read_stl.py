@@ -99,6 +99,26 @@ class Solid:
         """Height of the part, mm."""
         return self.z_max - self.z_min
 
+    @property
+    def pieces(self) -> int:
+        """Number of the contour's edges."""
+        return len(self.contour)
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What a closed, oriented mesh that faces outward does not have."""
+        counts = {
+            "edges with one triangle": self.edges.open,
+            "edges with more than two triangles": self.edges.crowded,
+            "edges between triangles that face opposite sides": self.edges.misdirected,
+            "triangles without area": self.degenerate,
+            "triangles drawn twice": self.duplicate,
+        }
+        faults = [f"{number} {what}" for what, number in counts.items() if number]
+        if not self.volume > 0.0:
+            faults.append(f"the volume is {self.volume:.6g} mm^3: the triangles face inward")
+        return tuple(faults)
+
 
 def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
     """Read a part. Costs about one sort of the corners.

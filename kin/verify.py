@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from kin.contour import Contour
     from kin.drawing import Drawing
     from kin.frame import LinkageVerdict
-    from kin.read import Kind
-    from kin.read_stl import Solid
+    from kin.read import AnySolid, Kind
 
 __all__ = ["DwellAsked", "Intent", "Limits", "Verdict", "verify"]
 
@@ -39,7 +38,7 @@ MOST_NAMED = 5  # faults named in a message
 class Verdict:
     """What was found of a file.
 
-    kind            dxf, svg, stl or 3mf
+    kind            dxf, svg, stl, 3mf or step
     checks          units, closed, contour, motion, bore, ... ; or the one that says why the file cannot be read
     motion, play    as the contour gives them by contact; None without contact, play also for one-sided followers
     measured_error  two-sided distance from the exact contour, mm
@@ -62,7 +61,7 @@ class Verdict:
 
 
 def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
-    """Judge a DXF, SVG, STL or 3MF file, told apart by the suffix, at `angles` equal steps of the shaft.
+    """Judge a DXF, SVG, STL, 3MF or STEP file, told apart by the suffix, at `angles` equal steps of the shaft.
 
     A file from which no contour can be read gets a verdict that says why. Raises OSError as the file system does, and
     ValueError for another suffix or no angles.
@@ -72,7 +71,7 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
         raise ValueError(f"a file is judged at one shaft angle at least, not {angles}")
     phi = TURN / angles * np.arange(angles, dtype=np.float64)
     try:
-        read = _of_solid if kind in SOLIDS else _of_drawing
+        read = _of_program if kind == "gcode" else _of_solid if kind in SOLIDS else _of_drawing
         checks, contour, pieces = read(path, intent, limits)
     except ReadError as error:
         unread = "watertight" if kind in SOLIDS else "closed" if error.reason in NOT_CLOSED else "readable"
@@ -102,6 +101,25 @@ def _of_drawing(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check]
         return [*checks, *drawn_checks(holes, engraved, intent, limits.tolerance)], contour, drawing.pieces
     bore = bore_check(holes, intent.bore, limits.tolerance)
     return [*checks, bore] if bore else checks, contour, drawing.pieces
+
+
+def _of_program(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
+    """Read a program: the checks on it and on what it mills, that contour as if not mirrored, number of its moves."""
+    from kin.milled import milled
+    from kin.read_gcode import read_gcode
+
+    if intent.milling is None:
+        raise ReadError("unsupported", "how the part is milled is not given", path)
+    program = read_gcode(path)
+    done = milled(program, intent.milling, limits.tolerance)
+    contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (done.contour, *done.holes))
+    checks = [_units_check(program.units_mm, intent.mm), _count_check("closed", _crossing_places(contour)), *done.checks]
+    if intent.featured:
+        from kin.part import drawn_checks
+
+        return [*checks, *drawn_checks(holes, [], intent, limits.tolerance)], contour, done.pieces
+    bore = bore_check(holes, intent.bore, limits.tolerance)
+    return [*checks, bore] if bore else checks, contour, done.pieces
 
 
 def _all_placed(contours: Sequence[Contour], intent: Intent) -> tuple[Contour, ...]:
@@ -151,7 +169,7 @@ def _of_solid(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], 
         ]
         contour = sections[0].contour
         checks = [_watertight_check(solid, contour)]
-        return [*checks, *solid_checks(solid, sections, intent, limits.tolerance)], contour, len(contour)
+        return [*checks, *solid_checks(solid, sections, intent, limits.tolerance)], contour, solid.pieces
     solid = read_solid(path)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (solid.contour, *solid.holes))
     checks = [_watertight_check(solid, contour)]
@@ -161,25 +179,15 @@ def _of_solid(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], 
     if intent.thickness is not None:
         checks.append(_thickness_check(solid, intent.thickness, limits.tolerance))
         checks.append(volume_check(solid.volume, solid.thickness, contour, intent, limits.tolerance))
-    return checks, contour, len(contour)
+    return checks, contour, solid.pieces
 
 
-def _watertight_check(solid: Solid, contour: Contour) -> Check:
-    """Check that each edge has two triangles that run along it either way, facing outward, and none is there twice."""
-    counts = {
-        "edges with one triangle": solid.edges.open,
-        "edges with more than two triangles": solid.edges.crowded,
-        "edges between triangles that face opposite sides": solid.edges.misdirected,
-        "triangles without area": solid.degenerate,
-        "triangles drawn twice": solid.duplicate,
-    }
-    faults = [f"{number} {what}" for what, number in counts.items() if number]
-    if solid.volume <= 0.0:
-        faults.append("the triangles face inward")
-    return _count_check("watertight", faults + _crossing_places(contour))
+def _watertight_check(solid: AnySolid, contour: Contour) -> Check:
+    """Check that each edge has two faces that run along it either way, facing outward, and the contour no crossing."""
+    return _count_check("watertight", [*solid.faults, *_crossing_places(contour)])
 
 
-def _thickness_check(solid: Solid, thickness: float, tolerance: float) -> Check:
+def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Check:
     """Check that the part reaches from z = 0 to its thickness, with walls that stand upright all the way."""
     off = max(abs(solid.z_min), abs(solid.z_max - thickness))
     detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, 0 to {thickness:.9g} mm is meant"

@@ -32,6 +32,10 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
             from camgeo.making.solid import make_solid
 
             return make_solid(job, request, path)
+        case "step":
+            from camgeo.making.step import make_step
+
+            return make_step(job, request, path)
         case "glb":
             from camgeo.making.view import make_view
 
@@ -40,12 +44,16 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
             from camgeo.making.table import make_table
 
             return make_table(job, request, path)
+        case "gcode":
+            from camgeo.making.gcode import make_gcode
+
+            return make_gcode(job, request, path)
     raise ValueError(f"nothing makes {request.kind} alone")
 
 
 def foresee(job: Job, request: FileRequest) -> None:
     """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
-    if request.kind in SOLIDS:
+    if request.kind in SOLIDS - {"step"}:
         from camgeo.making.solid import aim
 
         aim(job, request)

@@ -10,6 +10,7 @@ from camgeo.files.dxf import Circle, Cutout
 if TYPE_CHECKING:
     from camgeo.files.mesh import Mesh, MeshFacts
     from camgeo.files.precision import Precision
+    from camgeo.files.solid import Solid
     from camgeo.fit.pieces import Polygon
     from camgeo.part.body import Body
 
@@ -55,8 +56,17 @@ def part_mesh(polygon: Polygon, body: Body, *, tolerance: float, precision: Prec
 
         outlines = [opening.outline for opening in body.openings]
         return extruded(polygon, holes=outlines, thickness=body.thickness, tolerance=tolerance, precision=precision)
-    from camgeo.files.solid import Cut, Drill, Solid, joined
+    from camgeo.files.solid import joined
 
+    return joined(polygon, solid_of(body), tolerance=tolerance, precision=precision)
+
+
+def solid_of(body: Body) -> Solid:
+    """What a body is made of, round whatever outline its contour is given; raises ValueError without a thickness."""
+    from camgeo.files.solid import Cut, Drill, Solid
+
+    if body.thickness is None:
+        raise ValueError("a solid needs a thickness")
     cuts = [
         Cut(opening.outline, body.bottom if opening.depth is None else body.thickness - opening.depth, top)
         for opening in body.openings
@@ -68,5 +78,4 @@ def part_mesh(polygon: Polygon, body: Body, *, tolerance: float, precision: Prec
         slope = math.sqrt(1.0 - min(body.screw.diameter / body.bore, 1.0) ** 2) if body.bore else 1.0
         drill = Drill(body.screw.at, body.screw.diameter, body.screw_height, 0.5 * body.hub.diameter + 1.0, slope)
     hub = None if body.hub is None else body.hub.diameter
-    solid = Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill)
-    return joined(polygon, solid, tolerance=tolerance, precision=precision)
+    return Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill)

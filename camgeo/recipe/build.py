@@ -58,6 +58,7 @@ SAMPLES = 360  # angles at which a sweep looks at a design
 CHOSEN: dict[FileKind, Values] = {  # what a file is where its options do not say
     "dxf": {"as": "arcs", "version": "R2010"},
     "svg": {"as": "arcs"},
+    "step": {"as": "arcs"},
     "csv": {"as": "motion"},
 }
 

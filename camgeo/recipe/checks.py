@@ -125,6 +125,9 @@ def _files(values: Values, reader: Reader) -> None:
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
         if request.kind == "gcode":
             _milling(path, reader)
+        if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
+            remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
+            reader.fault_at(f"{path}.step.as", "the chamfer of a spline is no spline", f"'{request.as_}'", remedy)
         if request.as_ in {"spline", "exact"} and request.version == "R12":
             remedy = "give arcs or polyline, or a later version"
             reader.fault_at(f"{path}.dxf.as", "R12 has no splines", f"'{request.as_}'", remedy)

@@ -310,13 +310,13 @@ class Sweep:
     refine: bool
 
 
-FileKind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "glb", "csv", "html", "gcode"]
+FileKind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "glb", "csv", "html", "gcode"]
 KINDS: tuple[FileKind, ...] = get_args(FileKind)
 NO_CONTOUR = frozenset({"csv", "html", "glb"})
 """Kinds of file that hold no contour to be judged."""
 NO_PART = NO_CONTOUR | {"gcode"}
 """Kinds of file that do not show the part itself."""
-SOLIDS = frozenset({"stl", "3mf", "glb"})
+SOLIDS = frozenset({"stl", "3mf", "step", "glb"})
 """Kinds of file that hold a solid, which needs a thickness."""
 ALL_PARTS: dict[FileKind, str] = {"stl": "cam", "3mf": "parts", "glb": "assembly"}
 """Ends of the name of the first file of all bodies."""
@@ -327,9 +327,9 @@ SUFFIXES: dict[FileKind, str] = {"gcode": "ngc"}  # of kinds that are not their 
 class FileRequest:
     """One file to write.
 
-    `as_` is of DXF, SVG and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that is made
-    different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all
-    bodies of the mechanism.
+    `as_` is of DXF, SVG, STEP and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that
+    is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of the
+    mechanism.
     """
 
     kind: FileKind

@@ -19,7 +19,7 @@ from camgeo.recipe.spec import (
     either,
     length,
 )
-from camgeo.recipe.tables import FILES, LATER_FILES
+from camgeo.recipe.tables import FILES
 
 if TYPE_CHECKING:
     from camgeo.recipe.reader import Reader, Values
@@ -129,9 +129,7 @@ def read_files(reader: Reader, field: Field, node: Node, path: str) -> list[Valu
 
 
 def _refuse_format(reader: Reader, kind: Scalar, path: str) -> None:
-    later = kind.text.lower() in LATER_FILES
-    problem = "not available in this version" if later else "no such file format"
-    reader.fault(kind.mark, path, problem, shown(kind.text), f"give {either(tuple(FILES))}")
+    reader.fault(kind.mark, path, "no such file format", shown(kind.text), f"give {either(tuple(FILES))}")
 
 
 def _format(node: Node) -> tuple[Scalar | None, Node | None]:

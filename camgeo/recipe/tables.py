@@ -51,12 +51,23 @@ FILES: dict[str, Table] = {
     ),
     "stl": Table((_PARTS, _TOLERANCE, *COMPENSATION)),
     "3mf": Table((_PARTS, _TOLERANCE, *COMPENSATION)),
+    "step": Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of: cylinders and planes, or the surface that a spline sweeps",
+                default="arcs",
+                choices=("arcs", "spline", "exact"),
+            ),
+            _TOLERANCE,
+        ),
+    ),
     "glb": Table((_PARTS, _TOLERANCE)),
     "csv": Table((Field("as", Kind.CHOICE, "which table it is", default="motion", choices=("motion", "inspection")),)),
     "html": Table(()),
     "gcode": Table((_TOLERANCE,)),
 }
-LATER_FILES = ("step",)
 
 RECIPE = Table(
     (
@@ -80,7 +91,7 @@ RECIPE = Table(
             Field(
                 "files",
                 Kind.FILES,
-                "dxf, svg, stl, 3mf, glb, csv, html, gcode, or mappings such as {dxf: {as: spline}}",
+                "dxf, svg, stl, 3mf, step, glb, csv, html, gcode, or mappings such as {dxf: {as: spline}}",
                 default="[dxf]",
             ),
         ),

@@ -1,0 +1,271 @@
+"""Solids bounded by exact surfaces, by Open CASCADE: planes, cylinders, cones and extruded splines; lengths in mm.
+
+The walls stand on closed outlines. An arc's wall is a cylinder, a line's a plane, a spline's the surface that it
+sweeps; the chamfer of an arc is a cone and that of a line a plane. Neighbouring faces share their edges from the start,
+so that nothing is sewn; only a set screw's hole is cut by the kernel, which finds where two cylinders meet.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from camgeo.files.curves import CONFUSION, centre_of, curves_of, inset, measures, point
+from camgeo.files.missing import MissingExtraError
+from camgeo.files.triangulate import RegionError
+from camgeo.fit.pieces import ArcSpline, Bound
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.files.solid import Drill, Solid
+    from camgeo.fit.pieces import Outline
+
+# shapes of the kernel have no types
+Shape = Any
+
+
+class Loop(NamedTuple):
+    """A closed wire, its edges in order, and the vertex at the start of each."""
+
+    wire: Shape
+    edges: list[Shape]
+    vertices: list[Shape]
+
+
+def need_kernel() -> None:
+    """Raise MissingExtraError where Open CASCADE is not installed."""
+    try:
+        import OCP.STEPControl
+    except ImportError as error:
+        raise MissingExtraError("a STEP file needs Open CASCADE: pip install 'camgeo[step]'") from error
+    del OCP
+
+
+def solid_shape(outline: Outline, solid: Solid) -> Shape:
+    """Return the kernel's solid: a disc round an outline, with its hub, openings, chamfers and set screw.
+
+    Raises RegionError where a piece is too short for the kernel, an arc is sharper than the chamfer, or the kernel
+    finds the solid unsound; TypeError for a chamfer along anything but arcs.
+    """
+    stack = _Stack()
+    top = solid.thickness
+    first, last = _contour(stack, outline, solid)
+    through = [cut for cut in solid.cuts if cut.low <= solid.low]
+    within = [cut for cut in through if solid.hub is not None and _is_within(cut.outline, solid.hub)]
+    low_hub, high_hub = solid.low < 0.0, solid.high > top
+    # wires in the disc's lower and upper face, and in those of the hub
+    under: list[Shape] = []
+    above: list[Shape] = []
+    inner_low: list[Shape] = []
+    inner_high: list[Shape] = []
+    for cut in solid.cuts:
+        inside = any(cut is one for one in within)
+        if not any(cut is one for one in through):
+            foot, head = stack.wall(cut.outline, cut.low, cut.high)
+            stack.lid(cut.low, foot.wire, [])
+            above.append(head.wire)
+            continue
+        foot, head = stack.wall(cut.outline, solid.low if inside else 0.0, solid.high if inside else top)
+        (inner_low if inside and low_hub else under).append(foot.wire)
+        (inner_high if inside and high_hub else above).append(head.wire)
+    if solid.hub is not None:
+        ring = _disc(0.5 * solid.hub)
+        if low_hub:
+            foot, head = stack.wall(ring, solid.low, 0.0)
+            stack.lid(solid.low, foot.wire, inner_low)
+            under.append(head.wire)
+        if high_hub:
+            foot, head = stack.wall(ring, top, solid.high)
+            stack.lid(solid.high, head.wire, inner_high)
+            above.append(foot.wire)
+    stack.lid(0.0, first.wire, under)
+    stack.lid(top, last.wire, above)
+    shape = stack.solid()
+    return shape if solid.drill is None else _drilled(shape, solid.drill)
+
+
+def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Loop, Loop]:
+    """Walls round the disc; its lowest and its highest loop."""
+    if solid.chamfer is None:
+        return stack.wall(outline, 0.0, solid.thickness)
+    if not isinstance(outline, ArcSpline):
+        raise TypeError("the chamfer of a spline is no spline")
+    c = solid.chamfer
+    foot, head = stack.wall(outline, c, solid.thickness - c)
+    inner = inset(outline, c)
+    lowest, highest = stack.loop(inner, 0.0), stack.loop(inner, solid.thickness)
+    stack.slope((lowest, inner, 0.0), (foot, outline, c))
+    stack.slope((highest, inner, solid.thickness), (head, outline, solid.thickness - c))
+    return lowest, highest
+
+
+class _Stack:
+    """Faces that share their edges."""
+
+    def __init__(self) -> None:
+        self.faces: list[Shape] = []
+
+    def loop(self, outline: Outline, z: float) -> Loop:
+        """Closed wire of an outline at a height."""
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
+
+        curves = curves_of(outline, z)
+        vertices = [BRepBuilderAPI_MakeVertex(point(start, z)).Vertex() for _, start in curves]
+        maker = BRepBuilderAPI_MakeWire()
+        edges = []
+        for k, (curve, _) in enumerate(curves):
+            ends = (vertices[k], vertices[(k + 1) % len(vertices)])
+            # a spline is taken whole: by its ends alone a closed one would be nothing
+            range_ = (curve.FirstParameter(), curve.LastParameter()) if hasattr(curve, "FirstParameter") else ()
+            made = BRepBuilderAPI_MakeEdge(curve, *ends, *range_)
+            if not made.IsDone():
+                raise RegionError(f"Open CASCADE makes no edge of piece {k}: {made.Error().name}")
+            edges.append(made.Edge())
+            maker.Add(edges[-1])
+        return Loop(maker.Wire(), edges, vertices)
+
+    def wall(self, outline: Outline, low: float, high: float) -> tuple[Loop, Loop]:
+        """Faces that stand on an outline between two heights; the loops below and above."""
+        from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+        from OCP.gp import gp_Vec
+
+        foot = self.loop(outline, low)
+        prism = BRepPrimAPI_MakePrism(foot.wire, gp_Vec(0.0, 0.0, high - low))
+        self.faces += _parts(prism.Shape(), "face")
+        edges = [prism.LastShape(edge) for edge in foot.edges]
+        vertices = [prism.LastShape(vertex) for vertex in foot.vertices]
+        return foot, Loop(_cast(prism.LastShape(), "wire"), edges, vertices)
+
+    def slope(self, inner: tuple[Loop, ArcSpline, float], outer: tuple[Loop, ArcSpline, float]) -> None:
+        """Cones and planes at 45 degrees between an outline and its parallel inside, each with its loop and height."""
+        from OCP.BRep import BRep_Builder
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeWire
+        from OCP.ShapeFix import ShapeFix_Edge, ShapeFix_Face
+        from OCP.TopoDS import TopoDS_Face
+
+        (near, small, z), (far, large, z_far) = inner, outer
+        pairs = zip(near.vertices, far.vertices, strict=True)
+        ribs = [BRepBuilderAPI_MakeEdge(_cast(a, "vertex"), _cast(b, "vertex")).Edge() for a, b in pairs]
+        count = len(ribs)
+        for k in range(count):
+            maker = BRepBuilderAPI_MakeWire()
+            for edge in (near.edges[k], ribs[(k + 1) % count], far.edges[k], ribs[k]):
+                maker.Add(_cast(edge, "edge"))
+            face = TopoDS_Face()
+            builder = BRep_Builder()
+            builder.MakeFace(face, _sloping(k, (small, z), (large, z_far)), CONFUSION)
+            builder.Add(face, maker.Wire())
+            for edge in _parts(face, "edge"):
+                ShapeFix_Edge().FixAddPCurve(edge, face, False, CONFUSION)
+            turned = ShapeFix_Face(face)
+            turned.FixOrientation()
+            self.faces.append(turned.Face())
+
+    def lid(self, z: float, outer: Shape, inner: Sequence[Shape]) -> None:
+        """Horizontal face with holes in it."""
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+        from OCP.gp import gp_Dir, gp_Pln
+
+        maker = BRepBuilderAPI_MakeFace(gp_Pln(point((0.0, 0.0), z), gp_Dir(0.0, 0.0, 1.0)), outer)
+        for wire in inner:
+            maker.Add(_cast(wire.Reversed(), "wire"))
+        self.faces.append(maker.Face())
+
+    def solid(self) -> Shape:
+        """Return the solid that the faces bound; raises RegionError where the kernel finds it unsound."""
+        from OCP.BRep import BRep_Builder
+        from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid
+        from OCP.BRepLib import BRepLib
+        from OCP.ShapeFix import ShapeFix_Shell
+        from OCP.TopoDS import TopoDS_Shell
+
+        shell = TopoDS_Shell()
+        builder = BRep_Builder()
+        builder.MakeShell(shell)
+        for face in self.faces:
+            builder.Add(shell, face)
+        turned = ShapeFix_Shell()
+        turned.FixFaceOrientation(shell)
+        solid = BRepBuilderAPI_MakeSolid(turned.Shell()).Solid()
+        BRepLib.OrientClosedSolid_s(solid)
+        return _sound(solid)
+
+
+def _drilled(shape: Shape, drill: Drill) -> Shape:
+    """Cut a radial hole, from the shaft outward."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir
+
+    along = gp_Dir(math.cos(drill.at), math.sin(drill.at), 0.0)
+    axes = gp_Ax2(point((0.0, 0.0), drill.z), along, gp_Dir(0.0, 0.0, 1.0))
+    tool = BRepPrimAPI_MakeCylinder(axes, 0.5 * drill.diameter, drill.reach).Shape()
+    solids = _parts(BRepAlgoAPI_Cut(shape, tool).Shape(), "solid")
+    if len(solids) != 1:
+        raise RegionError(f"the set screw's hole leaves {len(solids)} bodies")
+    return _sound(solids[0])
+
+
+def _sound(solid: Shape) -> Shape:
+    from OCP.BRepCheck import BRepCheck_Analyzer
+
+    if not BRepCheck_Analyzer(solid).IsValid():
+        raise RegionError("Open CASCADE finds the solid unsound")
+    return solid
+
+
+def _sloping(k: int, inner: tuple[ArcSpline, float], outer: tuple[ArcSpline, float]) -> Shape:
+    """Surface of the chamfer of piece k: a plane, or the cone whose radius grows along its axis."""
+    from OCP.Geom import Geom_ConicalSurface, Geom_Plane
+    from OCP.gp import gp_Ax3, gp_Dir
+
+    (_, z), (large, z_far) = inner, outer
+    start, end = large.points[k], large.points[(k + 1) % large.count]
+    rise = math.copysign(1.0, z_far - z)
+    if bool(measures(large)[2][k]):
+        along = (end - start) / math.hypot(*(end - start))
+        normal = gp_Dir(float(along[1]), float(-along[0]), -rise)
+        return Geom_Plane(gp_Ax3(point(start.tolist(), z_far), normal, gp_Dir(*along.tolist(), 0.0)))
+    bulge = float(large.bulges[k])
+    centre = centre_of(start, end, bulge)
+    radius = float(measures(large)[1][k])
+    c = abs(z_far - z)
+    # a bow outward is narrower inside, one inward wider
+    narrow, base, sense = (radius - c, z, rise) if bulge > 0.0 else (radius, z_far, -rise)
+    # the surface's seam lies opposite the middle of the arc, where no edge of the face can meet it
+    chord = math.copysign(1.0, bulge) * (end - start)
+    towards = gp_Dir(float(-chord[1]), float(chord[0]), 0.0)
+    axes = gp_Ax3(point(centre.tolist(), base), gp_Dir(0.0, 0.0, sense), towards)
+    return Geom_ConicalSurface(axes, 0.25 * math.pi, narrow)
+
+
+def _disc(radius: float) -> ArcSpline:
+    return ArcSpline(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2), Bound(0.0, 0.0))
+
+
+def _is_within(outline: ArcSpline, diameter: float) -> bool:
+    x_min, y_min, x_max, y_max = outline.box()
+    return math.hypot(0.5 * (x_min + x_max), 0.5 * (y_min + y_max)) < 0.5 * diameter
+
+
+def _parts(shape: Shape, kind: str) -> list[Shape]:
+    """Faces, edges or solids of a shape, each once."""
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp_Explorer
+
+    explorer = TopExp_Explorer(shape, getattr(TopAbs_ShapeEnum, f"TopAbs_{kind.upper()}"))
+    found = []
+    while explorer.More():
+        found.append(_cast(explorer.Current(), kind))
+        explorer.Next()
+    return found
+
+
+def _cast(shape: Shape, kind: str) -> Shape:
+    """Return a shape as what it is known to be."""
+    from OCP.TopoDS import TopoDS
+
+    return getattr(TopoDS, f"{kind.capitalize()}_s")(shape)

@@ -1,0 +1,166 @@
+"""Outlines as curves of Open CASCADE: lines, circles and splines at a height; lengths in mm."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.files.triangulate import RegionError
+from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon, RationalSpline
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.fit.pieces import Array
+
+CONFUSION = 1e-7  # mm: points this close are one to the kernel
+SHORTEST = 1e-6  # mm, of a piece of an outline
+FLATTEST = 1e-7  # rad: an arc that turns by less is a line here
+UNIT = float(np.finfo(np.float64).eps)
+
+# shapes and curves of the kernel have no types
+Shape = Any
+
+
+def misfit(outline: Outline) -> float:
+    """Farthest, mm, that an outline's wall may lie off it: by rounding, and where an arc is too flat for a cylinder.
+
+    A circle's centre and radius are rounded where its ends and bulge were not.
+    """
+    if not isinstance(outline, ArcSpline):
+        return 0.0
+    length, radius, flat = measures(outline)
+    sagitta = 0.5 * length * np.abs(outline.bulges)
+    return float(np.where(flat, sagitta, 8.0 * UNIT * (radius + np.abs(outline.points).max())).max())
+
+
+def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
+    """The kernel's curve of each piece of an outline at a height, and where it starts."""
+    from OCP.gp import gp_Ax2, gp_Circ, gp_Dir
+
+    if isinstance(outline, BSpline | RationalSpline):
+        return _splines(outline, z)
+    if isinstance(outline, Polygon):
+        raise TypeError("a solid has no polygons")
+    up = gp_Dir(0.0, 0.0, 1.0)
+    whole = _circle(outline)
+    if whole is not None:
+        (x, y), radius = whole
+        circle = gp_Circ(gp_Ax2(point((x, y), z), up, gp_Dir(1.0, 0.0, 0.0)), radius)
+        return [(circle, (x + radius, y))]
+    length, radii, flat = measures(outline)
+    if float(length.min()) < SHORTEST:
+        raise RegionError(
+            f"a piece of the contour is {float(length.min()):.3g} mm long, and Open CASCADE takes points within "
+            f"{CONFUSION:g} mm as one"
+        )
+    ends = np.roll(outline.points, -1, axis=0)
+    found = []
+    for k, (start, end) in enumerate(zip(outline.points, ends, strict=True)):
+        place = (float(start[0]), float(start[1]))
+        if flat[k]:
+            found.append((_line(start, end, z), place))
+            continue
+        centre = centre_of(start, end, float(outline.bulges[k]))
+        axis = up if outline.bulges[k] > 0.0 else up.Reversed()
+        towards = gp_Dir(*((start - centre) / radii[k]).tolist(), 0.0)
+        found.append((gp_Circ(gp_Ax2(point(centre.tolist(), z), axis, towards), float(radii[k])), place))
+    return found
+
+
+def _line(start: Array, end: Array, z: float) -> Shape:
+    from OCP.gp import gp_Dir, gp_Lin
+
+    return gp_Lin(point(start.tolist(), z), gp_Dir(*(end - start).tolist(), 0.0))
+
+
+def _splines(outline: BSpline | RationalSpline, z: float) -> list[tuple[Shape, tuple[float, float]]]:
+    """Curves of a spline, cut where a knot is repeated as often as its degree: there it may have a corner."""
+    from OCP.Geom import Geom_BSplineCurve
+    from OCP.gp import gp_Pnt
+    from OCP.TColgp import TColgp_Array1OfPnt
+    from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+
+    degree, control = outline.degree, outline.control
+    weights = outline.weights if isinstance(outline, RationalSpline) else np.ones(len(control))
+    if isinstance(outline, BSpline) and not outline.clamped:
+        raise ValueError("a spline must begin and end at its first control point")
+    knots, number = np.unique(outline.knots, return_counts=True)
+    found = []
+    first = begun = 0
+    for k in range(1, len(knots)):
+        first += int(number[k]) if k < len(knots) - 1 else 0
+        if k < len(knots) - 1 and number[k] < degree:
+            continue
+        here, often = knots[begun : k + 1], number[begun : k + 1].copy()
+        often[0] = often[-1] = degree + 1
+        count = int(often.sum()) - degree - 1
+        start = int(number[1 : begun + 1].sum())
+        poles, shares = TColgp_Array1OfPnt(1, count), TColStd_Array1OfReal(1, count)
+        for i in range(count):
+            x, y = control[start + i].tolist()
+            poles.SetValue(i + 1, gp_Pnt(x, y, z))
+            shares.SetValue(i + 1, float(weights[start + i]))
+        places, times = TColStd_Array1OfReal(1, len(here)), TColStd_Array1OfInteger(1, len(here))
+        for i in range(len(here)):
+            places.SetValue(i + 1, float(here[i]))
+            times.SetValue(i + 1, int(often[i]))
+        begun = k
+        x, y = control[start].tolist()
+        found.append((Geom_BSplineCurve(poles, shares, places, times, degree), (x, y)))
+    return found
+
+
+def inset(outline: ArcSpline, distance: float) -> ArcSpline:
+    """Parallel inside a smooth outline: of each arc an arc about the same centre."""
+    length, radius, flat = measures(outline)
+    chord = np.roll(outline.points, -1, axis=0) - outline.points
+    half = 2.0 * np.arctan(np.where(flat, 0.0, outline.bulges))
+    c, s = np.cos(half), np.sin(half)
+    # tangents at both ends lie half the sweep to either side of the chord
+    along = chord / length[:, None]
+    first = np.column_stack([along[:, 0] * c + along[:, 1] * s, along[:, 1] * c - along[:, 0] * s])
+    last = np.column_stack([along[:, 0] * c - along[:, 1] * s, along[:, 1] * c + along[:, 0] * s])
+    corner = np.hypot(*(first - np.roll(last, 1, axis=0)).T)
+    if distance * float(corner.max()) > 0.1 * CONFUSION:
+        raise RegionError(f"the arcs meet at {math.degrees(float(corner.max())):.3g} degrees: no chamfer runs there")
+    sharp = (outline.bulges > 0.0) & ~flat & (radius <= distance)
+    if bool(sharp.any()):
+        least = float(radius[sharp].min())
+        raise RegionError(f"an arc of radius {least:.6g} mm is sharper than the chamfer of {distance:.6g} mm")
+    inward = np.column_stack([-first[:, 1], first[:, 0]])
+    return ArcSpline(outline.points + distance * inward, outline.bulges, outline.bound)
+
+
+def measures(outline: ArcSpline) -> tuple[Array, Array, Any]:
+    """Chord, radius and whether it is taken as a line, of each piece (n,)."""
+    chord = np.roll(outline.points, -1, axis=0) - outline.points
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    flat = 4.0 * np.abs(outline.bulges) < FLATTEST
+    bulge = np.where(flat, 1.0, np.abs(outline.bulges))
+    radius = np.where(flat, 0.0, length * (1.0 + bulge * bulge) / (4.0 * bulge))
+    return length, radius, flat
+
+
+def centre_of(start: Array, end: Array, bulge: float) -> Array:
+    """Centre (2,) of an arc between two points."""
+    chord = end - start
+    centre: Array = 0.5 * (start + end) + np.array([-chord[1], chord[0]]) * ((1.0 - bulge * bulge) / (4.0 * bulge))
+    return centre
+
+
+def _circle(outline: ArcSpline) -> tuple[tuple[float, float], float] | None:
+    """Centre and radius of an outline of two halves of a circle."""
+    if outline.count != 2 or not bool((outline.bulges == 1.0).all()):
+        return None
+    x, y = (0.5 * (outline.points[0] + outline.points[1])).tolist()
+    return (x, y), 0.5 * math.hypot(*(outline.points[1] - outline.points[0]).tolist())
+
+
+def point(at: Sequence[float], z: float) -> Shape:
+    """Return the kernel's point at a place and a height."""
+    from OCP.gp import gp_Pnt
+
+    return gp_Pnt(float(at[0]), float(at[1]), z)

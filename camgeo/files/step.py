@@ -1,0 +1,139 @@
+"""Parts as STEP files (ISO 10303-21, AP214): exact solids, always in millimetres, written by Open CASCADE.
+
+Numbers are written with 17 digits, which give back the same double; the kernel's own default of 13 would move a wall of
+a large radius. Nothing in the file depends on when, where or by whom it was written.
+"""
+
+from __future__ import annotations
+
+import io
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from camgeo.files.brep import need_kernel, solid_shape
+from camgeo.files.curves import misfit
+from camgeo.fit.nodes import ToleranceError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from camgeo.files.solid import Solid
+    from camgeo.fit.pieces import Bound, Outline
+
+TIME = "2000-01-01T00:00:00"  # in place of the time of writing
+# The kernel's settings are its own for the whole process: set while a file is written, and set back.
+TEXTS = {"write.step.schema": "AP214IS", "write.step.unit": "MM"}
+NUMBERS = {"write.surfacecurve.mode": 0, "write.precision.mode": 0, "write.step.assembly": 0}
+# A real of the format needs its decimal point. The kernel's suppression of zeros drops exponents as well.
+REAL = "%.16E"
+
+
+def write_step(
+    path: Path, outline: Outline, solid: Solid, *, tolerance: float, name: str = "", about: str = ""
+) -> Bound:
+    """Write the solid round an outline; returns the contour's bound as it is written, mm.
+
+    Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError as
+    `solid_shape` does; OSError as the file system does.
+    """
+    need_kernel()
+    bound = outline.bound.widened(misfit(outline))
+    if not bound.worst <= tolerance:
+        raise ToleranceError(
+            f"STEP: the contour would be off by {bound.worst:.6g} mm, more than {tolerance:.6g} mm: circles of nearly "
+            "straight arcs are rounded",
+            bound.worst,
+        )
+    path.write_bytes(_text(solid_shape(outline, solid), name, about))
+    return bound
+
+
+def _text(shape: Any, name: str, about: str) -> bytes:  # noqa: ANN401 - shapes of the kernel have no types
+    """Write a solid out, under a name."""
+    from OCP.Interface import Interface_Static
+    from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+    from OCP.StepData import StepData_StepWriter
+
+    writer = STEPControl_Writer()  # brings the settings into being
+    with _settings(Interface_Static), _quiet():
+        model = writer.Model(True)
+        writer.Transfer(shape, STEPControl_StepModelType.STEPControl_ManifoldSolidBrep)
+        _named(model, name, about)
+        out = StepData_StepWriter(model)
+        out.FloatWriter().SetFormat(REAL)
+        out.SendModel(writer.WS().Protocol())
+        stream = io.BytesIO()
+        out.Print(stream)
+    return stream.getvalue()
+
+
+@contextmanager
+def _settings(static: Any) -> Iterator[None]:  # noqa: ANN401 - the kernel has no types
+    texts = {key: static.CVal_s(key) for key in TEXTS}
+    numbers = {key: static.IVal_s(key) for key in NUMBERS}
+    try:
+        for key, text in TEXTS.items():
+            static.SetCVal_s(key, text)
+        for key, number in NUMBERS.items():
+            static.SetIVal_s(key, number)
+        yield
+    finally:
+        for key, text in texts.items():
+            static.SetCVal_s(key, text)
+        for key, number in numbers.items():
+            static.SetIVal_s(key, number)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep the kernel's statistics from the standard output; what it fails in is still told."""
+    from OCP.Message import Message, Message_Gravity
+
+    printers = list(Message.DefaultMessenger_s().Printers())
+    levels = [printer.GetTraceLevel() for printer in printers]
+    try:
+        for printer in printers:
+            printer.SetTraceLevel(Message_Gravity.Message_Fail)
+        yield
+    finally:
+        for printer, level in zip(printers, levels, strict=True):
+            printer.SetTraceLevel(level)
+
+
+def _named(model: Any, name: str, about: str) -> None:  # noqa: ANN401 - the kernel has no types
+    """Name the product and its solid, and fill in the header."""
+    from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+    from OCP.StepBasic import StepBasic_Product
+    from OCP.StepShape import StepShape_ManifoldSolidBrep
+
+    for number in range(1, model.NbEntities() + 1):
+        entity = model.Value(number)
+        if isinstance(entity, StepBasic_Product):
+            entity.SetId(_string(name))
+            entity.SetName(_string(name))
+            entity.SetDescription(_string(about))
+        elif isinstance(entity, StepShape_ManifoldSolidBrep):
+            entity.SetName(_string(name))
+    header = APIHeaderSection_MakeHeader(model)
+    header.SetName(_string(f"{name}.step"))
+    header.SetTimeStamp(_string(TIME))
+    header.SetAuthorValue(1, _string(""))
+    header.SetOrganizationValue(1, _string(""))
+    header.SetOriginatingSystem(_string("camgeo"))
+    header.SetAuthorisation(_string(""))
+    header.SetDescriptionValue(1, _string(about or "disc cam"))
+
+
+def _string(text: str) -> Any:  # noqa: ANN401 - the kernel has no types
+    """Return a text as the format has it: what is beyond ASCII in its hexadecimal form (ISO 10303-21, 6.4.3)."""
+    from OCP.TCollection import TCollection_HAsciiString
+
+    parts = []
+    for letter in text:
+        if 32 <= ord(letter) < 127:
+            parts.append(letter)
+        else:
+            wide = ord(letter) > 0xFFFF
+            parts.append(f"\\X{4 if wide else 2}\\{ord(letter):0{8 if wide else 4}X}\\X0\\")
+    return TCollection_HAsciiString("".join(parts))

@@ -1,0 +1,321 @@
+"""Parts read back from STEP files: the one solid in it, its sections at any height, its faces, edges and volume.
+
+No CAD kernel is needed: walls are planes, cylinders and cones about upright axes, swept splines, and cylinders about
+level ones, as a cam with its hub and set screw has them. The section of each is exact. Anything else, an assembly and
+more than one solid are refused with the number of the instance.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.distinct import distinct
+from kin.drawing import Found, drawing_of
+from kin.part21 import Typed, exchange
+from kin.read_error import ReadError
+from kin.read_stl import Section
+from kin.step_curve import Space
+from kin.step_face import Plane, Tube, face_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.arcs import Array
+    from kin.contour import Contour
+    from kin.drawing import Drawing
+    from kin.part21 import Exchange
+    from kin.step_curve import Edge
+    from kin.step_face import Face
+
+__all__ = ["StepSolid", "read_step"]
+
+# Mm in a metre under each prefix of an SI unit.
+PREFIXES = {
+    "MICRO": 1e-3, "MILLI": 1.0, "CENTI": 10.0, "DECI": 100.0, "DECA": 1e4, "HECTO": 1e5, "KILO": 1e6, "NANO": 1e-6,
+}  # fmt: skip
+REPRESENTATIONS = (
+    "ADVANCED_BREP_SHAPE_REPRESENTATION",
+    "SHAPE_REPRESENTATION",
+    "MANIFOLD_SURFACE_SHAPE_REPRESENTATION",
+)
+# What puts a solid somewhere else than it is drawn.
+MOVED = ("MAPPED_ITEM", "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION", "REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION")
+# Ends are joined within the accuracy that the file states, but no closer and no farther than this, mm.
+ACCURACY = (1e-6, 1e-3)
+SAME = 1e-9  # mm: heights this close are one
+GAUSS = 24  # nodes over the height of a level hole
+AREA_NODES, AREA_WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact where a section is a cubic in the height
+MOST_NAMED = 3  # edges in a message
+
+
+@dataclass(frozen=True, eq=False)
+class StepSolid:
+    """A part as a STEP file holds it, mm; `Solid` of an STL has the same in triangles.
+
+    contour, holes      section at `height`, counter-clockwise all of them
+    pieces              lines, arcs and spans of the contour
+    z_min, z_max        least and greatest height
+    height              at which the section was taken
+    prism               the walls stand upright from the lowest face to the highest one
+    volume              mm^3, from sections
+    sections            those that were asked for, by height as asked for
+    faces               heights of the horizontal faces, rising
+    faults              edges that do not belong to exactly two faces which run along them opposite ways, and the like
+    misfit              farthest that an edge lies off its faces or its ends off itself
+    schema              of the file
+    units_mm            length of its unit
+    """
+
+    contour: Contour
+    holes: tuple[Contour, ...]
+    pieces: int
+    z_min: float
+    z_max: float
+    height: float
+    prism: bool
+    volume: float
+    sections: tuple[Section, ...]
+    faces: tuple[float, ...]
+    faults: tuple[str, ...]
+    misfit: float
+    schema: str
+    units_mm: float
+
+    @property
+    def thickness(self) -> float:
+        """Height of the part, mm."""
+        return self.z_max - self.z_min
+
+
+def read_step(path: Path | str, heights: Sequence[float] = ()) -> StepSolid:
+    """Read a part.
+
+    The contour is that of the first of `heights`, all of which become `sections`; without any it is that of the widest
+    section midway between two levels of the part.
+
+    Raises OSError as the file system does; ReadError, with the number of the instance where it has one, for what is not
+    read and where a section is not one closed contour with holes in it.
+    """
+    path = Path(path)
+    body = _Body.of(exchange(path.read_bytes(), path))
+    asked = [body.checked(z) for z in heights] or [body.widest()]
+    drawings = [body.section(z) for z in asked]
+    sections = [Section(z, one.contour, one.holes) for z, one in zip(asked, drawings, strict=True)]
+    first = drawings[0]
+    return StepSolid(
+        contour=first.contour,
+        holes=first.holes,
+        pieces=first.pieces,
+        z_min=body.levels[0],
+        z_max=body.levels[-1],
+        height=asked[0],
+        prism=body.prism,
+        volume=body.volume,
+        sections=tuple(sections) if len(heights) else (),
+        faces=tuple(distinct(np.array([face.heights[0] for face in body.lids])).tolist()),
+        faults=tuple(body.faults),
+        misfit=body.misfit,
+        schema=body.space.file.schema,
+        units_mm=body.space.mm,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """The faces and edges of one solid."""
+
+    space: Space
+    faces: list[Face]
+    edges: dict[int, Edge]
+    levels: list[float]
+
+    @staticmethod
+    def of(file: Exchange) -> _Body:
+        """Read the one solid of a file."""
+        for kind in MOVED:
+            for number in file.of(kind):
+                raise file.error(number, "an assembly is not read; export the part alone")
+        solids = [*file.of("MANIFOLD_SOLID_BREP"), *file.of("BREP_WITH_VOIDS"), *file.of("FACETED_BREP")]
+        if len(solids) != 1:
+            what = f"it holds {len(solids)} solids, where one is meant to be" if solids else "it holds no solid"
+            raise ReadError("several" if solids else "empty", what, file.path)
+        solid = solids[0]
+        kind = file.kind(solid, ("MANIFOLD_SOLID_BREP",), solid)
+        shell = file.reference(file.values(solid, kind, 2)[1], solid)
+        file.kind(shell, ("CLOSED_SHELL",), solid)
+        space = _space(file, solid)
+        edges: dict[int, Edge] = {}
+        listed = file.several(file.values(shell, "CLOSED_SHELL", 2)[1], shell)
+        faces = [face_of(space, file.reference(one, shell), edges) for one in listed]
+        if not edges:
+            raise file.error(shell, "it has no edges", "empty")
+        z = [float(place[2]) for edge in edges.values() for place in (edge.start, edge.end)]
+        for face in faces:
+            if isinstance(face.surface, Tube):
+                z += [face.surface.point[2] - face.surface.radius, face.surface.point[2] + face.surface.radius]
+        rising = np.sort(np.array(z))
+        levels = rising[np.diff(rising, prepend=-np.inf) > SAME].tolist()
+        if len(levels) < 2:
+            raise ReadError("empty", f"the part is flat: all corners lie at z = {rising[0]:g}", file.path)
+        return _Body(space, faces, edges, levels)
+
+    @property
+    def lids(self) -> list[Face]:
+        """The horizontal faces."""
+        return [face for face in self.faces if face.surface.level]
+
+    @property
+    def prism(self) -> bool:
+        """Whether all walls stand upright over the whole height."""
+        return len(self.levels) == 2 and all(face.surface.level or face.surface.upright for face in self.faces)
+
+    def checked(self, z: float) -> float:
+        """Return a height that is asked for; raises ReadError where the part does not reach there."""
+        low, high = self.levels[0], self.levels[-1]
+        if not low < z < high:
+            message = f"the part reaches from z = {low:.9g} to {high:.9g} mm: it has no section at {z:.9g}"
+            raise ReadError("several", message, self.space.file.path)
+        return z
+
+    def widest(self) -> float:
+        """Height midway between two levels at which the section is largest."""
+        middles = [0.5 * (low + high) for low, high in zip(self.levels[:-1], self.levels[1:], strict=True)]
+        return max(middles, key=self._area) if len(middles) > 1 else middles[0]
+
+    def section(self, z: float) -> Drawing:
+        """Contour and holes at a height."""
+        found = Found([], [], [], Counter())
+        for face in self.faces:
+            for one in face.section(self.space, z):
+                found.shapes.append(one)
+                found.names.append(f"face #{face.number}")
+                found.layers.append("STEP")
+        path = self.space.file.path
+        if not found.shapes:
+            raise ReadError("open", f"no face reaches through z = {z:.9g} mm", path)
+        return drawing_of(found, None, None, self.space.accuracy, path, version="STEP")
+
+    def _area(self, z: float) -> float:
+        cut = self.section(z)
+        return cut.contour.area - sum(hole.area for hole in cut.holes)
+
+    @property
+    def volume(self) -> float:
+        """Integral of the sections' area, exact but for the layers that a level hole runs through."""
+        tubes = [face.surface for face in self.faces if isinstance(face.surface, Tube)]
+        total = 0.0
+        for low, high in zip(self.levels[:-1], self.levels[1:], strict=True):
+            tube = next((one for one in tubes if abs(0.5 * (low + high) - one.point[2]) < one.radius), None)
+            if tube is not None:
+                total += self._bored(tube, low, high)
+            elif self._same_between(low, high):
+                total += (high - low) * self._area(0.5 * (low + high))
+            else:
+                heights = 0.5 * (low + high) + 0.5 * (high - low) * AREA_NODES
+                areas = np.array([self._area(float(z)) for z in heights])
+                total += 0.5 * (high - low) * float(AREA_WEIGHTS @ areas)
+        return total
+
+    def _same_between(self, low: float, high: float) -> bool:
+        reaching = [face for face in self.faces if face.heights[0] < high - SAME and face.heights[1] > low + SAME]
+        return all(face.surface.level or face.surface.upright for face in reaching)
+
+    def _bored(self, tube: Tube, low: float, high: float) -> float:
+        """Volume of a layer that a level hole runs through: its width is smooth in the angle about its axis."""
+        node, weight = np.polynomial.legendre.leggauss(GAUSS)
+        first, last = np.arcsin(np.clip((np.array([low, high]) - tube.point[2]) / tube.radius, -1.0, 1.0))
+        angle: Array = 0.5 * (first + last) + 0.5 * (last - first) * node
+        areas = np.array([self._area(float(z)) for z in tube.point[2] + tube.radius * np.sin(angle)])
+        return float(0.5 * (last - first) * tube.radius * np.sum(weight * areas * np.cos(angle)))
+
+    @property
+    def faults(self) -> list[str]:
+        """What a closed solid whose faces look outward does not have."""
+        found = []
+        count = Counter(use for face in self.faces for loop in face.loops for use in loop)
+        number = Counter(use.edge for use in count.elements())
+        for what, wrong in (
+            ("belongs to one face only", [edge for edge, times in number.items() if times == 1]),
+            ("belongs to more than two faces", [edge for edge, times in number.items() if times > 2]),
+            (
+                "is run along the same way by both its faces",
+                [use.edge for use, times in count.items() if times == 2 and number[use.edge] == 2],
+            ),
+        ):
+            named = ", ".join(f"#{edge}" for edge in sorted(wrong)[:MOST_NAMED])
+            if wrong:
+                found.append(f"{len(wrong)} edges ({named}): each {what}")
+        for lid in self.lids:
+            z = lid.heights[0]
+            normal = lid.surface.normal[2] if isinstance(lid.surface, Plane) else 0.0
+            up = (normal > 0.0) == lid.outward
+            if (abs(z - self.levels[0]) <= SAME and up) or (abs(z - self.levels[-1]) <= SAME and not up):
+                found.append(f"face #{lid.number} at z = {z:.9g} mm looks into the solid")
+        if self.misfit > self.space.accuracy:
+            found.append(f"edges lie up to {self.misfit:.3g} mm off their faces or ends")
+        return found
+
+    @cached_property
+    def misfit(self) -> float:
+        """Farthest that an edge lies off its faces, or its ends off itself, mm."""
+        return max(*(face.misfit for face in self.faces), *(edge.misfit for edge in self.edges.values()))
+
+
+def _space(file: Exchange, solid: int) -> Space:
+    """Units and accuracy of the representation that holds a solid."""
+    holders = [
+        (number, kind)
+        for kind in REPRESENTATIONS
+        for number in file.of(kind)
+        if any(item == solid for item in file.several(file.values(number, kind, 3)[1], number))
+    ]
+    if len(holders) != 1:
+        raise file.error(solid, f"{len(holders)} representations hold it, one belongs there", "syntax")
+    holder, kind = holders[0]
+    context = file.reference(file.values(holder, kind, 3)[2], holder)
+    units = file.several(file.values(context, "GLOBAL_UNIT_ASSIGNED_CONTEXT", 1)[0], context)
+    length = angle = None
+    for item in units:
+        unit = file.reference(item, context)
+        records = file.instances.get(unit, {})
+        if "LENGTH_UNIT" in records:
+            length = _unit(file, unit)
+        elif "PLANE_ANGLE_UNIT" in records:
+            angle = _unit(file, unit)
+    if length is None or not 1e-9 < length < 1e9:
+        raise file.error(context, "states no unit of length")
+    accuracy = 0.0
+    if "GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT" in file.instances[context]:
+        for item in file.several(file.values(context, "GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT", 1)[0], context):
+            measure = file.reference(item, context)
+            size = file.values(measure, "UNCERTAINTY_MEASURE_WITH_UNIT", 2)[0]
+            if isinstance(size, Typed) and size.name == "LENGTH_MEASURE":
+                accuracy = max(accuracy, file.number(size, measure) * length)
+    return Space(file, length, 1.0 if angle is None else angle, min(max(accuracy, ACCURACY[0]), ACCURACY[1]))
+
+
+def _unit(file: Exchange, number: int, depth: int = 0) -> float:
+    """Mm or rad in a unit: an SI unit, or one that is told by another."""
+    records = file.instances[number]
+    if "SI_UNIT" in records:
+        prefix, name, *_ = file.values(number, "SI_UNIT", 2)
+        if name == "RADIAN" and prefix is None:
+            return 1.0
+        if name == "METRE" and (prefix is None or prefix in PREFIXES):
+            return 1000.0 if prefix is None else PREFIXES[str(prefix)]
+        raise file.error(number, f"is no unit that is read: {prefix} {name}")
+    if "CONVERSION_BASED_UNIT" not in records or depth > 3:
+        raise file.error(number, "is no unit that is read")
+    measure = file.reference(file.values(number, "CONVERSION_BASED_UNIT", 2)[1], number)
+    kinds = ("LENGTH_MEASURE_WITH_UNIT", "PLANE_ANGLE_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT")
+    size, unit, *_ = file.values(measure, file.kind(measure, kinds, number), 2)
+    base = file.reference(unit, measure)
+    if base not in file.instances:
+        raise file.error(measure, f"refers to #{base}, which is not there", "syntax")
+    return file.number(size, measure) * _unit(file, base, depth + 1)
