@@ -20,12 +20,12 @@ FLOORS = {
         deviation flat layers resting
         envelope mechanism
         lift transmission
-        chain formula possible read
-        read_3mf read_step
-        dyad forces hole read_dxf read_stl read_svg switches transmission_law
-        drawing svg_path
+        chain formula possible read swept
+        collision read_3mf read_step
+        dyad encounter forces hole read_dxf read_stl read_svg switches transmission_law
+        drawing region svg_path
         bearing bouncing bounding flaws floating integrated law linkage nesting roots routes step_face syntax
-        contour dxf_entities dynamics expression frame_dwell loop piecewise step_curve
+        contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
         biarc dwell figures jet mobility peaks pieces shape
         bezier monotone motion response series turn
         bernstein chaining contact drive extremes foot hull instants nearest part21 taylor triangles
