@@ -1,0 +1,263 @@
+"""Printable bodies as meshes: closed forms, a second reader, their places; the judge of bodies and planted faults."""
+
+import math
+
+import numpy as np
+import pytest
+import trimesh
+
+from camgeo.bodies.body import Plate, PrintBody
+from camgeo.files.meshes import GAP, body_mesh, flat, laid_out, mirrored, standing
+from camgeo.files.precision import DECIMALS, SINGLE
+from camgeo.files.triangulate import RegionError
+from camgeo.fit.nodes import ToleranceError
+from camgeo.fit.pieces import ArcSpline, Bound, Polygon
+from kin.collision import Slab
+from kin.contour import Contour
+from kin.printed import judge_body
+
+NONE = Bound(0.0, 0.0)
+E = 0.01
+
+
+def disc(x, y, r):
+    return ArcSpline(np.array([[x + r, y], [x - r, y]]), np.ones(2), NONE)
+
+
+def box(x0, y0, x1, y1):
+    return ArcSpline(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]], dtype=float), np.zeros(4), NONE)
+
+
+BAR = box(0.0, 0.0, 40.0, 20.0)
+HOLE = disc(10.0, 10.0, 4.0)
+BODIES = {
+    "a pin on a bar": ([Plate(BAR, (HOLE,), 0.0, 4.0), Plate(disc(30.0, 10.0, 5.0), (), 4.0, 12.0)], 1),
+    "a hole covered": ([Plate(BAR, (HOLE,), 0.0, 4.0), Plate(BAR, (), 4.0, 12.0)], 0),
+    "three storeys with one bore": (
+        [
+            Plate(BAR, (HOLE,), 0.0, 4.0),
+            Plate(box(0.0, 0.0, 20.0, 20.0), (HOLE,), 4.0, 12.0),
+            Plate(disc(10.0, 10.0, 6.0), (HOLE,), 12.0, 13.3),
+        ],
+        1,
+    ),
+    "the same walls on both": (
+        [Plate(disc(0.0, 0.0, 10.1), (disc(0.0, 0.0, 4.0),), low, low + 4.1) for low in (0.0, 4.1)],
+        1,
+    ),
+}
+OVERLAPPING = [
+    Plate(BAR, (HOLE,), 0.0, 4.0),
+    Plate(box(20.0, -5.0, 60.0, 25.0), (), 2.0, 4.0),
+    Plate(disc(10.0, 10.0, 2.0), (), 0.0, 6.0),
+]
+
+
+def body(plates, name="body", **more):
+    return PrintBody(name, tuple(plates), **more)
+
+
+def exact(plates):
+    """Volume of plates that do not overlap, and the area of their walls."""
+    volume = sum((p.outline.area - sum(h.area for h in p.holes)) * (p.high - p.low) for p in plates)
+    return volume, sum(2.0 * math.pi * 30.0 * (p.high - p.low) for p in plates)
+
+
+def as_trimesh(mesh):
+    return trimesh.Trimesh(mesh.points, mesh.triangles, process=False)
+
+
+def slabs(one):
+    def contour(outline):
+        return Contour.from_bulges(outline.points, outline.bulges)
+
+    return [Slab(contour(p.outline), tuple(map(contour, p.holes)), p.low, p.high) for p in one.plates]
+
+
+def failing(mesh, one, tolerance=E):
+    corners = mesh.points[mesh.triangles] if hasattr(mesh, "points") else mesh
+    checks = judge_body(one.name, corners, slabs(one), tolerance, "body.stl")
+    assert all(one.name in check.detail for check in checks)
+    return {check.name for check in checks if not check.ok}
+
+
+@pytest.mark.parametrize("precision", [SINGLE, DECIMALS], ids=["stl", "3mf"])
+@pytest.mark.parametrize("name", BODIES)
+def test_plates_become_one_closed_body_of_their_volume(name, precision):
+    plates, handles = BODIES[name]
+    one = body(plates)
+    mesh, off = body_mesh(one, tolerance=E, precision=precision)
+    assert 0.0 < off <= E
+    read = as_trimesh(mesh)
+    assert read.is_watertight
+    assert read.is_winding_consistent
+    assert read.euler_number == 2 - 2 * handles
+    volume, walls = exact(plates)
+    assert read.volume == pytest.approx(mesh.volume, rel=1e-9)
+    assert mesh.volume == pytest.approx(volume, abs=off * walls)
+    assert np.array_equal(mesh.points, precision.nearest(mesh.points))
+    assert failing(mesh, one) == set()
+    again, _ = body_mesh(one, tolerance=E, precision=precision)
+    assert np.array_equal(again.points, mesh.points)
+    assert np.array_equal(again.triangles, mesh.triangles)
+
+
+def test_plates_may_overlap_and_fill_each_other_s_holes_in_part():
+    """The pin of radius 2 stands free in the hole of radius 4, a piece of its own, unless a plate below holds it."""
+    with pytest.raises(RegionError, match="body: its plates make 2 separate bodies, where one is meant"):
+        body_mesh(body(OVERLAPPING), tolerance=E, precision=DECIMALS)
+    held = body([*OVERLAPPING, Plate(BAR, (), -1.0, 0.0)])
+    mesh, _ = body_mesh(held, tolerance=E, precision=DECIMALS)
+    assert as_trimesh(mesh).is_watertight
+    assert failing(mesh, held) == set()
+
+
+@pytest.mark.parametrize(
+    "second", [Plate(BAR, (), 4.1, 8.0), Plate(box(40.0, 20.0, 60.0, 30.0), (), 0.0, 4.0)], ids=["above", "at a corner"]
+)
+def test_plates_that_do_not_hang_together(second):
+    with pytest.raises(RegionError, match=r"separate bodies|does not close"):
+        body_mesh(body([Plate(BAR, (), 0.0, 4.0), second]), tolerance=E, precision=DECIMALS)
+
+
+def test_a_polygon_is_taken_as_it_stands_with_its_own_bound():
+    t = np.linspace(0.0, 2.0 * np.pi, 50, endpoint=False)
+    vertices = 20.0 * np.column_stack((np.cos(t), np.sin(t)))
+    one = body([Plate(Polygon(vertices, Bound(0.004, 0.002)), (), 0.0, 5.0)])
+    mesh, off = body_mesh(one, tolerance=E, precision=SINGLE)
+    assert 0.004 < off < 0.00401
+    assert len(mesh.points) == 100
+    with pytest.raises(ToleranceError, match=r"an outline would be off by 0\.00400"):
+        body_mesh(one, tolerance=0.004, precision=SINGLE)
+
+
+def test_what_an_stl_cannot_hold_is_refused():
+    one = body([Plate(box(0.0, 0.0, 100.1, 20.0), (), 0.0, 4.0)])
+    with pytest.raises(ToleranceError, match="an STL"):
+        body_mesh(one, tolerance=1e-6, precision=SINGLE)
+    assert body_mesh(one, tolerance=1e-6, precision=DECIMALS)[1] <= 1e-6
+
+
+# --- places -----------------------------------------------------------------------------------------------------------
+
+
+def test_bodies_are_laid_flat_apart_and_at_positive_places():
+    shapes = [*(plates for plates, _ in BODIES.values()), [Plate(box(-1.0, -1.0, 1.0, 1.0), (), -3.0, 9.0)]] * 3
+    # a knob on a thin stem, drawn stem down
+    shapes.append([Plate(disc(5.0, 5.0, 2.0), (), 0.0, 9.0), Plate(disc(5.0, 5.0, 8.0), (), 9.0, 12.0)])
+    meshes = [body_mesh(body(plates), tolerance=E, precision=DECIMALS)[0] for plates in shapes]
+    places = laid_out(meshes)
+    boxes = []
+    for mesh, place in zip(meshes, places, strict=True):
+        assert np.linalg.det(place[:3]) == 1.0
+        points = mesh.points @ place[:3] + place[3]
+        assert points[:, 2].min() == 0.0
+        assert (points[:, :2].min(axis=0) >= GAP).all()
+        boxes.append((points.min(axis=0), points.max(axis=0)))
+    for k, (low, high) in enumerate(boxes):
+        for low_too, high_too in boxes[:k]:
+            apart = np.maximum(low - high_too, low_too - high)[:2]
+            assert apart.max() >= GAP - 1e-9
+    wide, deep = np.max([high for _, high in boxes], axis=0)[:2]
+    assert max(wide, deep) < 2.5 * min(wide, deep)
+    assert places[-1][2, 2] == -1.0  # the knob lies on its face
+    assert places[0][2, 2] == 1.0
+    assert all(np.array_equal(a, b) for a, b in zip(places, laid_out(meshes), strict=True))
+
+
+def test_flat_and_back():
+    mesh, _ = body_mesh(
+        body([Plate(disc(5.0, 5.0, 2.0), (), 1.0, 9.0), Plate(disc(5.0, 5.0, 8.0), (), 9.0, 12.0)]),
+        tolerance=E,
+        precision=SINGLE,
+    )
+    turn, lift = flat(mesh)
+    lying = mesh.points @ turn + lift
+    assert (lying[:, 2].min(), lying[:, 2].max()) == (0.0, 11.0)
+    assert np.allclose((lying - lift) @ turn, mesh.points, rtol=0.0, atol=1e-12)
+
+
+def test_standing_turns_about_z_and_shifts():
+    place = standing(np.array([3.0, -2.0, 0.5 * math.pi]))
+    point = np.array([1.0, 0.0, 7.0]) @ place[:3] + place[3]
+    assert point == pytest.approx([3.0, -1.0, 7.0])
+
+
+def test_mirrored_bodies_and_motions():
+    one = body(BODIES["a pin on a bar"][0], pose=np.array([[1.0, 2.0, 0.3], [4.0, 5.0, -0.6]]))
+    other = mirrored(one)
+    assert np.array_equal(other.pose, [[1.0, -2.0, -0.3], [4.0, -5.0, 0.6]])
+    (mesh, _), (glass, _) = (body_mesh(each, tolerance=E, precision=DECIMALS) for each in (one, other))
+    assert glass.volume == pytest.approx(mesh.volume, rel=1e-9)
+    assert np.allclose(glass.points[:, 1].min(), -mesh.points[:, 1].max())
+    assert failing(glass, other) == set()
+    assert "outline" in failing(glass, body([Plate(disc(20.0, -10.0, 11.0), (), 0.0, 4.0), *other.plates[1:]]))
+
+
+# --- planted faults ---------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def sound():
+    one = body(BODIES["three storeys with one bore"][0], "rocker")
+    return one, body_mesh(one, tolerance=E, precision=DECIMALS)[0]
+
+
+def spoilt(mesh, change):
+    corners = mesh.points[mesh.triangles]
+    return change(corners)
+
+
+FAULTS = {
+    "a triangle less": (lambda c: c[1:], "watertight"),
+    "a triangle flipped": (lambda c: np.concatenate([c[:1, ::-1], c[1:]]), "watertight"),
+    "inside out": (lambda c: c[:, ::-1], "watertight"),
+    "a triangle twice": (lambda c: np.concatenate([c, c[:1]]), "watertight"),
+    "inches": (lambda c: c / 25.4, "thickness"),
+    "raised": (lambda c: c + np.array([0.0, 0.0, 0.02]), "thickness"),
+    "shifted": (lambda c: c + np.array([0.02, 0.0, 0.0]), "outline"),
+    "wider": (lambda c: c * [1.001, 1.0, 1.0], "outline"),
+    "mirrored": (lambda c: (c * [1.0, -1.0, 1.0])[:, ::-1], "outline"),
+    "upper storey turned": (lambda c: np.where(c[..., 2:] > 12.5, c * [1.01, 1.01, 1.0], c), "outline"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_fault_of_a_body(sound, name):
+    one, mesh = sound
+    change, caught = FAULTS[name]
+    assert caught in failing(spoilt(mesh, change), one)
+
+
+MEANT = {
+    "a hole that is not there": lambda p: Plate(p.outline, (*p.holes, disc(30.0, 10.0, 2.0)), p.low, p.high),
+    "no bore": lambda p: Plate(p.outline, (), p.low, p.high),
+    "a bore too wide": lambda p: Plate(p.outline, (disc(10.0, 10.0, 4.03),), p.low, p.high),
+    "a bore moved": lambda p: Plate(p.outline, (disc(10.03, 10.0, 4.0),), p.low, p.high),
+    "a bar too long": lambda p: Plate(box(0.0, 0.0, 40.03, 20.0), p.holes, p.low, p.high),
+    "a corner cut": lambda p: Plate(
+        ArcSpline(np.array([[0.0, 0], [40, 0], [40, 19.9], [39.9, 20], [0, 20]]), np.zeros(5), NONE),
+        p.holes,
+        p.low,
+        p.high,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MEANT)
+def test_a_body_that_is_another_one(sound, name):
+    one, mesh = sound
+    assert "outline" in failing(mesh, body([MEANT[name](one.plates[0]), *one.plates[1:]], "rocker"))
+
+
+def test_a_plate_left_out_is_seen_where_plates_overlap():
+    plates = [Plate(BAR, (), 0.0, 4.0), Plate(box(20.0, -5.0, 60.0, 25.0), (), 0.0, 4.0)]
+    whole = body(plates)
+    mesh, _ = body_mesh(whole, tolerance=E, precision=DECIMALS)
+    assert failing(mesh, whole) == set()
+    part, _ = body_mesh(body(plates[:1]), tolerance=E, precision=DECIMALS)
+    assert failing(part, whole) == {"outline"}
+    holed, _ = body_mesh(
+        body([Plate(BAR, (disc(10.0, 10.0, 3.0),), 0.0, 4.0), plates[1]]), tolerance=E, precision=DECIMALS
+    )
+    assert failing(holed, whole) == {"outline"}
