@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.files.meshes import body_mesh, flat, laid_out, mirrored, standing
+from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import ArcSpline, Bound
 from camgeo.making.job import Made
 from camgeo.making.solid import cam_mesh, precision_of
@@ -74,7 +75,10 @@ def _part(job: Job, request: FileRequest, body: PrintBody) -> Part:
         mesh, facts = cam_mesh(job, request)
         return Part(body, mesh, facts.bound, body.low - float(mesh.points[:, 2].min()), facts.vertices)
     with job.refusals(request), job.clock.stage(f"mesh {request.kind}"):
-        mesh, off = body_mesh(body, tolerance=job.tolerance(request), precision=precision_of(request))
+        try:
+            mesh, off = body_mesh(body, tolerance=job.tolerance(request), precision=precision_of(request))
+        except RegionError as error:
+            raise job.recipe.error("mechanism", str(error)) from error
     return Part(body, mesh, Bound(off, off))
 
 
