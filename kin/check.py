@@ -10,7 +10,14 @@ Sense = Literal["at_least", "at_most"]
 
 
 class UnsettledError(ArithmeticError):
-    """A search that ended short of its promise: what was sought, and how far it came."""
+    """A search that ended short of its promise: what was sought, and how far it came.
+
+    `at` is the parameter near which it ended, None where there is no such place.
+    """
+
+    def __init__(self, reason: str, at: float | None = None) -> None:
+        super().__init__(reason if at is None else f"{reason} near {at:.12g}")
+        self.reason, self.at = reason, at
 
 
 @dataclass(frozen=True)

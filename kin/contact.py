@@ -33,7 +33,7 @@ STRAIGHT_ON = 1e-12  # corners that turn less, in radians, get no arc of their o
 MOST_TURN = np.pi / 8.0  # pieces are cut until each turns less
 MOST_SHARE = 0.1  # and is shorter than this share of the arm
 PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask for
-SLACK = 1e-10  # mm by which neighbouring pieces are allowed to overlap, against rounding at their joints
+SLACK = 1e-12  # of the arm's reach, by which neighbouring pieces may overlap, against rounding at their joints
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,11 @@ class Arm:
     length: float
     pivot: float
     side: Side = TRAILING
+
+    @property
+    def slack(self) -> float:
+        """Length, mm, that rounding may make of nothing."""
+        return SLACK * (self.length + self.pivot)
 
     def shaft_angle(self, points: Array) -> Array:
         """Shaft angle at which the arm's end reaches points (n, 2): (n,); nan out of reach."""
@@ -133,7 +138,7 @@ def _within_reach(pieces: Arcs, arm: Arm) -> NDArray[np.bool_]:
     """Whether some point of each short piece may lie as far from the shaft as the arm's end can."""
     middle = pieces.points(0.5 * pieces.length)
     r = np.hypot(middle[:, 0], middle[:, 1])
-    half = 0.5 * pieces.length + SLACK
+    half = 0.5 * pieces.length + arm.slack
     within: NDArray[np.bool_] = (r + half >= abs(arm.pivot - arm.length)) & (r - half <= arm.pivot + arm.length)
     return within
 
@@ -142,8 +147,8 @@ def _interval(pieces: Arcs, arm: Arm) -> tuple[Array, Array]:
     """Middle and half-width of an interval of shaft angles that holds all from which each short piece is reached."""
     middle = pieces.points(0.5 * pieces.length)
     r = np.hypot(middle[:, 0], middle[:, 1])
-    half = 0.5 * pieces.length + SLACK
-    least, most = np.maximum(r - half, SLACK), r + half
+    half = 0.5 * pieces.length + arm.slack
+    least, most = np.maximum(r - half, arm.slack), r + half
     # w = cos(phi - t) = (r^2 + L^2 - l^2)/(2 r L); its slope is steepest, and sqrt(1 - w^2) least, at an end
     excess = arm.pivot**2 - arm.length**2
 
@@ -168,30 +173,30 @@ def _meet(pieces: Arcs, arm: Arm, phi: Array) -> Array:
     both intersections lie on, y.(m + k q) = k (q^2 - l^2)/2, also for k = 0. Where on that line they lie is asked of
     the smaller of the two circles: of the other one it would be a difference of large numbers.
     """
-    pivot = arm.pivot * unit(phi)
+    pivot, slack = arm.pivot * unit(phi), arm.slack
     q = pivot - pieces.start
     small = np.abs(pieces.curvature) * arm.length > 1.0
     y = np.empty((2, len(phi), 2))
     for rows, crossings in ((np.flatnonzero(~small), _on_arm), (np.flatnonzero(small), _on_piece)):
         if len(rows):
-            y[:, rows] = crossings(pieces.take(rows), q[rows], arm.length)
+            y[:, rows] = crossings(pieces.take(rows), q[rows], arm.length, slack)
     chord_turn = 0.5 * pieces.curvature * pieces.length
     chord = pieces.length * np.sinc(chord_turn / np.pi)
     along = np.cos(chord_turn)[:, None] * pieces.tangent + np.sin(chord_turn)[:, None] * left(pieces.tangent)
-    sagitta = np.abs(chord * np.tan(0.5 * chord_turn)) + SLACK
+    sagitta = np.abs(chord * np.tan(0.5 * chord_turn)) + slack
     best = np.full(len(phi), -np.inf)
     for found in y:
         s = dot(found, along)
         with np.errstate(invalid="ignore"):
-            on_piece = (s >= -SLACK) & (s <= chord + SLACK) & (np.abs(cross(along, found)) <= sagitta)
+            on_piece = (s >= -slack) & (s <= chord + slack) & (np.abs(cross(along, found)) <= sagitta)
             point = pieces.start + found
-            on_side = arm.side * cross(pivot, point) >= -SLACK * arm.pivot
+            on_side = arm.side * cross(pivot, point) >= -slack * arm.pivot
         r = np.hypot(point[:, 0], point[:, 1])
         best = np.where(on_piece & on_side & (r > best), r, best)
     return best
 
 
-def _on_arm(pieces: Arcs, q: Array, length: float) -> Array:
+def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
     """Both crossings (2, n, 2), seen from the pieces' starts, nan where there are none; from the arm's circle."""
     m, k = right(pieces.tangent), pieces.curvature
     v = m + k[:, None] * q
@@ -200,13 +205,13 @@ def _on_arm(pieces: Arcs, q: Array, length: float) -> Array:
         across = v / size[:, None]
         depth = -(dot(q, m) + 0.5 * k * (dot(q, q) + length**2)) / size
         square = (length - depth) * (length + depth)
-        touching = (square < 0.0) & (square >= -SLACK * length)
+        touching = (square < 0.0) & (square >= -slack * length)
         half = np.sqrt(np.where(touching, 0.0, square))
     middle, aside = q + depth[:, None] * across, half[:, None] * left(across)
     return np.stack([middle + aside, middle - aside])
 
 
-def _on_piece(pieces: Arcs, q: Array, length: float) -> Array:
+def _on_piece(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
     """The same from the piece's own circle, which is the smaller one."""
     m, k = right(pieces.tangent), pieces.curvature
     v = m + k[:, None] * q
@@ -216,7 +221,7 @@ def _on_piece(pieces: Arcs, q: Array, length: float) -> Array:
         foot = 0.5 * k * (away - length) * (away + length) / size
         cosine = dot(across, m) + k * foot
         square = (1.0 - cosine) * (1.0 + cosine)
-        touching = (square < 0.0) & (square >= -2.0 * SLACK * np.abs(k))
+        touching = (square < 0.0) & (square >= -2.0 * slack * np.abs(k))
         half = np.sqrt(np.where(touching, 0.0, square)) / k
     aside = left(across)
     middle = foot[:, None] * across - (dot(aside, m) / k)[:, None] * aside

@@ -25,8 +25,10 @@ __all__ = ["ARC", "BEZIER", "LINE", "Box", "Contour", "Support"]
 
 # Pairs of piece and angle that are worked on at a time, which bounds the memory a hostile contour can ask for.
 PAIRS_AT_ONCE = 1_000_000
-# Greatest distance at which arcs stand in for a spline where only arcs will do: mm, or share of the contour's extent.
+# Greatest distance at which arcs stand in for a spline where only arcs will do: mm, but no more and no less than these
+# shares of the contour's extent.
 ARC_TOLERANCE = 1e-9
+MOST_SHARE = 2e-11
 ARC_SHARE = 1e-12
 # Rounding of a tangent's angle, in units of the machine's precision times extent over chord.
 ANGLE_ROUNDING = 16.0
@@ -257,14 +259,15 @@ class Contour(Pieces):
     def as_arcs(self, tolerance: float | None = None) -> tuple[Arcs, Indices]:
         """Lines and arcs in order, each turning by at most half a turn, and the piece each belongs to (k,).
 
-        Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved, and smooth; by default 1e-9 mm, or
-        1e-12 of the extent if that is more. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
+        Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved, and smooth; by default 1e-9 mm, but
+        from 1e-12 to 2e-11 of the extent. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
         """
         return self._fine_arcs if tolerance is None else self._arcs_within(tolerance)
 
     @cached_property
     def _fine_arcs(self) -> tuple[Arcs, Indices]:
-        return self._arcs_within(max(ARC_TOLERANCE, ARC_SHARE * float(np.abs(self.vertices).max())))
+        extent = float(np.abs(self.vertices).max())
+        return self._arcs_within(max(ARC_SHARE * extent, min(ARC_TOLERANCE, MOST_SHARE * extent)))
 
     def _arcs_within(self, tolerance: float) -> tuple[Arcs, Indices]:
         first, _ = self.directions

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["DwellFound", "FrameError", "LinkageVerdict", "implied_limit", "judge_frame"]
 
 Over = Literal["shaft", "relative"]
-RESOLUTION = 1e-11  # mm
+RESOLUTION = 2e-13  # of the breadth: of lengths
 RESOLUTION_ANGLE = 1e-13  # rad
 ROUNDING = 64.0 * 2.0**-52  # of what is subtracted from one another, as a part of it
 SHARE = 1e-6  # of the greatest error: what is resolved at least
@@ -200,7 +200,7 @@ def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float
 
 def _resolution(mechanism: Mechanism, output: Array, error: Array | None = None) -> float:
     """What is to be resolved of the output, or of its error; their values at the nodes are given, rad or mm."""
-    least = RESOLUTION if mechanism.unit == "mm" else RESOLUTION_ANGLE
+    least = RESOLUTION * mechanism.breadth if mechanism.unit == "mm" else RESOLUTION_ANGLE
     share = 0.0 if error is None else SHARE * float(np.abs(error).max())
     return max(least, ROUNDING * float(np.abs(output).max()), share)
 
@@ -287,7 +287,7 @@ def _plays(centred: Resting) -> tuple[Play, Play]:
     def width(theta: Array, of: Indices) -> Array:
         return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
 
-    resolution = max(RESOLUTION, ROUNDING * breadth)
+    resolution = RESOLUTION * breadth
     found = extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, width, resolution=resolution)
 
     def play(turned: float) -> Play:

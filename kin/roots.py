@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from kin.check import UnsettledError
+
 if TYPE_CHECKING:
     from kin.ball import Ball
     from kin.expression import Expression
@@ -34,15 +36,6 @@ _MOST_MULTIPLE = 6
 _END_ULPS = 16
 # Where to look at the sign between two zeros, in parts of the distance.
 _LOOKOUTS = np.array([0.5, 0.25, 0.75, 0.125, 0.875])
-
-
-class UnsettledError(ArithmeticError):
-    """The sign near `at` cannot be settled in double precision, or changes too often."""
-
-    def __init__(self, reason: str, at: float) -> None:
-        super().__init__(f"{reason} near {at:.12g}")
-        self.reason = reason
-        self.at = at
 
 
 @dataclass(frozen=True)

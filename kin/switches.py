@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from kin.check import UnsettledError
 from kin.expression import ANGLE, Builder, Expression, FormulaError, Instruction
-from kin.roots import Signs, UnsettledError, signs, snap
+from kin.roots import Signs, signs, snap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

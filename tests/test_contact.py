@@ -164,3 +164,17 @@ def test_a_contour_through_the_shaft_and_one_at_the_end_of_the_reach():
     assert r == pytest.approx(120.0, abs=1e-6)
     assert arm.lean(r) == pytest.approx(np.pi, abs=1e-6)
     assert arm.lean(np.array([120.0 + 1e-9, 120.0])) == pytest.approx(np.pi, abs=1e-12)
+
+
+@pytest.mark.parametrize("size", [2e-5, 2e4])
+@pytest.mark.parametrize("side", [TRAILING, LEADING])
+def test_contact_of_a_cam_of_a_micrometre_and_of_a_kilometre(side, size):
+    """Everything scales: no length is compared with one of its own, on a polygon as on arcs."""
+    rng = np.random.default_rng(5)
+    points = 25.0 * unit(np.arange(23) * 2 * np.pi / 23) + rng.uniform(-0.5, 0.5, (23, 2))
+    bulges = rng.uniform(-0.02, 0.1, 23)
+    arm, phi = Arm(60.0, 70.0, side), np.linspace(0.0, 2 * np.pi, 500)
+    usual = contact(points, 6.0, arm, phi, bulges)
+    scaled = contact(size * points, size * 6.0, Arm(size * 60.0, size * 70.0, side), phi, bulges)
+    assert np.isfinite(usual).all()
+    np.testing.assert_allclose(scaled / size, usual, rtol=1e-11)

@@ -440,13 +440,14 @@ def test_a_cut_into_halves_keeps_area_and_length() -> None:
 # --- arcs that stand for splines
 
 
-def rose() -> Contour:
+def rose(size: float = 1.0) -> Contour:
     """The cam of p = 25 + 2 cos 3t as a periodic quintic through 60 points; radius of curvature 9 to 41 mm."""
     from scipy.interpolate import make_interp_spline
 
     t = np.linspace(0.0, 2.0 * np.pi, 61)
     p, slope = 25.0 + 2.0 * np.cos(3.0 * t), -6.0 * np.sin(3.0 * t)
     points = p[:, None] * unit(t) + slope[:, None] * unit(t + np.pi / 2.0)
+    points *= size
     points[-1] = points[0]
     spline = make_interp_spline(t, points, k=5, bc_type="periodic")
     beziers = Beziers.from_spline(5, spline.t, spline.c, np.ones(len(spline.c)))
@@ -475,6 +476,16 @@ def test_arcs_along_curves_with_inflections_cusps_and_vanishing_derivatives(cont
     t = np.linspace(0.0, 1.0, 2001)
     _, off = nearest(chain, curve.point(np.zeros(t.size, dtype=np.intp), t))
     assert off.max() <= 1e-7
+
+
+@pytest.mark.parametrize("size", [2e-5, 2e4])
+def test_arcs_along_a_spline_are_as_close_on_a_cam_of_a_micrometre(size: float) -> None:
+    contour = rose(size)
+    chain, _ = contour.as_arcs()
+    extent = float(np.abs(contour.vertices).max())
+    assert contour.distance(chain.ends, 1e-13 * extent).max() <= 2.1e-11 * extent
+    off = contour.distance(chain.points(0.3 * chain.length), 1e-12 * extent)
+    assert off.max() <= 2.3e-11 * extent
 
 
 def test_arcs_finer_than_rounding_are_refused() -> None:

@@ -114,6 +114,18 @@ def test_play_by_vertices():
         np.testing.assert_allclose(there, [play.least, play.most], atol=1e-9)
 
 
+@pytest.mark.parametrize("size", [2e-5, 2e4])
+def test_a_linkage_of_a_micrometre_and_of_a_kilometre(size):
+    vertices = uneven(257)
+    usual = judge_frame(Contour.from_vertices(vertices), FOUR_BAR, SHAFT, 1e-3)
+    lift = lift_from_fourier(25.0 * size, {k: size * a for k, a in COS.items()}, {k: size * b for k, b in SIN.items()})
+    scaled = Mechanism(FourBar(80.0 * size, 70.0 * size, 105.0 * size), lift, BREADTH * size)
+    verdict = judge_frame(Contour.from_vertices(size * vertices), scaled, SHAFT, 1e-3 * size)
+    assert verdict.error.max == pytest.approx(usual.error.max, rel=1e-6)
+    for play, other in ((verdict.play_across, usual.play_across), (verdict.play_along, usual.play_along)):
+        assert (play.least / size, play.most / size) == pytest.approx((other.least, other.most), abs=1e-11)
+
+
 @pytest.mark.parametrize("offset", [-0.01, 0.004])
 def test_play_of_a_cam_that_is_smaller_or_larger_all_round(offset):
     vertices, bulges = arcs_through(cam(6000, 25.0 + offset))
