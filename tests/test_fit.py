@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from camgeo.curve import Curve
 from camgeo.fit.arcs import arc_density, fit_arcs
-from camgeo.fit.nodes import Density, ToleranceError
+from camgeo.fit.nodes import Density, ToleranceError, rounding
 from camgeo.fit.polygon import fit_polygon, least_vertices
 from camgeo.fit.spans import HOPELESS
 from camgeo.fit.spline import USABLE, fit_spline
@@ -201,6 +201,16 @@ def test_tolerance_below_rounding_is_refused_with_the_figure(fit) -> None:
     with pytest.raises(ToleranceError, match="double precision") as caught:
         fit(curve, 1e-14)
     assert 1e-14 < caught.value.reached < 1e-11
+
+
+@pytest.mark.parametrize("share", [1.05, 1.5])
+def test_arcs_just_above_the_rounding_of_points_are_refused_in_figures_that_say_something(share: float) -> None:
+    curve = Curve.whole(SupportShape(LIFTS["fourier"]))
+    tolerance = 2.0 * share * rounding(curve.size)
+    with pytest.raises(ToleranceError, match=f"arcs within {tolerance:.3g} mm") as caught:
+        fit_arcs(curve, tolerance)
+    assert tolerance < caught.value.reached < 1e-10
+    assert "-" not in str(caught.value).replace("e-", "")
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, math.nan])

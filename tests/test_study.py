@@ -102,6 +102,7 @@ def test_a_run_that_takes_too_long_ends_the_ladder(tmp_path: Path) -> None:
     found = list(climb(recipe, designed(recipe), "arcs", tmp_path, patience=1e-9))
     assert [type(item) for item in found] == [Rung, Ended]
     assert isinstance(found[1], Ended)
+    assert found[1].why.startswith("fit, write and judge took")
     assert "longer than" in found[1].why
 
 
@@ -147,9 +148,25 @@ def test_a_linkage_that_binds_fails_and_is_told(tmp_path: Path, capsys: pytest.C
     call = ["study", str(recipe), "--out", str(tmp_path), "--form", "polyline", "--patience", "1e-9"]
     assert cli.main(call) == cli.main(["check", str(recipe)]) == 1
     assert "FAILED before any file: mobility" in capsys.readouterr().out
-    found = json.loads((tmp_path / "cam" / "study.json").read_text(encoding="utf-8"))
+    found = json.loads((tmp_path / "cam.rejected" / "study.json").read_text(encoding="utf-8"))
     assert found["failed"][0]["name"] == "mobility"
     assert next(margin["value"] for margin in found["margins"] if margin["name"] == "binding") < 0.0
+
+
+def test_a_study_that_fails_leaves_the_last_good_one(tmp_path: Path) -> None:
+    recipe = tmp_path / "cam.yaml"
+    call = ["study", str(recipe), "--out", str(tmp_path), "--form", "polyline", "--patience", "1e-9"]
+    # a ladder that ends for want of time is no failure
+    recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\nverify: {angles: 8}\n")
+    assert cli.main(call) == 0
+    good = (tmp_path / "cam" / "study.json").read_bytes()
+    assert not (tmp_path / "cam.rejected").exists()
+    for worse in ("p: 10 + 2*cos(3*t)}\n", "p: 25 + 2*cos(3*t)}\nverify: {angles: 8, motion_error: 1e-9}\n"):
+        recipe.write_text("cam: {kind: support, " + worse)
+        assert cli.main(call) == 1
+        assert (tmp_path / "cam" / "study.json").read_bytes() == good
+        rejected = json.loads((tmp_path / "cam.rejected" / "study.json").read_text(encoding="utf-8"))
+        assert rejected["failed"] or not all(row["ok"] for row in rejected["rows"])
 
 
 def test_a_wrong_call_and_a_wrong_recipe(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

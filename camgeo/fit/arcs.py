@@ -166,11 +166,19 @@ def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float
 def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float) -> list[_Fit]:
     """Circular arcs and biarcs of each stretch: errors seen up to `aim`, proved up to `limit`."""
     slip = _slip(curve, aim)
+    # what rounding takes of the tolerance that was asked for
+    cover = 2.0 * (rounding(curve.size) + slip)
     limit -= 2.0 * slip
+    if not limit > 0.0:
+        raise ToleranceError(
+            f"arcs within {limit + cover:.3g} mm are below what double precision holds on this contour: rounding alone "
+            f"takes {cover:.3g} mm; at least {2.0 * cover:.3g} mm",
+            2.0 * cover,
+        )
     tolerance = min(aim, limit)
     done: dict[int, _Fit] = {}
     nodes: dict[int, Array] = {}
-    best = math.inf
+    best: dict[int, float] = {}
     for i, stretch in enumerate(stretches):
         radius = curve.radius(stretch)
         if radius is not None:
@@ -203,7 +211,7 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
             both = slice(2 * first, 2 * (first + count))
             first += count
             reached = float(worst[mine].max())
-            best = min(best, reached)
+            best[i] = min(best.get(i, math.inf), reached)
             if deviation is not None and reached <= limit:
                 # f is the curve's distance outside the arc: where it is positive the file lies inward
                 inward = max(float(deviation.outside[both].max()), 0.0) + 2.0 * slip
@@ -211,7 +219,12 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
                 done[i] = (biarcs.points[both], biarcs.bulges[both], outward, inward)
             elif deviation is not None or reached > tolerance:
                 nodes[i], settled[i] = _denser(nodes[i], worst[mine], tolerance, settled[i])
-    raise ToleranceError(f"arcs within {tolerance:.3g} mm were not reached; the best was {best:.3g} mm", best)
+    left = cover + max(best[i] for i in nodes if i not in done)
+    raise ToleranceError(
+        f"arcs within {limit + cover:.3g} mm were not reached; the best were seen within {left:.4g} mm, of which "
+        f"rounding takes {cover:.2g} mm",
+        left,
+    )
 
 
 def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[Array, int]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 OK, FAILED, WRONG, SURROUNDINGS = 0, 1, 2, 3
 REPORT, PICTURE = "study.json", "study.png"
-PATIENCE = 2.0  # seconds of a run after which a ladder goes no further
+PATIENCE = 2.0  # seconds of a run, fit, write and judge together, after which a ladder goes no further
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file")
     parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
     parser.add_argument("--form", action="append", default=[], choices=FORMS, help="this form only; repeatable")
-    text = "seconds of a run after which a form's ladder goes no further (default: %(default)s)"
+    text = "seconds of a run (fit, write and judge) after which a form's ladder goes no further (default: %(default)s)"
     parser.add_argument("--patience", type=_seconds, default=PATIENCE, metavar="S", help=text)
     parser.add_argument("--json", action="store_true", help="study.json, for machines")
 
@@ -66,7 +66,8 @@ def run(arguments: argparse.Namespace) -> int:
         if recipe.part.thickness is None:
             skipped.append(("stl", "part.thickness is not given"))
         study = document(recipe, found, margins(recipe, design), skipped, failed)
-        _write(recipe, study, Path(arguments.out))
+        ok = not failed and all(row["ok"] for row in study["rows"])
+        _write(recipe, study, Path(arguments.out), ok=ok)
     except RecipeErrors as errors:
         print(errors, file=sys.stderr)
         return WRONG
@@ -79,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(encoded(study), end="")
     else:
         print(f"{recipe.name}\n{table(study)}")
-    return FAILED if failed or not all(row["ok"] for row in study["rows"]) else OK
+    return OK if ok else FAILED
 
 
 def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | Ended]:
@@ -96,8 +97,12 @@ def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, prog
     return found
 
 
-def _write(recipe: Recipe, study: dict[str, Any], out: Path) -> None:
-    """Write study.json and its picture beside the recipe's files, both or neither; a missing package is told."""
+def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> None:
+    """Write study.json and its picture beside the recipe's files, both or neither; a missing package is told.
+
+    A study in which a check does not hold, of the exact cam or of a file, leaves the last good one and goes to
+    `out`/<name>.rejected. That a ladder ends, at a tolerance that is refused or for want of time, is an ordinary end.
+    """
     from camgeo.report.document import encoded
     from camgeo.store import Family, Run
 
@@ -114,4 +119,7 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path) -> None:
             study["skipped"].append({"what": PICTURE, "why": why})
         study["files"] = [{"path": name} for name in names]
         (run.folder / REPORT).write_text(encoded(study), encoding="utf-8")
-        run.commit(names)
+        if ok:
+            run.commit(names)
+        else:
+            run.reject()

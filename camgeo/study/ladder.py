@@ -2,8 +2,9 @@
 
 Each rung writes a file into a private folder and has it judged there, as an export does, then repeats the work to time
 it warm: the exact curve and its bounds are made once and are told apart as the stages of the design. A ladder ends
-where the form cannot hold the tolerance, which is told with the reason and what can be held, or at a run that takes
-longer than the patience that is given. An exact spline is the same whatever the tolerance: it has one rung.
+where the form cannot hold the tolerance, which is told with the reason and what can be held, or at a run (fit, write
+and judge) that takes longer than the patience that is given. An exact spline is the same whatever the tolerance: it has
+one rung.
 """
 
 from __future__ import annotations
@@ -106,7 +107,7 @@ def climb(
             return
         yield rung
         if rung.seconds > patience:
-            why = f"a run took {rung.seconds:.3g} s, longer than {patience:.3g} s"
+            why = f"fit, write and judge took {rung.seconds:.3g} s, longer than {patience:.3g} s"
             yield Ended(form, tolerance / 10.0, why)
             return
     why = "exact to rounding: the same file at every tolerance" if exact else "the ladder's last rung"
@@ -163,5 +164,6 @@ def _once(
     (file,), checks = make(job, request, path)
     stages = dict.fromkeys(("fit", "write", "judge"), 0.0)
     for name, seconds in job.clock.stages:
-        stages[name.split()[0]] += seconds
+        step = name.split()[0]
+        stages["write" if step == "mesh" else step] += seconds  # a solid's triangles are made to be written
     return file, stages, tuple(check.name for check in checks if not check.ok)
