@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from kin.turn import Turn
 
 TURNS = 20  # that are followed from rest, unless one repeats the one before
+_DIGITS = 9  # of a dwell's ends in degrees, beyond which they are rounding
 MOST_FOR_FLOAT = 150  # stretches of a drive for which the speed at which float begins is searched
 
 
@@ -191,16 +192,22 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
 def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
     from kin.bouncing import course, least_gap
     from kin.dynamics import DynamicsError
+    from kin.instants import LOWER, UPPER
 
     least, at = least_gap(lower, upper)
+    detail = ""
     if least > 0.0:
         followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS)
         if not followed.turns and followed.stopped is not None:
             raise DynamicsError(followed.stopped)
         entry |= _followed(followed, scene.asked.rpm, scene.train)
+        bore = followed.turns[-1].bore
+        entry["impacts"]["faces"] = [name for name, face in (("lower", LOWER), ("upper", UPPER)) if face in bore]
+        if not bore:
+            detail = "the follower touches neither face: the play is more than the cam moves"
     swings = scene.name == "deg"
     value, unit = (math.degrees(least), "deg") if swings else (1e3 * least, "mm")
-    return entry, Check("play", least > 0.0, value, 0.0, unit, degrees(at), "at_least")
+    return entry, Check("play", least > 0.0, value, 0.0, unit, degrees(at), "at_least", detail=detail)
 
 
 def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:
@@ -213,19 +220,13 @@ def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:
         "least_at_deg": degrees(force.least_at),
         "residual": [
             {
-                "dwell_from_deg": round(degrees(rest.start), 9),
-                "dwell_to_deg": _end(rest.start, rest.end),
+                "dwell_from_deg": round(degrees(rest.start), _DIGITS) % 360.0,
+                "dwell_to_deg": round(degrees(rest.end), _DIGITS) or 360.0,
                 "amplitude": scene.unit * rest.amplitude,
             }
             for rest in found.residual
         ],
     }
-
-
-def _end(start: float, end: float) -> float:
-    """End of a dwell, degrees in (0, 360], or beyond 360 where it runs over 0; free of the last bits' rounding."""
-    turn = degrees(start)
-    return round(turn + math.degrees(end - start), 9)
 
 
 def _followed(followed: Course, rpm: float, train: Train) -> dict[str, Any]:

@@ -154,7 +154,7 @@ class _Course:
     def _alike(self, one: State, other: State) -> bool:
         natural = self.running.bound.natural
         size = max(abs(one.z), abs(one.v) / natural, abs(other.z), abs(other.v) / natural)
-        return math.hypot(one.z - other.z, (one.v - other.v) / natural) <= _SETTLED * size
+        return bool(math.hypot(one.z - other.z, (one.v - other.v) / natural) <= _SETTLED * size)
 
     def _turn(self, state: State, log: Log) -> State:
         contact, place, time = state.contact, 0, 0.0

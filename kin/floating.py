@@ -37,7 +37,7 @@ MOST_WORK = 15_000_000  # places that a search looks at, which bounds it to some
 TURN = 2.0 * math.pi
 
 _LADDER = 1.08  # ratio of the speeds at which the bound is taken
-_EACH = 100  # places that a stretch costs to solve
+_EACH = 50  # places that a stretch costs to solve
 _SWINGS, _IN_SWING = 16, 17  # swings looked at on a stretch, and places in each
 _IN_PART = 33  # places on a stretch of at most some swings
 _MISSED = 0.02  # of the range of the force: these miss less of a dip
@@ -161,14 +161,15 @@ class _Force:
         Where the second is far above 0 it may be a floor too, and where it is below a value at samples.
         """
         found, starts, figure, held = self._held(rpm)
-        quick = np.flatnonzero(~found.slow)
-        floor = min(float(held[found.slow].min(initial=math.inf)), self._seen(found, starts, figure, quick)[0])
+        quick = self._seen(found, starts, figure, np.flatnonzero(~found.slow))
+        floor = min(float(held[found.slow].min(initial=math.inf)), quick[0])
         doubt = _DOUBT * self.train.preload
         low = np.flatnonzero(held <= doubt)
         above = float(held[held > doubt].min(initial=math.inf))
         if not len(low):
             return floor, above
-        least, most = self._seen(found, starts, figure, low)
+        slow = self._seen(found, starts, figure, low[found.slow[low]])
+        least, most = min(quick[0], slow[0]), max(quick[1], slow[1])
         if least < 0.0 or (least > _MISSED * (most - least) and not found.slow[low].any()):
             return floor, min(least, above)
         self.work.take(2 * int(found.swings(starts, low)[1].sum()))
@@ -182,8 +183,8 @@ class _Force:
     def _held(self, rpm: float) -> tuple[Response, Array, Figure, Array]:
         """The steady state's response, states at all starts, force, and a bound (m,) of that on each stretch.
 
-        With `held` above 0 contact lasts, whatever the phase. Where p is slow that is the least of p's force, less the
-        greatest free motion's; elsewhere, where a stretch lasts a swing or so, it is 0 or below: unknown.
+        With `held` above 0 contact lasts, whatever the phase. Where p is slow that is p's force less what is left of
+        the free motion's; elsewhere, where a stretch lasts a swing or so, it is below 0: unknown.
         """
         running = self.train.at(rpm)
         found = running.response(self.drive)
@@ -195,13 +196,17 @@ class _Force:
         if oscillator.swings:
             rung = oscillator.bound(starts - found.ends[0].T)
             slow = found.slow
-            held[slow] = _low(figure)[slow] - _gain(self.train, running.speed, oscillator) * rung[slow]
+            driven = _driven(figure)[slow]
+            driven = np.minimum(driven[:, :-1], driven[:, 1:])
+            fade = np.exp(-oscillator.decay * 2.0 * found.half[slow, None] * np.linspace(0.0, 1.0, 33)[:-1])
+            gain = _gain(self.train, running.speed, oscillator)
+            held[slow] = (driven - gain * rung[slow, None] * fade).min(axis=1)
         return found, starts, figure, held
 
     def _seen(self, found: Response, starts: Array, figure: Figure, stretches: Indices) -> tuple[float, float]:
         """Least and greatest force at samples of the given stretches; of a slow one, swings at some places in it."""
         if not len(stretches):
-            return math.inf, math.inf
+            return math.inf, -math.inf
         slow, other = stretches[found.slow[stretches]], stretches[~found.slow[stretches]]
         width = 2.0 * found.half[slow, None]
         swing = np.minimum(TURN / max(found.oscillator.split, 1e-300), width / _SWINGS)
@@ -214,14 +219,11 @@ class _Force:
         return float(force.min()), float(force.max())
 
 
-def _low(figure: Figure) -> Array:
-    """Least value (m,) of a figure's driven part on each stretch, at 33 places."""
+def _driven(figure: Figure) -> Array:
+    """A figure's driven part at 33 places of each stretch, (m, 33)."""
     count = len(figure.series)
     every = np.repeat(np.arange(count), 33)
-    found: Array = (
-        evaluated(figure.series, every, np.tile(np.linspace(-1.0, 1.0, 33), count)).reshape(-1, 33).min(axis=1)
-    )
-    return found
+    return evaluated(figure.series, every, np.tile(np.linspace(-1.0, 1.0, 33), count)).reshape(count, 33)
 
 
 def _gain(train: Train, speed: float, oscillator: Oscillator) -> float:
@@ -312,7 +314,7 @@ def _bound(train: Train, drive: Drive, rpm: float) -> float:
             total, gained = total * left, gained * left
         size = total / (1.0 - gained)
     gain = _gain(train, running.speed, oscillator)
-    return float((_low(running.force(found)) - gain * np.array(sizes)).min())
+    return float((_driven(running.force(found)).min(axis=1) - gain * np.array(sizes)).min())
 
 
 def _kicks(found: Response) -> Array:

@@ -24,7 +24,7 @@ class Turn(NamedTuple):
     """One turn: greatest and least contact force with shaft angles, meetings, and what was lost of contact.
 
     `least` is 0 where contact was lost. `impacts` counts the meetings with a face, `velocity` (m/s or rad/s) is the
-    greatest at one, and `free` the shaft angle spent without contact, radians.
+    greatest at one, and `free` the shaft angle spent without contact, radians. `bore` are the faces that did.
     """
 
     greatest: float
@@ -35,6 +35,7 @@ class Turn(NamedTuple):
     velocity: float
     velocity_at: float
     free: float
+    bore: frozenset[int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +68,7 @@ class Log:
         self._least, self._least_at = math.inf, 0.0
         self._impacts, self._velocity, self._velocity_at = 0, 0.0, 0.0
         self._free = 0.0
+        self._bore: set[int] = set()
 
     def see(
         self, contact: int, seen: Seen, span_of: Callable[[int], Span], hit: tuple[int, float] | None = None
@@ -79,6 +81,7 @@ class Log:
             self._free += end - begin
             self.force(0.0, begin)
             return
+        self._bore.add(contact)
         if hit is not None:
             seen = seen.until(*hit)
         self._extremes(1.0, seen, span_of, end)
@@ -131,4 +134,5 @@ class Log:
             self._velocity,
             self._velocity_at,
             self._free,
+            frozenset(self._bore),
         )

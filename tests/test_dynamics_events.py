@@ -1,17 +1,19 @@
 """Loss of contact, impacts and the speed at which float begins: closed forms, and a second opinion by scipy."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 from dynamics_oracle import Cycloid
 from test_dynamics import Harmonic, Saw
 
-from kin.bouncing import FREE, LOWER, UPPER, State, course, least_gap
+from kin.bouncing import MOST_WORK, State, course, least_gap
 from kin.drive import drives
 from kin.driven import Moved
 from kin.dynamics import DynamicsError, Train, steady
 from kin.floating import float_speed
+from kin.instants import FREE, LOWER, UPPER, Work, crossing
 from kin.integrated import integrated
 
 TURN = 2.0 * math.pi
@@ -127,6 +129,79 @@ def test_no_play_is_refused_with_its_place():
         course(Train(1.0, 1.0, 1e5), drives_, 100.0, 1)
 
 
+# --- what it takes ----------------------------------------------------------------------------------------------------
+
+
+def stiff(ratio, zeta, rpm=300.0, preload=0.0, mass=0.4):
+    natural = ratio * rpm * TURN / 60.0
+    return Train(mass, 2.0 * zeta * mass * natural, mass * natural**2, preload)
+
+
+@pytest.mark.parametrize("zeta", [1e-4, 0.1, 1.0])
+@pytest.mark.parametrize("ratio", [1.3, 123.0, 1e3 + 0.3, 1e5 + 0.3])
+def test_play_takes_no_more_places_the_stiffer_the_train(ratio, zeta):
+    """Two turns of a rise and its dwells between two faces."""
+    motion = Cycloid(math.radians(120.0), 20e-3)
+    found = course(stiff(ratio, zeta), faces(motion, Moved(motion, 1.0, 5e-5)), 300.0, 2)
+    assert found.stopped is None
+    assert found.turns[-1].impacts > 0
+    assert found.turns[-1].bore == {LOWER, UPPER}
+    assert found.places < 1_000_000
+
+
+@pytest.mark.parametrize("zeta", [1e-4, 0.1, 1.0])
+@pytest.mark.parametrize("ratio", [1.3, 123.3, 1e3 + 0.3, 1e5 + 0.3])
+def test_a_turn_under_a_spring_is_bounded_too(ratio, zeta):
+    lower, _ = faces(Cycloid(math.radians(120.0), 20e-3))
+    found = course(stiff(ratio, zeta, preload=150.0), (lower, None), 300.0, 2)
+    assert found.stopped is None
+    assert found.places < MOST_WORK // 2  # most of it where ringing lasts for a third of the turn
+
+
+def test_a_course_that_takes_too_much_says_how_far_it_came():
+    motion = Cycloid(math.radians(120.0), 20e-3)
+    both = faces(motion, Moved(motion, 1.0, 5e-5))
+    train = stiff(123.0, 0.1)
+    whole = course(train, both, 300.0, 2)
+    found = course(train, both, 300.0, 2, most=whole.places // 4)
+    assert found.turns == ()
+    assert not found.settled
+    assert re.search(
+        r"to [\d.]+ degrees of turn 1 .* \d+ changes of contact .* 123 times the shaft's .* 0\.1 ", found.stopped
+    )
+    assert whole.places // 4 < found.places <= whole.places
+    later = course(train, both, 300.0, 2, most=whole.places - 1000)
+    assert later.turns == whole.turns[:1]
+    assert "of turn 2 and no further" in later.stopped
+
+
+def test_an_undamped_train_that_rings_for_ever_ends_within_the_budget():
+    lower, _ = faces(Cycloid(math.radians(120.0), 20e-3))
+    found = course(stiff(1e5 + 0.3, 0.0, preload=1500.0), (lower, None), 300.0, 20, most=500_000)
+    assert "0 changes of contact" in found.stopped
+    assert found.places < 520_000
+
+
+@pytest.mark.parametrize(
+    ("level", "root"),
+    [
+        (lambda x: math.cos(x) - x, 0.7390851332151607),
+        (lambda x: 1e-3 - x**5, 10.0**-0.6),
+        (lambda x: 1.0 - math.exp(20.0 * x - 5.0), 0.25),
+        (lambda x: math.atan(1e6 * (0.3 - x)), 0.3),
+        (lambda x: 1.0 if x < 0.4 else -1.0, 0.4),
+    ],
+)
+def test_an_instant_is_found_to_the_last_bits_and_on_its_later_side(level, root):
+    found = crossing(level, 0.0, 2.0, 0.0, Work(10**6))
+    assert found == pytest.approx(root, abs=2e-15)
+    assert level(found) < 0.0
+
+
+def test_an_instant_is_where_the_search_begins_if_the_state_has_ended_there():
+    assert crossing(lambda x: -1.0 - x, 0.5, 2.0, 0.0, Work(10**6)) == 0.5
+
+
 # --- a second opinion -------------------------------------------------------------------------------------------------
 
 
@@ -219,6 +294,29 @@ def test_float_of_a_rise_is_found_in_its_first_dip():
     assert steady(train, drive, 1.0001 * found.rpm).force.least < 0.0
     below = [steady(train, drive, rpm).force.least for rpm in np.linspace(600.0, 0.9999 * found.rpm, 200)]
     assert min(below) > 0.0
+
+
+@pytest.mark.parametrize(("ratio", "zeta"), [(1e3 + 0.3, 1e-5), (1e5 + 0.3, 1e-6)])
+def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(ratio, zeta):
+    train = stiff(ratio, zeta, preload=150.0)
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    found = float_speed(train, drive, most=200_000)
+    assert (found.rpm, found.at) == (None, None)
+    low, high = found.between
+    assert 0.0 < low < high
+    assert steady(train, drive, low).force.least > 0.0
+    assert steady(train, drive, high).force.least < 0.0
+
+
+@pytest.mark.parametrize(("ratio", "zeta"), [(1.3, 1.0), (123.3, 0.03), (1e3 + 0.3, 0.01), (1e5 + 0.3, 0.01)])
+def test_ordinary_and_stiff_trains_are_settled_within_the_budget(ratio, zeta):
+    train = stiff(ratio, zeta, preload=150.0)
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    found = float_speed(train, drive)
+    assert found.between is None
+    if found.rpm is not None:
+        assert abs(steady(train, drive, found.rpm).force.least) < 1e-6 * train.preload
+        assert steady(train, drive, 1.0001 * found.rpm).force.least < 0.0
 
 
 @pytest.mark.parametrize(

@@ -131,6 +131,42 @@ def test_play_that_the_file_takes_up_fails() -> None:
     assert failed[0]["value"] < 0.0
 
 
+def test_a_dwell_that_ends_with_the_turn_ends_at_360() -> None:
+    rests = section(recipe())["runs"][0]["steady"]["residual"]
+    assert [(rest["dwell_from_deg"], rest["dwell_to_deg"]) for rest in rests] == [(120.0, 180.0), (300.0, 360.0)]
+
+
+def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None:
+    holds, flies = (section(recipe(TRAIN.replace("600", rpm)))["runs"][0] for rpm in ("600", "900"))
+    assert holds["transient"]["turns_to_one_percent"] > 0.0
+    assert flies["impacts"]["free_deg"] > 0.0
+    assert "turns_to_one_percent" not in flies["transient"]
+
+
+@pytest.mark.parametrize(("play", "faces"), [("0.02", ["lower", "upper"]), ("50", [])])
+def test_which_faces_bear(play: str, faces: list[str]) -> None:
+    report = pipeline.check(recipe(TRAIN.replace("preload: 150", f"play: {play}"))).report
+    assert report["dynamics"]["runs"][0]["impacts"]["faces"] == faces
+    check = next(check for check in report["checks"] if check["name"] == "play")
+    assert ("touches neither face" in check.get("detail", "")) == (not faces)
+
+
+def test_a_course_that_cannot_be_followed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    from kin import bouncing
+
+    class Little(bouncing.Work):
+        def __init__(self, most: int) -> None:
+            super().__init__(min(most, 1000))
+
+    monkeypatch.setattr(bouncing, "Work", Little)
+    run = section(recipe())["runs"][0]
+    assert run["steady"]["holds"]
+    assert (run["transient"], run["impacts"]) == (None, None)
+    assert "degrees of turn 1 and no further" in run["transient_why"]
+    with pytest.raises(RecipeErrors, match=r"dynamics: followed from rest to .* degrees of turn 1 and no further"):
+        pipeline.check(recipe(TRAIN.replace("preload: 150", "play: 0.02")))
+
+
 @pytest.mark.parametrize("held", ["preload: 8", "play: 0.02"])
 def test_a_follower_that_swings_has_figures_of_turning(held: str) -> None:
     train = f"dynamics: {{mass: 2.0e-3, damping: 5, stiffness: 3.0e4, {held}, rpm: 400}}\n"
