@@ -16,7 +16,8 @@ splines; how far a sampled motion may be from the true one is given beside it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations, product
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -59,12 +60,15 @@ class Slab:
     holes: tuple[Contour, ...]
     low: float
     high: float
-    region: Region = field(init=False)
 
     def __post_init__(self) -> None:
         if not self.low < self.high:
             raise ValueError(f"a slab from z = {self.low!r} to {self.high!r} mm has no height")
-        object.__setattr__(self, "region", Region.of(self.outer, self.holes))
+
+    @cached_property
+    def region(self) -> Region:
+        """The inside of the outline without that of the holes."""
+        return Region.of(self.outer, self.holes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,7 +277,8 @@ class _Search:
         seen = see(meeting, pairs, 0.25 * self.accuracy)
         self._take(cells.phi, seen)
         size = np.abs(seen.value) + seen.doubt
-        pairs, gap = _kept(pairs, seen.gap, seen.gap <= (size + 2.0 * half * fastest)[pairs.cell])
+        reachable = seen.gap <= (size + 2.0 * half * fastest)[pairs.cell]
+        pairs, gap = pairs.take(reachable), seen.gap[reachable]
         rate, speed = rates(meeting, pairs, seen.value - seen.doubt > half * fastest)
         heads = np.searchsorted(pairs.cell, np.arange(len(half)))
         bound = np.minimum(fastest, np.maximum.reduceat(speed, heads))
@@ -321,10 +326,6 @@ class _Search:
             tolerance=self.wanted.tolerance,
             evaluations=self.evaluations,
         )
-
-
-def _kept(pairs: Pairs, gap: Array, kept: Mask) -> tuple[Pairs, Array]:
-    return pairs.take(kept), gap[kept]
 
 
 def _lowest(values: Array, count: int) -> Mask:
