@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 GAP = 5.0  # mm between bodies that are laid out
 _STEP = 100.0  # places on the plate are whole steps of 1/100 mm
+_LARGER = 1.001  # a face is larger than another from this share on
 _SHAPE = 1.4  # the plate is filled about this much wider than deep
 
 
@@ -102,7 +103,7 @@ def flat(mesh: Mesh) -> tuple[Array, Array]:
     """Turn (3, 3) and lift (3,) that lay a body on z = 0, on the larger of its lowest and highest faces."""
     z, upward = mesh.points[:, 2], mesh.area_vectors[:, 2]
     top, bottom = ((z == level)[mesh.triangles].all(axis=1) for level in (z.max(), z.min()))
-    if float(upward[top].sum()) > -float(upward[bottom].sum()):
+    if float(upward[top].sum()) > -_LARGER * float(upward[bottom].sum()):
         return np.diag([1.0, -1.0, -1.0]), np.array([0.0, 0.0, float(z.max())])
     return np.eye(3), np.array([0.0, 0.0, -float(z.min())])
 
