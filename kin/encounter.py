@@ -317,8 +317,8 @@ def rates(meeting: Encounter, pairs: Pairs, apart: Mask) -> tuple[Array, Array]:
     passing, passed = motion.along(cell, body), back.along(cell, home)
     # normals of the one or the other; the velocity at its centre, and at points of the one or the other
     through = np.minimum(
-        _projected(*of_first, *motion.at(cell, one.centre[i])) + spin * one.off[i],
-        _projected(*of_second, *back.at(cell, other.centre[j])) + spin * other.off[j],
+        _projected(*of_first, *motion.at(cell, one.centre[i])) + _swung(spin, one.off[i]),
+        _projected(*of_second, *back.at(cell, other.centre[j])) + _swung(spin, other.off[j]),
     )
     at_second = (
         np.minimum(_projected(*of_first, *passing), _projected(*of_second, *back.at(cell, other.middle[j]))) + on_second
@@ -330,6 +330,12 @@ def rates(meeting: Encounter, pairs: Pairs, apart: Mask) -> tuple[Array, Array]:
     both = np.where(apart[cell], np.minimum(at_first, at_second), np.maximum(at_first, at_second))
     speed = np.minimum(*(np.hypot(*v.T) + off + on for (v, off), on in ((passing, on_second), (passed, on_first))))
     return np.minimum(through, both), speed
+
+
+def _swung(spin: Array, off: Array) -> Array:
+    """Speed (k,) at a distance from a centre; infinite without a centre, also where nothing turns."""
+    centred = np.isfinite(off)
+    return np.where(centred, spin * np.where(centred, off, 0.0), np.inf)
 
 
 def _projected(normal: Array, fan: Array, velocity: Array, off: Array) -> Array:
