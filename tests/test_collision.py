@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from shapely import affinity
 
 from kin import jet
+from kin.arcs import turned
 from kin.collision import Allowed, Mover, Slab, clearances
 from kin.contour import Contour
-from kin.encounter import Encounter, rates, see
+from kin.encounter import Encounter, Relative, rates, see
 from kin.poses import Formula, Sampled, Still, Turning
 from kin.read import read_drawing
 from kin.swept import swept_box, swept_radius
@@ -313,6 +314,27 @@ def test_rate_bounds_the_change_of_the_distance():
         value = see(there, there.near(np.full(200, np.nan), 0.0 * half), 1e-6, whole=True)
         slip = 0.02 * np.abs(np.minimum(first.value, value.value))
         assert (np.abs(value.value - first.value) <= np.abs(side) * half * bound + 2e-6 + 2.0 * slip).all()
+
+
+def test_relative_velocities_hold_over_intervals():
+    """A place in the home's axes, and a point of the body: velocities at any angle are within the bounds."""
+    home = Formula(lambda t: (2.0 * jet.sin(t), 1.0, 0.7 * t + jet.cos(t)))
+    rng = np.random.default_rng(8)
+    phi, half, point = rng.uniform(0, 6, 400), 10.0 ** rng.uniform(-3, -0.5, 400), rng.uniform(-30, 30, (400, 2))
+    every, still = np.arange(400), np.zeros(400)
+
+    def at(angle, width):
+        return Relative.of(home.over(angle, width), ORBIT.over(angle, width), width)
+
+    middle = at(phi, half)
+    velocity, off = middle.at(every, point)
+    own, own_off = middle.along(every, point)
+    in_body = turned(point - middle.place, -middle.angle)
+    for share in np.linspace(-1.0, 1.0, 9):
+        there = at(phi + share * half, still)
+        assert (np.hypot(*(there.at(every, point)[0] - velocity).T) <= off + 1e-9).all()
+        moved_to = turned(in_body, there.angle) + there.place
+        assert (np.hypot(*(there.at(every, moved_to)[0] - own).T) <= own_off + 1e-9).all()
 
 
 def test_swept_box_and_radius():
