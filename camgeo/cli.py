@@ -74,7 +74,7 @@ def _parser() -> argparse.ArgumentParser:
 
     parser = argparse.ArgumentParser(
         prog="camgeo",
-        description="Disc cams from a short recipe to DXF, SVG and STL, with the motion proved from the files.",
+        description="Disc cams from a short recipe to DXF, SVG, STL and 3MF, with the motion proved from the files.",
         epilog="Exit status: 0 all checks hold; 1 a check fails; 2 the recipe or the call is wrong; 3 the surroundings "
         "(disk, missing extra); 130 interrupted.",
     )
@@ -110,7 +110,7 @@ def _parser() -> argparse.ArgumentParser:
     check = command("check", _check, "Every check of a recipe; nothing is written.")
     recipes(check)
     check.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
-    verify = command("verify", _verify, "Judge DXF, SVG and STL files against a recipe's motion.")
+    verify = command("verify", _verify, "Judge DXF, SVG, STL and 3MF files against a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
     tolerance(verify)
@@ -332,7 +332,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo import pipeline
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.load import load
-    from kin.read import KINDS as READ
+    from kin.read import SUFFIXES
 
     try:
         recipe = load(arguments.recipe)
@@ -340,8 +340,8 @@ def _verify(arguments: argparse.Namespace) -> int:
             recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
         paths = [Path(name) for name in arguments.files]
         faults = [f"{path}: there is no such file" for path in paths if not path.is_file()]
-        known = ", ".join(f".{kind}" for kind in READ)
-        faults += [f"{p}: none of {known}" for p in paths if p.suffix.lower().lstrip(".") not in READ]
+        known = ", ".join(SUFFIXES)
+        faults += [f"{p}: none of {known}" for p in paths if p.suffix.lower() not in SUFFIXES]
         if faults:
             for fault in faults:
                 _complain(fault)
