@@ -20,7 +20,7 @@ from camgeo.fit.spline import fit_spline
 from camgeo.profile.support import SupportShape
 from camgeo.recipe import load
 from camgeo.study.least import least_pieces, least_spline
-from kin.lift import lift_from_fourier
+from kin.lift import lift_from_fourier, lift_reuleaux
 
 RECIPES = Path(__file__).parents[1] / "recipes"
 # one recipe for each contour that is shipped
@@ -203,3 +203,13 @@ def test_spans_between_nodes_that_stay_are_not_sought_again(monkeypatch: pytest.
     kept = np.isin(first.low, again.low[old])
     assert np.array_equal(again.control[old], first.control[kept])
     assert np.array_equal(again.worst[old], first.worst[kept])
+
+
+@pytest.mark.parametrize(
+    ("sides", "rounding", "count"), [(99, 1e-12, 99), (5, 1e-14, 5), (3, 1e-12, 6), (99, 1e-9, 198)]
+)
+def test_roundings_too_small_to_have_a_direction_become_corners(sides: int, rounding: float, count: int) -> None:
+    curve = Curve.whole(SupportShape(lift_reuleaux(sides, 50.0, rounding)))
+    found = fit_spline(curve, 1e-3)
+    assert found.count == count
+    assert found.bound.worst <= 1e-3

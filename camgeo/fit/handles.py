@@ -106,7 +106,10 @@ def handled(curve: Curve, low: Array, high: Array, out: float) -> tuple[Array, A
         first = np.nan_to_num(size.reshape(2, -1), nan=np.inf)
         chosen = np.argmin(first, axis=0) * low.size + np.arange(low.size)
         gap = seen(curve, spans, handles[chosen], t[chosen])
-    return spans.control(handles[chosen]), np.abs(gap).max(axis=1), np.abs(gap - out).max(axis=1)
+    # what is as short as that is no farther off, however little its directions mean
+    most = 4.0 * (chord + np.maximum(a.speed, b.speed) * (high - low))
+    strayed, beside = (np.abs(part).max(axis=1) for part in (gap, gap - out))
+    return spans.control(handles[chosen]), np.fmin(strayed, abs(out) + most), np.fmin(beside, most)
 
 
 @dataclass(frozen=True)

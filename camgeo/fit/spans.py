@@ -109,7 +109,10 @@ def spans_deviation(curve: Curve, control: Array, low: Array, high: Array, toler
         beyond = np.minimum(proved[open_] - seen[open_], MOST_FINER**4 * SLACK * tolerance)
         steps *= 2 ** max(1, math.ceil(0.25 * math.log2(float(beyond.max(initial=0.0)) / (SLACK * tolerance) + 1e-9)))
         todo = todo[open_]
-    return out, into
+    # whatever a short span does, it is no farther off than it and its stretch of curve are long
+    reach = np.abs(plane(control[:, 0] - curve.sample(low).point)) + np.abs(np.diff(plane(control), axis=1)).sum(axis=1)
+    reach += curve.cells.over(low, high).speed_high * (high - low)
+    return np.minimum(out, reach), np.minimum(into, reach)
 
 
 def _ranges(curve: Curve, spans: Cubics, low: Array, high: Array, steps: int) -> tuple[Array, Array, Array]:

@@ -20,7 +20,7 @@ from camgeo.fit.cubic import LEAST, ORDER, spans_wanted
 from camgeo.fit.handles import handled
 from camgeo.fit.nodes import ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, BSpline
-from camgeo.fit.spans import spans_deviation
+from camgeo.fit.spans import plane, spans_deviation
 
 if TYPE_CHECKING:
     from camgeo.curve import Array, Curve
@@ -57,16 +57,22 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
     stretches = np.concatenate([run.stretches for run in curve.runs])
     limit = tolerance - 2.0 * rounding(size)
     spans = _fit_stretches(curve, stretches, USABLE * limit, limit)
-    groups, first = [], 0
+    groups, first, lost = [], 0, 0.0
     for run in curve.runs:
         count = len(run.stretches)
-        groups.append(np.concatenate([control for control, _, _ in spans[first : first + count]]))
+        beziers = np.concatenate([control for control, _, _ in spans[first : first + count]])
+        # a span that is shorter than rounding has no direction: what it joins meets in a corner that no one can tell
+        length = np.abs(np.diff(plane(beziers), axis=1)).sum(axis=1)
+        short = length <= rounding(size)
+        lost = max(lost, float(length[short].max(initial=0.0)))
+        ends = np.flatnonzero(np.diff(np.concatenate([[True], short, [True]]).astype(np.int8)))
+        groups += [beziers[low:high] for low, high in ends.reshape(-1, 2)]
         first += count
     outward, inward = max(out for _, out, _ in spans), max(into for _, _, into in spans)
     spline = _assembled(groups, Bound(outward, inward))
     # joints are no longer given but follow from the knots
     moved = math.sqrt(2.0) * float(np.abs(spline.beziers() - np.concatenate(groups)).max())
-    return replace(spline, bound=spline.bound.widened(rounding(size) + moved))
+    return replace(spline, bound=spline.bound.widened(rounding(size) + moved + lost))
 
 
 def _assembled(groups: list[Array], bound: Bound) -> BSpline:
