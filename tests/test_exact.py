@@ -329,3 +329,21 @@ def test_a_wrong_weight_or_point_would_show(monkeypatch: pytest.MonkeyPatch) -> 
     )
     spline = fit_exact(curve, 1e-9)
     assert worst_of(spline, 25.0, [(3, 2.0, 0.0)]) > spline.bound.worst
+
+
+def test_a_harmonic_below_rounding_is_left_out_and_counted() -> None:
+    plain, whole = polynomial("25 + 2*cos(3*t)"), polynomial("25 + 2*cos(3*t) + 1e-18*cos(200*t)")
+    assert whole.order == plain.order == 3
+    assert whole.rest >= 200 * 1e-18
+    assert spline_of(whole).bound.worst >= spline_of(plain).bound.worst + 200 * 1e-18
+    # one that is not below it stays, and so do many that are not all together
+    assert polynomial("25 + 2*cos(3*t) + 1e-15*cos(200*t)").order == 200
+    many = " + ".join(f"1e-16*cos({k}*t)" for k in range(10, 60))
+    assert polynomial(f"25 + {many}").order > 10
+
+
+def test_a_frequency_that_is_off_by_rounding_drifts_over_the_turn() -> None:
+    """A tenth times 90 may not be 9 in binary: the file has 9, and the bound what the difference makes in a turn."""
+    exact_, off = polynomial("25 + cos(9*t)/40"), polynomial("25 + cos((0.1*t)*90)/40")
+    assert off.order == exact_.order == 9
+    assert off.error[9] > exact_.error[9] + 0.0125 * 2 * math.pi * 9 * 2.0**-54

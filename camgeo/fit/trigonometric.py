@@ -82,11 +82,18 @@ class Polynomial:
         return Polynomial(c, error, abs(scale) * self.rest)
 
     def trimmed(self) -> Polynomial:
-        """Leave out the highest harmonics as long as they may be nothing but rounding: they go into `rest`."""
+        """Leave out the highest harmonics as long as they may be nothing but rounding: they go into `rest`.
+
+        So do those that all together move the contour by less than a unit of rounding of its size.
+        """
         n, rest = self.order, self.rest
-        while n > 0 and abs(self.coefficients[n]) <= self.error[n]:
-            # of c and its conjugate, with the factors 1 - k and 1 + k of the contour
-            rest += 2.0 * n * float(abs(self.coefficients[n]) + self.error[n])
+        # of c and its conjugate, with the factors 1 - k and 1 + k of the contour
+        moves = 2.0 * np.arange(n + 1) * (np.abs(self.coefficients) + self.error)
+        spare = UNIT * float(np.abs(self.coefficients).max())
+        while n > 0 and (abs(self.coefficients[n]) <= self.error[n] or moves[n] <= spare):
+            if abs(self.coefficients[n]) > self.error[n]:
+                spare -= float(moves[n])
+            rest += float(moves[n])
             n -= 1
         return Polynomial(self.coefficients[: n + 1], self.error[: n + 1], rest)
 
@@ -133,6 +140,8 @@ class _Number:
         return _Number(value, self.error + other.error + 2.0 * UNIT * abs(value))
 
     def __mul__(self, other: _Number) -> _Number:
+        if _ONE in (self, other):  # t times a whole number is that number, exactly
+            return other if self == _ONE else self
         value = self.value * other.value
         spread = self.error * (abs(other.value) + other.error) + abs(self.value) * other.error
         return _Number(value, (spread + 4.0 * UNIT * abs(value)) * (1.0 + 8.0 * UNIT))
@@ -158,7 +167,7 @@ class _Angle:
     offset: _Number
 
 
-_MINUS = _Number(-1.0)
+_ONE, _MINUS = _Number(1.0), _Number(-1.0)
 
 
 def _of_expression(expression: Expression) -> Polynomial:
@@ -277,7 +286,10 @@ def _wave(angle: _Angle, *, sine: bool) -> Waves:
     if abs(float(frequency) - slope) > angle.slope.error + 2.0 * UNIT * abs(slope):
         raise FormError(f"the formula has the frequency {slope:.9g}, which does not close over a turn")
     turned = cmath.exp(1j * angle.offset.value.real)
-    spread = angle.offset.error + 4.0 * UNIT
+    # what the frequency may be off is 2 pi times as much at the end of a turn, and once more in the derivative; twice
+    # that, as the contour takes a harmonic and its derivative
+    drift = abs(float(frequency) - slope) + angle.slope.error
+    spread = angle.offset.error + 4.0 * UNIT + 2.0 * (2.0 * math.pi + 1.0) * drift
     half = _Number(-0.5j * turned if sine else 0.5 * turned, 0.5 * spread)
     other = _Number(half.value.conjugate(), half.error)
     if frequency == 0:
