@@ -26,7 +26,8 @@ CONSTANT = 40.5  # error of a biarc of arcs of length s: |kappa'| s^3 / 40.5
 RATIO = math.cbrt(CONSTANT / free_arcs.CONSTANT)  # of arcs with free joints to arcs in biarcs
 MOST_FREE = 1.8  # times the arcs in biarcs, up to which arcs with free joints are tried
 LOOKS = 8  # places on an arc at which its error is seen while the nodes are being shared
-ROUNDS = 8  # of sharing the nodes anew before there are more of them
+ROUNDS = 8  # of sharing the nodes anew before there are more of them,
+GROWTH = 0.005  # by this share of them at least
 DAMPED = 4.0  # power of the length by which nodes are shared anew; the error's own, 3, overshoots
 MOST_RATIO = 1.5  # of the tangents' lengths of a biarc
 APART = 2.0  # arcs at least between extrema of curvature that are told apart
@@ -236,7 +237,7 @@ def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[A
         return reshared(nodes, worst, DAMPED), tried + 1
     count = nodes.size - 1
     factor = math.cbrt(max(mean, tolerance) / tolerance)
-    more = max(count + 1, math.ceil(count * factor))
+    more = max(count + 1, math.ceil(count * max(factor, 1.0 + GROWTH)))
     density = np.concatenate([[0.0], np.cumsum(np.cbrt(np.maximum(worst, 1e-6 * worst.max())))])
     spread: Array = np.interp(np.linspace(0.0, density[-1], more + 1), density, nodes)
     spread[0], spread[-1] = nodes[0], nodes[-1]

@@ -38,7 +38,8 @@ STEPS = 12  # of Newton's method
 MOST_MOVE = 0.25  # of an arc's length, by which a joint moves along the curve in one step
 INNER = 0.5 - math.sqrt(1.0 / 12.0)  # where along an arc it strays farthest, and as far from its other end
 OUTER = 2.0 / 3.0  # the same for a part's first arc
-RAISED = 4  # times that a part may take more arcs than foreseen
+RAISED = 4  # times that a part may take more arcs than foreseen,
+MOST_ARCS = 40_000  # unless that many were tried before
 MOST_RAISED = 1.5  # times as many, at once
 JOINED = 8.0  # units in the last place of the curve's size, by which an arc may miss the tangent of its end
 CLOSING = 12  # steps that bring it there
@@ -160,14 +161,17 @@ class _Peaks:
 def free_arcs(curve: Curve, parts: Sequence[Part], aim: float, limit: float) -> list[Fitted | None]:
     """Arcs with free joints along parts of a curve, their errors seen up to `aim` and proved up to `limit` mm.
 
-    Each part's arcs begin and end on the curve, in its direction. None stands for a part of which none were found.
+    Each part's arcs begin and end on the curve, in its direction. None stands for a part of which none were found. Cost
+    grows as the number of arcs: many are not tried again and again.
     """
     done: list[Fitted | None] = [None] * len(parts)
     enough = JOINED * float(np.finfo(np.float64).eps) * curve.size
     counts = {i: part.count(aim) for i, part in enumerate(parts)}
+    tried = 0
     for _ in range(RAISED):
-        if not counts:
+        if not counts or tried > MOST_ARCS:
             break
+        tried += sum(counts.values())
         todo = list(counts)
         layout = _Layout.of([counts[i] for i in todo], [parts[i].rising for i in todo])
         t = np.concatenate([parts[i].nodes(counts[i]) for i in todo])
