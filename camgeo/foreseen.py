@@ -50,6 +50,8 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     if bore or part.hub is not None:
         names.append("wall")
     names += [name for name in ("chamfer", "lightening") if getattr(part, name) is not None]
+    if any(request.parts == "all" for request in recipe.export.files):
+        names += ["clearance", "collision"]
     found = [Foreseen(name) for name in names]
     play = ["form-closure"] if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam) else []
     if yoke:

@@ -50,8 +50,8 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
         data = (folder / file["path"]).read_bytes()
         assert file["bytes"] == len(data)
         assert file["sha256"] == hashlib.sha256(data).hexdigest()
-        if file["kind"] == "csv":
-            continue
+        if file["kind"] in {"csv", "glb"} or file.get("body") not in {None, "assembly"}:
+            continue  # no contour of the cam
         assert 0.0 <= file["geometry_error"] <= file["tolerance"]
         # The judge measures no more than was proved, but for rounding.
         assert file["measured_error"] <= file["geometry_error"] * (1 + 1e-9) + 1e-11

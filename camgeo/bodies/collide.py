@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 STEPS = 720  # of a turn, at which the exact motion and its rates are taken
 AXIAL = 1e-6  # mm, by which rounding may make an axial gap less
+ACCURACY = 0.05  # of the clearance, to which the least distance of two bodies is found
 
 
 def collision_checks(assembly: Assembly) -> list[Check]:
@@ -35,7 +36,8 @@ def collision_checks(assembly: Assembly) -> list[Check]:
     as that. What is pressed together, and what touches by design, is left out: the rollers and a single face are held
     against the file of the cam itself.
     """
-    found = clearances(movers(assembly), exempt(assembly), axial=assembly.sizes.gap - AXIAL)
+    s = assembly.sizes
+    found = clearances(movers(assembly), exempt(assembly), axial=s.gap - AXIAL, accuracy=ACCURACY * s.clearance)
     return [clearance_check(assembly), *(_checked(pair) for pair in found)]
 
 

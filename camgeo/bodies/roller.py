@@ -30,13 +30,9 @@ SIDES = ((-1.0, "a"), (1.0, "b"))
 def double_roller(law: Transmission, radius: float, drive: Drive) -> Assembly:
     """Return the mechanism of a double roller.
 
-    The rollers have their nominal radius and touch the cam. Raises BodyError where they are too thin for their pins.
+    The rollers have their nominal radius and touch the cam.
     """
     s, disk, reach = drive.sizes, drive.disk, drive.reach
-    if radius - 0.5 * s.hole < THIN:
-        most = 2.0 * (radius - THIN) - s.clearance
-        remedy = f"give at most {most:.4g} mm, or larger rollers" if most >= 1.0 else "give larger rollers"
-        raise BodyError("mechanism.pin", f"too thick for rollers of radius {radius:.6g} mm", remedy)
     low = s.plate + s.gap
     high = low + s.link
     cam_low = max(high + s.gap, s.plate + s.gap - disk.bottom)

@@ -85,6 +85,11 @@ def sizes_of(asked: MechanismAsked, reach: float, bore: float, roller: float | N
         knob=asked.knob or _half(max(0.9 * reach, 1.6 * bore + 2.0 * wall)),
     )
     _go_together(sizes, bore)
+    if roller is not None and roller - 0.5 * sizes.hole < THIN:
+        most = 2.0 * (roller - THIN) - sizes.clearance
+        remedy = f"give at most {most:.4g} mm, or larger rollers" if most >= LEAST_PIN else "give larger rollers"
+        field = "cam.roller_radius" if asked.pin is None else "mechanism.pin"
+        raise BodyError(field, f"a pin of {pin:.6g} mm leaves no wall in rollers of radius {roller:.6g} mm", remedy)
     return sizes
 
 
