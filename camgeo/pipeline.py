@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from camgeo.design import Clock, Design, designed, intended, permitted
+from camgeo.design import Clock, Design, designed, permitted
+from camgeo.manufacture.meant import intent_of_file
 from camgeo.report.document import FileResult, Findings, document, encoded
 
 if TYPE_CHECKING:
@@ -80,6 +81,7 @@ def shown(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> tuple
 def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
     """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does."""
     from camgeo.recipe.model import FileRequest
+    from kin.read import kind_of
     from kin.verify import verify
 
     clock = Clock()
@@ -88,7 +90,8 @@ def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
     for path in paths:
         with clock.stage("judge"):
             tolerance = _tolerance_of(recipe, path)
-            verdict = verify(path, intended(recipe, design), recipe.verify.angles, permitted(recipe, tolerance))
+            meant = intent_of_file(recipe, design, kind_of(path))
+            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance))
         request = FileRequest(verdict.kind)
         measured = verdict.measured_error
         files.append(

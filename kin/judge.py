@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kin.hole import Hole
     from kin.layers import CrossHole, Layer
     from kin.mechanism import Mechanism
+    from kin.milled import Milling
 
 # The judge's own rounding, as a share of the contour's extent; a value this far above its limit still holds.
 ROUNDING = 1e-12
@@ -55,6 +56,7 @@ class Intent:
     dwell       of the mechanism's output, which is found in each file and, if it must last, judged
     holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
     layers      of its solid, from below, and radial holes through layers with an outline of their own
+    milling     how a program mills it
     """
 
     follower: Follower
@@ -68,6 +70,7 @@ class Intent:
     holes: tuple[Hole, ...] = ()
     layers: tuple[Layer, ...] = ()
     cross_holes: tuple[CrossHole, ...] = ()
+    milling: Milling | None = None
 
     @property
     def featured(self) -> bool:
@@ -133,11 +136,17 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) 
     if intent.mechanism is not None:
         linkage, more = _judge_linkage(contour, intent, phi, limits, slack)
         checks += more
-    return Findings(judged, found, (_contour_check(found, intent.follower, limits.tolerance, slack), *checks), linkage)
+    standing = 0.0 if intent.milling is None else intent.milling.standing
+    judged_contour = _contour_check(found, intent.follower, limits.tolerance, slack, standing)
+    return Findings(judged, found, (judged_contour, *checks), linkage)
 
 
-def _contour_check(found: Deviation, follower: Follower, tolerance: float, slack: float) -> Check:
+def _contour_check(
+    found: Deviation, follower: Follower, tolerance: float, slack: float, standing: float = 0.0
+) -> Check:
+    """Check both sides of a contour against the tolerance; outside as much more may stand as a cutter may leave."""
     worst, parameter = found.worst
+    worst = max(worst - standing, found.inside) if standing else worst
     detail = f"{found.outside:.3g} mm outside, {found.inside:.3g} mm inside the exact contour"
     if found.rounds != 1:
         detail = f"the contour goes {found.rounds} times round the exact one; {detail}"

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 __all__ = [
     "KINDS",
     "SOLIDS",
+    "SUFFIXES",
     "AnySolid",
     "Aside",
     "Drawing",
@@ -33,22 +34,23 @@ __all__ = [
     "read_stl",
 ]
 
-Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step"]
+Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "gcode"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 SOLIDS = frozenset({"stl", "3mf", "step"})
-OTHERS: dict[str, Kind] = {".stp": "step"}
+OTHERS: dict[str, Kind] = {".stp": "step", ".ngc": "gcode", ".nc": "gcode", ".tap": "gcode"}
 """Suffixes that are not the kind's own."""
+SUFFIXES: dict[str, Kind] = {f".{kind}": kind for kind in KINDS} | OTHERS
+"""Every suffix, and the kind of file that it tells."""
 AnySolid: TypeAlias = Solid | StepSolid
 
 
 def kind_of(path: Path | str) -> Kind:
     """Tell a file's kind by its suffix; raises ValueError for one that is none of KINDS."""
     path = Path(path)
-    suffix = path.suffix.lower()
-    for kind in KINDS:
-        if suffix == f".{kind}" or OTHERS.get(suffix) == kind:
-            return kind
-    raise ValueError(f"{path.name}: none of {', '.join(f'.{kind}' for kind in KINDS)}")
+    found = SUFFIXES.get(path.suffix.lower())
+    if found is None:
+        raise ValueError(f"{path.name}: none of {', '.join(SUFFIXES)}")
+    return found
 
 
 def read_drawing(path: Path | str, gap: float = 1e-6, *, engraved: bool = False) -> Drawing:

@@ -113,7 +113,8 @@ def _of_program(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check]
     program = read_gcode(path)
     done = milled(program, intent.milling, limits.tolerance)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (done.contour, *done.holes))
-    checks = [_units_check(program.units_mm, intent.mm), _count_check("closed", _crossing_places(contour)), *done.checks]
+    checks = [_units_check(program.units_mm, intent.mm), _count_check("closed", _crossing_places(contour))]
+    checks += done.checks
     if intent.featured:
         from kin.part import drawn_checks
 

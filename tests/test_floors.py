@@ -23,12 +23,12 @@ FLOORS = {
         chain formula possible read swept
         collision read_3mf read_step
         dyad encounter forces hole read_dxf read_stl read_svg switches transmission_law
-        drawing region svg_path
-        bearing bouncing bounding flaws floating integrated law linkage nesting roots routes step_face syntax
+        drawing milled region svg_path
+        bearing bouncing bounding flaws floating integrated law linkage nesting parallel roots routes step_face syntax
         contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
         biarc dwell figures jet mobility peaks pieces shape
         bezier monotone motion response series turn
-        bernstein chaining contact drive extremes foot hull instants nearest part21 taylor triangles
+        bernstein chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles
         arcs ball check chebyshev distinct oscillator read_error
     """,
     "camgeo": """
@@ -48,7 +48,7 @@ FLOORS = {
         pipeline recipe
         making.left_out making.make
         making.mechanism
-        making.drawing making.parts making.step making.view making.table
+        making.drawing making.gcode making.parts making.step making.view making.table
         making.solid
         making.job
         bodies.build outlines
@@ -56,7 +56,8 @@ FLOORS = {
         page.page
         page.content page.tables
         page.curves
-        bodies.linked page.linked page.outline
+        bodies.linked manufacture.meant page.linked page.outline
+        manufacture.milling
         bodies.dyads bodies.roller bodies.yoke dynamics manufacture.cutter manufacture.inspection
         bodies.site bodies.guide design recipe.load files.step
         bodies.shaft files.brep files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
@@ -68,8 +69,8 @@ FLOORS = {
         bodies.places bodies.linked_places bodies.collide reach
         bodies.forms bodies.assembly fit.cubic fit.spans fit.trigonometric pairs recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
         bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius turning
-        part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
-        bodies.sizes recipe.model recipe.scalars recipe.source recipe.tables
+        files.gcode part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
+        bodies.sizes manufacture.toolpath recipe.model recipe.scalars recipe.source recipe.tables
         recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.table_part
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism recipe.table_sweep
         curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store

@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.curve import CurveError
-from camgeo.design import Clock, intended, permitted
+from camgeo.design import Clock, permitted
 from camgeo.files.missing import MissingExtraError
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.bound import FormError
 from camgeo.fit.nodes import ToleranceError
+from camgeo.manufacture.meant import intent_of_file
 from camgeo.outlines import Outlines, formula_rounding
 from camgeo.report.document import FileResult
 from camgeo.store import SurroundingsError
@@ -111,8 +112,9 @@ class Job:
         from kin.verify import verify
 
         recipe, tolerance = self.recipe, self.tolerance(request)
+        meant = intent_of_file(recipe, self.design, request.kind)
         with self.clock.stage(f"judge {request.kind}"):
-            verdict = verify(path, intended(recipe, self.design), recipe.verify.angles, permitted(recipe, tolerance))
+            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance))
         measured = verdict.measured_error
         file = FileResult(path, request, tolerance, pieces, bound, measured, verdict.motion, verdict.linkage)
         return Made((file,), tuple(verdict.checks))

@@ -20,10 +20,14 @@ from camgeo.offset import Parallel
 from camgeo.radius import least_radius
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from camgeo.curve import Array, Side
     from camgeo.undercut import Undercut
+
+    Fit = Callable[[Curve, float], ArcSpline]
 
 
 @dataclass(frozen=True)
@@ -98,11 +102,11 @@ class CutterPath:
     corners: bool = False
     lost: tuple[Undercut, ...] = ()
 
-    def within(self, tolerance: float) -> ArcSpline:
-        """Arcs within `tolerance` mm of the path; raises as `fit_arcs` does."""
+    def within(self, tolerance: float, fitted: Fit = fit_arcs) -> ArcSpline:
+        """Arcs within `tolerance` mm of the path, as `fitted` makes them of a curve; raises as that does."""
         if not self.corners:
-            return fit_arcs(self.curve, tolerance)
-        fits = [fit_arcs(Curve(self.curve.shape, (run,)), tolerance) for run in self.curve.runs]
+            return fitted(self.curve, tolerance)
+        fits = [fitted(Curve(self.curve.shape, (run,)), tolerance) for run in self.curve.runs]
         run_ends = np.array([run.high for run in self.curve.runs])
         leave = self.curve.sample(run_ends, -1)
         enter = self.curve.sample(np.array([run.low for run in self.curve.runs]))

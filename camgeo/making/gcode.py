@@ -1,0 +1,113 @@
+"""Programs for milling machines: the cutter's path round the contour, and round holes that are wide enough."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.files.gcode import Cutting, places, rounding, write_gcode
+from camgeo.fit.pieces import ArcSpline
+from camgeo.making.job import Made
+from camgeo.manufacture.milling import milled_holes, path_of, reach_check
+from camgeo.manufacture.toolpath import begun_at, circle, led, passes
+from camgeo.outlines import Outlines
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.curve import Curve
+    from camgeo.making.job import Job
+    from camgeo.manufacture.cutter import CutterPath
+    from camgeo.manufacture.milling import RoundHole
+    from camgeo.manufacture.toolpath import Loop, Pass
+    from camgeo.recipe.model import FileRequest
+    from camgeo.recipe.model_manufacture import Manufacture
+
+FEATURE = "contour"
+
+
+def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge one program; none is made for a cutter that does not reach all it must."""
+    recipe, asked = job.recipe, job.recipe.manufacture
+    if asked is None:
+        raise recipe.error("manufacture", "gcode needs manufacture")
+    with job.refusals(request), job.clock.stage("cutter path"):
+        check, _ = reach_check(recipe, job.design)
+    if not check.ok:
+        return Made((), (check,))
+    count = places(job.tolerance(request), recipe.mm)
+    with job.refusals(request):
+        fine = _outline(job, path_of(recipe, job.design), job.tolerance(request) - rounding(count, recipe.mm))
+        rough = None
+        if asked.allowance is not None:
+            rough = _outline(job, path_of(recipe, job.design, asked.allowance), 0.25 * asked.allowance)
+        with job.clock.stage("write gcode"):
+            features = [*_holes(job, asked), (FEATURE, _round(job, asked, rough, fine))]
+            _write(job, request, path, features, count)
+    bound = fine.bound.widened(rounding(count, recipe.mm))
+    made = job.judged(request, path, bound, fine.count)
+    return Made(made.files, (check, *made.checks))
+
+
+def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
+    """The cutter's path as arcs, which share the part's precautions against a formula that rounds."""
+
+    def fitted(curve: Curve, within: float) -> ArcSpline:
+        outline = Outlines(curve, job.clock, job.outlines.unsure).within("arcs", within)
+        if not isinstance(outline, ArcSpline):
+            raise TypeError("a path is made of arcs")
+        return outline
+
+    return path.within(tolerance, fitted)
+
+
+def _round(job: Job, asked: Manufacture, rough: ArcSpline | None, fine: ArcSpline) -> list[Pass]:
+    """Passes round the contour."""
+    thickness = job.recipe.part.thickness
+    if thickness is None:
+        raise job.recipe.error("part.thickness", "gcode needs a thickness")
+
+    def loop(path: ArcSpline) -> Loop:
+        begun = begun_at(path, asked.start)
+        drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
+        return led(drawn, asked.lead, outside=True, clockwise=asked.direction == "climb")
+
+    return passes(None if rough is None else loop(rough), loop(fine), asked, thickness)
+
+
+def _holes(job: Job, asked: Manufacture) -> list[tuple[str, list[Pass]]]:
+    """Passes of the holes that are milled, by name."""
+    found, _ = milled_holes(job.recipe, job.design)
+    return [(hole.name, _hole(job, asked, hole)) for hole in found]
+
+
+def _hole(job: Job, asked: Manufacture, hole: RoundHole) -> list[Pass]:
+    sign = -1.0 if job.recipe.rotation == "ccw" else 1.0
+    (x, y), reach = hole.centre, hole.radius - asked.radius
+
+    def loop(radius: float) -> Loop:
+        path = circle((x, sign * y), radius, sign * asked.start)
+        return led(path, min(asked.lead, 0.5 * radius), outside=False, clockwise=asked.direction != "climb")
+
+    left = reach - (asked.allowance or 0.0)
+    rough = None if asked.allowance is None or left <= 0.5 * asked.allowance else loop(left)
+    return passes(rough, loop(reach), asked, job.recipe.part.thickness or 0.0)
+
+
+def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str, list[Pass]]], count: int) -> None:
+    recipe, asked = job.recipe, job.recipe.manufacture
+    if asked is None or not (asked.feed and asked.plunge and asked.spindle and asked.safe_height):
+        raise recipe.error("manufacture", "gcode needs feed, plunge, spindle, depth_of_cut and safe_height")
+    mm = recipe.mm
+    _, skipped = milled_holes(recipe, job.design)
+    remarks = [
+        recipe.name,
+        recipe.about,
+        f"units: {'inch' if recipe.units == 'inch' else 'mm'}",
+        f"cutter: diameter {asked.cutter / mm:.9g}",
+        f"tolerance: {job.tolerance(request) / mm:.9g}",
+        f"zero: the shaft, top of the stock; thickness {(recipe.part.thickness or 0.0) / mm:.9g}",
+        f"{asked.direction} milling, spindle clockwise",
+        *(f"not milled: {name}, {why}" for name, why in skipped),
+    ]
+    cutting = Cutting(asked.feed, asked.plunge, asked.spindle, asked.safe_height)
+    write_gcode(path, features, cutting, remarks=[text for text in remarks if text], count=count, mm=mm)

@@ -1,0 +1,27 @@
+"""What kin is told of each kind of file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.design import intended
+
+if TYPE_CHECKING:
+    from camgeo.design import Design
+    from camgeo.recipe.model import Recipe
+    from kin.verify import Intent
+
+
+def intent_of_file(recipe: Recipe, design: Design, kind: str) -> Intent:
+    """What kin is told of a file of some kind; raises RecipeErrors for a program of which the recipe knows nothing."""
+    if kind != "gcode":
+        return intended(recipe, design)
+    if recipe.manufacture is None:
+        raise recipe.error("manufacture", "missing", None, "give manufacture: a program is judged by its cutter")
+    if recipe.part.thickness is None:
+        raise recipe.error("part.thickness", "missing", None, "give part.thickness: a program is judged by its depth")
+    if design.contour is None:
+        raise recipe.error("cam", "a check of the exact contour fails, so that nothing can be milled")
+    from camgeo.manufacture.milling import milling_intent
+
+    return milling_intent(recipe, design)

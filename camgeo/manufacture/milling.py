@@ -1,0 +1,121 @@
+"""What of a part is milled: the cutter's path by the recipe, whether it reaches everything, which holes are milled."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.causes import UndercutError
+from camgeo.design import intended
+from camgeo.manufacture.cutter import cutter_path, is_convex, least_hollow
+from camgeo.part.meant import holes_of
+from kin.check import Check, degrees, failed
+
+if TYPE_CHECKING:
+    from camgeo.curve import Curve
+    from camgeo.design import Design
+    from camgeo.manufacture.cutter import CutterPath
+    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.model_manufacture import Manufacture
+    from kin.verify import Intent
+
+LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is no path
+
+
+class RoundHole(NamedTuple):
+    """A round hole through the part, in the cam's axes, mm."""
+
+    name: str
+    centre: tuple[float, float]
+    radius: float
+
+
+def path_of(recipe: Recipe, design: Design, further: float = 0.0) -> CutterPath:
+    """Path of the cutter's centre, or one `further` out; raises as `cutter_path` does."""
+    contour, asked = _milled(recipe, design)
+    return cutter_path(contour, asked.radius + further)
+
+
+def _milled(recipe: Recipe, design: Design) -> tuple[Curve, Manufacture]:
+    if design.contour is None or recipe.manufacture is None:
+        raise ValueError(f"{recipe.name}: there is nothing to mill")
+    return design.contour, recipe.manufacture
+
+
+def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | None]:
+    """Check how deep metal is left where the cutter does not reach; its path, None where there is no single one."""
+    contour, asked = _milled(recipe, design)
+    told = "no hollow"
+    if not is_convex(contour):
+        radius, at = least_hollow(contour)
+        told = f"least hollow radius {radius:.6g} mm at {_shaft_deg(design, at):.6g} deg"
+    try:
+        path = path_of(recipe, design)
+    except UndercutError as error:
+        return failed("cutter-reach", f"{error}; {told}", unit="mm", limit=asked.unreached), None
+    if not path.lost:
+        return Check("cutter-reach", True, 0.0, asked.unreached, "mm", detail=told), path
+    worst = max(path.lost, key=lambda cut: cut.depth)
+    first, last = _shaft_deg(design, worst.start), _shaft_deg(design, worst.end)
+    free = 2.0 * min(cut.free_at for cut in path.lost)
+    detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
+    at_deg = _shaft_deg(design, worst.at)
+    return Check(
+        "cutter-reach", worst.depth <= asked.unreached, worst.depth, asked.unreached, "mm", at_deg, detail=detail
+    ), path
+
+
+def _shaft_deg(design: Design, parameter: float) -> float:
+    """Shaft angle in degrees at which the follower touches a parameter of the contour."""
+    at = getattr(design.intent, "at", None)
+    return degrees(parameter if at is None else float(at(parameter, 0)[0][0, 0]))
+
+
+def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
+    """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
+    _, asked = _milled(recipe, design)
+    found: list[RoundHole] = []
+    others: list[tuple[str, str]] = []
+    if design.body is None:
+        if recipe.part.bore is not None:
+            found.append(RoundHole("bore", (0.0, 0.0), 0.5 * recipe.part.bore))
+    else:
+        for opening in design.body.openings:
+            if opening.circle is not None and opening.depth is None:
+                found.append(RoundHole(opening.name, *opening.circle))
+            else:
+                others.append((opening.name, "not a round hole"))
+    if not asked.holes:
+        return [], [*((hole.name, "manufacture.holes is not true") for hole in found), *others]
+    wide = [hole for hole in found if hole.radius >= asked.radius + LEAST_ROOM]
+    others += [(hole.name, "not wider than the cutter") for hole in found if hole not in wide]
+    return wide, others
+
+
+def milling_intent(recipe: Recipe, design: Design) -> Intent:
+    """What kin is told of a program: the part as `intended`, but for what is not milled, and the machine's side."""
+    from kin.milled import Milling
+
+    _, asked = _milled(recipe, design)
+    check, path = reach_check(recipe, design)
+    lost = path is None or bool(path.lost)
+    meant = intended(recipe, design)
+    found, _ = milled_holes(recipe, design)
+    names = {hole.name for hole in found}
+    holes = () if design.body is None else tuple(hole for hole in holes_of(design.body) if hole.name in names)
+    milling = Milling(
+        radius=asked.radius,
+        thickness=recipe.part.thickness or 0.0,
+        depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
+        climb=asked.direction == "climb",
+        standing=check.limit or 0.0 if lost else 0.0,
+    )
+    return replace(
+        meant,
+        bore=meant.bore if "bore" in names else None,
+        holes=holes,
+        layers=(),
+        cross_holes=(),
+        trimmed=meant.trimmed or lost,
+        milling=milling,
+    )
