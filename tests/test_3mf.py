@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from parts import failures, files_of, recipe_of
 
+from camgeo import testing
 from camgeo.cli import main
 from camgeo.files.mesh import Mesh
 from camgeo.files.precision import DECIMALS
@@ -431,6 +432,15 @@ def test_components_that_multiply(plain, monkeypatch):
 
     with pytest.raises(ReadError, match="more than 65536 triangles"):
         read_3mf(rewritten(sound, towered))
+
+
+def test_assertions_of_one_s_own_take_it(plain):
+    recipe, _, path, _ = plain
+    assert testing.assert_watertight(path) == pytest.approx(read_3mf(path).volume)
+    assert testing.assert_closed(path) == 0.0
+    assert testing.assert_motion(recipe, path, tolerance=0.01).max < 0.01
+    with pytest.raises(AssertionError, match="3 edges with one triangle"):
+        testing.assert_watertight(rewritten(path, removed))
 
 
 # --- the command ------------------------------------------------------------------------------------------------------
