@@ -49,7 +49,7 @@ MOVED = ("MAPPED_ITEM", "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION", "REPRESENTATIO
 # Ends are joined within the accuracy that the file states, but no closer and no farther than this, mm.
 ACCURACY = (1e-6, 1e-3)
 SAME = 1e-9  # mm: heights this close are one
-GAUSS = 24  # nodes over the height of a level hole
+GAUSS = 12  # nodes over the height of a level hole
 AREA_NODES, AREA_WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact where a section is a cubic in the height
 MOST_NAMED = 3  # edges in a message
 
@@ -66,7 +66,8 @@ class StepSolid:
     volume              mm^3, from sections
     sections            those that were asked for, by height as asked for
     faces               heights of the horizontal faces, rising
-    faults              edges that do not belong to exactly two faces which run along them opposite ways, and the like
+    faults              edges that do not belong to exactly two faces which run along them opposite ways; lids that look
+                        into the solid
     misfit              farthest that an edge lies off its faces or its ends off itself
     schema              of the file
     units_mm            length of its unit
@@ -104,6 +105,7 @@ def read_step(path: Path | str, heights: Sequence[float] = ()) -> StepSolid:
     """
     path = Path(path)
     body = _Body.of(exchange(path.read_bytes(), path))
+    misfit = body.misfit
     asked = [body.checked(z) for z in heights] or [body.widest()]
     drawings = [body.section(z) for z in asked]
     sections = [Section(z, one.contour, one.holes) for z, one in zip(asked, drawings, strict=True)]
@@ -120,7 +122,7 @@ def read_step(path: Path | str, heights: Sequence[float] = ()) -> StepSolid:
         sections=tuple(sections) if len(heights) else (),
         faces=tuple(distinct(np.array([face.heights[0] for face in body.lids])).tolist()),
         faults=tuple(body.faults),
-        misfit=body.misfit,
+        misfit=misfit,
         schema=body.space.file.schema,
         units_mm=body.space.mm,
     )
@@ -257,14 +259,22 @@ class _Body:
             up = (normal > 0.0) == lid.outward
             if (abs(z - self.levels[0]) <= SAME and up) or (abs(z - self.levels[-1]) <= SAME and not up):
                 found.append(f"face #{lid.number} at z = {z:.9g} mm looks into the solid")
-        if self.misfit > self.space.accuracy:
-            found.append(f"edges lie up to {self.misfit:.3g} mm off their faces or ends")
         return found
 
     @cached_property
     def misfit(self) -> float:
-        """Farthest that an edge lies off its faces, or its ends off itself, mm."""
-        return max(*(face.misfit for face in self.faces), *(edge.misfit for edge in self.edges.values()))
+        """Farthest that an edge lies off its faces, or its ends off itself, mm.
+
+        Raises ReadError, naming it, where that is more than the file's own accuracy.
+        """
+        off = {edge.number: edge.misfit for edge in self.edges.values()}
+        off |= {face.number: face.misfit for face in self.faces}
+        worst = max(off, key=lambda number: off[number])
+        if off[worst] > self.space.accuracy:
+            what = "ends beside its curve" if worst in self.edges else "is bounded by edges beside its surface"
+            message = f"{what} by {off[worst]:.3g} mm, permitted are {self.space.accuracy:.3g}"
+            raise self.space.file.error(worst, message, "gap")
+        return off[worst]
 
 
 def _space(file: Exchange, solid: int) -> Space:

@@ -149,7 +149,10 @@ class Face:
 
     @cached_property
     def heights(self) -> tuple[float, float]:
-        """Least and greatest height of its edges."""
+        """Least and greatest height of its edges; of a level cylinder its own."""
+        if isinstance(self.surface, Tube):
+            axis = float(self.surface.point[2])
+            return axis - self.surface.radius, axis + self.surface.radius
         z = np.concatenate([edge.samples[:, 2] for edge, _ in self.uses])
         return float(z.min()), float(z.max())
 
@@ -160,11 +163,11 @@ class Face:
 
     def section(self, space: Space, z: float) -> list[Shape]:
         """The face's part of the section at a height; raises ReadError where its bounds do not pair."""
-        if self.surface.level:
+        low, high = self.heights
+        if self.surface.level or not low < z < high:
             return []
         crossings = [(place, rises == forward) for edge, forward in self.uses for place, rises in edge.crossings(z)]
-        low, high = self.heights
-        if not crossings and not (isinstance(self.surface, Round) and low < z < high):
+        if not crossings and not isinstance(self.surface, Round):
             return []
         match self.surface:
             case Round():

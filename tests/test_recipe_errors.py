@@ -23,7 +23,7 @@ PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening,
 BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10}"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 LENGTH = "give a length above 0 in mm"
-FORMATS = "give dxf, svg, stl, 3mf, glb, csv, html or gcode"
+FORMATS = "give dxf, svg, stl, 3mf, step, glb, csv, html or gcode"
 
 
 def told(body: str | bytes, path: str = "c.yaml") -> list[str]:
@@ -44,7 +44,7 @@ cam:
   delta: {cos: {2: 625}}
 dynamics: {mass: 1, stiffness: 1e5, rpm: 100}
 part: {bore: 10mm, follower: 3}
-export: {files: [dxf, {dxf: {as: spline, version: R12}}, stl, step]}
+export: {files: [dxf, {dxf: {as: spline, version: R12}}, stl, stp]}
 verify: {angles: 010}
 tolerance: 4
 """
@@ -66,13 +66,13 @@ tolerance: 4
         ),
         "cams/a.yaml:11:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
         (
-            "cams/a.yaml:11:63: export.files[3]: not available in this version, given 'step'; "
-            "give dxf, svg, stl, 3mf, glb, csv, html or gcode"
+            "cams/a.yaml:11:63: export.files[3]: no such file format, given 'stp'; "
+            "give dxf, svg, stl, 3mf, step, glb, csv, html or gcode"
         ),
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (
             "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, the file dxf, the file svg, "
-            "the file stl, the file 3mf, the file glb or the file gcode"
+            "the file stl, the file 3mf, the file step, the file glb or the file gcode"
         ),
     ]
 
@@ -647,7 +647,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         ("[~]", [f"18: export.files[0]: not a file, given nothing; {CHOOSE}"]),
         ("[[dxf]]", [f"18: export.files[0]: not a file, given a list of 1; {CHOOSE}"]),
         ("[{dxf: {}, csv: {}}]", [f"18: export.files[0]: not a file, given a mapping of 2; {CHOOSE}"]),
-        ("[step]", [f"18: export.files[0]: not available in this version, given 'step'; {FORMATS}"]),
+        ("[stp]", [f"18: export.files[0]: no such file format, given 'stp'; {FORMATS}"]),
         ("[DXF]", [f"18: export.files[0]: no such file format, given 'DXF'; {FORMATS}"]),
         (
             "[{dxf: }]",

@@ -192,10 +192,10 @@ def test_an_stl_cut_short(tmp_path, vertices):
 
 
 def test_calls_that_are_wrong_are_no_verdict(tmp_path, vertices):
-    with pytest.raises(ValueError, match=r"cam\.dxf: not a \.stl or \.3mf file"):
+    with pytest.raises(ValueError, match=r"cam\.dxf: not a \.stl, \.3mf or \.step file"):
         testing.assert_watertight(dxf(tmp_path, vertices))
-    with pytest.raises(ValueError, match=r"cam\.step: none of"):
-        testing.assert_closed(tmp_path / "cam.step")
+    with pytest.raises(ValueError, match=r"cam\.iges: none of"):
+        testing.assert_closed(tmp_path / "cam.iges")
     with pytest.raises(FileNotFoundError):
         testing.assert_closed(tmp_path / "none.dxf")
 
