@@ -74,12 +74,13 @@ def draw_solid(axis: Axes, path: Path) -> None:
     seen = corners @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     c, s = np.cos(tilt), np.sin(tilt)
     seen = seen @ np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-    axis.imshow(raster(seen, shade), interpolation="lanczos")
+    picture = raster(seen, shade)[..., None] * np.array(mpl.colors.to_rgb(METAL)) * 1.12
+    axis.imshow(np.where(np.isnan(picture), 1.0, np.clip(picture, 0.0, 1.0)), interpolation="lanczos")
     axis.axis("off")
 
 
 def raster(corners: np.ndarray, shade: np.ndarray) -> np.ndarray:
-    """Picture (h, w, 3) of triangles (t, 3, 3) seen along -z, of each pixel the nearest one's shade (t,)."""
+    """Picture (h, w) of triangles (t, 3, 3) seen along -z: of each pixel the nearest one's shade (t,), nan of none."""
     low, high = corners.reshape(-1, 3).min(axis=0), corners.reshape(-1, 3).max(axis=0)
     scale = (PIXELS - 4) / float((high - low)[:2].max())
     place = (corners - low) * scale + 2.0
@@ -97,8 +98,7 @@ def raster(corners: np.ndarray, shade: np.ndarray) -> np.ndarray:
         z = u * a[2] + v * b[2] + (1.0 - u - v) * c[2]
         near = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1.0 + 1e-9) & (z > depth[y0:y1, x0:x1])
         depth[y0:y1, x0:x1][near], grey[y0:y1, x0:x1][near] = z[near], value
-    picture = grey[::-1, :, None] * np.array(mpl.colors.to_rgb(METAL)) * 1.12
-    return np.where(np.isnan(picture), 1.0, np.clip(picture, 0.0, 1.0))
+    return grey[::-1]
 
 
 if __name__ == "__main__":
