@@ -23,6 +23,7 @@ TOKEN = re.compile(
     r"|(?P<mark>[(),;=$*])|(?P<binary>\"[0-9A-Fa-f]*\")",
     re.DOTALL,
 )
+LARGEST = 1e30  # number that can be computed with
 LONGEST = 60  # characters of a text that an error shows
 
 
@@ -83,11 +84,13 @@ class Exchange(NamedTuple):
         return values
 
     def number(self, value: Value, by: int) -> float:
-        """Return a value as a number."""
+        """Return a value as a number, of a size that can be computed with."""
         if isinstance(value, Typed) and len(value.values) == 1:
             value = value.values[0]
         if isinstance(value, bool) or not isinstance(value, int | float) or isinstance(value, Reference):
             raise self.error(by, f"{shown(value)} is no number", "syntax")
+        if not abs(value) <= LARGEST:
+            raise self.error(by, f"a value of {value:g}", "range")
         return float(value)
 
     def reference(self, value: Value, by: int) -> int:

@@ -255,6 +255,8 @@ def face_of(space: Space, number: int, edges: dict[int, Edge]) -> Face:
         ]
         _check_loop(space, ring, uses, edges)
         loops.append(tuple(uses) if forward else tuple(Use(use.edge, not use.forward) for use in reversed(uses)))
+    if not loops:
+        raise file.error(number, "it has no bounds")
     made = _surface(space, file.reference(surface, number), number)
     return Face(number, made, tuple(loops), file.flag(sense, number), edges)
 

@@ -133,15 +133,17 @@ def test_a_file_cut_short(tmp_path, bytes_left):
         (r"CIRCLE\('',#\d+", "CIRCLE('',#9999", "unsupported", "#9999 .*is no AXIS2"),
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1", "syntax", r"#\d+ CIRCLE: has 2 values, 3 belong there"),
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1,-3.", "range", r"#\d+ CIRCLE: a length of -3 mm"),
+        (r"DIRECTION\('',\(0\.0", "DIRECTION('',(1.E400", "range", r"#\d+ DIRECTION: a value of inf"),
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1,'big'", "syntax", r"CIRCLE: 'big' is no number"),
         ("CYLINDRICAL_SURFACE", "TOROIDAL_SURFACE", "unsupported", r"#\d+ TOROIDAL_SURFACE: is none of PLANE"),
         ("CIRCLE", "HYPERBOLA", "unsupported", r"#\d+ HYPERBOLA: is none of"),
+        (r"ADVANCED_FACE\('',\([^)]*\)", "ADVANCED_FACE('',()", "unsupported", r"#\d+ ADVANCED_FACE: it has no bounds"),
         ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "unsupported", "BREP_WITH_VOIDS: is none of MANIFOLD"),
         ("MANIFOLD_SOLID_BREP", "SHELL_BASED_SURFACE_MODEL", "empty", "it holds no solid"),
         (r"\.MILLI\.,\.METRE\.\)\);\n#902", ".FEMTO.,.METRE.));\n#902", "unsupported", "#901 .*is no unit"),
         (r"\(#901,#902\)", "(#902)", "unsupported", "states no unit of length"),
         (r"(#\d+)=LINE", r"#899=MAPPED_ITEM('',$,$);\n\1=LINE", "unsupported", "#899 MAPPED_ITEM: an assembly"),
-        (r"CARTESIAN_POINT\('',\(20.0", "CARTESIAN_POINT('',(1.E99", "range", "a coordinate of 1e.99 mm"),
+        (r"CARTESIAN_POINT\('',\(20.0", "CARTESIAN_POINT('',(1.E99", "range", "a value of 1e.99"),
     ],
 )
 def test_what_is_not_read_is_named_by_its_number(tmp_path, pattern, replacement, reason, message):

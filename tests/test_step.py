@@ -14,6 +14,7 @@ from parts import CAM, failures, files_of
 
 from camgeo.cli import main
 from camgeo.design import designed
+from camgeo.files.brep import need_kernel
 from camgeo.files.curves import FLATTEST, misfit
 from camgeo.files.missing import MissingExtraError
 from camgeo.files.solid import Solid
@@ -364,6 +365,15 @@ def test_without_the_extra_the_run_says_what_to_install(tmp_path, monkeypatch, c
             Solid(5.0, 0.0, 5.0, None, None, [], None),
             tolerance=1e-3,
         )
+
+
+@kernel
+def test_another_version_of_the_kernel_is_told(monkeypatch):
+    import OCP
+
+    monkeypatch.setattr(OCP, "__version__", "8.0.1.1")
+    with pytest.raises(MissingExtraError, match=r"needs Open CASCADE 7, not 8\.0\.1\.1: pip install"):
+        need_kernel()
 
 
 @kernel

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from camgeo.files.solid import Drill, Solid
     from camgeo.fit.pieces import Outline
 
-# shapes of the kernel have no types
+VERSION = 7  # of the kernel
+# its shapes have no types
 Shape = Any
 
 
@@ -36,12 +37,16 @@ class Loop(NamedTuple):
 
 
 def need_kernel() -> None:
-    """Raise MissingExtraError where Open CASCADE is not installed."""
+    """Raise MissingExtraError where Open CASCADE is not installed, or is of a version that names things otherwise."""
     try:
+        import OCP
         import OCP.STEPControl
     except ImportError as error:
         raise MissingExtraError("a STEP file needs Open CASCADE: pip install 'camgeo[step]'") from error
-    del OCP
+    version = str(OCP.__version__)
+    if not version.startswith(f"{VERSION}."):
+        message = f"a STEP file needs Open CASCADE {VERSION}, not {version}: pip install 'camgeo[step]'"
+        raise MissingExtraError(message)
 
 
 def solid_shape(outline: Outline, solid: Solid) -> Shape:
