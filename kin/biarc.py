@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.arcs import Arcs, cross, dot, left, turned, unit
-from kin.bernstein import bernstein_product, restrict, rising_root
+from kin.bernstein import bernstein_product, restrict, rising_root, split
 from kin.bezier import Beziers
 
 if TYPE_CHECKING:
@@ -108,10 +108,10 @@ def pair_of(curves: Beziers) -> Pair:
 
     w = curves.weight
     passing = rising_root(np.einsum("nkc,nc->nk", curves.control - joint[:, None], tangent) * w)
-    ends = np.zeros(len(w)), np.ones(len(w))
+    before, after = split(curves.homogeneous, passing)
     bound = np.maximum(
-        off_circle(restrict(curves.homogeneous, ends[0], passing), start, out, first.curvature),
-        off_circle(restrict(curves.homogeneous, passing, ends[1]), end, into, second.curvature),
+        off_circle(before, start, out, first.curvature),
+        off_circle(after, end, into, second.curvature),
     )
     return Pair(first, second, np.where(usable, bound, np.inf))
 

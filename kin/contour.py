@@ -30,6 +30,8 @@ PAIRS_AT_ONCE = 1_000_000
 ARC_TOLERANCE = 1e-9
 MOST_SHARE = 2e-11
 ARC_SHARE = 1e-12
+# How many times finer than asked for the arcs at hand may be to serve instead.
+ALIKE = 4.0
 # Rounding of a tangent's angle, in units of the machine's precision times extent over chord.
 ANGLE_ROUNDING = 16.0
 # Normals that are closer than this, radians, are one.
@@ -262,12 +264,19 @@ class Contour(Pieces):
         Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved, and smooth; by default 1e-9 mm, but
         from 1e-12 to 2e-11 of the extent. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
         """
-        return self._fine_arcs if tolerance is None else self._arcs_within(tolerance)
+        # the arcs of the default are kept: where they are not many more, they serve for what is asked
+        fine = self._fine
+        alike = tolerance is None or fine <= tolerance <= ALIKE * fine
+        return self._fine_arcs if tolerance is None or alike else self._arcs_within(tolerance)
+
+    @property
+    def _fine(self) -> float:
+        extent = float(np.abs(self.vertices).max())
+        return max(ARC_SHARE * extent, min(ARC_TOLERANCE, MOST_SHARE * extent))
 
     @cached_property
     def _fine_arcs(self) -> tuple[Arcs, Indices]:
-        extent = float(np.abs(self.vertices).max())
-        return self._arcs_within(max(ARC_SHARE * extent, min(ARC_TOLERANCE, MOST_SHARE * extent)))
+        return self._arcs_within(self._fine)
 
     def _arcs_within(self, tolerance: float) -> tuple[Arcs, Indices]:
         first, _ = self.directions
