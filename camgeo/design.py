@@ -54,7 +54,8 @@ class Design:
     """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file.
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
-    `driven` is the linkage, None without one; `body` the part where it has more than a round bore.
+    `driven` is the linkage, None without one; `body` the part where it has more than a round bore. `face` is how far
+    the faces of a pair stand beside the lines through its pivot, mm.
     """
 
     intent: Lift | Transmission
@@ -66,6 +67,7 @@ class Design:
     trimmed: bool
     driven: Driven | None = None
     body: Body | None = None
+    face: float = 0.0
 
 
 def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
@@ -83,7 +85,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         with clock.stage("profile"):
             profile = profile_of(cam, intent)
         with clock.stage("undercut"):
-            checks, contour = _sound(recipe, profile, intent)
+            checks, contour = sound(recipe, profile, intent)
     except CurveError as error:
         raise recipe.error("cam", _unproved(recipe, error, intent)) from error
     with clock.stage("figures"):
@@ -109,7 +111,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed, driven, body)
 
 
-def _sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
+def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
     """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
     from camgeo.causes import UndercutError
     from camgeo.radius import least_radius
@@ -248,7 +250,7 @@ def intended(recipe: Recipe, design: Design) -> Intent:
     if isinstance(cam, DoubleRollerCam):
         held = follower.DoubleRoller(cast("Transmission", design.intent), cam.roller_radius)
     elif isinstance(cam, FlatPairCam):
-        held = follower.FlatPair(cast("Transmission", design.intent))
+        held = follower.FlatPair(cast("Transmission", design.intent), design.face)
     elif design.yoke_breadth is not None:
         held = follower.Yoke(cast("Lift", design.intent), breadth=design.yoke_breadth)
     else:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from camgeo.page.content import Content
     from camgeo.recipe.model import FileRequest, Recipe
+    from camgeo.recipe.model_manufacture import Compensation
     from kin.check import Check
 
 REPORT = "report.json"
@@ -90,15 +91,25 @@ def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
     for path in paths:
         with clock.stage("judge"):
             tolerance = _tolerance_of(recipe, path)
-            meant = intent_of_file(recipe, design, kind_of(path))
+            by, field = _compensation_of(recipe, path)
+            meant = intent_of_file(recipe, design, kind_of(path), by, field)
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance))
-        request = FileRequest(verdict.kind)
+        request = FileRequest(verdict.kind, compensation=by)
         measured = verdict.measured_error
         files.append(
             FileResult(path, request, tolerance, verdict.pieces, None, measured, verdict.motion, verdict.linkage)
         )
         checks += verdict.checks
     return document(recipe, _findings(recipe, design, checks, files, clock))
+
+
+def _compensation_of(recipe: Recipe, path: Path) -> tuple[Compensation | None, str]:
+    """By what the recipe makes the part of a file of this name different, and that file's field."""
+    files = recipe.export.files
+    for i, request in enumerate(files):
+        if request.filename(recipe.name, files) == path.name:
+            return request.compensation, f"export.files[{i}]"
+    return None, "export.files"
 
 
 def _tolerance_of(recipe: Recipe, path: Path) -> float:

@@ -33,12 +33,14 @@ class Bearing:
     """m stretches: stretch k from breaks[k] to breaks[k+1], the last over 2 pi to the first; breaks rise in [0, 2 pi).
 
     `point` (m, 2) is the corner that bears, `piece` (m,) the arc or Bezier piece that does instead, -1 for a corner.
+    `back` is by how much less than the contour reaches q is told, mm.
     """
 
     contour: Contour
     breaks: Array
     point: Array
     piece: Indices
+    back: float = 0.0
 
     def find(self, theta: Array) -> Indices:
         """Stretch of each angle (n,); at a break the one that begins there."""
@@ -51,7 +53,7 @@ class Bearing:
     def _rows(self, theta: Array, stretch: Indices, u: Array) -> Array:
         x, radius = self._contact(theta, stretch, u)
         q = dot(x, u)
-        return np.stack([q, cross(u, x), radius - q])
+        return np.stack([q - self.back, cross(u, x), radius - q])
 
     def between(self, nodes: Array, turned: float = 0.0) -> tuple[Indices, Array, Array]:
         """Give q(theta + turned) at both ends of intervals without a break, as seen from within.

@@ -84,6 +84,25 @@ class PairSupport:
 
 
 @dataclass(frozen=True, eq=False)
+class Outset:
+    """A support function and a distance: that of the parallel curve outside, or inside if it is negative."""
+
+    support: SupportLaw
+    distance: float
+
+    @property
+    def breaks(self) -> Array:
+        """Breaks of the support function."""
+        return self.support.breaks
+
+    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
+        """Return p and the distance, and the derivatives of p, (order + 1, n)."""
+        found = self.support.derivatives(theta, order, side).copy()
+        found[0] += self.distance
+        return found
+
+
+@dataclass(frozen=True, eq=False)
 class FlatEnvelope:
     """The contour enveloped by a flat face; its parameter is theta, the direction of the face's outward normal."""
 

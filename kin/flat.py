@@ -15,7 +15,7 @@ import numpy as np
 from kin.bearing import Bearing, bearing_of
 from kin.check import UnsettledError, degrees
 from kin.distinct import distinct
-from kin.envelope import FlatEnvelope, PairSupport
+from kin.envelope import FlatEnvelope, Outset, PairSupport
 from kin.extremes import Extremes, extremes, resolution
 from kin.foot import FINE_STEP, grid
 from kin.motion import TURN, ContactError, Judged, MotionError, Play, Unit, motion_error, with_steps
@@ -176,10 +176,12 @@ class FlatPair:
     """W's pair of flat faces that include pi - alpha and meet in a pivot at distance 2 l from the shaft (W section 5).
 
     The pair swings by psi/2; the normal of face A stands at t, that of face B at t + alpha, in the cam frame. Positions
-    are swings in radians, clockwise positive; error figures are in degrees.
+    are swings in radians, clockwise positive; error figures are in degrees. Faces that stand `face` mm farther out pass
+    the pivot at that distance, and their cam is the parallel curve.
     """
 
     transmission: Transmission
+    face: float = 0.0
     unit: ClassVar[Unit] = "deg"
 
     def intended(self, phi: Array) -> Array:
@@ -189,13 +191,13 @@ class FlatPair:
 
     @cached_property
     def support(self) -> PairSupport:
-        """Support function of the exact contour."""
+        """Distance of the lines through the pivot along the faces: that of the exact contour, less `face`."""
         return PairSupport(self.transmission)
 
     @cached_property
     def envelope(self) -> FlatEnvelope:
         """The exact contour; its parameter is the direction of face A's normal."""
-        return FlatEnvelope(self.support)
+        return FlatEnvelope(Outset(self.support, self.face) if self.face else self.support)
 
     def shaft_angle(self, parameter: Array) -> Array:
         """Shaft angle at which face A touches the envelope's point of that parameter (n,)."""
@@ -251,7 +253,7 @@ class FlatPair:
 
     def held(self, contour: Contour) -> Bearing:
         """Where a contour bears all round; ContactError if it reaches the pivot."""
-        bearing = bearing_of(contour)
+        bearing = replace(bearing_of(contour), back=self.face)
         q = bearing.derivatives(bearing.breaks, np.arange(len(bearing.breaks)))
         out = np.hypot(q[0], q[1]) >= self._pivot
         if out.any():

@@ -13,13 +13,13 @@ import numpy as np
 
 from kin.arcs import cross
 from kin.contour import Contour
-from kin.envelope import FlatEnvelope, RollerEnvelope
+from kin.envelope import FlatEnvelope, Outset, RollerEnvelope
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.arcs import Array, Indices
-    from kin.envelope import Envelope, SupportLaw
+    from kin.envelope import Envelope
     from kin.hole import Hole
 
 GAUSS = 48  # nodes for each smooth part of a cross hole
@@ -241,28 +241,10 @@ def _bored(one: CrossHole, outline: Hole, hole: Hole) -> float:
     return float(np.sum(share * 2.0 * (radius * np.cos(angle)) ** 2 * way))
 
 
-@dataclass(frozen=True, eq=False)
-class _Shrunk:
-    """A support function less a distance: that of the parallel inside."""
-
-    support: SupportLaw
-    distance: float
-
-    @property
-    def breaks(self) -> Array:
-        return self.support.breaks
-
-    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """Return p less the distance, and the derivatives of p, (order + 1, n)."""
-        found = self.support.derivatives(theta, order, side).copy()
-        found[0] -= self.distance
-        return found
-
-
 def inset(envelope: Envelope, distance: float) -> Envelope:
     """The exact contour's parallel inside it."""
     if isinstance(envelope, FlatEnvelope):
-        return FlatEnvelope(_Shrunk(envelope.support, distance))
+        return FlatEnvelope(Outset(envelope.support, -distance))
     if isinstance(envelope, RollerEnvelope):
         return replace(envelope, radius=envelope.radius + distance)
     raise TypeError(f"no parallel of a {type(envelope).__name__}")

@@ -89,12 +89,13 @@ class Circle:
 
 @dataclass(frozen=True)
 class _Moved:
-    """p about another shaft: scale p - x cos t - y sin t (closed form of AS eq. 10)."""
+    """p about another shaft: scale p - x cos t - y sin t (closed form of AS eq. 10), and an offset besides."""
 
     function: Stretch
     scale: float
     x: float
     y: float
+    offset: float = 0.0
 
     def __call__(self, t: Series, /) -> Series:
         """Give the support function about the new shaft."""
@@ -103,7 +104,9 @@ class _Moved:
             total = total * self.scale
         if self.x:
             total = total - cos(t) * self.x
-        return total - sin(t) * self.y if self.y else total
+        if self.y:
+            total = total - sin(t) * self.y
+        return total + self.offset if self.offset else total
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +156,12 @@ class Lift:
         rho = p[:-2] + p[2:]
         return rho.mid, rho.rad
 
+    def moved(self, out: float, scale: float = 1.0) -> Lift:
+        """The lift by a contour that lies `out` mm farther outside and is then drawn `scale` times as large."""
+        law = self.law
+        functions = tuple(_farther(f, out, scale) for f in law.functions)
+        return Lift(Piecewise(law.knots, functions, law.period, law.smooth_seam), scale * self.datum)
+
     @cached_property
     def rounding(self) -> float:
         """By how much p or p' may be off through the rounding of a recipe's own formula, mm; 0 where there is none.
@@ -182,8 +191,18 @@ def _less_first(function: Stretch) -> Stretch:
     if isinstance(function, Harmonics):
         return Harmonics(function.mean, tuple(term for term in function.terms if term[0] > 1))
     if isinstance(function, _Moved):
-        return _Moved(_less_first(function.function), function.scale, 0.0, 0.0)
+        return _Moved(_less_first(function.function), function.scale, 0.0, 0.0, function.offset)
     return function
+
+
+def _farther(function: Stretch, out: float, scale: float) -> Stretch:
+    """Give scale (p + out), as what it is."""
+    if isinstance(function, Circle):
+        return Circle(scale * (function.radius + out), scale * function.x, scale * function.y)
+    if isinstance(function, Harmonics):
+        terms = tuple((k, scale * a, scale * b) for k, a, b in function.terms)
+        return Harmonics(scale * (function.mean + out), terms)
+    return _Moved(function, scale, 0.0, 0.0, scale * out)
 
 
 def _lift(

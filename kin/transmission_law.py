@@ -14,7 +14,7 @@ Polar routes: tau is the polar angle t of roller A, w = 1/2, c = alpha/2 (W 4.4)
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -48,6 +48,11 @@ class Transmission:
     lean: tuple[float, ...]
     offset: float
     arc: tuple[float, float, float] | None = None
+
+    def scaled(self, scale: float) -> Transmission:
+        """The same motion of a mechanism `scale` times as large."""
+        arc = None if self.arc is None else (scale * self.arc[0], scale * self.arc[1], scale * self.arc[2])
+        return replace(self, arm=scale * self.arm, arc=arc)
 
     @property
     def alpha(self) -> float:

@@ -57,7 +57,7 @@ FLOORS = {
         page.content page.tables
         page.curves
         bodies.linked manufacture.meant page.linked page.outline
-        manufacture.milling
+        manufacture.compensation manufacture.milling
         bodies.dyads bodies.roller bodies.yoke dynamics manufacture.cutter manufacture.inspection
         bodies.site bodies.guide design recipe.load files.step
         bodies.shaft files.brep files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut

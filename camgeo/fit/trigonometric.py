@@ -43,6 +43,7 @@ class _Moved(Protocol):
     scale: float
     x: float
     y: float
+    offset: float
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,15 @@ class Polynomial:
         error[1] += 2.0 * UNIT * (abs(c[1]) + math.hypot(x, y))
         return Polynomial(c, error, abs(scale) * self.rest)
 
+    def raised(self, offset: float) -> Polynomial:
+        """Add a constant to p: that of a parallel curve."""
+        if offset == 0.0:
+            return self
+        c, error = self.coefficients.copy(), self.error.copy()
+        c[0] += offset
+        error[0] += 2.0 * UNIT * (abs(c[0]) + abs(offset))
+        return Polynomial(c, error, self.rest)
+
     def trimmed(self) -> Polynomial:
         """Leave out the highest harmonics as long as they may be nothing but rounding: they go into `rest`.
 
@@ -116,7 +126,7 @@ def polynomial_of(curve: Curve) -> Polynomial:
 
 def _of(function: Stretch) -> Polynomial:
     if isinstance(function, _Moved):
-        return _of(function.function).moved(function.scale, function.x, function.y)
+        return _of(function.function).moved(function.scale, function.x, function.y).raised(function.offset)
     if isinstance(function, Harmonics):
         return Polynomial.of_waves(function.mean, list(function.terms))
     if isinstance(function, Expression):

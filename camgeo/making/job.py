@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Bound, Outline
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.model import FileRequest, Recipe
+    from camgeo.recipe.model_manufacture import Compensation
     from kin.check import Check
 
 
@@ -41,13 +42,15 @@ class Made(NamedTuple):
 class Job:
     """A cam that can be made: its recipe, its exact design, and the fits that its files share.
 
-    `assemblies` holds the mechanism's bodies once a file has asked for them.
+    `assemblies` holds the mechanism's bodies once a file has asked for them, `variants` the job for each part that is
+    made different from the nominal one.
     """
 
     recipe: Recipe
     design: Design
     outlines: Outlines
     assemblies: list[Assembly] = field(default_factory=list, repr=False)
+    variants: dict[Compensation, Job] = field(default_factory=dict, repr=False)
 
     @staticmethod
     def of(recipe: Recipe, design: Design, clock: Clock | None = None) -> Job:
@@ -56,6 +59,25 @@ class Job:
             raise ValueError(f"{recipe.name}: there is no contour to be made")
         rounding = formula_rounding(design.intent, design.contour)
         return Job(recipe, design, Outlines(design.contour, clock or Clock(), rounding))
+
+    def of_file(self, request: FileRequest) -> tuple[Job, tuple[Check, ...]]:
+        """The job for the part as one file shows it, and the checks that forbid to make it."""
+        by = request.compensation
+        if by is None:
+            return self, ()
+        from camgeo.manufacture.compensation import compensated
+
+        if by not in self.variants:
+            try:
+                with self.clock.stage("compensation"):
+                    made = compensated(self.recipe, self.design, by, self.field(request))
+            except CurveError as error:
+                raise self.recipe.error(self.field(request), str(error)) from error
+            if made.design.contour is None:
+                return self, made.checks
+            unsure = by.scale * self.outlines.unsure
+            self.variants[by] = Job(made.recipe, made.design, Outlines(made.design.contour, self.clock, unsure))
+        return self.variants[by], ()
 
     @property
     def clock(self) -> Clock:

@@ -23,6 +23,10 @@ def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     if not any(request.parts == "all" for request in requests):
         found.append(("mechanism", "no file is asked for with parts: all"))
     found += [*_checks(design), *_of_linkage(recipe, design)]
+    if recipe.linkage is not None:
+        files = recipe.export.files
+        names = [request.filename(recipe.name, files) for request in requests if request.compensation is not None]
+        found += [("linkage-error", f"{name}: the part is not the nominal one") for name in names]
     if design.trimmed and recipe.verify.motion_error is None:
         found.append(("motion", "the contour is trimmed and verify.motion_error is not given: told, not judged"))
     return tuple(found)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.making.job import Made
 from camgeo.recipe.model import SOLIDS
+from kin.check import about
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.making.job import Job, Made
+    from camgeo.making.job import Job
     from camgeo.recipe.model import FileRequest
 
 
@@ -19,6 +21,9 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     Raises RecipeErrors where a tolerance cannot be held or no such file can be made, SurroundingsError where the disk
     or a missing extra stands in the way. A page is no such request: it tells of all other files.
     """
+    job, failed = job.of_file(request)
+    if failed:
+        return Made((), tuple(about(check, path.name) for check in failed))
     if request.parts == "all":
         from camgeo.making.mechanism import make_mechanism
 
@@ -53,7 +58,8 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
 
 def foresee(job: Job, request: FileRequest) -> None:
     """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
-    if request.kind in SOLIDS - {"step"}:
+    job, failed = job.of_file(request)
+    if request.kind in SOLIDS - {"step"} and not failed:
         from camgeo.making.solid import aim
 
         aim(job, request)

@@ -9,11 +9,22 @@ from camgeo.design import intended
 if TYPE_CHECKING:
     from camgeo.design import Design
     from camgeo.recipe.model import Recipe
+    from camgeo.recipe.model_manufacture import Compensation
     from kin.verify import Intent
 
 
-def intent_of_file(recipe: Recipe, design: Design, kind: str) -> Intent:
-    """What kin is told of a file of some kind; raises RecipeErrors for a program of which the recipe knows nothing."""
+def intent_of_file(
+    recipe: Recipe, design: Design, kind: str, by: Compensation | None = None, field: str = "export.files"
+) -> Intent:
+    """What kin is told of a file of some kind, whose part may be made different `by` something.
+
+    Raises RecipeErrors for a program of which the recipe knows nothing, and as `compensated` does.
+    """
+    if by is not None:
+        from camgeo.manufacture.compensation import compensated
+
+        made = compensated(recipe, design, by, field)
+        return intended(made.recipe, made.design)
     if kind != "gcode":
         return intended(recipe, design)
     if recipe.manufacture is None:

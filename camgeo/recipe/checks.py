@@ -120,6 +120,9 @@ def _files(values: Values, reader: Reader) -> None:
         if request.kind in SOLIDS and "part.thickness" not in reader.marks:
             remedy = f"give part.thickness, or leave {request.kind} out"
             reader.fault_at(path, f"{request.kind} needs a thickness", None, remedy)
+        if request.parts == "all" and request.compensation is not None:
+            remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
+            reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
         if request.parts == "all" and "part.bore" not in reader.marks:
             remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)

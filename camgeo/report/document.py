@@ -43,8 +43,8 @@ class FileResult:
 
     @property
     def shows_cam(self) -> bool:
-        """Whether the file has the cam's contour, and not another body's or none."""
-        return self.body == "cam" and self.request.kind not in NO_PART
+        """Whether the file has the nominal cam's contour, and not another body's or none."""
+        return self.body == "cam" and self.request.kind not in NO_PART and self.request.compensation is None
 
 
 @dataclass(frozen=True)
@@ -138,6 +138,8 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         entry |= {"as": file.request.as_, "version": file.request.version}
     elif file.request.kind == "svg":
         entry["as"] = file.request.as_
+    if file.request.compensation is not None:
+        entry["compensation"] = file.request.compensation.entry(mm)
     entry |= {
         "pieces": file.pieces,
         "tolerance": None if file.tolerance is None else file.tolerance / mm,
