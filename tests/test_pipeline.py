@@ -12,6 +12,7 @@ import pytest
 from camgeo import pipeline
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load, read
+from kin.judge import SPLINE_ERROR
 
 RECIPES = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
 UNDERCUT = b"""\
