@@ -37,6 +37,7 @@ RECIPES = Path(__file__).parents[1] / "recipes"
 FIT = 0.002  # mm
 FLATTENED = 0.0005  # mm by which a shapely polygon of an outline is off, about
 PART = "part: {thickness: 8, bore: 8}\nexport: {files: [{3mf: {parts: all}}]}\n"
+HUBS = "part: {thickness: 8, bore: 8, hub: {diameter: 14, height: 6, side: both}}\n"
 AS_1 = "  p: 4*cos(3*t/2)**2 + 23\n  pivot: [16, 7.5]\n"
 SHAPES = {
     "yoke": f"cam:\n  kind: support\n{AS_1}",
@@ -59,9 +60,14 @@ SHAPES = {
 }
 
 
+SHAPES |= {
+    f"{name}, hubs": SHAPES[name].replace("[16, 7.5]", "[6, 3]") for name in ("yoke", "double roller", "four-bar")
+}
+
+
 @cache
 def made(name: str) -> tuple[Recipe, Design, Assembly]:
-    return build(SHAPES[name] + PART)
+    return build(SHAPES[name] + (HUBS + PART.partition("\n")[2] if name.endswith("hubs") else PART))
 
 
 def build(text: str) -> tuple[Recipe, Design, Assembly]:
@@ -130,7 +136,23 @@ def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
                         assert first.distance(second) >= least, (one.name, other.name, phi)
 
 
-@pytest.mark.parametrize("name", ["yoke", "flat pair"])
+@pytest.mark.parametrize("name", SHAPES)
+def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) -> None:
+    assembly = made(name)[2]
+    for one, other in combinations(assembly.members, 2):
+        if one.group == other.group:
+            overlap = sum(
+                a.intersection(b).area
+                for a, low, high in placed(one, 0.0)
+                for b, low_2, high_2 in placed(other, 0.0)
+                if min(high, high_2) - max(low, low_2) > 1e-9
+            )
+            # four pegs in a cap, one pin in a retainer, the shaft in a plain bore
+            largest = max(assembly.sizes.pin, 8.0) + 0.1
+            assert overlap <= 4 * math.pi * largest * 0.5 * assembly.sizes.press + 1e-3, (one.name, other.name)
+
+
+@pytest.mark.parametrize("name", ["yoke, hubs", "flat pair"])
 def test_nothing_meets_at_any_angle(name: str) -> None:
     checks = collision_checks(made(name)[2])
     assert [check.detail for check in checks if not check.ok] == []

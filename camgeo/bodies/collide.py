@@ -16,7 +16,7 @@ from kin.contour import Contour
 from kin.poses import Sampled, Still
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from camgeo.bodies.assembly import Assembly, Place
     from camgeo.bodies.body import Plate
@@ -65,7 +65,7 @@ def movers(assembly: Assembly) -> list[Mover]:
         key = id(member.place)
         if key not in motions:
             motions[key] = Still() if member.place is None else _sampled(member.place)
-        found.append(Mover(member.name, tuple(map(_slab, member.plates)), motions[key]))
+        found.append(Mover(member.name, slabs(member.plates), motions[key]))
     return found
 
 
@@ -77,13 +77,15 @@ def _sampled(place: Place) -> Sampled:
     return Sampled(pose, rate)
 
 
-def _slab(plate: Plate) -> Slab:
-    return Slab(_contour(plate.outline), tuple(map(_contour, plate.holes)), plate.low, plate.high)
+def slabs(plates: Sequence[Plate]) -> tuple[Slab, ...]:
+    """Plates as slabs."""
+    return tuple(Slab(_contour(p.outline), tuple(map(_contour, p.holes)), p.low, p.high) for p in plates)
 
 
 def _contour(outline: ArcSpline | Polygon) -> Contour:
-    bulges = np.zeros(outline.count) if isinstance(outline, Polygon) else outline.bulges
-    return Contour.from_bulges(outline.vertices if isinstance(outline, Polygon) else outline.points, bulges)
+    if isinstance(outline, Polygon):
+        return Contour.from_vertices(outline.vertices)
+    return Contour.from_bulges(outline.points, outline.bulges)
 
 
 def _checked(pair: Clearance) -> Check:

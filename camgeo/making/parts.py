@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from camgeo.bodies.collide import slabs
 from camgeo.files.meshes import body_mesh, flat, laid_out, mirrored, standing
 from camgeo.files.triangulate import RegionError
-from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.fit.pieces import Bound
 from camgeo.making.job import Made
 from camgeo.making.solid import cam_mesh, precision_of
 from camgeo.report.document import FileResult
@@ -22,12 +23,9 @@ if TYPE_CHECKING:
     from camgeo.files.mesh import Mesh
     from camgeo.files.three_mf import Item
     from camgeo.files.triangulate import Array
-    from camgeo.fit.pieces import Polygon
     from camgeo.making.job import Job
     from camgeo.recipe.model import FileRequest
     from kin.check import Check
-    from kin.collision import Slab
-    from kin.contour import Contour
 
 CAM = "cam"
 
@@ -152,23 +150,6 @@ def _judged_body(job: Job, request: FileRequest, path: Path, part: Part, corners
     from kin.printed import judge_body
 
     tolerance = job.tolerance(request)
-    checks = judge_body(part.body.name, corners, _slabs(part.body), tolerance, path)
+    checks = judge_body(part.body.name, corners, slabs(part.body.plates), tolerance, path)
     file = FileResult(path, request, tolerance, None, part.bound, None, None, body=part.body.name)
     return Made((file,), tuple(about(check, path.name) for check in checks))
-
-
-def _slabs(body: PrintBody) -> list[Slab]:
-    """A body in kin's words."""
-    from kin.collision import Slab
-
-    return [
-        Slab(_contour(plate.outline), tuple(map(_contour, plate.holes)), plate.low, plate.high) for plate in body.plates
-    ]
-
-
-def _contour(outline: ArcSpline | Polygon) -> Contour:
-    from kin.contour import Contour
-
-    if isinstance(outline, ArcSpline):
-        return Contour.from_bulges(outline.points, outline.bulges)
-    return Contour.from_vertices(outline.vertices)
