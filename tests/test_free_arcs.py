@@ -238,7 +238,7 @@ def test_what_newton_claims_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> 
         Part, "count", lambda part, tolerance: max(2, math.floor(0.7 * part.total / math.cbrt(tolerance)))
     )
     monkeypatch.setattr(free_arcs, "RAISED", 1)
-    parts = [part for stretch in fitting._between_extrema(curve, 1e-4) for part in stretch.parts]
+    parts = [part for stretch in fitting._between_extrema(curve, 1e-4, 1e-4) for part in stretch.parts]
     refused = np.array([fit is None for fit in free_arcs.free_arcs(curve, parts, 0.995e-4, 1e-4)])
     assert refused.sum() > len(parts) / 2
     assert np.array_equal(refused, levels[0] > 1e-4)

@@ -32,6 +32,8 @@ DAMPED = 4.0  # power of the length by which nodes are shared anew; the error's 
 MOST_RATIO = 1.5  # of the tangents' lengths of a biarc
 APART = 2.0  # arcs at least between extrema of curvature that are told apart
 WIDEST = 2.0  # radians that a biarc may turn through
+ROUND = 0.5  # arcs that the theory has for a stretch, below which it may be a circular arc that is not known as one
+HALF_TURN = math.pi * (1.0 + 1e-9)  # that one arc may turn through; what turns further is several
 SLIP = 1e-5  # of the tolerance: how far along the curve the foot of a joint may be off
 USABLE = 0.995  # of the tolerance, that errors seen may use; the rest is left to the proof
 
@@ -41,6 +43,9 @@ def arc_density(frame: Frame) -> Array:
     slope = frame.turn_slope * frame.speed - frame.turn * frame.speed_slope
     density: Array = np.cbrt(np.abs(slope) / CONSTANT)
     return density
+
+
+_Fit = tuple["Array", "Array", float, float]  # points, bulges, outward and inward bound of a stretch
 
 
 @dataclass(frozen=True)
@@ -57,16 +62,14 @@ class _Stretch:
     """A stretch of the curve that is fitted by itself, arcs at its ends touching the curve.
 
     `parts` lie between the extrema of curvature inside it; none where the curve is a circular arc. `biarcs` is the
-    number of arcs in biarcs that the theory has for it.
+    number of arcs in biarcs that the theory has for it. `whole` is its fit where the curve has turned out to be one.
     """
 
     low: float
     high: float
     parts: tuple[free_arcs.Part, ...] = ()
     biarcs: int = 0
-
-
-_Fit = tuple["Array", "Array", float, float]  # points, bulges, outward and inward bound of a stretch
+    whole: _Fit | None = None
 
 
 def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
@@ -81,9 +84,13 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     size = curve.size
     check_precision(size, tolerance)
     aim, limit = USABLE * tolerance, tolerance - 2.0 * rounding(size)
-    stretches = _between_extrema(curve, tolerance)
+    stretches = _between_extrema(curve, tolerance, limit)
     fits = _free_fits(curve, stretches, min(aim, limit), limit)
-    rest = [i for i, (s, fit) in enumerate(zip(stretches, fits, strict=True)) if fit is None or fit[1].size > s.biarcs]
+    rest = [
+        i
+        for i, (s, fit) in enumerate(zip(stretches, fits, strict=True))
+        if fit is None or (s.whole is None and fit[1].size > s.biarcs)
+    ]
     biarcs = _fit_stretches(curve, [(stretches[i].low, stretches[i].high) for i in rest], aim, limit)
     for i, biarc in zip(rest, biarcs, strict=True):
         free = fits[i]
@@ -96,10 +103,11 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     return ArcSpline(points, bulges, Bound(outward, inward).widened(rounding(size)))
 
 
-def _between_extrema(curve: Curve, tolerance: float) -> list[_Stretch]:
+def _between_extrema(curve: Curve, tolerance: float, limit: float) -> list[_Stretch]:
     """Smooth stretches of the curve, divided where the curvature seems extreme and arcs enough lie between.
 
-    Biarcs do not fit alike on the two sides of an extremum, so one that may or may not cross it never comes to rest.
+    A stretch that turns out to be a circular arc is fitted at once, proved up to `limit`. Biarcs do not fit alike on
+    the two sides of an extremum, so one that may or may not cross it never comes to rest.
     """
     stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
     bent = [stretch for stretch in stretches if curve.radius(stretch) is None]
@@ -108,10 +116,15 @@ def _between_extrema(curve: Curve, tolerance: float) -> list[_Stretch]:
     at = curve.sample(np.concatenate([np.zeros(0), *(density.t[1:-1] for density in densities)]))
     slope = at.turn_slope * at.speed - at.turn * at.speed_slope
     ends = np.cumsum([density.t.size - 2 for density in densities])
-    found = {
-        stretch: _divided(density, slope[end + 2 - density.t.size : end], tolerance)
-        for stretch, density, end in zip(bent, densities, ends, strict=True)
-    }
+    found = {}
+    for stretch, density, end in zip(bent, densities, ends, strict=True):
+        whole = None
+        if density.total <= ROUND * math.cbrt(tolerance):
+            whole = _round(curve, density, limit)
+        if whole is None:
+            found[stretch] = _divided(density, slope[end + 2 - density.t.size : end], tolerance)
+        else:
+            found[stretch] = [_Stretch(*stretch, whole=whole)]
     return [part for stretch in stretches for part in found.get(stretch, [_Stretch(*stretch)])]
 
 
@@ -148,7 +161,7 @@ def _sign_changes(t: Array, value: Array) -> list[float]:
 
 def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float) -> list[_Fit | None]:
     """Arcs with free joints of the stretches; None where some part has none, or far more are foreseen than biarcs."""
-    tried = [sum(part.count(aim) for part in s.parts) <= MOST_FREE * s.biarcs for s in stretches]
+    tried = [s.whole is None and sum(part.count(aim) for part in s.parts) <= MOST_FREE * s.biarcs for s in stretches]
     parts = [part for s, worth in zip(stretches, tried, strict=True) if worth for part in s.parts]
     found = iter(free_arcs.free_arcs(curve, parts, aim, limit))
     out: list[_Fit | None] = []
@@ -156,7 +169,7 @@ def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float
         mine = [next(found) for _ in stretch.parts] if worth else []
         whole = [part for part in mine if part is not None]
         if not whole or len(whole) < len(mine):
-            out.append(None)
+            out.append(stretch.whole)
             continue
         points = np.concatenate([part.points for part in whole])
         bulges = np.concatenate([part.bulges for part in whole])
@@ -254,7 +267,7 @@ def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> _Fit
         sweep = steady[1] * (stretch[1] - stretch[0])
     elif sweep * radius < 0.0:
         sweep += math.copysign(2.0 * math.pi, radius)
-    count = 1 if abs(sweep) <= math.pi * (1.0 + 1e-9) else 2
+    count = 1 if abs(sweep) <= HALF_TURN else 2
     points = ends[0].point
     if count > 1:
         half = 0.5 * sweep
@@ -262,6 +275,33 @@ def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> _Fit
         turned = np.array([cx * sine - cy * versine, cy * sine + cx * versine])
         points = np.vstack([points, points + radius * turned])
     return points, np.full(count, math.tan(0.25 * sweep / count)), 0.0, 0.0
+
+
+def _round(curve: Curve, density: Density, limit: float) -> _Fit | None:
+    """Fewest arcs, a half turn each, of a stretch of constant curvature that is not known to be; None where it is none.
+
+    That is one whose arcs leave in the curve's direction and arrive in it to within rounding, and are proved to hold.
+    """
+    inner = curve.sample(density.t[1:-1]).tangent
+    first, last = curve.span(density.t[:1], density.t[-1:])
+    along = np.concatenate([first.tangent, inner, last.tangent])
+    step = np.arctan2(_cross(along[:-1], along[1:]), np.sum(along[:-1] * along[1:], axis=1))
+    turned = np.append(0.0, np.cumsum(step))
+    count = max(1, math.ceil(float(np.abs(turned).max()) / HALF_TURN))
+    order = np.sign(turned[-1])
+    if not order or not (order * step >= 0.0).all():
+        return None
+    nodes = np.interp(np.linspace(0.0, order * turned[-1], count + 1), order * turned, density.t)
+    nodes[0], nodes[-1] = density.t[0], density.t[-1]
+    a, b = curve.span(nodes[:-1], nodes[1:])
+    curvature, bulges, arrived = _arc_from(a.point, a.tangent, b.point)
+    miss = np.abs(_cross(arrived, b.tangent)) / np.abs(curvature)
+    if float(miss.max()) > rounding(curve.size):
+        return None
+    chain = Chain(a.point, a.tangent, curvature, nodes[:-1], nodes[1:])
+    found = chain_deviation(curve, chain, limit, 2 * LOOKS)
+    outward, inward = max(-float(found.inside.min()), 0.0), max(float(found.outside.max()), 0.0)
+    return (a.point, bulges, outward, inward) if max(outward, inward) <= limit else None
 
 
 def _slip(curve: Curve, tolerance: float) -> float:
@@ -312,7 +352,7 @@ def _arc_from(start: Array, tangent: Array, end: Array) -> tuple[Array, Array, A
     square = np.sum(chord * chord, axis=1)
     length = np.sqrt(square)
     cosine = np.sum(tangent * chord, axis=1) / length
-    cross = tangent[:, 0] * chord[:, 1] - tangent[:, 1] * chord[:, 0]
+    cross = _cross(tangent, chord)
     curvature = 2.0 * cross / square
     bulge = (cross / length) / (1.0 + cosine)
     return curvature, bulge, 2.0 * (cosine / length)[:, None] * chord - tangent
@@ -321,3 +361,8 @@ def _arc_from(start: Array, tangent: Array, end: Array) -> tuple[Array, Array, A
 def _interleave(a: Array, b: Array) -> Array:
     """a0, b0, a1, b1, ... (2n, ...)."""
     return np.stack([a, b], axis=1).reshape(-1, *a.shape[1:])
+
+
+def _cross(a: Array, b: Array) -> Array:
+    cross: Array = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return cross
