@@ -9,12 +9,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.recipe.model import NO_CONTOUR, SOLIDS, ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from camgeo.recipe.model import (
+    NO_CONTOUR,
+    NO_PART,
+    SOLIDS,
+    ConstantBreadthCam,
+    DoubleRollerCam,
+    FlatPairCam,
+    SupportCam,
+)
 
 if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
     from camgeo.recipe.model_part import Part
 
+LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
+MILLING = ("cutter-reach", "units", "closed", "cutter", "arcs", "rapid", "depth", "direction", "entry", "gouge")
 PLAY = frozenset({"constant-breadth", "breadth-max", "form-closure"})
 """Checks of a file on what is left between contour and follower."""
 
@@ -63,7 +73,11 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
         own = ["units", "closed", *bore]
         if request.kind in SOLIDS:
             own = ["watertight", *bore, "thickness", *solid, "volume"]
-        driven = ["linkage-error", *dwell] if linkage else []
+        if request.kind == "gcode":
+            own = [*MILLING, *_milled(recipe)]
+        if request.kind == "dxf" and request.compensation is None and _layered(recipe):
+            own.insert(0, "cutter-reach")
+        driven = ["linkage-error", *dwell] if linkage and request.compensation is None else []
         found += [Foreseen(name, file) for name in (*own, "contour", "motion", *play, *driven)]
     found += [Foreseen(name) for name in train]
     if not linkage:  # of a linkage the intended output alone drives
@@ -83,7 +97,24 @@ def _of_part(part: Part) -> tuple[list[str], list[str]]:
 def _judged(recipe: Recipe) -> list[str]:
     """Names of the files that have a contour."""
     files = recipe.export.files
-    return [request.filename(recipe.name, files) for request in files if request.kind not in NO_CONTOUR]
+    shown = [request for request in files if request.kind not in NO_PART and request.compensation is None]
+    return [request.filename(recipe.name, files) for request in shown]
+
+
+def _layered(recipe: Recipe) -> bool:
+    return recipe.manufacture is not None and recipe.manufacture.layer
+
+
+def _milled(recipe: Recipe) -> list[str]:
+    """Checks of the openings that a program mills; where lightening holes find their place is not known beforehand."""
+    part, asked = recipe.part, recipe.manufacture
+    if asked is None or not asked.holes:
+        return []
+    least = asked.cutter + 2.0 * LEAST_ROOM
+    plain_bore = part.bore if not (part.sides or part.keyway or part.flat) else None
+    drilled = [one.hole for one in (part.bolts, part.dowel) if one is not None]
+    found = ["bore"] if plain_bore is not None and plain_bore >= least else []
+    return [*found, "holes"] if any(hole >= least for hole in drilled) else found
 
 
 def _in_a_yoke(recipe: Recipe) -> bool:

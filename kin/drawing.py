@@ -42,8 +42,8 @@ CUT, BORE = "CUT", "BORE"
 BESIDE = frozenset({BORE, "HOLES", "MARK"})
 # What is engraved stands here, read if it is asked for.
 ENGRAVED = "ENGRAVE"
-# Layers that are never cut: our own reference geometry, and AutoCAD's definition points.
-REFERENCE = frozenset({"REFERENCE", "DEFPOINTS"})
+# Layers that are never cut: our own reference geometry and cutter's path, and AutoCAD's definition points.
+REFERENCE = frozenset({"REFERENCE", "TOOLPATH", "DEFPOINTS"})
 # Pieces shorter than this, mm, have no direction to speak of.
 ZERO_LENGTH = 1e-9
 # Pieces whose ends and middles agree to this, mm, are drawn twice.

@@ -3,16 +3,19 @@
 from itertools import pairwise
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
 import shapely
 
+from camgeo import pipeline
 from camgeo.causes import UndercutError
 from camgeo.curve import Curve, Run
 from camgeo.design import designed, intended
 from camgeo.manufacture.cutter import Backwards, cutter_path, least_hollow
 from camgeo.recipe import read
 from kin.contour import Contour
+from kin.read import read_drawing
 
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 DEEP = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 4, delta: {cos: {1: 1500}}}\n"
@@ -113,6 +116,27 @@ def test_what_a_cutter_leaves_in_a_hollow(radius):
     arcs = path.within(0.01)
     apart = shapely.distance(exact.exterior, shapely.points(points_of(arcs)))
     assert apart.min() == pytest.approx(radius, abs=0.011), "the cutter never cuts into the contour"
+
+
+@pytest.mark.parametrize("top", ["", "rotation: ccw\n"])
+def test_the_path_on_a_layer_of_its_own(tmp_path, top):
+    body = top + ROLLER + "name: c\nexport: {files: [dxf, {dxf: {as: spline}}]}\nverify: {angles: 36}\n"
+    body += "manufacture: {cutter: 8, layer: true}\n"
+    outcome = pipeline.export(read(body.encode(), Path("c.yaml")), tmp_path)
+    assert outcome.ok
+    assert [c["file"] for c in outcome.report["checks"] if c["name"] == "cutter-reach"] == [
+        "c-arcs.dxf",
+        "c-spline.dxf",
+    ]
+    space = ezdxf.readfile(outcome.folder / "c-arcs.dxf").modelspace()
+    (path,) = space.query("LWPOLYLINE[layer=='TOOLPATH']")
+    rows = np.array(path.get_points("xyb"))
+    drawing = read_drawing(outcome.folder / "c-arcs.dxf")
+    apart = drawing.contour.distance(Contour.from_bulges(rows[:, :2], rows[:, 2]).sample(5))
+    assert apart == pytest.approx(4.0, abs=2e-3)
+    assert ("TOOLPATH", "LWPOLYLINE", 1) in drawing.aside
+    outcome = pipeline.check(read(body.replace("cutter: 8", "cutter: 40").encode(), Path("c.yaml")))
+    assert [c["name"] for c in outcome.report["checks"] if not c["ok"]] == ["cutter-reach"] * 2
 
 
 def test_a_hollow_is_reached_by_a_cutter_just_small_enough():

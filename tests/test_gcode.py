@@ -1,6 +1,7 @@
 """Milling programs: what they leave, by a simulation of its own; what the reader refuses; planted faults."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from camgeo import pipeline
 from camgeo.cli import main
 from camgeo.design import designed
 from camgeo.files.gcode import places, rounding
+from camgeo.foreseen import Foreseen, foreseen
 from camgeo.manufacture.milling import milling_intent
 from camgeo.manufacture.toolpath import depths
 from camgeo.recipe import read
@@ -109,6 +111,7 @@ def test_the_report_and_the_header(tmp_path):
     names = [check["name"] for check in outcome.report["checks"] if check.get("file") == "c.ngc"]
     assert names == [
         *(
+            "cutter-reach",
             "units",
             "closed",
             "cutter",
@@ -408,3 +411,16 @@ def test_a_path_tighter_than_the_cutter(tmp_path):
     found = milled(reading(tmp_path, body.replace("I2", "I-20")), MILLING, 0.001)
     assert found.contour.area == pytest.approx(np.pi * 17.0**2, rel=1e-9)
     assert {check.name for check in found.checks if not check.ok} == {"direction"}
+
+
+@pytest.mark.parametrize(
+    ("part", "more"), [(PLAIN, ", holes: true"), (PLAIN, ""), (FEATURED, ", holes: true"), (FEATURED, ", layer: true")]
+)
+def test_the_checks_are_foreseen(part, more):
+    recipe = recipe_of(part=part, more=more)
+    files = tuple(
+        read(b"cam: {kind: support, p: 9}\nexport: {files: [dxf, {dxf: {kerf: 0.1}}]}", "c.yaml").export.files
+    )
+    recipe = replace(recipe, export=replace(recipe.export, files=(*recipe.export.files, *files)))
+    checks = [(check["name"], check.get("file")) for check in pipeline.check(recipe).report["checks"]]
+    assert sorted(map(str, foreseen(recipe))) == sorted(str(Foreseen(*check)) for check in checks)

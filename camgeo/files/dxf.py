@@ -1,6 +1,7 @@
 """Contours as DXF drawings: one closed entity on CUT, the bore on BORE, everything else on REFERENCE.
 
-Holes stand on HOLES, a timing mark on MARK where it is cut and on ENGRAVE where it is engraved.
+Holes stand on HOLES, a timing mark on MARK where it is cut and on ENGRAVE where it is engraved, a cutter's path on
+TOOLPATH.
 
 ezdxf provides the frame of the drawing, which CAD systems are particular about. Coordinates are written with as many
 digits as give back the same double. Nothing in the file depends on when, where or by whom it was written.
@@ -33,7 +34,12 @@ APPLICATION = "CAMGEO"  # under this name each entity of the reference carries w
 
 _CUT, _BORE, _REFERENCE = "CUT", "BORE", "REFERENCE"
 _COLOURS = {_CUT: 7, _BORE: 5, _REFERENCE: 8}
-_MORE_COLOURS = {"HOLES": 5, "MARK": 1, "ENGRAVE": 3}  # of layers that are only there when something is on them
+_MORE_COLOURS = {
+    "HOLES": 5,
+    "MARK": 1,
+    "ENGRAVE": 3,
+    "TOOLPATH": 4,
+}  # of layers that are only there when something is on them
 _CENTRE_LINE = (22.0, 14.0, -3.0, 2.0, -3.0)  # mm: length of the pattern, then dash, gap, dash, gap
 _DATE = 2451544.5  # 2000-01-01 as a Julian date, in place of the times of writing
 _GUID = "{00000000-0000-0000-0000-000000000000}"

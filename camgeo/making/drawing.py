@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.making.job import Made
 from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from kin.check import about
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.files.dxf import Reference
+    from camgeo.files.dxf import Cutout, Reference
     from camgeo.fit.pieces import Outline
-    from camgeo.making.job import Job, Made
+    from camgeo.making.job import Job
     from camgeo.recipe.model import FileRequest
+    from kin.check import Check
 
 COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which nothing is cut by
 
@@ -21,12 +24,30 @@ def make_drawing(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one drawing."""
     with job.refusals(request):
         outline = job.outline(request.as_ or "polyline", job.tolerance(request))
+        checks, tool = _tool_path(job, request)
         with job.clock.stage(f"write {request.kind}"):
-            _write(job, outline, request, path)
-    return job.judged(request, path, outline.bound, outline.count)
+            _write(job, outline, request, path, tool)
+    made = job.judged(request, path, outline.bound, outline.count)
+    return Made(made.files, (*(about(check, path.name) for check in checks), *made.checks))
 
 
-def _write(job: Job, outline: Outline, request: FileRequest, path: Path) -> None:
+def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[Cutout]]:
+    """The path of the cutter's centre where a DXF is to show it, and whether the cutter reaches everything."""
+    asked = job.recipe.manufacture
+    if asked is None or not asked.layer or request.kind != "dxf" or request.compensation is not None:
+        return [], []
+    from camgeo.files.dxf import Cutout
+    from camgeo.manufacture.milling import reach_check
+
+    with job.clock.stage("cutter path"):
+        check, path = reach_check(job.recipe, job.design)
+        if path is None:
+            return [check], []
+        arcs = path.within(job.tolerance(request))
+    return [check], [Cutout("TOOLPATH", arcs.mirrored() if job.recipe.rotation == "ccw" else arcs)]
+
+
+def _write(job: Job, outline: Outline, request: FileRequest, path: Path, tool: list[Cutout]) -> None:
     recipe, design = job.recipe, job.design
     bore, cut, remarks = recipe.part.bore, [], []
     if design.body is not None:
@@ -54,7 +75,7 @@ def _write(job: Job, outline: Outline, request: FileRequest, path: Path) -> None
         path,
         outline,
         bore=bore,
-        cutouts=cut,
+        cutouts=[*cut, *tool],
         remarks=remarks,
         reference=_reference(job),
         mm=recipe.mm,

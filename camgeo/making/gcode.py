@@ -10,6 +10,7 @@ from camgeo.making.job import Made
 from camgeo.manufacture.milling import milled_holes, path_of, reach_check
 from camgeo.manufacture.toolpath import begun_at, circle, led, passes
 from camgeo.outlines import Outlines
+from kin.check import about
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -32,6 +33,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
         raise recipe.error("manufacture", "gcode needs manufacture")
     with job.refusals(request), job.clock.stage("cutter path"):
         check, _ = reach_check(recipe, job.design)
+    check = about(check, path.name)
     if not check.ok:
         return Made((), (check,))
     count = places(job.tolerance(request), recipe.mm)

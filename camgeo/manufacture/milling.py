@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.causes import UndercutError
 from camgeo.design import intended
+from camgeo.foreseen import LEAST_ROOM
 from camgeo.manufacture.cutter import cutter_path, is_convex, least_hollow
 from camgeo.part.meant import holes_of
 from kin.check import Check, degrees, failed
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
     from camgeo.recipe.model_manufacture import Manufacture
     from kin.verify import Intent
-
-LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is no path
 
 
 class RoundHole(NamedTuple):
