@@ -1,6 +1,8 @@
 """Milling programs: what they leave, by a simulation of its own; what the reader refuses; planted faults."""
 
 import re
+import shutil
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -424,3 +426,29 @@ def test_the_checks_are_foreseen(part, more):
     recipe = replace(recipe, export=replace(recipe.export, files=(*recipe.export.files, *files)))
     checks = [(check["name"], check.get("file")) for check in pipeline.check(recipe).report["checks"]]
     assert sorted(map(str, foreseen(recipe))) == sorted(str(Foreseen(*check)) for check in checks)
+
+
+@pytest.mark.skipif(shutil.which("rs274") is None, reason="LinuxCNC's interpreter rs274 is not installed")
+@pytest.mark.parametrize("more", ["", ", holes: true, allowance: 0.3, direction: conventional"])
+@pytest.mark.parametrize("units", ["", "units: inch\n"])
+def test_linuxcnc_reads_the_same_moves(tmp_path, units, more):
+    cam = "cam: {kind: support, p: 1 + 0.08*cos(3*t)}\n" if units else ROLLER
+    part, cutter = ("{thickness: 6, bore: 0.9}", 0.7) if units else (PLAIN, 6)
+    _, _, path = made(tmp_path, cam=cam, part=part, cutter=cutter, top=units, more=more)
+    program = read_gcode(path)
+    (tmp_path / "tool.tbl").write_text("")
+    (tmp_path / "var").write_text("5161 0\n")
+    command = [shutil.which("rs274"), "-t", "tool.tbl", "-v", "var", "-g", str(path)]
+    told = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    theirs = []
+    for name, numbers in re.findall(r"(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED)\((.*?)\)", told):
+        row = [float(word) for word in numbers.split(",")]
+        theirs.append((name, row[:3]) if name != "ARC_FEED" else (name, [*row[:2], row[5], *row[2:4], np.sign(row[4])]))
+    ours = []
+    for move in program.moves:
+        name = "STRAIGHT_TRAVERSE" if move.rapid else "STRAIGHT_FEED" if move.centre is None else "ARC_FEED"
+        bent = [] if move.centre is None else [*np.array(move.centre) / program.units_mm, np.sign(move.sweep)]
+        ours.append((name, [*np.array(move.end) / program.units_mm, *bent]))
+    assert [name for name, _ in theirs[1:]] == [name for name, _ in ours], "theirs begins with the way to a safe height"
+    for (_, one), (_, other) in zip(theirs[1:], ours, strict=True):
+        assert one == pytest.approx(other, abs=6e-5), "it tells four decimal places"

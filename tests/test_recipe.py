@@ -662,6 +662,10 @@ manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.
             ["4:14: manufacture: gcode needs plunge; give plunge, depth_of_cut and safe_height, or leave gcode out"],
         ),
         (
+            "manufacture: {cutter: 6, allowance: 3}",
+            ["2:26: manufacture.allowance: not below half the cutter, given 3 mm; give less than 3 mm"],
+        ),
+        (
             "manufacture: {diameter: 6, direction: down}",
             [
                 (

@@ -38,6 +38,7 @@ def check(values: Values, reader: Reader) -> None:
     check_part(values.get("part", {}), reader)
     _files(values, reader)
     _train(values.get("dynamics", {}), reader)
+    _allowance(values.get("manufacture", {}), reader)
     if "sweep" in values:
         check_sweep(values["sweep"], reader)
 
@@ -82,6 +83,14 @@ def _linkage(values: Values, reader: Reader) -> None:
     if dyads and dyads[0].get("on") == "previous":
         remedy = "give output or coupler"
         reader.fault_at("linkage.dyads[0].on", "there is no dyad before the first", "'previous'", remedy)
+
+
+def _allowance(milling: Values, reader: Reader) -> None:
+    """Note an allowance that a pass of this cutter could not take off."""
+    if {"allowance", "cutter"} <= milling.keys() and milling["allowance"] >= 0.5 * milling["cutter"]:
+        remedy = f"give less than {0.5 * milling['cutter'] / reader.mm:.6g} {reader.units}"
+        value = f"{milling['allowance'] / reader.mm:.6g} {reader.units}"
+        reader.fault_at("manufacture.allowance", "not below half the cutter", value, remedy)
 
 
 def _milling(path: str, reader: Reader) -> None:
