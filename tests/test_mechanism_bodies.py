@@ -385,7 +385,8 @@ def test_sizes_that_do_not_go_together_are_refused(asked: MechanismAsked, field:
     with pytest.raises(BodyError) as caught:
         sizes_of(asked, 40.0, 8.0)
     assert caught.value.field == field
-    assert caught.value.remedy
+    assert caught.value.told()[1].startswith("give ")
+    assert " inch" in "".join(caught.value.told(25.4, "inch"))
 
 
 @pytest.mark.parametrize(

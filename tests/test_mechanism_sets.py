@@ -104,6 +104,15 @@ def test_a_collision_fails_the_set_and_tells_who_where_and_when(
     assert (tmp_path / "out" / "wide.rejected" / "wide-frame.stl").exists()
 
 
+def test_the_same_recipe_gives_the_same_bytes(tmp_path: Path, yoke: pipeline.Outcome) -> None:
+    again = pipeline.export(load_text(YOKE, "yoke.yaml"), tmp_path)
+    assert yoke.folder is not None
+    assert again.folder is not None
+    for file in yoke.report["files"]:
+        assert (again.folder / file["path"]).read_bytes() == (yoke.folder / file["path"]).read_bytes()
+    assert again.report["checks"] == yoke.report["checks"]
+
+
 def test_without_parts_all_the_mechanism_is_skipped_and_told() -> None:
     outcome = pipeline.check(load_text(YOKE.replace("{stl: {parts: all}}", "csv"), "yoke.yaml"))
     assert {"what": "mechanism", "why": "no file is asked for with parts: all"} in [
@@ -135,6 +144,11 @@ def test_the_checks_of_a_set_are_foreseen() -> None:
         ("verify:", "mechanism: {bar: 2}\nverify:", "mechanism.bar: too narrow for the hole of a pin; give at least"),
         ("verify:", "mechanism: {plate: 1}\nverify:", "mechanism.plate: too thin for the sink"),
         ("parts: all", "parts: some", "give cam or all"),
+        (
+            "verify:",
+            "mechanism: {knob: 7}\nverify:",
+            "mechanism.knob: does not reach beyond the bore; give at least 8.8 mm",
+        ),
     ],
 )
 def test_slips_are_told_at_their_field(old: str, new: str, message: str) -> None:

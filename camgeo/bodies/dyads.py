@@ -80,9 +80,9 @@ def _slotted(site: Site, number: int, dyad: RPR, mount: Mount) -> Carrier:
     first, last = float(along.min()), float(along.max())
     start = first - 0.5 * BLOCK * s.bar - s.space - 0.5 * s.bar
     if start < 0.5 * s.bar:
-        message = f"the block comes too near to the pivot, by {0.5 * s.bar - start:.4g} mm"
+        message = "the block comes too near to the pivot, by {short}"
         remedy = "move the pivot away, or give a smaller mechanism.bar"
-        raise BodyError(f"linkage.dyads[{number}].ground", message, remedy)
+        raise BodyError(f"linkage.dyads[{number}].ground", message, remedy, short=0.5 * s.bar - start)
     site.post(f"g{name}", dyad.ground, low, high)
     site.fits.append(Fit(f"block {name} in its slot and on its pin", s.clearance))
     holes = ((0.0, 0.0),)

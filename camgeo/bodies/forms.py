@@ -63,7 +63,7 @@ def bars(s: Sizes, ends: Sequence[tuple[Point, Point]], holes: Sequence[Point], 
             if away <= 0.5 * (s.bar - s.hole):
                 inside.append(eye(s, *hole))
             elif away < 0.5 * (s.bar + s.hole):
-                raise ValueError(f"a bar {s.bar:.6g} mm wide cuts a pin's hole {away:.4g} mm beside its middle")
+                raise ValueError("the bar to it cuts a pin's hole")
         found.append(Plate(bar(a, b, s.bar), tuple(inside), low, high))
     return found
 

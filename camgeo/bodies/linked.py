@@ -82,7 +82,7 @@ def _coupler(frame: Carrier, coupler: float, site: Site) -> None:
     start, end = half + s.play + 0.5 * s.bar, half + coupler
     if end < start:
         least = s.play + 0.5 * s.bar
-        raise BodyError("linkage.coupler", "ends within the frame's side", f"give at least {least:.4g} mm")
+        raise BodyError("linkage.coupler", "ends within the frame's side", "give at least {least}", least=least)
     frame.origin = (end, 0.0)
     frame.plates.append(Plate(bar((start, 0.0), frame.origin, s.bar), (), frame.low, frame.high))
 
@@ -101,7 +101,8 @@ def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, links: Links, lo
     s = site.s
     holes = ((0.0, 0.0), (linkage.rocker, 0.0))
     if linkage.rocker < s.bar:
-        raise BodyError("linkage.rocker", "too short for two pins", f"give at least {s.bar:.4g} mm, or a smaller bar")
+        remedy = "give at least {least}, or a smaller mechanism.bar"
+        raise BodyError("linkage.rocker", "too short for two pins", remedy, least=s.bar)
     site.post("b", (linkage.ground, 0.0), low, high)
     site.fits += [Fit("rocker on the pivot B", s.clearance), Fit("rocker on the joint D", s.clearance)]
     plates = bars(s, [holes], holes, low, high)
@@ -154,8 +155,11 @@ def _slot(site: Site, frame: Carrier, block_place: Place, half: float) -> None:
     first, last = float((side * x).min()), float((side * x).max())
     least = half + s.play + s.wall + s.space + 0.5 * BLOCK * s.bar
     if first < least:
-        message = f"the block would run into the frame, by {least - first:.4g} mm"
-        raise BodyError("linkage.ground", message, "give a longer ground, or a smaller mechanism.bar")
+        message, remedy = (
+            "the block would run into the frame, by {short}",
+            "give a longer ground, or a smaller mechanism.bar",
+        )
+        raise BodyError("linkage.ground", message, remedy, short=least - first)
     outer, slot = slotted(first, last, 0.0, s)
     tie = box(half + s.play, -0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, 0.5 * s.bar)
     outer, slot, tie = (moved(outline, 0.0, 0.0, 0.0 if side > 0.0 else 0.5 * TURN) for outline in (outer, slot, tie))

@@ -78,8 +78,9 @@ def flat_pair(law: Transmission, drive: Drive) -> Assembly:
     hub, inner = min(s.bar, away - reach - s.space), 0.5 * s.hole + THIN
     if hub < inner + THIN:
         most = 2.0 * (away - reach - s.space - 2.0 * THIN) - s.clearance
-        remedy = f"give at most {most:.4g} mm" if most >= 1.0 else "give a cam with less swing"
-        raise BodyError("mechanism.pin", f"the cam passes {away - reach:.4g} mm from the pivot: no room for it", remedy)
+        remedy = "give at most {most}" if most >= 1.0 else "give a cam with less swing"
+        message = "the cam passes {near} from the pivot: no room for its hub"
+        raise BodyError("mechanism.pin", message, remedy, near=away - reach, most=most)
     support, phi = PairSupport(law), TURN * np.arange(LOOKS) / LOOKS
     swing = 0.5 * law.psi_of_shaft(phi, 0)[0]
     plates = [Plate(disc(hub), (eye(s),), low, high)]

@@ -107,8 +107,8 @@ def shaft_of(part: Part, s: Sizes) -> Shaft:
         across = 0.5 * (bore + s.press)
         drive, pressed = disc(across), True
     if journal < 1.0:
-        message = f"leaves a journal {2.0 * journal:.4g} mm thick in the base"
-        raise BodyError("part.bore", message, "give a bore of 4 mm or more, or a smaller mechanism.clearance")
+        message, remedy = "leaves a journal of {thick} in the base", "give a bore of {such} or more"
+        raise BodyError("part.bore", message, remedy, thick=max(2.0 * journal, 0.0), such=4.0)
     return Shaft(drive, across, journal, pressed)
 
 

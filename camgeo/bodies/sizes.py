@@ -16,13 +16,20 @@ THIN = 0.8  # mm: two lines of a common nozzle, the least that is printed
 
 
 class BodyError(ValueError):
-    """A body that cannot be made as asked: `field` of the recipe to blame, and what would do."""
+    """A body that cannot be made as asked: `field` of the recipe to blame, what is wrong, and what would do.
 
-    def __init__(self, field: str, message: str, remedy: str) -> None:
-        super().__init__(message)
-        self.field = field
-        self.message = message
-        self.remedy = remedy
+    Message and remedy name lengths, mm, in braces: they are told in the recipe's unit.
+    """
+
+    def __init__(self, field: str, message: str, remedy: str, **lengths: float) -> None:
+        self.field, self._texts, self._lengths = field, (message, remedy), lengths
+        super().__init__(self.told()[0])
+
+    def told(self, mm: float = 1.0, units: str = "mm") -> tuple[str, str]:
+        """Give message and remedy in a unit of so many mm."""
+        lengths = {name: f"{length / mm:.4g} {units}" for name, length in self._lengths.items()}
+        message, remedy = (text.format(**lengths) for text in self._texts)
+        return message, remedy
 
 
 @dataclass(frozen=True)
@@ -87,9 +94,10 @@ def sizes_of(asked: MechanismAsked, reach: float, bore: float, roller: float | N
     _go_together(sizes, bore)
     if roller is not None and roller - 0.5 * sizes.hole < THIN:
         most = 2.0 * (roller - THIN) - sizes.clearance
-        remedy = f"give at most {most:.4g} mm, or larger rollers" if most >= LEAST_PIN else "give larger rollers"
+        remedy = "give a pin of at most {most}, or larger rollers" if most >= LEAST_PIN else "give larger rollers"
         field = "cam.roller_radius" if asked.pin is None else "mechanism.pin"
-        raise BodyError(field, f"a pin of {pin:.6g} mm leaves no wall in rollers of radius {roller:.6g} mm", remedy)
+        message = "a pin of {pin} leaves no wall in rollers of radius {roller}"
+        raise BodyError(field, message, remedy, pin=pin, roller=roller, most=most)
     return sizes
 
 
@@ -101,13 +109,13 @@ def _half(length: float) -> float:
 def _go_together(s: Sizes, bore: float) -> None:
     least = s.hole + 2.0 * THIN
     if s.bar < least:
-        raise BodyError("mechanism.bar", "too narrow for the hole of a pin", f"give at least {least:.6g} mm")
+        raise BodyError("mechanism.bar", "too narrow for the hole of a pin", "give at least {least}", least=least)
     least = s.sunk + 2.0 * THIN
     if s.plate < least:
         message = "too thin for the sink of the shaft's retainer"
-        raise BodyError("mechanism.plate", message, f"give at least {least:.6g} mm, or a thinner clip")
+        raise BodyError("mechanism.plate", message, "give at least {least}, or a thinner clip", least=least)
     if s.press >= min(s.pin, bore):
-        raise BodyError("mechanism.press", "no hole is left", "give less, such as 0.1 mm")
+        raise BodyError("mechanism.press", "no hole is left", "give less, such as {such}", such=0.1)
     least = 1.2 * bore + 2.0 * THIN  # a square's corners reach farther than its width
     if s.knob < least:
-        raise BodyError("mechanism.knob", "does not reach beyond the bore", f"give at least {least:.6g} mm")
+        raise BodyError("mechanism.knob", "does not reach beyond the bore", "give at least {least}", least=least)

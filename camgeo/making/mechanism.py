@@ -49,6 +49,7 @@ def _assembled(job: Job, request: FileRequest) -> tuple[Assembly, tuple[Check, .
         try:
             assembly = assembly_of(job.recipe, job.design, contour, reach)
         except BodyError as error:
-            raise job.recipe.error(error.field, error.message, None, error.remedy) from error
+            message, remedy = error.told(job.recipe.mm, job.recipe.units)
+            raise job.recipe.error(error.field, message, None, remedy) from error
     with job.clock.stage("collision"):
         return assembly, tuple(collision_checks(assembly))
