@@ -24,7 +24,7 @@ import trimesh
 from camgeo import pipeline
 from camgeo.design import designed, intended
 from camgeo.recipe.load import load
-from camgeo.recipe.model import KINDS, FileRequest, Recipe
+from camgeo.recipe.model import FileRequest, Recipe
 from kin.judge import exact_area
 from kin.layers import volume
 from kin.read import read_drawing
@@ -32,7 +32,9 @@ from kin.read import read_drawing
 ROOT = Path(__file__).parents[1]
 RECIPES = ("reuleaux", "shu-wu", "as-figure-9-1", "w-figure-9")
 DRAWINGS = (("dxf", "arcs"), ("dxf", "spline"), ("dxf", "polyline"), ("svg", "arcs"), ("svg", "polyline"))
-SOLIDS = tuple(kind for kind in ("stl", "3mf", "step") if kind in KINDS)
+SETS = ("print-yoke", "print-four-bar", "print-double-roller")
+BED = "0x0,400x0,400x400,0x400"  # mm; a set that is laid out in one file is wider than most printers' own
+SOLIDS = ("stl", "3mf", "step")
 PATIENCE = 300  # seconds for one program and one file
 PX = 96.0 / 25.4  # Inkscape's pixels in a mm
 
@@ -211,6 +213,36 @@ def prusa(made: list[Sample], work: Path) -> list[Row]:
     return rows
 
 
+def slicing_of_sets(work: Path) -> list[str]:
+    """PrusaSlicer on the mechanisms that are printed as sets: one row for each."""
+    rows = ["| recipe | bodies | manifold | volume | layers of 0.2 mm |", "| --- | --- | --- | --- | --- |"]
+    for name in SETS:
+        outcome = pipeline.export(load(ROOT / "recipes" / f"{name}.yaml"), work / "out")
+        path = work / "out" / name / f"{name}-parts.3mf"
+        if not outcome.ok:
+            raise SystemExit(f"{name}: a check fails")
+        said = run("prusa-slicer", "--info", path)
+        whole, volumes = re.findall(r"manifold = (\w+)", said), re.findall(r"volume = ([\d.]+)", said)
+        target = work / "set.gcode"
+        target.unlink(missing_ok=True)
+        run(
+            "prusa-slicer",
+            "--export-gcode",
+            "--bed-shape",
+            BED,
+            "--center",
+            "200,200",
+            "--layer-height",
+            "0.2",
+            "-o",
+            target,
+            path,
+        )
+        layers = target.read_text().count(";LAYER_CHANGE") if target.exists() else 0
+        rows.append(f"| {name} | {len(whole)} | {whole.count('yes')} | {sum(map(float, volumes)):.6g} | {layers} |")
+    return rows
+
+
 def inkscape(made: list[Sample], _: Path) -> list[Row]:
     """Width and height of the layer CUT in mm, the breadth of its line taken off.
 
@@ -294,6 +326,8 @@ def main() -> None:
             text.append(f"\n## {program} {version[1] if version else ''}\n\n{about}\n")
             text.append("| recipe | file | what | measured | off | it says |\n| --- | --- | --- | --- | --- | --- |")
             text += [row.cells() for row in rows]
+            if program == "PrusaSlicer":
+                text += ["\nThe sets to print, all bodies in one 3MF (volumes in mm^3):\n", *slicing_of_sets(work)]
     (ROOT / "docs" / "outside.md").write_text("\n".join(text) + "\n", encoding="utf-8")
 
 
