@@ -31,7 +31,7 @@ CELLS_PER_TURN = 96  # proved bounds are kept for about this many stretches; mor
 CELLS_PER_STRETCH = 6  # and for at least this many between two breaks
 SHARP_ENOUGH = 4.0  # a cell is halved while its bound is this many times what its own ends and middle show
 HALVINGS = 24
-MOST_CELLS = 20_000  # where halving does not help
+MOST_CELLS = 20_000  # of the whole curve, where halving does not help: bounds stay loose, or the curve is refused
 SHIFT = 1e-12  # relative and rad: far above the rounding by which parts of a turn are moved onto each other
 
 
@@ -275,7 +275,7 @@ class Cells:
     def of(curve: Curve) -> Cells:
         """Partition a curve, halving cells whose bounds are far from what the curve does in them.
 
-        Raises CurveError where no finite bound is found after `HALVINGS` halvings, or with `MOST_CELLS` cells.
+        Raises CurveError where no finite bound is found after `HALVINGS` halvings, or with about `MOST_CELLS` cells.
         """
         stretches = [stretch for run in curve.runs for stretch in run.stretches]
         period, repeats = curve.shape.period, curve.shape.repeats
@@ -284,9 +284,10 @@ class Cells:
                 knots = np.linspace(stretches[0][0], stretches[0][1], repeats + 1)
                 stretches = list(pairwise(knots))
             if len(stretches) % repeats == 0:
-                first = _sharpened(curve, stretches[: len(stretches) // repeats], 2 * CELLS_PER_TURN / period)
+                part = stretches[: len(stretches) // repeats]
+                first = _sharpened(curve, part, 2 * CELLS_PER_TURN / period, MOST_CELLS // repeats)
                 return _repeated(first, np.array(stretches).reshape(repeats, -1, 2))
-        return _sharpened(curve, stretches, CELLS_PER_TURN / period)
+        return _sharpened(curve, stretches, CELLS_PER_TURN / period, MOST_CELLS)
 
     def over(self, low: Array, high: Array) -> Bounds:
         """Bounds over intervals (n,) that lie between two breaks: the worst of the cells each one touches."""
@@ -301,8 +302,11 @@ class Cells:
         return Bounds(*worst)
 
 
-def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], density: float) -> Cells:
-    """Cells of some stretches that join, at first about `density` for each unit of parameter."""
+def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], density: float, most: int) -> Cells:
+    """Cells of some stretches that join, at first about `density` for each unit of parameter, none halved above `most`.
+
+    A bound that is loose at the end is still a bound: it costs sharpness. One that is not finite is refused.
+    """
     lows, highs = [], []
     for low, high in stretches:
         count = 1 if curve.steady((low, high)) else max(CELLS_PER_STRETCH, int(np.ceil(density * (high - low))))
@@ -313,7 +317,7 @@ def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], d
     rows = curve.shape.bounds(low, high).rows()
     for _ in range(HALVINGS):
         loose = _loose(curve, low, high, rows)
-        if not loose.any() or low.size > MOST_CELLS:
+        if not loose.any() or low.size > most:
             break
         middle = 0.5 * (low[loose] + high[loose])
         new_low = np.concatenate([low[loose], middle])
@@ -326,8 +330,12 @@ def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], d
         low, high, rows = low[order], high[order], rows[:, order]
     bad = ~np.isfinite(rows).all(axis=0)
     if bad.any():
-        where = float(low[bad][0])
-        raise CurveError(f"no finite bound on the curvature can be proved near parameter {where:.9g}", where)
+        where, narrowest = float(low[bad][0]), float((high - low)[bad].min())
+        raise CurveError(
+            f"no finite bound on the curvature can be proved near parameter {where:.9g}: {int(bad.sum())} of "
+            f"{bad.size} intervals have none, though divided down to {narrowest:.3g}",
+            where,
+        )
     return Cells(low, high, rows)
 
 

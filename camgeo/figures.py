@@ -60,10 +60,15 @@ def flat_face_checks(lift: Lift, breadth: tuple[float, float, float] | None) -> 
 
 
 def transmission_checks(law: Transmission) -> list[Check]:
-    """That the second arm's end runs on the same curve (W 4.6, 7.1), and how near the cam is to turning back."""
-    t = _angles(law.breaks, 2.0 * math.pi)
-    phi, psi = law.at(t, 1)
-    image = law.psi_of_shaft(phi[0] - psi[0] + law.alpha, 0)[0]
+    """That the second arm's end runs on the same curve (W 4.6, 7.1), and how near the cam is to turning back.
+
+    Both arms' ends are held against each other at the same polar angle, t = phi - (psi + alpha)/2 of the first and
+    phi - (psi - alpha)/2 of the second: over it |psi'| < 2, while over the shaft angle psi may rise as steeply as it
+    likes, and rounding with it.
+    """
+    tau = _angles(law.breaks, 2.0 * math.pi)
+    phi, psi = law.at(tau, 1)
+    image = law.at(law.polar_parameter(law.pitch(tau, 0)[1][0] + law.alpha), 0)[1][0]
     gap = law.arm * np.abs(image + psi[0])
     worst = int(np.argmax(gap))
     closing = Check(

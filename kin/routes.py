@@ -32,7 +32,7 @@ class FromDelta:
     def __call__(self, t: Series, /) -> Series:
         """Give psi over the polar angle t."""
         value = self.delta(t)
-        near, far = self._factors(t, value)
+        near, far = self.factors(t, value)
         if isinstance(t, Jet):
             room = Jet((near * far).c[: max(t.order, 1)])
             angle = -np.arctan2(value.c[0], np.sqrt(room.c[0]))
@@ -45,14 +45,20 @@ class FromDelta:
         near, far = BallJet.of(near.rows[:-1]), BallJet.of(far.rows[:-1])
         return (-value.derivative() * near**-0.5 * far**-0.5).integral(start)
 
-    def _factors(self, t: Series, value: Series) -> tuple[Series, Series]:
-        """Give l^2 - D and l^2 + D, in either order."""
+    def factors(self, t: Series, value: Series) -> tuple[Series, Series]:
+        """Give l^2 - D and l^2 + D; `value` is D."""
         if any(b for _, _, b in self.delta.terms):
             return self.square - value, self.square + value
-        rest, terms = self._apart()
+        sense = math.copysign(1.0, math.fsum(a for _, a, _ in self.delta.terms))
+        near, far = self._factors(t, value, sense)
+        return (near, far) if sense > 0 else (far, near)
+
+    def _factors(self, t: Series, value: Series, sense: float) -> tuple[Series, Series]:
+        """Give l^2 - D and l^2 + D of cosines alone; of -D where `sense` is -1, which makes D positive at t = 0."""
+        terms: list[tuple[int, float]] = [(k, sense * a) for k, a, _ in self.delta.terms]
+        rest = math.fsum([self.square, *(-a for _, a in terms)])
         if isinstance(t, Jet):
             # all but the values are D's own derivatives
-            sense = math.copysign(1.0, math.fsum(a for _, a, _ in self.delta.terms))
             rows = np.stack([-sense * value.c, sense * value.c])
             k, a = np.array(terms).T[:, :, None]
             rows[0, 0] = rest + (2 * a * np.sin(t.c[0] * (k / 2)) ** 2).sum(axis=0)
@@ -64,11 +70,25 @@ class FromDelta:
             far = far + cos(t * (k / 2)) ** 2 * (2 * a)
         return near, far
 
-    def _apart(self) -> tuple[float, list[tuple[int, float]]]:
-        """Rest and cosine terms of D or -D, whichever is positive at t = 0."""
-        sense = math.copysign(1.0, math.fsum(a for _, a, _ in self.delta.terms))
-        terms = [(k, sense * a) for k, a, _ in self.delta.terms]
-        return math.fsum([self.square, *(-a for _, a in terms)]), terms
+
+@dataclass(frozen=True)
+class DeltaDistance:
+    """r = sqrt2 (a sqrt(l^2 + D) + b sqrt(l^2 - D)), a and b of alpha (W 5.10), without the detour over psi.
+
+    Near |D| = l^2 psi leaps, and the rounding of an angle goes into r'' as many times over; for lambda/mu = 2/1 r is
+    smooth there, as b = 0.
+    """
+
+    law: FromDelta
+    alpha: float
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give r over the polar angle t."""
+        less, more = self.law.factors(t, self.law.delta(t))
+        slant = math.pi / 4 - self.alpha / 2
+        a, b = math.sqrt(2) * math.cos(slant), math.sqrt(2) * math.sin(slant)
+        total = sqrt(more) * a
+        return total + sqrt(less) * b if b else total
 
 
 def steepness(terms: Sequence[tuple[int, float, float]]) -> Harmonics:

@@ -74,10 +74,12 @@ def from_delta(lam: int, mu: int, arm: float, cos: Mapping[int, float], sin: Map
     most = square * math.sin(min(law.alpha, math.pi - law.alpha))
     if undecided(wave, 0.0, period, {0: (-math.inf, most)}) is not None:
         at, reached = highest(Piecewise(knots, (wave,), period), [1.0], 0)
-        if reached < square:
+        if reached < square and most < square:
             raise too_wide(law, at, math.asin(reached / square), "delta")
         degrees = math.degrees(at + offset - math.pi / 4) % 360
-        raise IntentError(f"|D| must stay below l^2 = {square:.9g} mm^2; it reaches {reached:.9g}", "delta", degrees)
+        close = f", {square - reached:.3g} below it, which rounding does not tell apart" if reached < square else ""
+        said = f"|D| must stay below l^2 = {square:.9g} mm^2; it reaches {reached:.9g}{close}"
+        raise IntentError(said, "delta", degrees)
     limit = 4 * square * square * (1 - 1e-14)  # the series' own rounding left out
     if undecided(steepness(terms), 0.0, period, {0: (-math.inf, limit)}) is not None:
         raise too_steep(law, "delta")

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from kin.jet import Ball, BallJet, Jet, cos
 from kin.piecewise import Affine, Constant, Piecewise, Series, Side
-from kin.routes import FromLeaf
+from kin.routes import DeltaDistance, FromDelta, FromLeaf
 
 Array = NDArray[np.float64]
 
@@ -108,18 +108,38 @@ class Transmission:
         return self.psi.locate(at, 1)[0]
 
     @cached_property
-    def _lead(self) -> Piecewise:
+    def _lead(self) -> _Lead:
         """The angle phi - tau."""
-        pairs = zip(self.psi.functions, self.lean, strict=True)
-        functions = tuple(Affine(f, self.offset, w) if w else Constant(self.offset) for f, w in pairs)
-        return Piecewise(self.psi.knots, functions, self.psi.period, self.psi.smooth_seam)
+        return _Lead.of(self.psi, self.lean, self.offset)
+
+    @cached_property
+    def _polar_lead(self) -> _Lead:
+        """The angle t - tau, t = phi - (psi + alpha)/2: nothing at all where tau is t."""
+        return _Lead.of(self.psi, tuple(w - 0.5 for w in self.lean), self.offset - self.alpha / 2)
 
     def jets(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
         """Give phi and psi of a jet or ball jet tau; `side` decides at breaks."""
         psi = self.psi.on(tau, side)
-        if len(set(self.lean)) == 1:
-            return tau + psi * self.lean[0] + self.offset, psi
-        return tau + self._lead.on(tau, side), psi
+        return self._lead.on(tau, psi, side), psi
+
+    @cached_property
+    def _distance(self) -> Piecewise | None:
+        """The polar radius r over tau = t where it is told without psi."""
+        first = self.psi.functions[0]
+        if not isinstance(first, FromDelta):
+            return None
+        distance = DeltaDistance(first, self.alpha)
+        return Piecewise(self.psi.knots, (distance,), self.psi.period, self.psi.smooth_seam)
+
+    def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Give r and t of roller A's centre, of a jet or ball jet tau (W 4.10); `side` decides at breaks.
+
+        t is formed from tau, not as phi - (psi + alpha)/2: where psi leaps, those two leap alike.
+        """
+        if self._distance is not None:
+            return self._distance.on(tau, side), tau
+        psi = self.psi.on(tau, side)
+        return cos(psi * 0.5 + self.alpha / 2) * (2 * self.arm), self._polar_lead.on(tau, psi, side)
 
     def at(self, tau: float | Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Give phi and psi with their derivatives by tau at tau (n,), (order + 1, n) each."""
@@ -133,11 +153,10 @@ class Transmission:
         balls = [Ball.between(*jet.bounds()) for jet in self.jets(BallJet.variable(lower, upper, order))]
         return (balls[0].mid, balls[0].rad), (balls[1].mid, balls[1].rad)
 
-    def pitch(self, tau: float | Array, order: int, side: int = 1) -> tuple[Array, Array]:
+    def pitch(self, tau: float | Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Give r and t of roller A's centre with their derivatives by tau, (order + 1, n) each (W 4.10)."""
-        phi, psi = self.jets(Jet.variable(tau, order), side)
-        half = psi * 0.5 + self.alpha / 2
-        return (cos(half) * (2 * self.arm)).derivatives(), (phi - half).derivatives()
+        r, t = self.polar(Jet.variable(tau, order), side)
+        return r.derivatives(), t.derivatives()
 
     @cached_property
     def rounding(self) -> float:
@@ -164,17 +183,30 @@ class Transmission:
         return out
 
     def parameter(self, phi: float | Array, side: int = 1) -> Array:
-        """Solve phi(tau) = phi for tau, (n,): Newton's steps inside the stretch, halving where they leave it."""
-        phi = np.atleast_1d(np.asarray(phi, dtype=float))
+        """Solve phi(tau) = phi for tau, (n,)."""
+        return self._solved(self._lead, phi, side)
+
+    def polar_parameter(self, t: float | Array, side: int = 1) -> Array:
+        """Solve t(tau) = t, the polar angle of roller A, for tau, (n,): well posed however steep psi is over phi."""
+        return self._solved(self._polar_lead, t, side)
+
+    def _solved(self, lead: _Lead, angle: float | Array, side: int) -> Array:
+        """Solve tau + lead = angle for tau, (n,): Newton's steps inside the stretch, halving where they leave it."""
+        angle = np.atleast_1d(np.asarray(angle, dtype=float))
         knots, period = self.psi.knots, 2 * self.delta
-        ends = np.append(self.at(knots[:-1], 0)[0][0], 0.0)
+
+        def at(tau: Array, order: int) -> Array:
+            variable = Jet.variable(tau, order)
+            return lead.on(variable, self.psi.on(variable, 1), 1).c
+
+        ends = np.append(at(knots[:-1], 0)[0], 0.0)
         ends[-1] = ends[0] + period
-        shaft = Piecewise(ends, (Constant(0.0),) * (len(ends) - 1), period)
-        index, x = shaft.locate(phi, side)
+        places = Piecewise(ends, (Constant(0.0),) * (len(ends) - 1), period)
+        index, x = places.locate(angle, side)
         low, high = knots[index], knots[index + 1]
         tau = low + (x - ends[index]) * (high - low) / (ends[index + 1] - ends[index])
         for _ in range(80):
-            (value, slope), _psi = self.at(tau, 1, 1)
+            value, slope = at(tau, 1)
             miss = value - x
             low, high = np.where(miss < 0, tau, low), np.where(miss > 0, tau, high)
             with np.errstate(divide="ignore", invalid="ignore"):
@@ -186,5 +218,29 @@ class Transmission:
             if settled.all():
                 break
         tau = np.where(x == ends[index], knots[index], np.where(x == ends[index + 1], knots[index + 1], tau))
-        turns = np.round((phi - x) / period)
+        turns = np.round((angle - x) / period)
         return tau + turns * period
+
+
+@dataclass(frozen=True, eq=False)
+class _Lead:
+    """An angle less tau, `weight` psi + `offset`; `pieces` where the weight is not the same on all stretches."""
+
+    weight: float
+    offset: float
+    pieces: Piecewise | None
+
+    @staticmethod
+    def of(psi: Piecewise, weights: tuple[float, ...], offset: float) -> _Lead:
+        if len(set(weights)) == 1:
+            return _Lead(weights[0], offset, None)
+        pairs = zip(psi.functions, weights, strict=True)
+        functions = tuple(Affine(f, offset, w) if w else Constant(offset) for f, w in pairs)
+        return _Lead(0.0, offset, Piecewise(psi.knots, functions, psi.period, psi.smooth_seam))
+
+    def on(self, tau: Series, psi: Series, side: Side) -> Series:
+        """Give the angle, psi being the law's at tau."""
+        if self.pieces is not None:
+            return tau + self.pieces.on(tau, side)
+        found = tau + psi * self.weight if self.weight else tau
+        return found + self.offset if self.offset else found

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -21,6 +22,7 @@ from camgeo.fit.polygon import fit_polygon, least_vertices
 from camgeo.fit.spline import fit_spline
 from camgeo.offset import Parallel
 from camgeo.profile.wunderlich import FlatPairShape, PitchShape
+from camgeo.radius import least_radius
 from kin.jet import Jet
 from kin.law import Segment, law, programme
 from kin.transmission import from_arc, from_delta, from_law
@@ -261,7 +263,7 @@ def test_rates_by_hand_are_those_of_series(kind: type[PitchShape | FlatPairShape
     shape = kind(law)
     t = np.linspace(0.01, 2 * np.pi, 83)
     at = shape.sample(t)
-    speed, turn = (series.derivatives() for series in shape._rates(*law.jets(Jet.variable(t, 3))))
+    speed, turn = (Jet(rows).derivatives() for rows in shape.series(t, 1))
     assert at.speed == pytest.approx(speed[0], rel=1e-13)
     assert at.turn == pytest.approx(turn[0], rel=1e-13, abs=1e-13)
     assert at.speed_slope == pytest.approx(speed[1], rel=1e-13, abs=1e-13 * np.abs(speed[1]).max())
@@ -283,3 +285,31 @@ def test_cells_of_one_period_hold_over_the_whole_turn(case: Case) -> None:
     assert (at.turn <= bounds.turn_high + 1e-12).all()
     assert (np.abs(at.speed_slope) <= bounds.speed_slope).all()
     assert (np.abs(at.turn_slope) <= bounds.turn_slope + 1e-12).all()
+
+
+def needle(share: float, t: float) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
+    """Point and radius of curvature of the ellipse that lambda/mu = 2/1 works, m^2 = share of l^2, at its normal t."""
+    a2, b2 = 2 * mp.mpf(ARM) ** 2 * (1 + mp.mpf(share)), 2 * mp.mpf(ARM) ** 2 * (1 - mp.mpf(share))
+    c, s = mp.cos(mp.mpf(t)), mp.sin(mp.mpf(t))
+    r = mp.sqrt(a2 * c * c + b2 * s * s)
+    return a2 * c / r, b2 * s / r, a2 * b2 / r**3
+
+
+@pytest.mark.parametrize("thin", [2.0**-10, 2.0**-20, 2.0**-30, 2.0**-40])
+def test_a_flat_pair_that_is_almost_a_needle(thin: float) -> None:
+    """The ellipse's radii of curvature, l thin to l/sqrt(thin): each within the rounding of the size, or its own."""
+    with mp.workdps(50):
+        shape = FlatPairShape(from_delta(2, 1, ARM, {1: ARM**2 * (1.0 - thin)}, {}))
+        curve = Curve.whole(shape)
+        t = np.concatenate([np.linspace(0.0, 2 * np.pi, 41), np.pi / 2 + np.sqrt(thin) * np.linspace(-3, 3, 13)])
+        at, exact = shape.sample(t), np.array([needle(1.0 - thin, x) for x in t])
+        # an angle's own rounding moves points by the radius times it, and radii by 1/sqrt(thin) of themselves
+        assert (np.abs(at.point - exact[:, :2]).max(axis=1) <= 1e-14 * ARM + 1e-15 * exact[:, 2]).all()
+        assert (np.abs(at.speed - exact[:, 2]) <= 1e-14 * ARM + 2e-15 / np.sqrt(thin) * exact[:, 2]).all()
+        inside = np.array([float(x) for x in exact[:, 2]])
+        bounds = curve.cells.over(t, t)
+        assert (bounds.speed_low <= inside * (1 + 1e-15)).all()
+        assert (inside <= bounds.speed_high * (1 + 1e-15)).all()
+    assert bounds.speed_low.min() > 0.0  # the tip is proved to be convex
+    assert curve.cells.low.size < 10_000
+    assert least_radius(curve)[0] == pytest.approx(ARM * thin / math.sqrt(1 - thin / 2), rel=1e-13, abs=1e-14 * ARM)

@@ -105,6 +105,15 @@ def test_affinity(lam, mu, name):
 
 
 @every_law
+def test_the_parameter_of_a_polar_angle(lam, mu, name):
+    law = made(lam, mu, name)
+    tau = samples(law)
+    np.testing.assert_allclose(law.polar_parameter(law.pitch(tau, 0)[1][0]), tau, atol=1e-13)
+    image = law.at(law.polar_parameter(law.pitch(tau, 0)[1][0] + law.alpha), 0)[1][0]
+    np.testing.assert_allclose(image, -law.at(tau, 0)[1][0], atol=1e-14)  # W 4.4
+
+
+@every_law
 def test_chords_close_after_two_lambda_steps(lam, mu, name):
     """W section 6: chords of length 2 l sin(alpha), stepped round the pitch curve from anywhere, close."""
     law = made(lam, mu, name)

@@ -17,7 +17,6 @@ from camgeo.curve import Bounds, Frame
 from kin import jet
 from kin.ball import Ball
 from kin.jet import BallJet, Jet
-from kin.taylor import factorials
 
 if TYPE_CHECKING:
     from camgeo.curve import Array, Side
@@ -26,13 +25,22 @@ if TYPE_CHECKING:
 Series = TypeVar("Series", Jet, BallJet)
 
 
-class _Rates(Protocol):
-    """Speed and turn of a shape from jets of phi and psi."""
+class _Figures(Protocol):
+    """Two figures of a law as jets of its parameter: phi and psi, or r and t; the side decides at breaks."""
 
-    def __call__(self, phi: Series, psi: Series, /) -> tuple[Series, Series]: ...
+    def __call__(self, tau: Series, side: Side = 1, /) -> tuple[Series, Series]: ...
+
+
+class _Rates(Protocol):
+    """Speed and turn of a shape from jets of those two."""
+
+    def __call__(self, first: Series, second: Series, /) -> tuple[Series, Series]: ...
 
 
 ROUNDING = 1e-10  # relative: what the rounding of a few dozen operations is far below
+ORDER = 5  # of the series that bounds come from
+NARROW = 0.01  # rad: intervals narrower to either side were halved, at a fold; there a higher order saves most of them
+FINE_ORDER = 9
 
 
 @dataclass(frozen=True)
@@ -111,11 +119,11 @@ class PitchShape(_OfLaw):
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,) of the law."""
-        return _series(self.law, t, order, side, self._rates)
+        return _series(self.law.jets, t, order, side, self._rates)
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
-        return _bounds(self.law, low, high, self._rates)
+        return _bounds(self.law.jets, low, high, self._rates)
 
     def _rates(self, phi: Series, psi: Series) -> tuple[Series, Series]:
         """Speed and turn from phi and psi: two orders fewer."""
@@ -152,46 +160,31 @@ class FlatPairShape(_OfLaw):
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,) of the law."""
-        rows_phi, rows_psi = self.law.at(t, 3, side)
-        half = 0.5 * (rows_psi[0] + self.law.alpha)
-        normal = rows_phi[0] - half
-        r = 2.0 * self.law.arm * np.cos(half)
-        slope = -self.law.arm * np.sin(half) * rows_psi[1] / (rows_phi[1] - 0.5 * rows_psi[1])
-        cosine, sine = np.cos(normal), np.sin(normal)
-        point = np.column_stack([r * cosine - slope * sine, r * sine + slope * cosine])
-        return Frame(point, np.column_stack([-sine, cosine]), *self._rates_at(rows_phi, rows_psi))
-
-    def _rates_at(self, phi: Array, psi: Array) -> tuple[Array, Array, Array, Array]:
-        """Speed, turn and their slopes (n,) from derivatives (4, n) of phi and psi: `_rates` by hand."""
-        half = 0.5 * (psi[0] + self.law.alpha)
-        cosine, sine = np.cos(half), np.sin(half)
-        h, h1, h2 = 0.5 * psi[1:]
-        turn, turn1, turn2 = phi[1] - h, phi[2] - h1, phi[3] - h2
-        k = h / turn
-        k1 = (h1 - k * turn1) / turn
-        k2 = (h2 - k * turn2 - 2.0 * k1 * turn1) / turn
-        left = 1.0 - k * k
-        speed = turn * left * cosine - k1 * sine
-        slope = (turn1 * left - 2.0 * turn * k * k1 - k1 * h) * cosine - (turn * left * h + k2) * sine
-        return 2.0 * self.law.arm * speed, turn, 2.0 * self.law.arm * slope, turn1
+        r, normal = self.law.pitch(t, 3, side)
+        turn, turn1, turn2 = normal[1:]
+        # `_rates` by hand
+        slope = r[1] / turn
+        slope1 = (r[2] - slope * turn1) / turn
+        slope2 = (r[3] - slope * turn2 - 2.0 * slope1 * turn1) / turn
+        cosine, sine = np.cos(normal[0]), np.sin(normal[0])
+        point = np.column_stack([r[0] * cosine - slope * sine, r[0] * sine + slope * cosine])
+        tangent = np.column_stack([-sine, cosine])
+        return Frame(point, tangent, r[0] * turn + slope1, turn, r[1] * turn + r[0] * turn1 + slope2, turn1)
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,) of the law."""
-        return _series(self.law, t, order, side, self._rates)
+        return _series(self.law.polar, t, order, side, self._rates)
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
-        return _bounds(self.law, low, high, self._rates)
+        return _bounds(self.law.polar, low, high, self._rates)
 
-    def _rates(self, phi: Series, psi: Series) -> tuple[Series, Series]:
-        """Speed and turn from phi and psi: with k = dh/dt, ``r + r'' = 2 l (cos h (1 - k^2) - sin h dk/dt)``."""
-        half = (psi + self.law.alpha) * 0.5
-        turn = phi.derivative() - half.derivative()
-        k = half.derivative() / turn
-        slope = k.derivative()
-        half, turn, k = _cut(half, slope.order), _cut(turn, slope.order), _cut(k, slope.order)
-        speed = (turn * (1.0 - k * k) * jet.cos(half) - slope * jet.sin(half)) * (2.0 * self.law.arm)
-        return speed, turn
+    def _rates(self, r: Series, normal: Series) -> tuple[Series, Series]:
+        """Speed and turn from the support function and the normal's angle: ``r t' + (r'/t')'``."""
+        turn = normal.derivative()
+        bend = (r.derivative() / turn).derivative()
+        turn = _cut(turn, bend.order)
+        return _cut(r, bend.order) * turn + bend, turn
 
 
 def _steady(shape: PitchShape | FlatPairShape, law: Transmission) -> Array:
@@ -220,43 +213,41 @@ def _cut(series: Series, order: int) -> Series:
     return BallJet(series.mid[: order + 1], series.rad[: order + 1])
 
 
-def _series(law: Transmission, t: Array, order: int, side: Side, rates: _Rates) -> tuple[Array, Array]:
+def _series(figures: _Figures, t: Array, order: int, side: Side, rates: _Rates) -> tuple[Array, Array]:
     """Taylor coefficients of speed and turn (order + 1, n) from those of the law, two orders more."""
-    phi, psi = (Jet(rows / factorials(order + 2)) for rows in law.at(t, order + 2, side))
-    speed, turn = rates(phi, psi)
+    speed, turn = rates(*figures(Jet.variable(t, order + 2), side))
     return speed.c, turn.c
 
 
-def _bounds(law: Transmission, low: Array, high: Array, rates: _Rates) -> Bounds:
-    """Bounds over intervals (n,) from the law and from speed and turn as functions of phi and psi.
+def _bounds(figures: _Figures, low: Array, high: Array, rates: _Rates) -> Bounds:
+    """Bounds over intervals (n,) from the law's two figures, and from speed and turn as functions of them.
 
     Interval arithmetic alone loses how its operands hang together. So each derivative, of the law as of speed and
     turn, is taken from the middle of the interval, plus half the width times what bounds the next derivative; only the
-    last comes from the arithmetic.
+    last comes from the arithmetic. In the middle too it is balls, of no width: so rounding is known for each interval.
     """
-    half = 0.5 * (high - low)
-    exact = law.jets(Jet.variable(low + half, 5))
-    law_balls = law.jets(BallJet.variable(low, high, 5))
-    phi, psi = (_sharpened(ball, jet_, half) for ball, jet_ in zip(law_balls, exact, strict=True))
-    found = rates(_ball(*phi), _ball(*psi))
-    speed, turn = (_sharpened(ball, jet_, half) for ball, jet_ in zip(found, rates(*exact), strict=True))
+    middle = low + 0.5 * (high - low)
+    reach = np.maximum(high - middle, middle - low)
+    order = ORDER if reach.max(initial=0.0) > NARROW else FINE_ORDER
+    exact = figures(BallJet.variable(middle, middle, order))
+    over = figures(BallJet.variable(low, high, order))
+    sharp = [_ball(*_sharpened(ball, centre, reach)) for ball, centre in zip(over, exact, strict=True)]
+    found = zip(rates(sharp[0], sharp[1]), rates(*exact), strict=True)
+    speed, turn = (_sharpened(ball, centre, reach) for ball, centre in found)
     speed_size, turn_size = np.abs(speed).max(axis=0), np.abs(turn).max(axis=0)
     return Bounds(
         speed[0][0], speed[1][0], turn[0][0], turn[1][0], speed_size[1], turn_size[1], speed_size[2], turn_size[2]
     )  # fmt: skip
 
 
-def _sharpened(ball: BallJet, middle: Jet, half: Array) -> tuple[Array, Array]:
-    """Lower and upper bounds (order + 1, n) of the derivatives over intervals, given exactly in their middles."""
-    low, high = ball.bounds()
-    low, high = low.copy(), high.copy()
-    centre = middle.derivatives()
-    # the rounding of the middle's own derivatives is far below this part of them
-    room = ROUNDING * np.abs(centre).max(axis=1)
-    for k in range(len(centre) - 2, -1, -1):
-        spread = half * np.maximum(np.abs(low[k + 1]), np.abs(high[k + 1])) * (1.0 + ROUNDING) + room[k]
-        low[k] = np.fmax(low[k], centre[k] - spread)
-        high[k] = np.fmin(high[k], centre[k] + spread)
+def _sharpened(ball: BallJet, middle: BallJet, reach: Array) -> tuple[Array, Array]:
+    """Lower and upper bounds (order + 1, n) of the derivatives over intervals, from those within reach (n,)."""
+    low, high = (rows.copy() for rows in ball.bounds())
+    least, most = middle.bounds()
+    for k in range(len(low) - 2, -1, -1):
+        spread = reach * np.maximum(np.abs(low[k + 1]), np.abs(high[k + 1])) * (1.0 + ROUNDING)
+        low[k] = np.fmax(low[k], least[k] - spread)
+        high[k] = np.fmin(high[k], most[k] + spread)
     return low, high
 
 
