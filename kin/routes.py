@@ -29,6 +29,12 @@ class FromDelta:
     delta: Harmonics
     square: float
 
+    def scaled(self, scale: float) -> FromDelta:
+        """The same law of arms `scale` times as long."""
+        area, delta = scale * scale, self.delta
+        terms = tuple((k, area * a, area * b) for k, a, b in delta.terms)
+        return FromDelta(Harmonics(area * delta.mean, terms), area * self.square)
+
     def __call__(self, t: Series, /) -> Series:
         """Give psi over the polar angle t."""
         value = self.delta(t)
