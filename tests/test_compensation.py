@@ -190,6 +190,15 @@ def test_a_set_of_bodies_has_a_clearance_of_its_own():
         recipe_of("{stl: {parts: all, clearance: 0.2}}")
 
 
+def test_laws_of_longer_arms():
+    for cam in (ROLLER, ARC, PAIR):
+        law_of = designed(recipe_of("dxf", cam=cam)).intent
+        tau = np.linspace(0.0, 6.0, 31)
+        (r, t), (longer, same) = law_of.pitch(tau, 2), law_of.scaled(1.5).pitch(tau, 2)
+        assert longer == pytest.approx(1.5 * r, rel=1e-12, abs=1e-10)
+        assert same == pytest.approx(t, rel=1e-12, abs=1e-12)
+
+
 def test_lifts_farther_out():
     rise = programme([Segment("rise", 2.0, 20.0, law("cycloidal")), Segment("dwell", np.pi - 2.0)], np.pi, "motion")
     for lift in (lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}, (3.0, 2.0)), lift_constant_breadth(40.0, rise)):
