@@ -342,6 +342,29 @@ def test_a_harmonic_below_rounding_is_left_out_and_counted() -> None:
     assert polynomial(f"25 + {many}").order > 10
 
 
+@pytest.mark.parametrize(
+    ("small", "told"),
+    [
+        (
+            "1e-18*cos(13*t) + 1e-18*sin(14*t)",
+            [("harmonics 13, 14 of p", "they move the contour by less than rounding")],
+        ),
+        ("1e-18*cos(13*t)", [("harmonic 13 of p", "it moves the contour by less than rounding")]),
+        ("cos(t)**2 + sin(t)**2", []),  # harmonics that cancel were never there
+        ("0.01*cos(5*t)", []),
+    ],
+)
+def test_the_report_tells_which_harmonics_a_file_goes_without(
+    tmp_path: Path, small: str, told: list[tuple[str, str]]
+) -> None:
+    text = f"cam: {{kind: support, p: 25 + cos(3*t) + {small}}}\nexport: {{files: [dxf, {{dxf: {{as: exact}}}}]}}\n"
+    report = export(read(text.encode(), tmp_path / "cam.yaml"), tmp_path / "out").report
+    found = [(one["what"], one["why"]) for one in report["skipped"] if "harmonic" in one["what"]]
+    assert [what for what, _ in found] == [what for what, _ in told]
+    for (_, why), (_, start) in zip(found, told, strict=True):
+        assert why.startswith(f"cam-exact.dxf: {start}, ")
+
+
 def test_a_frequency_that_is_off_by_rounding_drifts_over_the_turn() -> None:
     """A tenth times 90 may not be 9 in binary: the file has 9, and the bound what the difference makes in a turn."""
     exact_, off = polynomial("25 + cos(9*t)/40"), polynomial("25 + cos((0.1*t)*90)/40")

@@ -51,11 +51,13 @@ class Polynomial:
     """p = sum over k of c_k exp(i k t), k from -n to n, by c_0 .. c_n (n + 1,): c_-k is the conjugate of c_k.
 
     `error` (n + 1,) bounds how far each coefficient may be off; `rest` how far what was left out moves the contour, mm.
+    `dropped` are the harmonics among that which are surely there.
     """
 
     coefficients: NDArray[np.complex128]
     error: Array
     rest: float = 0.0
+    dropped: tuple[int, ...] = ()
 
     @property
     def order(self) -> int:
@@ -96,16 +98,17 @@ class Polynomial:
 
         So do those that all together move the contour by less than a unit of rounding of its size.
         """
-        n, rest = self.order, self.rest
+        n, rest, dropped = self.order, self.rest, self.dropped
         # of c and its conjugate, with the factors 1 - k and 1 + k of the contour
         moves = 2.0 * np.arange(n + 1) * (np.abs(self.coefficients) + self.error)
         spare = UNIT * float(np.abs(self.coefficients).max())
         while n > 0 and (abs(self.coefficients[n]) <= self.error[n] or moves[n] <= spare):
             if abs(self.coefficients[n]) > self.error[n]:
                 spare -= float(moves[n])
+                dropped = (n, *dropped)
             rest += float(moves[n])
             n -= 1
-        return Polynomial(self.coefficients[: n + 1], self.error[: n + 1], rest)
+        return Polynomial(self.coefficients[: n + 1], self.error[: n + 1], rest, dropped)
 
 
 def polynomial_of(curve: Curve) -> Polynomial:

@@ -15,7 +15,7 @@ Skipped = tuple[str, str]
 
 def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> tuple[Skipped, ...]:
     """Name what was left out of a run that was asked for these files, and say why."""
-    found = [*_files(recipe, requests, design)]
+    found = [*_files(recipe, requests, design), *_harmonics(recipe, requests, design)]
     if recipe.part.bore is None:
         found.append(("bore", "part.bore is not given"))
     if recipe.dynamics is None:
@@ -44,6 +44,21 @@ def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) ->
     if design.contour is None:
         found.append(("files", "a check of the exact contour fails"))
     return found
+
+
+def _harmonics(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> list[Skipped]:
+    """Harmonics that exact splines go without."""
+    exact = [request for request in requests if request.as_ == "exact" and request.compensation is None]
+    if not exact or design.contour is None:
+        return []
+    from camgeo.fit.trigonometric import polynomial_of
+
+    p = polynomial_of(design.contour)
+    if not p.dropped:
+        return []
+    what = f"harmonic{'s' if len(p.dropped) > 1 else ''} {', '.join(map(str, p.dropped))} of p"
+    why = f"{'they move' if len(p.dropped) > 1 else 'it moves'} the contour by less than rounding, {p.rest:.2g} mm"
+    return [(what, f"{request.filename(recipe.name, recipe.export.files)}: {why}") for request in exact]
 
 
 def _checks(design: Design) -> list[Skipped]:
