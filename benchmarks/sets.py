@@ -1,0 +1,56 @@
+"""The bodies round every shipped cam, turned once round: the table in docs/mechanism.md.
+
+`python benchmarks/sets.py [recipe ...]` prints its rows; some three minutes for all of them.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from camgeo.bodies.build import assembly_of
+from camgeo.bodies.collide import collision_checks
+from camgeo.design import designed
+from camgeo.making.job import Job
+from camgeo.recipe.load import load
+
+RECIPES = Path(__file__).parents[1] / "recipes"
+TOLERANCE = 0.001  # mm
+
+
+def main() -> None:
+    """Print a row for each recipe."""
+    print("| recipe | follower | bodies | pairs | least, mm | least beyond the fits, mm | s |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    for name in sys.argv[1:] or sorted(path.stem for path in RECIPES.glob("*.yaml")):
+        print(row(name), flush=True)
+
+
+def row(name: str) -> str:
+    """Build and turn one."""
+    recipe = load(RECIPES / f"{name}.yaml")
+    design = designed(recipe)
+    if design.contour is None:
+        return f"| {name} | | | | no contour | | |"
+    at = design.contour.sample(design.contour.cells.low).point
+    contour = Job.of(recipe, design).outlines.within("arcs", TOLERANCE)
+    begin = time.process_time()
+    assembly = assembly_of(recipe, design, contour, float(np.hypot(at[:, 0], at[:, 1]).max()))
+    checks = [check for check in collision_checks(assembly) if check.name == "collision"]
+    spent = time.process_time() - begin
+    told = sorted((check.value, check.detail) for check in checks)
+    # what is no fit, and not the sink about the shaft's retainer, which is wider by its own rule
+    free = next((one for one in told if one[0] > assembly.sizes.clearance and "retainer-shaft" not in one[1]), told[-1])
+    kind = design.follower if recipe.linkage is None else recipe.linkage.kind
+    fine = "" if all(check.ok for check in checks) else " **meets**"
+    return (
+        f"| {name} | {kind} | {len(assembly.members)} | {len(checks)} | {told[0][0]:.3f} {told[0][1]}{fine} | "
+        f"{free[0]:.1f} {free[1]} | {spent:.1f} |"
+    )
+
+
+if __name__ == "__main__":
+    main()
