@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -60,23 +61,30 @@ FLOORS = {
         manufacture.compensation manufacture.milling
         bodies.dyads bodies.roller bodies.yoke dynamics manufacture.cutter manufacture.inspection
         bodies.site bodies.guide design recipe.load files.step
-        bodies.shaft files.brep files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage study.least undercut
+        bodies.shaft files.brep files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage
+        study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim
-        crossing files.curves files.prism files.glb files.stl files.svg files.three_mf fit.arcs fit.edges fit.inflection fit.spline motion part.lighten profile.build
+        crossing files.curves files.prism files.glb files.stl files.svg files.three_mf fit.arcs fit.edges
+        fit.inflection fit.spline motion part.lighten profile.build
         recipe.readers
         files.mesh part.wall recipe.build_part recipe.check_part recipe.read_part
         causes files.precision fit.exact fit.handles fit.free_arcs report.document report.failure
         bodies.places bodies.linked_places bodies.collide reach
-        bodies.forms bodies.assembly fit.cubic fit.spans fit.trigonometric pairs recipe.check_sweep recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
-        bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius turning
+        bodies.forms bodies.assembly fit.cubic fit.spans fit.trigonometric pairs recipe.check_sweep
+        recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
+        bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius
+        turning
         files.gcode part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         bodies.sizes manufacture.toolpath recipe.model recipe.scalars recipe.source recipe.tables
         recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.table_part
-        recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism recipe.table_sweep
-        curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors recipe.spec report store
+        recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism
+        recipe.table_sweep
+        curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors
+        recipe.spec report store
         page.followers page.pack page.svg
         page.scene
-        bodies files.missing making manufacture page fit.rational part recipe.din6885 recipe.model_part study study.picture sweep
+        bodies files.missing making manufacture page fit.rational part recipe.din6885 recipe.model_part study
+        study.picture sweep
         fit.bound
     """,
 }
@@ -115,6 +123,14 @@ def imported(path: Path, *, top_level_only: bool = False) -> set[str]:
 def test_there_is_something_to_check() -> None:
     assert len(modules("kin")) >= 10
     assert len(modules("camgeo")) >= 15
+
+
+def test_every_package_is_installed() -> None:
+    listed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["packages"]
+    there = [
+        ".".join(path.parent.relative_to(ROOT).parts) for top in FLOORS for path in ROOT.glob(f"{top}/**/__init__.py")
+    ]
+    assert sorted(listed) == sorted(there)
 
 
 def test_kin_never_imports_camgeo() -> None:
