@@ -61,7 +61,7 @@ FLOORS = {
         manufacture.compensation manufacture.milling
         bodies.dyads bodies.roller bodies.yoke dynamics manufacture.cutter manufacture.inspection
         bodies.site bodies.guide design recipe.load files.step
-        bodies.shaft files.brep files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage
+        bodies.collide bodies.shaft files.brep files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage
         study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim
         crossing files.curves files.prism files.glb files.stl files.svg files.three_mf fit.arcs fit.edges
@@ -69,7 +69,7 @@ FLOORS = {
         recipe.readers
         files.mesh part.wall recipe.build_part recipe.check_part recipe.read_part
         causes files.precision fit.exact fit.handles fit.free_arcs report.document report.failure
-        bodies.places bodies.linked_places bodies.collide reach
+        bodies.places bodies.linked_places reach
         bodies.forms bodies.assembly fit.cubic fit.spans fit.trigonometric pairs recipe.check_sweep
         recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
         bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius

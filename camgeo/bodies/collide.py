@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.bodies.assembly import TURN
+from camgeo.bodies.places import Turning
 from camgeo.fit.pieces import Polygon
 from kin.check import Check
 from kin.collision import Allowed, Mover, Slab, clearances
 from kin.contour import Contour
 from kin.poses import Sampled, Still
+from kin.poses import Turning as Steady
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -64,13 +66,17 @@ def movers(assembly: Assembly) -> list[Mover]:
     for member in assembly.members:
         key = id(member.place)
         if key not in motions:
-            motions[key] = Still() if member.place is None else _sampled(member.place)
+            motions[key] = _motion(member.place)
         found.append(Mover(member.name, slabs(member.plates), motions[key]))
     return found
 
 
-def _sampled(place: Place) -> Sampled:
-    """The exact places and rates at steps of a turn; between them they are interpolated, and by how much is told."""
+def _motion(place: Place | None) -> Motion:
+    """What stands or turns steadily is that; any other motion is sampled with its rates, and cubic between."""
+    if place is None:
+        return Still()
+    if isinstance(place, Turning):
+        return Steady(-1.0, angle=place.start)
     rows = place(TURN * np.arange(STEPS + 1) / STEPS, 1)
     pose, rate = rows[:, 0].T.copy(), rows[:, 1].T.copy()
     pose[:, 2] = np.unwrap(pose[:, 2])

@@ -15,7 +15,7 @@ from camgeo.bodies.body import Plate
 from camgeo.bodies.dyads import hang
 from camgeo.bodies.forms import bar, bars, box, disc, eye, moved, pin
 from camgeo.bodies.linked_places import Links
-from camgeo.bodies.places import turning
+from camgeo.bodies.places import Turning
 from camgeo.bodies.shaft import base, base_radius, bearing, shaft_fits, turned
 from camgeo.bodies.site import BLOCK, BLOCK_COLOUR, FRAME_COLOUR, Carrier, Site, block, slotted
 from camgeo.bodies.sizes import BodyError
@@ -56,7 +56,7 @@ def linked(mechanism: Mechanism, drive: Drive) -> Assembly:
         Fit("retainers on pins", s.press, pressed=True),
     )
     members = (*site.closed(), ground)
-    place = turning(mechanism.start + 0.25 * TURN)
+    place = Turning(mechanism.start + 0.25 * TURN)
     return Assembly((*turned(drive, low, place, members), *members), fits, s)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,17 +14,19 @@ if TYPE_CHECKING:
     from kin.transmission import Transmission
 
 
-def turning(start: float = 0.0) -> Place:
-    """Give the place of the cam and its shaft, clockwise from an angle."""
+@dataclass(frozen=True)
+class Turning:
+    """The place of the cam and its shaft: turned clockwise by the shaft angle from the angle `start`."""
 
-    def place(phi: Array, order: int) -> Array:
+    start: float = 0.0
+
+    def __call__(self, phi: Array, order: int) -> Array:
+        """Give x, y and angle with their derivatives."""
         found = np.zeros((3, order + 1, len(phi)))
-        found[2, 0] = start - phi
+        found[2, 0] = self.start - phi
         if order:
             found[2, 1] = -1.0
         return found
-
-    return place
 
 
 def sliding(lift: Lift) -> Place:

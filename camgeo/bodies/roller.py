@@ -14,7 +14,7 @@ import numpy as np
 from camgeo.bodies.assembly import GROUND, TURN, Assembly, Fit, Member
 from camgeo.bodies.body import Plate
 from camgeo.bodies.forms import bar, box, disc, eye, moved, pin, retainer
-from camgeo.bodies.places import swinging, turning
+from camgeo.bodies.places import Turning, swinging
 from camgeo.bodies.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
 from camgeo.bodies.sizes import THIN, BodyError
 
@@ -61,7 +61,7 @@ def double_roller(law: Transmission, radius: float, drive: Drive) -> Assembly:
     )
     touching = frozenset(frozenset({"cam", f"roller-{name}"}) for _, name in SIDES)
     remarks = ("the cam passes over the pivot: it keeps the arm on its pin, which has no retainer",) if covered else ()
-    return Assembly((*turned(drive, cam_low, turning(), members), *members), fits, s, touching, remarks)
+    return Assembly((*turned(drive, cam_low, Turning(), members), *members), fits, s, touching, remarks)
 
 
 def flat_pair(law: Transmission, drive: Drive) -> Assembly:
@@ -104,4 +104,4 @@ def flat_pair(law: Transmission, drive: Drive) -> Assembly:
         Fit("pair on the pivot", s.clearance),
         Fit("retainer on the pivot", s.press, pressed=True),
     )
-    return Assembly((*turned(drive, low, turning(), members), *members), fits, s)
+    return Assembly((*turned(drive, low, Turning(), members), *members), fits, s)

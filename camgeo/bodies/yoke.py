@@ -10,7 +10,7 @@ from camgeo.bodies.assembly import TURN, Assembly, Fit, Member
 from camgeo.bodies.body import Plate
 from camgeo.bodies.forms import box
 from camgeo.bodies.guide import guide, guide_length, half_width
-from camgeo.bodies.places import sliding, turning
+from camgeo.bodies.places import Turning, sliding
 from camgeo.bodies.shaft import base, base_radius, bearing, shaft_fits, turned
 
 if TYPE_CHECKING:
@@ -90,4 +90,4 @@ def _guided(follower: Member, guides: list[tuple[str, float]], drive: Drive, low
     pad = box(min(*ends, -half), -half, max(*ends, half), half)
     ground = base((*bearing(drive, [pad], low + disk.bottom - s.gap), *plates))
     members = (follower, ground, *caps)
-    return Assembly((*turned(drive, low, turning(), members), *members), tuple(fits), s, touching, remarks)
+    return Assembly((*turned(drive, low, Turning(), members), *members), tuple(fits), s, touching, remarks)
