@@ -20,7 +20,7 @@ from camgeo.radius import least_radius
 if TYPE_CHECKING:
     from camgeo.radius import Reversal
     from camgeo.reach import Neck
-    from camgeo.trim import Lost
+    from camgeo.trim import Lost, Remains
 
 LOOKS = 240  # parameters at which a neck is looked for where it is known to exist
 

@@ -198,7 +198,10 @@ def _counted(name: str, faults: list[str]) -> Check:
 
 
 def _depth_check(features: list[list[Cut]], milling: Milling, tolerance: float) -> Check:
-    """Check that each contour is cut through, and that no pass goes deeper than it may below the one before."""
+    """Check that each contour is cut through, and that no pass goes deeper than it may below the one before.
+
+    Only a path that follows the last one all round, no farther off than the cutter's radius, makes way for it.
+    """
     worst, detail = 0.0, ""
     for feature in features:
         line = feature[-1].loop[0].line
@@ -213,8 +216,16 @@ def _depth_check(features: list[list[Cut]], milling: Milling, tolerance: float) 
             step = reached - cut.z
             if step >= worst:
                 worst, detail = step, f"from z = {reached:.6g} to {cut.z:.6g} mm, line {cut.loop[0].line}"
-            reached = min(reached, cut.z)
+            if _follows(arcs_of(cut.loop), arcs_of(feature[-1].loop), milling.radius):
+                reached = min(reached, cut.z)
     return at_most("depth", worst, milling.depth_of_cut, "mm", detail=detail, slack=tolerance)
+
+
+def _follows(loop: Arcs, last: Arcs, radius: float) -> bool:
+    """Whether a closed path runs all round along another."""
+    points = np.concatenate([loop.start, loop.points(0.5 * loop.length)])
+    near = nearest(last, points)[1].max() <= radius
+    return bool(near) and abs(_area(loop)) > 0.5 * abs(_area(last))
 
 
 def _direction_check(features: list[list[Cut]], outer: int, milling: Milling) -> Check:

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from camgeo import pipeline
 from camgeo.cli import main
@@ -273,6 +275,15 @@ FAULTS = {
         lambda text: re.sub(r"\(contour, pass 2 of 4\).*?(?=\(contour, pass 3)", "", text, flags=re.DOTALL),
         {"depth"},
     ),
+    "a pass elsewhere": (
+        lambda text: re.sub(
+            r"\(contour, pass 2 of 4\).*?(?=\(contour, pass 3)",
+            "G0 X60 Y0\nG1 Z-4 F100\nG1 X61\nG1 Y1\nG1 X60\nG1 Y0\nG0 Z5\n",
+            text,
+            flags=re.DOTALL,
+        ),
+        {"depth", "bore"},
+    ),
     "a last pass too high": (in_last_pass(lambda text: text.replace("Z-6.00000", "Z-5.90000")), {"depth"}),
     "no last pass": (lambda text: last_pass(text)[0] + "M5\nM30\n", {"contour", "motion"}),
     "a rapid move through the part": (
@@ -452,3 +463,26 @@ def test_linuxcnc_reads_the_same_moves(tmp_path, units, more):
     assert [name for name, _ in theirs[1:]] == [name for name, _ in ours], "theirs begins with the way to a safe height"
     for (_, one), (_, other) in zip(theirs[1:], ours, strict=True):
         assert one == pytest.approx(other, abs=6e-5), "it tells four decimal places"
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.data())
+def test_a_program_with_anything_changed_is_told_or_refused(program, tmp_path, data):
+    recipe, text = program
+    lines = text.split("\n")
+    i = data.draw(st.integers(0, len(lines) - 1))
+    match data.draw(st.integers(0, 3)):
+        case 0:
+            del lines[i]
+        case 1:
+            lines.insert(i, data.draw(st.sampled_from(lines)))
+        case 2:
+            lines[i] = data.draw(st.text(st.characters(max_codepoint=126), max_size=12))
+        case _:
+            value = data.draw(st.floats(-60, 60))
+            lines[i] = re.sub(r"([XYZIJ])-?[0-9.]+", lambda m: f"{m[1]}{value:.5f}", lines[i], count=1)
+    path = tmp_path / "c.ngc"
+    path.write_text("\n".join(lines))
+    verdict = verify(path, milling_intent(recipe, designed(recipe)), 12, Limits(0.001))
+    assert verdict.checks
+    assert all(check.ok or check.detail or check.value is not None for check in verdict.checks)

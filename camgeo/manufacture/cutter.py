@@ -139,10 +139,10 @@ def cutter_path(contour: Curve, radius: float) -> CutterPath:
     if why.none:
         return whole
     from camgeo.trim import kept_runs, remains
-    from camgeo.undercut import undercuts
+    from camgeo.undercut import stretches
 
-    lost = tuple(_forward(cut) for cut in undercuts(turned))
     what = remains(turned, why)
+    lost = tuple(_forward(cut) for cut in stretches(turned, why, what))
     if not what.corners:
         raise UndercutError("the cutter comes to no place of the contour")
     if what.pieces > 1:
