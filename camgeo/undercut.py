@@ -58,11 +58,16 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
         return ()
     from camgeo.trim import remains
 
-    found: list[Undercut] = []
     try:
         what = remains(curve, why)
     except UndercutError as error:
         raise UndercutError(str(error), error.parameter, _free_at(curve, why)) from error
+    return stretches(curve, why, what)
+
+
+def stretches(curve: Curve, why: Causes, what: Remains) -> tuple[Undercut, ...]:
+    """Tell the stretches that undercut of a curve whose causes and remains are found already."""
+    found: list[Undercut] = []
     for lost in what.lost:
         inside = [r for r in why.reversals if not r.still and _within(curve, lost, 0.5 * (r.start + r.end))]
         necks = [n for n in why.necks if _within(curve, lost, n.first) or _within(curve, lost, n.second)]
