@@ -377,7 +377,9 @@ def test_every_worked_example_is_shipped_and_the_variety_is_there() -> None:
     assert {"w-booth", "w-figure-5", "w-figure-9", "w-law", "w-rosette", "w-ellipse"} <= recipes.keys()
     for recipe in recipes.values():
         assert recipe.about
-        assert {file.kind for file in recipe.export.files} == {"dxf", "stl", "csv"}
+        whole = any(file.parts == "all" for file in recipe.export.files)
+        kinds = {"3mf", "stl", "glb"} if whole else {"dxf", "stl", "csv"}
+        assert {file.kind for file in recipe.export.files} == kinds
     files = [file for recipe in recipes.values() for file in recipe.export.files]
     assert {file.as_ for file in files} == {"arcs", "polyline", "spline", "motion", None}
     assert {file.version for file in files} == {"R12", "R2000", "R2010", "R2013", None}
