@@ -222,3 +222,10 @@ def test_from_the_command_line(tmp_path, capsys):
     (tmp_path / "c.yaml").write_text(body.replace("0.2", "0.1"))
     assert main(["verify", str(tmp_path / "c.yaml"), str(tmp_path / "out" / "c" / "c.dxf")]) == 1
     capsys.readouterr()
+
+
+@pytest.mark.parametrize("cam", [SUPPORT, ROLLER])
+def test_solids_of_other_formats(tmp_path, cam):
+    pytest.importorskip("OCP")
+    _, report, _ = made(tmp_path, "{step: {kerf: 0.2}}, {3mf: {clearance: 0.2, shrinkage: 1}}", cam=cam)
+    assert [file["compensation"]["outward"] for file in report["files"]] == [0.1, -0.2]

@@ -61,6 +61,7 @@ FILES: dict[str, Table] = {
                 choices=("arcs", "spline", "exact"),
             ),
             _TOLERANCE,
+            *COMPENSATION,
         ),
     ),
     "glb": Table((_PARTS, _TOLERANCE)),
