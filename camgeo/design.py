@@ -114,15 +114,18 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
 def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
     """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
     from camgeo.causes import UndercutError
-    from camgeo.radius import least_radius
+    from camgeo.radius import enclosed_least_radius
     from camgeo.undercut import undercuts
 
     trim = recipe.cam.undercut == "trim"
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
-    radius, at = least_radius(profile.curve)
-    radius += profile.roller_radius
-    roomy, at_deg = radius > profile.roller_radius, _shaft_deg(intent, at)
+    least = enclosed_least_radius(profile.curve)
+    radius = least.radius + profile.roller_radius
+    roomy, at_deg = radius > profile.roller_radius, _shaft_deg(intent, least.at)
     bent = Check("radius-of-curvature", roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
+    if least.room:
+        lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
+        bent = replace(bent, detail=lower)
     try:
         found = undercuts(profile.curve)
     except UndercutError as error:

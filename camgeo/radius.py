@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 ROUNDING = 64.0 * float(np.finfo(np.float64).eps)  # of the curve's size: what sampled speeds and points may be off
 SHARPNESS = 1e-12  # of the curve's size: how far a proved least radius may lie below the one found
 SPLITS = 8  # parts into which an undecided interval is divided
+LOOSE = 1e-9  # of the curve's size: the same, of curves that hardly differ from a circle over long stretches
+MANY = 2_000  # intervals left undecided by `SHARPNESS` show such a curve
 NEAR = 100.0  # an end this many times `SHARPNESS` from the least counts as a minimum
 GROWTH = 1.6  # from part to part away from a minimum already found
 LEVELS = 30
@@ -46,29 +48,49 @@ class Reversal:
     still: bool
 
 
+@dataclass(frozen=True)
+class Least:
+    """The least radius of curvature found, mm, its parameter, and by how much more than `SHARPNESS` it may be less."""
+
+    radius: float
+    at: float
+    room: float = 0.0
+
+
 def least_radius(curve: Curve) -> tuple[float, float]:
     """Least radius of curvature of the convex stretches, in mm, and its parameter; negative where it undercuts.
 
     One-sided limits at breaks count. No radius lies below the result by more than `SHARPNESS` of the curve's size
-    (up to rounding of the samples). A curve without a convex stretch has (inf, its first parameter). Raises CurveError
-    where the proof does not end.
+    (up to rounding of the samples); of an enclosure that is wider, the result is the lower end. A curve without a
+    convex stretch has (inf, its first parameter). Raises CurveError where the proof does not end.
+    """
+    found = enclosed_least_radius(curve)
+    return found.radius - found.room, found.at
+
+
+def enclosed_least_radius(curve: Curve) -> Least:
+    """Least radius as `least_radius` has it, and how much less it may be.
+
+    Stretches that are circles but for rounding would be divided without end: where there are many, and no sign is in
+    doubt, it is proved to `LOOSE` of the curve's size only.
     """
     cells = curve.cells
     possible = _may_hold_least(cells)
     if curve.closed and curve.shape.repeats > 1:  # all parts are alike
         possible &= cells.low < cells.low[0] + curve.shape.period / curve.shape.repeats * (1.0 - SHIFT)
     if not possible.any():
-        return math.inf, float(cells.low[0])
+        return Least(math.inf, float(cells.low[0]))
     # circular arcs need no search, and would not end one
     arcs = _arc_radii(curve)
     best, at = _least_arc(curve, arcs, possible)
     possible &= np.isnan(arcs)
     if not possible.any():
-        return best, at
+        return Least(best, at)
     state = _Intervals.of(
         curve, cells.low[possible], cells.high[possible], cells.rows[6, possible], cells.rows[7, possible]
     )
-    tolerance = SHARPNESS * _extent(state.at_low)
+    extent = _extent(state.at_low)
+    tolerance, room, loose = SHARPNESS * extent, 0.0, LOOSE * curve.size
     least, where = _least_end(state)
     if least < best:
         best, at = least, where
@@ -81,12 +103,16 @@ def least_radius(curve: Curve) -> tuple[float, float]:
             if radius.min() < best:
                 best, at = float(radius.min()), float(bottoms[np.argmin(radius)])
         state = state.part(state.floor(best - tolerance) < 0.0)
+        if not room and state.low.size > MANY and not 0.0 <= best <= loose:
+            tolerance = room = max(loose, tolerance)
+            state = state.part(state.floor(best - tolerance) < 0.0)
         if state.low.size == 0:
-            return best, at
+            return Least(best, at, room)
         if state.low.size > MOST_INTERVALS:
             break
         grade = 0.5 * math.sqrt(8.0 * tolerance / max(state.bend(best).max(), 1e-300))
-        state = state.divided(curve, np.concatenate([bottoms, state.ends_below(best + NEAR * tolerance)]), grade)
+        minima = np.empty(0) if room else np.concatenate([bottoms, state.ends_below(best + NEAR * tolerance)])
+        state = state.divided(curve, minima, grade, fresh=not room)
         least, where = _least_end(state)
         if least < best:
             best, at = least, where
@@ -143,7 +169,7 @@ def reversals(curve: Curve) -> tuple[Reversal, ...]:
             return _joined(curve, found)
         if state.low.size > MOST_INTERVALS:
             break
-        state = state.divided(curve, np.empty(0), 0.0)
+        state = state.divided(curve, np.empty(0), 0.0, fresh=True)
     where = float(state.low[0])
     raise CurveError(f"whether the curve runs backwards near parameter {where:.9g} cannot be proved", where)
 
@@ -208,8 +234,11 @@ class _Intervals:
         ends = np.concatenate([self.low[_radius(self.at_low) <= v], self.high[_radius(self.at_high) <= v]])
         return distinct(ends)
 
-    def divided(self, curve: Curve, minima: Array, grade: float) -> _Intervals:
-        """Divide each interval evenly, or finely about a minimum (m,) found in it, from steps of `grade` upward."""
+    def divided(self, curve: Curve, minima: Array, grade: float, *, fresh: bool) -> _Intervals:
+        """Divide each interval evenly, or finely about a minimum (m,) found in it, from steps of `grade` upward.
+
+        `fresh` forms the bounds over many intervals anew.
+        """
         lows, highs, owner = [], [], []
         for i, (low, high) in enumerate(zip(self.low.tolist(), self.high.tolist(), strict=True)):
             inside = minima[(minima >= low) & (minima <= high)]
@@ -226,10 +255,10 @@ class _Intervals:
         of = np.concatenate(owner)
         low, high = np.concatenate(lows), np.concatenate(highs)
         speed_bend, turn_bend = self.speed_bend[of], self.turn_bend[of]
-        if len(self.low) > FRESH:
+        if fresh and len(self.low) > FRESH:
             # Where terms cancel, as on a circle that its formula does not tell, a bound falls with the width.
-            fresh = curve.shape.bounds(low, high)
-            speed_bend, turn_bend = np.fmin(speed_bend, fresh.speed_bend), np.fmin(turn_bend, fresh.turn_bend)
+            anew = curve.shape.bounds(low, high)
+            speed_bend, turn_bend = np.fmin(speed_bend, anew.speed_bend), np.fmin(turn_bend, anew.turn_bend)
         return _Intervals.of(curve, low, high, speed_bend, turn_bend)
 
 

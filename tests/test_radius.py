@@ -15,7 +15,7 @@ from camgeo.curve import Curve
 from camgeo.offset import Parallel
 from camgeo.profile.support import SupportShape
 from camgeo.profile.wunderlich import PitchShape
-from camgeo.radius import Reversal, least_radius, reversals
+from camgeo.radius import LOOSE, Reversal, enclosed_least_radius, least_radius, reversals
 from kin.formula import Formula
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_formula, lift_from_fourier, lift_reuleaux
@@ -183,3 +183,33 @@ def test_a_roller_as_large_as_an_arc_leaves_it_one_point():
 def test_all_backwards_is_one_reversal():
     shape = SupportShape(lift_from_fourier(-3.0, {3: 0.1}, {}))
     assert reversals(Curve.whole(shape)) == (Reversal(0.0, 2.0 * math.pi, still=False),)
+
+
+def test_lobes_that_are_almost_circles_are_enclosed():
+    """Booth's lemniscate next to its fold: an enclosure where a sharp proof would divide without end, told as such."""
+    thin = 1e-6
+    curve = Curve.whole(booth(60.0, 60.0 * math.sqrt(1.0 - thin)))
+    found = enclosed_least_radius(curve)
+    assert 0.0 < found.room <= 1.01 * LOOSE * 120.0
+    assert least_radius(curve)[0] == found.radius - found.room
+    with mpmath.workdps(40):
+
+        def radius(t):
+            r, slope, bend = mpmath.taylor(
+                lambda x: 60 * mpmath.sqrt(2 * (1 + (1 - mpmath.mpf(thin)) * mpmath.cos(2 * x))), t, 2
+            )
+            return (r**2 + slope**2) ** 1.5 / (r**2 + 2 * slope**2 - 2 * r * bend)
+
+        seen = float(min(radius(mpmath.mpf(t)) for t in np.linspace(0.0, 1.5, 31)))
+    assert found.radius - found.room <= seen
+    assert found.radius == pytest.approx(seen, abs=1e-12 * 120.0)
+
+
+def test_no_enclosure_is_wide_where_the_sign_is_in_doubt():
+    """A roller as large as those circles but for a few parts in 1e10: proved sharply, or not at all."""
+    pitch = booth(60.0, 60.0 * math.sqrt(1.0 - 1e-3))
+    least = least_radius(Curve.whole(pitch))[0]
+    for share in (-1e-10, 1e-10):
+        found = enclosed_least_radius(Curve.whole(Parallel(pitch, least * (1.0 + share))))
+        assert found.room == 0.0
+        assert found.radius == pytest.approx(-share * least, rel=0.05)
