@@ -28,6 +28,22 @@ if TYPE_CHECKING:
 TURNS = 20  # that are followed from rest, unless one repeats the one before
 _DIGITS = 9  # of a dwell's ends in degrees, beyond which they are rounding
 MOST_FOR_FLOAT = 150  # stretches of a drive for which the speed at which float begins is searched
+MOST_PLACES = 9_000_000  # that all searches of a recipe look at together, which bounds them to some ten seconds
+
+
+class _Purse:
+    """What the searches still to come may look at: each an equal share of what the ones before have left."""
+
+    def __init__(self, runs: int, *, each: int) -> None:
+        self._places, self._searches = MOST_PLACES, runs * each
+
+    def share(self) -> int:
+        """The most that the next search may look at."""
+        return self._places // max(self._searches, 1)
+
+    def spend(self, places: int) -> None:
+        """One search is done."""
+        self._places, self._searches = max(0, self._places - places), self._searches - 1
 
 
 class Found(NamedTuple):
@@ -43,6 +59,7 @@ class _Scene(NamedTuple):
     recipe: Recipe
     asked: Dynamics
     train: Train
+    purse: _Purse
     rests: tuple[tuple[float, float], ...]
     unit: float
     name: str
@@ -63,12 +80,12 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
     asked = recipe.dynamics
     if asked is None:
         raise ValueError("the recipe has no dynamics")
-    scene = _scene(recipe, asked, design)
-    entries: list[dict[str, Any]] = []
-    checks: list[Check] = []
     sources: list[Path | None] = [None]
     if recipe.linkage is None:
         sources += [path for path in files if path.suffix.lstrip(".") in KINDS]
+    scene = _scene(recipe, asked, design, _Purse(len(sources), each=1 if asked.play is not None else 2))
+    entries: list[dict[str, Any]] = []
+    checks: list[Check] = []
     for path in sources:
         try:
             entry, check = _one(scene, design, path)
@@ -94,7 +111,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
     return Found(section, tuple(checks))
 
 
-def _scene(recipe: Recipe, asked: Dynamics, design: Design) -> _Scene:
+def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse) -> _Scene:
     from camgeo.design import intended
     from kin.driven import METRE, rests
     from kin.dynamics import Train
@@ -112,7 +129,7 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design) -> _Scene:
         raise recipe.error("dynamics.play", "a single flat face has no play", None, "give preload")
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
-    return _Scene(recipe, asked, train, found, unit, name)
+    return _Scene(recipe, asked, train, purse, found, unit, name)
 
 
 def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
@@ -180,8 +197,9 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
     train, rpm = scene.train, scene.asked.rpm
     found = steady(train, drive, rpm, scene.rests)
     entry["steady"] = _steady(scene, found)
-    followed = course(train, (drive, None), rpm, TURNS)
-    entry |= _followed(followed, rpm, train) | _float_speed(train, drive)
+    followed = course(train, (drive, None), rpm, TURNS, most=scene.purse.share())
+    scene.purse.spend(followed.places)
+    entry |= _followed(followed, rpm, train) | _float_speed(scene, drive)
     least = found.force.least
     detail = f"greatest {found.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
     unit = "N m" if scene.name == "deg" else "N"
@@ -197,7 +215,8 @@ def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive)
     least, at = least_gap(lower, upper)
     detail = ""
     if least > 0.0:
-        followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS)
+        followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS, most=scene.purse.share())
+        scene.purse.spend(followed.places)
         if not followed.turns and followed.stopped is not None:
             raise DynamicsError(followed.stopped)
         entry |= _followed(followed, scene.asked.rpm, scene.train)
@@ -271,16 +290,18 @@ def _impacts(followed: Course) -> dict[str, Any]:
     }
 
 
-def _float_speed(train: Train, drive: Drive) -> dict[str, Any]:
+def _float_speed(scene: _Scene, drive: Drive) -> dict[str, Any]:
     from kin.dynamics import DynamicsError
     from kin.floating import float_speed
 
+    train = scene.train
     if len(drive) > MOST_FOR_FLOAT:
         return {"float_rpm": None, "float_why": f"not searched: the motion has more than {MOST_FOR_FLOAT} stretches"}
     try:
-        found = float_speed(train, drive)
+        found = float_speed(train, drive, most=scene.purse.share())
     except DynamicsError as error:
         return {"float_rpm": None, "float_why": str(error)}
+    scene.purse.spend(found.places)
     entry: dict[str, Any] = {"float_rpm": found.rpm, "float_rigid_rpm": found.rigid_rpm}
     if found.between is not None:
         holds, floats = found.between
@@ -288,7 +309,7 @@ def _float_speed(train: Train, drive: Drive) -> dict[str, Any]:
         entry["float_between_rpm"] = list(found.between)
         entry["float_why"] = (
             f"not settled: it begins {above}; with {train.damping_ratio:.3g} times the critical damping there are too "
-            "many resonances to look at; more damping or less stiffness has fewer"
+            "many resonances to look at; more damping or less stiffness has fewer, fewer files leave more room"
         )
     elif found.rpm is None:
         entry["float_why"] = "contact holds up to a shaft at twice the natural frequency"

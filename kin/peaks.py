@@ -76,6 +76,10 @@ class Figure:
                 parts.append((part, self.at(starts, part)))
         return Peaks(*self._highest(starts, parts, 1.0), *self._highest(starts, parts, -1.0))
 
+    def least(self, starts: Array, at: Samples) -> float:
+        """Least value at samples (n,) in time order that show every swing, and between neighbours."""
+        return self._highest(starts, [(at, self.at(starts, at))], -1.0)[0]
+
     def _highest(self, starts: Array, parts: list[tuple[Samples, Array]], sign: float) -> tuple[float, float]:
         """Greatest value times sign, and where."""
         best = max(float((sign * values).max()) for _, values in parts)

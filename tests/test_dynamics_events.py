@@ -13,6 +13,7 @@ from kin.drive import drives
 from kin.driven import Moved
 from kin.dynamics import DynamicsError, Train, steady
 from kin.floating import float_speed
+from kin.holding import Look, Range
 from kin.instants import FREE, LOWER, UPPER, Work, crossing
 from kin.integrated import integrated
 
@@ -294,6 +295,60 @@ def test_float_of_a_rise_is_found_in_its_first_dip():
     assert steady(train, drive, 1.0001 * found.rpm).force.least < 0.0
     below = [steady(train, drive, rpm).force.least for rpm in np.linspace(600.0, 0.9999 * found.rpm, 200)]
     assert min(below) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("ratio", "zeta"),
+    [
+        (3.3, 1e-3),
+        (30.3, 1e-4),
+        (300.3, 1e-4),
+        (1e4, 1e-4),
+        (1e4, 1e-3),
+        (1e3, 1e-5),
+        (1e5, 1e-6),
+        (55.0, 0.95),
+        (2e3, 2.0),
+    ],
+)
+def test_no_dip_below_the_speed_at_which_float_begins_is_passed_over(ratio, zeta):
+    """At resonances, beside them, between them, and at random speeds contact holds right up to that speed."""
+    train = stiff(ratio, zeta, preload=150.0)
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    begins = float_speed(train, drive).rpm
+    assert begins is not None
+    assert abs(steady(train, drive, begins).force.least) < 1e-7 * train.preload
+    assert steady(train, drive, begins * (1.0 + 1e-9)).force.least < 0.0
+    share = math.sqrt(max(1.0 - zeta**2, 0.0)) or 1.0
+    whole = math.ceil(share * train.ratio(begins)) + np.arange(6)
+    near = np.concatenate([whole + 0.3 * zeta * whole * side for side in (-1.0, 0.0, 1.0)] + [whole + 0.5])
+    at = train.natural * share / near * 60.0 / TURN
+    rng = np.random.default_rng(3)
+    at = np.concatenate([at, begins * (1.0 - 10.0 ** rng.uniform(-9.0, -0.5, 15))])
+    at = at[at < begins * (1.0 - 1e-10)]
+    assert min(steady(train, drive, rpm).force.least for rpm in at) > 0.0
+
+
+def test_what_is_said_of_a_range_holds_inside_it():
+    """Force at speeds between two looks, at all resonances and damping: never below the bound from both ends."""
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    rng = np.random.default_rng(5)
+    tight = 0.0
+    for _ in range(30):
+        train = stiff(10.0 ** rng.uniform(0.2, 4.0), 10.0 ** rng.uniform(-4.0, 0.6), preload=300.0)
+        rpm = rng.uniform(200.0, 1200.0)
+        b = train.ratio(rpm)
+        other = b / (b - min(10.0 ** rng.uniform(-3.0, 0.0), 0.1 * b)) * rpm
+        part = Range(*(Look(train, drive, speed, Work(10**9)) for speed in (rpm, other)))
+        inside = np.concatenate([rng.uniform(rpm, other, 12), np.linspace(rpm, other, 4)])
+        found = [steady(train, drive, speed).force for speed in inside]
+        least = min(force.least for force in found)
+        size = max(force.greatest for force in found)
+        bound = max(part.by_size, min(part.low.least, part.high.least) - part.between, part.high.surely)
+        if part.low.least > 0.0 and part.high.least > 0.0:
+            assert least >= bound - 1e-9 * size
+            tight = max(tight, bound / least) if least > 0.0 else tight
+    assert tight > 0.9  # the bound says something
 
 
 @pytest.mark.parametrize(("ratio", "zeta"), [(1e3 + 0.3, 1e-5), (1e5 + 0.3, 1e-6)])
