@@ -25,7 +25,8 @@ FLOORS = {
         collision read_3mf read_step
         dyad encounter forces hole read_dxf read_stl read_svg switches transmission_law
         drawing milled region svg_path
-        bearing bouncing bounding flaws floating integrated law linkage nesting parallel roots routes step_face syntax
+        floating
+        bearing bouncing bounding flaws holding integrated law linkage nesting parallel roots routes step_face syntax
         contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
         biarc dwell figures jet mobility peaks pieces shape
         bezier monotone motion response series turn
