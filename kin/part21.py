@@ -25,6 +25,7 @@ TOKEN = re.compile(
 )
 LARGEST = 1e30  # number that can be computed with
 LONGEST = 60  # characters of a text that an error shows
+MOST_DIGITS = 18  # of a whole number
 
 
 class Reference(int):
@@ -171,8 +172,12 @@ def _tokens(body: str, path: Path) -> list[tuple[str, str]]:
             last = next((text for kind, text in reversed(tokens) if kind == "reference"), "?")
             raise ReadError("syntax", f"{body[at : at + 20]!r} after #{last} is nothing of this format", path)
         at = match.end()
-        if match.lastgroup is not None:
-            tokens.append((match.lastgroup, match[match.lastgroup]))
+        if match.lastgroup is None:
+            continue
+        kind, found = match.lastgroup, match[match.lastgroup]
+        if kind in {"reference", "integer"} and len(found) > MOST_DIGITS:
+            raise ReadError("range", f"{found[:LONGEST]!r} is beyond all numbers of instances and counts", path)
+        tokens.append((kind, found))
     return tokens
 
 

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 from kin.drawing import Aside, Drawing, Fault
 from kin.read_dxf import read_dxf
 from kin.read_error import ReadError
-from kin.read_step import StepSolid, read_step
 from kin.read_stl import Solid, read_stl
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from kin.read_step import StepSolid
 
 __all__ = [
     "KINDS",
@@ -25,12 +26,10 @@ __all__ = [
     "Kind",
     "ReadError",
     "Solid",
-    "StepSolid",
     "kind_of",
     "read_drawing",
     "read_dxf",
     "read_solid",
-    "read_step",
     "read_stl",
 ]
 
@@ -41,7 +40,7 @@ OTHERS: dict[str, Kind] = {".stp": "step", ".ngc": "gcode", ".nc": "gcode", ".ta
 """Suffixes that are not the kind's own."""
 SUFFIXES: dict[str, Kind] = {f".{kind}": kind for kind in KINDS} | OTHERS
 """Every suffix, and the kind of file that it tells."""
-AnySolid: TypeAlias = Solid | StepSolid
+AnySolid: TypeAlias = "Solid | StepSolid"
 
 
 def kind_of(path: Path | str) -> Kind:
@@ -65,6 +64,8 @@ def read_drawing(path: Path | str, gap: float = 1e-6, *, engraved: bool = False)
 def read_solid(path: Path | str, heights: Sequence[float] = ()) -> AnySolid:
     """Read an STL, 3MF or STEP; raises as `read_stl`, `read_3mf` and `read_step` do."""
     if kind_of(path) == "step":
+        from kin.read_step import read_step
+
         return read_step(path, heights)
     if kind_of(path) == "3mf":
         from kin.read_3mf import read_3mf

@@ -32,7 +32,9 @@ LINK = "http://schemas.openxmlformats.org/package/2006/relationships Relationshi
 MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 UNIT_MM = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 MOST_BYTES = 1 << 29  # of a member of the archive when unpacked
-MOST_CORNERS = 1 << 26  # of all items together: components may repeat one mesh without end
+# Components may repeat one mesh, or nothing at all, without end: what all items together may hold.
+MOST_TRIANGLES = 1 << 24
+MOST_COMPONENTS = 1 << 14
 DEEPEST = 16  # of components within components
 BLOCK = 1 << 16
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
@@ -159,6 +161,7 @@ class _Model:
         self.objects: dict[str, _Object] = {}
         self.current: _Object | None = None
         self.items: list[tuple[str, Array]] = []
+        self.components = 0  # that have been put together
 
     def start(self, tag: str, given: dict[str, str]) -> None:
         if tag == f"{CORE}vertex":
@@ -186,7 +189,7 @@ class _Model:
         """Every object that is built and printed."""
         if self.mm is None:
             raise self._fault("there is no model in it")
-        found, room = [], MOST_CORNERS
+        found, room = [], MOST_TRIANGLES
         for name, place in self.items:
             one = self._named(name)
             if not one.printed:
@@ -212,8 +215,10 @@ class _Model:
         parts = [points[corners]]
         for name, place in one.components:
             room -= len(parts[-1])
-            if room <= 0:
-                raise ReadError("range", f"more than {MOST_CORNERS} triangles", self.path)
+            self.components += 1
+            if room <= 0 or self.components > MOST_COMPONENTS:
+                most = f"more than {MOST_TRIANGLES} triangles or {MOST_COMPONENTS} components"
+                raise ReadError("range", f"{most}, those that repeat an object counted", self.path)
             parts.append(_moved(self._corners(self._named(name), room, depth + 1), place))
         return np.concatenate(parts)
 
@@ -240,6 +245,8 @@ class _Model:
         text = given.get(name, "")
         if not NUMBER.fullmatch(text):
             raise self._fault(f"{name}={text!r} is no number")
+        if not abs(float(text)) <= LARGEST:
+            raise ReadError("range", f"{name}={text!r} is beyond all measure", self.path)
         return float(text)
 
     def _whole(self, given: dict[str, str], name: str) -> int:
@@ -253,7 +260,9 @@ class _Model:
         if len(words) != 12 or not all(NUMBER.fullmatch(word) for word in words):
             raise self._fault(f"transform={given['transform']!r} is no twelve numbers")
         place = np.array(words, dtype=np.float64).reshape(4, 3)
-        if not np.linalg.det(place[:3]) != 0.0:
+        if not bool((np.abs(place) <= LARGEST).all()):
+            raise ReadError("range", f"transform={given['transform']!r} is beyond all measure", self.path)
+        if np.linalg.det(place[:3]) == 0.0:
             raise self._fault(f"transform={given['transform']!r} is flat")
         return place
 

@@ -307,7 +307,7 @@ def _space(file: Exchange, solid: int) -> Space:
             size = file.values(measure, "UNCERTAINTY_MEASURE_WITH_UNIT", 2)[0]
             if isinstance(size, Typed) and size.name == "LENGTH_MEASURE":
                 accuracy = max(accuracy, file.number(size, measure) * length)
-    return Space(file, length, 1.0 if angle is None else angle, min(max(accuracy, ACCURACY[0]), ACCURACY[1]))
+    return Space(file, length, angle, min(max(accuracy, ACCURACY[0]), ACCURACY[1]))
 
 
 def _unit(file: Exchange, number: int, depth: int = 0) -> float:

@@ -31,11 +31,11 @@ SPLINES = ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE")
 
 
 class Space(NamedTuple):
-    """A file, with the length of its unit in mm, its unit of angle in rad, and its own accuracy in mm."""
+    """A file, with the length of its unit in mm, its unit of angle in rad if stated, and its own accuracy in mm."""
 
     file: Exchange
     mm: float
-    radian: float
+    radian: float | None
     accuracy: float
 
     def point(self, value: Value, by: int) -> Array:

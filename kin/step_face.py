@@ -305,6 +305,8 @@ def _surface(space: Space, number: int, by: int) -> Surface:
             raise file.error(number, "its axis is neither upright nor level")
         return Tube(frame.origin, frame.z, radius)
     radius = file.number(rest[0], number) * space.mm
+    if space.radian is None:
+        raise file.error(number, "the file states no unit of plane angle")
     slope = float(np.tan(file.number(rest[1], number) * space.radian))
     if not upright:
         raise file.error(number, "its axis is not upright")

@@ -38,7 +38,7 @@ MOST_NAMED = 5  # faults named in a message
 class Verdict:
     """What was found of a file.
 
-    kind            dxf, svg, stl, 3mf or step
+    kind            of the file: drawing, solid or program
     checks          units, closed, contour, motion, bore, ... ; or the one that says why the file cannot be read
     motion, play    as the contour gives them by contact; None without contact, play also for one-sided followers
     measured_error  two-sided distance from the exact contour, mm
@@ -61,7 +61,7 @@ class Verdict:
 
 
 def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
-    """Judge a DXF, SVG, STL, 3MF or STEP file, told apart by the suffix, at `angles` equal steps of the shaft.
+    """Judge a drawing, a solid or a milling program, told apart by the suffix, at `angles` equal steps of the shaft.
 
     A file from which no contour can be read gets a verdict that says why. Raises OSError as the file system does, and
     ValueError for another suffix or no angles.
@@ -94,13 +94,8 @@ def _of_drawing(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check]
     scale = intent.mm if drawing.units_mm is None else 1.0
     contour, *holes = (_placed(c, scale, intent.mirrored) for c in (drawing.contour, *drawing.holes))
     checks = [_units_check(drawing.units_mm, intent.mm), _closed_check(drawing, contour)]
-    if intent.featured:
-        from kin.part import drawn_checks  # a plain part does without
-
-        engraved = [_placed(c, scale, intent.mirrored) for c in drawing.engraved]
-        return [*checks, *drawn_checks(holes, engraved, intent, limits.tolerance)], contour, drawing.pieces
-    bore = bore_check(holes, intent.bore, limits.tolerance)
-    return [*checks, bore] if bore else checks, contour, drawing.pieces
+    engraved = [_placed(c, scale, intent.mirrored) for c in drawing.engraved]
+    return [*checks, *_opening_checks(holes, engraved, intent, limits)], contour, drawing.pieces
 
 
 def _of_program(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
@@ -114,13 +109,17 @@ def _of_program(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check]
     done = milled(program, intent.milling, limits.tolerance)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (done.contour, *done.holes))
     checks = [_units_check(program.units_mm, intent.mm), _count_check("closed", _crossing_places(contour))]
-    checks += done.checks
-    if intent.featured:
-        from kin.part import drawn_checks
+    return [*checks, *done.checks, *_opening_checks(holes, [], intent, limits)], contour, done.pieces
 
-        return [*checks, *drawn_checks(holes, [], intent, limits.tolerance)], contour, done.pieces
+
+def _opening_checks(holes: list[Contour], engraved: list[Contour], intent: Intent, limits: Limits) -> list[Check]:
+    """Check what is drawn or milled inside the contour."""
+    if intent.featured:
+        from kin.part import drawn_checks  # a plain part does without
+
+        return drawn_checks(holes, engraved, intent, limits.tolerance)
     bore = bore_check(holes, intent.bore, limits.tolerance)
-    return [*checks, bore] if bore else checks, contour, done.pieces
+    return [bore] if bore else []
 
 
 def _all_placed(contours: Sequence[Contour], intent: Intent) -> tuple[Contour, ...]:

@@ -417,21 +417,43 @@ def test_archives_that_unpack_without_end(plain, monkeypatch):
         read_3mf(spoilt)
 
 
+def towered(text, storeys):
+    """Sixteen of sixteen of sixteen and so on of the first object."""
+    for k in range(2, storeys + 2):
+        held = f'<component objectid="{k - 1}"/>' * 16
+        text = text.replace("</resources>", f'<object id="{k}"><components>{held}</components></object></resources>')
+    return text.replace('<item objectid="1"/>', f'<item objectid="{storeys + 1}"/>')
+
+
 def test_components_that_multiply(plain, monkeypatch):
     _, _, sound, _ = plain
-    monkeypatch.setattr("kin.read_3mf.MOST_CORNERS", 1 << 16)
-
-    def towered(text):
-        """Sixteen of sixteen of sixteen."""
-        for k in (2, 3, 4):
-            held = f'<component objectid="{k - 1}"/>' * 16
-            text = text.replace(
-                "</resources>", f'<object id="{k}"><components>{held}</components></object></resources>'
-            )
-        return text.replace('<item objectid="1"/>', '<item objectid="4"/>')
+    monkeypatch.setattr("kin.read_3mf.MOST_TRIANGLES", 1 << 16)
 
     with pytest.raises(ReadError, match="more than 65536 triangles"):
-        read_3mf(rewritten(sound, towered))
+        read_3mf(rewritten(sound, lambda text: towered(text, 3)))
+
+
+def test_components_that_multiply_nothing(plain):
+    _, _, sound, _ = plain
+
+    def hollow(text):
+        return towered(re.sub(r"<mesh>.*</mesh>", "", text, flags=re.DOTALL), 12)
+
+    with pytest.raises(ReadError, match="or 16384 components"):
+        read_3mf(rewritten(sound, hollow))
+
+
+def test_places_that_multiply(plain):
+    """Each place is within measure, and what they make together is not."""
+    _, _, sound, _ = plain
+
+    def grown(text):
+        held = '<component objectid="1" transform="1e7 0 0 0 1e7 0 0 0 1e7 0 0 0"/>'
+        text = text.replace("</resources>", f'<object id="2"><components>{held}</components></object></resources>')
+        return text.replace('<item objectid="1"/>', '<item objectid="2"/>')
+
+    with pytest.raises(ReadError, match="reaches beyond all measure"):
+        read_3mf(rewritten(sound, grown))
 
 
 def test_assertions_of_one_s_own_take_it(plain):

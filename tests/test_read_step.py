@@ -130,6 +130,7 @@ def test_a_file_cut_short(tmp_path, bytes_left):
     [
         ("ISO-10303-21;", "solid", "syntax", "does not begin with"),
         (r"#1=", "#2=", "syntax", "is there twice"),
+        (r"#1=", f"#{'9' * 5000}=", "range", "is beyond all numbers of instances"),
         (r"CIRCLE\('',#\d+", "CIRCLE('',#9999", "unsupported", "#9999 .*is no AXIS2"),
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1", "syntax", r"#\d+ CIRCLE: has 2 values, 3 belong there"),
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1,-3.", "range", r"#\d+ CIRCLE: a length of -3 mm"),
@@ -150,6 +151,13 @@ def test_what_is_not_read_is_named_by_its_number(tmp_path, pattern, replacement,
     error = refused(tmp_path, changed(washer(), pattern, replacement))
     assert error.reason == reason, error
     assert re.search(message, error.message), error
+
+
+def test_a_cone_whose_angle_has_no_unit(tmp_path):
+    coned = changed(washer(), r"CYLINDRICAL_SURFACE\('',(#\d+),([^)]*)", r"CONICAL_SURFACE('',\1,\2,0.7")
+    without = changed(coned, r"\(#901,#902\)", "(#901)")
+    assert re.search(r"CONICAL_SURFACE: the file states no unit of plane angle", refused(tmp_path, without).message)
+    read_step(put(tmp_path, changed(washer(), r"\(#901,#902\)", "(#901)")))
 
 
 def test_two_solids(tmp_path):
