@@ -32,8 +32,9 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
 
     watertight  every edge has two triangles, facing outward, none without area
     thickness   it reaches from the lowest slab's lower face to the highest one's upper face
-    outline     midway between any two levels the corners of its section lie on the edge of the union of the slabs
-                there, and the slabs' corners on that of the section; where there is one slab alone the area is its own
+    outline     midway between any two levels farther apart than twice the tolerance the corners of its section lie on
+                the edge of the union of the slabs there, and the slabs' corners on that of the section; where there is
+                one slab alone the area is its own
     """
     mesh = welded(corners)
     faults = [*mesh.edge_faults, mesh.degenerate, mesh.duplicate, int(mesh.volume <= 0.0)]

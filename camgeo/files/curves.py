@@ -89,9 +89,8 @@ def _splines(outline: BSpline | RationalSpline, z: float) -> list[tuple[Shape, t
         raise ValueError("a spline must begin and end at its first control point")
     knots, number = np.unique(outline.knots, return_counts=True)
     found = []
-    first = begun = 0
+    begun = 0
     for k in range(1, len(knots)):
-        first += int(number[k]) if k < len(knots) - 1 else 0
         if k < len(knots) - 1 and number[k] < degree:
             continue
         here, often = knots[begun : k + 1], number[begun : k + 1].copy()

@@ -35,8 +35,8 @@ def extruded(
     """Closed solid over a polygon with a round bore of this diameter about the origin or with holes; in mm.
 
     The bore is a polygon that straddles its circle, and so is each round hole; arcs of other holes are chords between
-    points of them. All loops keep within `tolerance` of what is meant after their rounding to single precision. Every
-    edge belongs to two triangles, which run along it opposite ways. O(n log n) for a contour that runs once round the
+    points of them. All loops keep within `tolerance` of what is meant after their rounding to `precision`. Every edge
+    belongs to two triangles, which run along it opposite ways. O(n log n) for a contour that runs once round the
     shaft with a bore alone; see `camgeo.files.triangulate`.
 
     Raises ToleranceError where the tolerance cannot be held, RegionError where the contour is not simple or the bore
