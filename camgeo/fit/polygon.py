@@ -80,18 +80,18 @@ def fit_polygon(curve: Curve, tolerance: float) -> Polygon:
     usable = min(USABLE * tolerance, tolerance - rounding(size))
     parts, outward, inward = [], 0.0, 0.0
     for run in curve.runs:
-        edges = _fit_run(curve, run, usable)
+        edges = _fit_run(curve, run, usable, tolerance)
         parts.append(edges.vertices[:-1])
         out, into = edges.extremes
         outward, inward = max(outward, out), max(inward, into)
     return Polygon(np.concatenate(parts), Bound(outward, inward).widened(rounding(size)))
 
 
-def _fit_run(curve: Curve, run: Run, tolerance: float) -> Edges:
-    """Edges of one run, proved to lie within the tolerance."""
+def _fit_run(curve: Curve, run: Run, tolerance: float, asked: float) -> Edges:
+    """Edges of one run, proved to lie within the tolerance; `asked` is what it was before rounding was taken off."""
     densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
-    check_count(needed, "straight edges", tolerance, 2.0)
+    check_count(needed, "straight edges", asked, 2.0)
     bends, sense = inflections(curve, densities)
     best = math.inf
     for aim in AIMS:
@@ -103,7 +103,7 @@ def _fit_run(curve: Curve, run: Run, tolerance: float) -> Edges:
         best = min(best, max(edges.extremes))
         if best <= tolerance:
             return edges
-    raise ToleranceError(f"a polygon within {tolerance:.3g} mm was not reached; the best was {best:.3g} mm", best)
+    raise ToleranceError(f"a polygon within {asked:.3g} mm was not reached; the best was {best:.3g} mm", best)
 
 
 def _balanced(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance: float) -> Edges:

@@ -76,7 +76,7 @@ def shaft_on_the_contour():
 CAM = "kind: constant-breadth\nbase_radius: 40\nmotion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]"
 REFUSALS = (
     (1e-6, "stl", "rounding to single precision alone moves points by 2.7e-06 mm; at least 3.37e-06 mm"),
-    (1e-12, "{dxf: {as: polyline}}", "can be held"),
+    (1e-12, "{dxf: {as: polyline}}", "straight edges within 1e-12 mm need about"),
     (1e-13, "{dxf: {as: polyline}}", "at least 8.53e-13 mm"),
     (1e-13, "{dxf: {as: arcs}}", "at least 8.53e-13 mm"),
     (1e-16, "{dxf: {as: spline}}", "at least 8.53e-13 mm"),
