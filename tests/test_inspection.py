@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from camgeo import pipeline
-from camgeo.design import designed
+from camgeo.design import designed, intended
 from camgeo.manufacture.inspection import inspection_table
 from camgeo.recipe import read
 from kin.envelope import FlatEnvelope, RollerEnvelope, TransmissionPitch
@@ -92,7 +92,7 @@ def test_each_face_of_a_pair_passes_the_pivot():
         assert np.allclose(pair(table, f"{name}n"), units(theta), rtol=0.0, atol=1e-12)
         reach = np.sum(pair(table, name) * units(theta), axis=1)
         assert np.allclose(reach, np.sum(80.0 * units(phi) * units(theta), axis=1), rtol=0.0, atol=1e-11)
-        envelope = FlatEnvelope(pipeline.intended(read(PAIR.encode(), "c.yaml"), design).follower.support)
+        envelope = FlatEnvelope(intended(read(PAIR.encode(), "c.yaml"), design).follower.support)
         assert np.abs(envelope.feet(pair(table, name)).excess).max() < 1e-11
 
 

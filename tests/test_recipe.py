@@ -665,7 +665,7 @@ manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.
         ),
         (
             "manufacture: {cutter: 6, allowance: 3}",
-            ["2:37: manufacture.allowance: not below half the cutter, given 3 mm; give less than 3 mm"],
+            ["2:37: manufacture.allowance: not below a quarter of the cutter, given 3 mm; give less than 1.5 mm"],
         ),
         (
             "manufacture: {diameter: 6, direction: down}",

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_manufacture import Manufacture
 
 FEATURE = "contour"
+ROUGH = 0.1  # of the allowance, within which the passes run that leave it
 
 
 def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
@@ -41,7 +42,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
         fine = _outline(job, path_of(recipe, job.design), job.tolerance(request) - rounding(count, recipe.mm))
         rough = None
         if asked.allowance is not None:
-            rough = _outline(job, path_of(recipe, job.design, asked.allowance), 0.25 * asked.allowance)
+            rough = _outline(job, path_of(recipe, job.design, asked.allowance), ROUGH * asked.allowance)
         with job.clock.stage("write gcode"):
             features = [*_holes(job, asked), (FEATURE, _round(job, asked, rough, fine))]
             _write(job, request, path, features, count)

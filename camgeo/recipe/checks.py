@@ -86,11 +86,11 @@ def _linkage(values: Values, reader: Reader) -> None:
 
 
 def _allowance(milling: Values, reader: Reader) -> None:
-    """Note an allowance that a pass of this cutter could not take off."""
-    if {"allowance", "cutter"} <= milling.keys() and milling["allowance"] >= 0.5 * milling["cutter"]:
-        remedy = f"give less than {0.5 * milling['cutter'] / reader.mm:.6g} {reader.units}"
+    """Note an allowance that is too much for a last pass of this cutter."""
+    if {"allowance", "cutter"} <= milling.keys() and milling["allowance"] >= 0.25 * milling["cutter"]:
+        remedy = f"give less than {0.25 * milling['cutter'] / reader.mm:.6g} {reader.units}"
         value = f"{milling['allowance'] / reader.mm:.6g} {reader.units}"
-        reader.fault_at("manufacture.allowance", "not below half the cutter", value, remedy)
+        reader.fault_at("manufacture.allowance", "not below a quarter of the cutter", value, remedy)
 
 
 def _milling(path: str, reader: Reader) -> None:
