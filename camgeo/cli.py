@@ -74,7 +74,8 @@ def _parser() -> argparse.ArgumentParser:
 
     parser = argparse.ArgumentParser(
         prog="camgeo",
-        description="Disc cams from a short recipe to DXF, SVG, STL and 3MF, with the motion proved from the files.",
+        description="Disc cams from a short recipe to drawings, solids and milling programs, their motion judged from "
+        "the files.",
         epilog="Exit status: 0 all checks hold; 1 a check fails; 2 the recipe or the call is wrong; 3 the surroundings "
         "(disk, missing extra); 130 interrupted.",
     )
@@ -110,7 +111,7 @@ def _parser() -> argparse.ArgumentParser:
     check = command("check", _check, "Every check of a recipe; nothing is written.")
     recipes(check)
     check.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
-    verify = command("verify", _verify, "Judge DXF, SVG, STL and 3MF files against a recipe's motion.")
+    verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
     tolerance(verify)

@@ -66,7 +66,7 @@ class _Scene(NamedTuple):
 
 
 def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
-    """Find the dynamics of a recipe that asks for them, as intended and with each DXF and STL file.
+    """Find the dynamics of a recipe that asks for them, as intended and with each drawing and solid.
 
     Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
     play `play`, that some is left. Raises RecipeErrors where the train has no steady state, and ValueError for a recipe
