@@ -222,10 +222,18 @@ def _depth_check(features: list[list[Cut]], milling: Milling, tolerance: float) 
 
 
 def _follows(loop: Arcs, last: Arcs, radius: float) -> bool:
-    """Whether a closed path runs all round along another."""
+    """Whether a closed path runs along another, and as often round the middle of it."""
     points = np.concatenate([loop.start, loop.points(0.5 * loop.length)])
     near = nearest(last, points)[1].max() <= radius
-    return bool(near) and abs(_area(loop)) > 0.5 * abs(_area(last))
+    middle = last.start.mean(axis=0)
+    return bool(near) and abs(_rounds(loop, middle)) == abs(_rounds(last, middle))
+
+
+def _rounds(loop: Arcs, middle: Array) -> int:
+    """How often a closed path runs round a point, by the starts of its pieces."""
+    away = loop.start - middle
+    after = np.roll(away, -1, axis=0)
+    return round(float(np.arctan2(cross(away, after), dot(away, after)).sum()) / (2.0 * np.pi))
 
 
 def _direction_check(features: list[list[Cut]], outer: int, milling: Milling) -> Check:

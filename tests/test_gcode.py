@@ -85,7 +85,7 @@ def swept(path, radius, per_arc=60):
     [
         (SUPPORT, "", ""),
         (ROLLER, ", direction: conventional, allowance: 0.3", "rotation: ccw\n"),
-        (SHU_WU, ", start: 100, lead_in: 2", ""),
+        (SHU_WU, ", start: 100, lead_in: 2, allowance: 1.2", ""),
         (TRIMMED, ", allowance: 0.2", ""),
     ],
 )
