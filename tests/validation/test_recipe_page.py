@@ -11,7 +11,7 @@ from camgeo.recipe import read
 from kin.expression import FUNCTIONS
 from kin.law import LAWS
 
-PAGES = ("README.md", "docs/recipe.md", "docs/linkages.md")
+PAGES = ("README.md", "docs/recipe.md", "docs/linkages.md", "docs/manufacture.md")
 
 
 def blocks():
