@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.curve import CurveError
 from camgeo.design import intended
 
 if TYPE_CHECKING:
@@ -23,7 +24,10 @@ def intent_of_file(
     if by is not None:
         from camgeo.manufacture.compensation import compensated
 
-        made = compensated(recipe, design, by, field)
+        try:
+            made = compensated(recipe, design, by, field)
+        except CurveError as error:
+            raise recipe.error(field, str(error)) from error
         return intended(made.recipe, made.design)
     if kind != "gcode":
         return intended(recipe, design)
@@ -35,4 +39,7 @@ def intent_of_file(
         raise recipe.error("cam", "a check of the exact contour fails, so that nothing can be milled")
     from camgeo.manufacture.milling import milling_intent
 
-    return milling_intent(recipe, design)
+    try:
+        return milling_intent(recipe, design)
+    except CurveError as error:
+        raise recipe.error("manufacture.cutter", str(error)) from error
