@@ -15,7 +15,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from camgeo.curve import Curve
-from camgeo.fit.arcs import arc_density, fit_arcs
+from camgeo.fit.arcs import FLOOR, arc_density, fit_arcs
 from camgeo.fit.nodes import Density, ToleranceError, rounding
 from camgeo.fit.polygon import fit_polygon, least_vertices
 from camgeo.fit.spans import HOPELESS
@@ -203,14 +203,20 @@ def test_tolerance_below_rounding_is_refused_with_the_figure(fit) -> None:
     assert 1e-14 < caught.value.reached < 1e-11
 
 
-@pytest.mark.parametrize("share", [1.02, 1.05])
-def test_arcs_just_above_the_rounding_of_points_are_refused_in_figures_that_say_something(share: float) -> None:
-    curve = Curve.whole(SupportShape(LIFTS["fourier"]))
-    tolerance = 2.0 * share * rounding(curve.size)
-    with pytest.raises(ToleranceError, match=f"arcs within {tolerance:.3g} mm") as caught:
-        fit_arcs(curve, tolerance)
-    assert tolerance < caught.value.reached < 1e-10
-    assert "-" not in str(caught.value).replace("e-", "")
+@pytest.mark.parametrize("name", ["fourier", "rabinowitz"])
+def test_arcs_hold_their_floor_and_below_it_are_refused_with_it(name: str) -> None:
+    curve = Curve.whole(SupportShape(LIFTS[name]))
+    floor = 2.0 * FLOOR * rounding(curve.size)
+    assert fit_arcs(curve, floor).bound.worst <= floor
+    with pytest.raises(ToleranceError, match=f"at least {floor:.3g} mm") as caught:
+        fit_arcs(curve, 0.999 * floor)
+    assert caught.value.reached == pytest.approx(floor, rel=1e-12)
+
+
+def test_what_is_circular_has_no_floor_but_that_of_points() -> None:
+    curve = Curve.whole(SupportShape(LIFTS["reuleaux 9"]))
+    least = 2.0 * rounding(curve.size)
+    assert fit_arcs(curve, 3.0 * least).bound.worst <= 3.0 * least < 2.0 * FLOOR * rounding(curve.size)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, math.nan])

@@ -73,8 +73,8 @@ FLOORS = {
         bodies.places bodies.linked_places reach
         bodies.forms bodies.assembly fit.cubic fit.spans fit.trigonometric pairs recipe.check_sweep
         recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
-        bodies.body files.dxf fit.deviation fit.nodes fit.staircase offset profile.support profile.wunderlich radius
-        turning
+        bodies.body files.dxf fit.deviation fit.nodes fit.parts fit.staircase offset profile.support profile.wunderlich
+        radius turning
         files.gcode part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         bodies.sizes manufacture.toolpath recipe.model recipe.scalars recipe.source recipe.tables
         recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.table_part

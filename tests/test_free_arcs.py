@@ -20,7 +20,7 @@ from camgeo.fit import arcs as fitting
 from camgeo.fit import free_arcs
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.deviation import Chain, chain_deviation
-from camgeo.fit.free_arcs import Part
+from camgeo.fit.parts import Part
 from camgeo.offset import Parallel
 from camgeo.pipeline import check
 from camgeo.profile.support import SupportShape

@@ -17,13 +17,15 @@ import numpy as np
 from camgeo.fit import free_arcs
 from camgeo.fit.deviation import Chain, chain_deviation, foot, seen_deviation
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
+from camgeo.fit.parts import CONSTANT as FREE
+from camgeo.fit.parts import Part
 from camgeo.fit.pieces import ArcSpline, Bound
 
 if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame
 
 CONSTANT = 40.5  # error of a biarc of arcs of length s: |kappa'| s^3 / 40.5
-RATIO = math.cbrt(CONSTANT / free_arcs.CONSTANT)  # of arcs with free joints to arcs in biarcs
+RATIO = math.cbrt(CONSTANT / FREE)  # of arcs with free joints to arcs in biarcs
 MOST_FREE = 1.8  # times the arcs in biarcs, up to which arcs with free joints are tried
 LOOKS = 8  # places on an arc at which its error is seen while the nodes are being shared
 ROUNDS = 8  # of sharing the nodes anew before there are more of them,
@@ -34,6 +36,7 @@ APART = 2.0  # arcs at least between extrema of curvature that are told apart
 WIDEST = 2.0  # radians that a biarc may turn through
 ROUND = 0.5  # arcs that the theory has for a stretch, below which it may be a circular arc that is not known as one
 HALF_TURN = math.pi * (1.0 + 1e-9)  # that one arc may turn through; what turns further is several
+FLOOR = 4.0  # times the least tolerance of points and distances: below it arcs are shorter than rounding lets them be
 SLIP = 1e-5  # of the tolerance: how far along the curve the foot of a joint may be off
 USABLE = 0.995  # of the tolerance, that errors seen may use; the rest is left to the proof
 
@@ -67,7 +70,7 @@ class _Stretch:
 
     low: float
     high: float
-    parts: tuple[free_arcs.Part, ...] = ()
+    parts: tuple[Part, ...] = ()
     biarcs: int = 0
     whole: _Fit | None = None
 
@@ -111,6 +114,8 @@ def _between_extrema(curve: Curve, tolerance: float, limit: float) -> list[_Stre
     """
     stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
     bent = [stretch for stretch in stretches if curve.radius(stretch) is None]
+    if bent:
+        check_precision(curve.size, tolerance, FLOOR)
     densities = Density.of(curve, np.array(bent).reshape(-1, 2), arc_density)
     check_count(RATIO * sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
     at = curve.sample(np.concatenate([np.zeros(0), *(density.t[1:-1] for density in densities)]))
@@ -134,13 +139,13 @@ def _divided(density: Density, slope: Array, tolerance: float) -> list[_Stretch]
     edges = [float(density.t[0]), *extrema, float(density.t[-1])]
     share = np.interp(edges, density.t, density.sum) / math.cbrt(tolerance)
     out: list[_Stretch] = []
-    parts: list[free_arcs.Part] = []
+    parts: list[Part] = []
     begin = 0
     for i, (low, high) in enumerate(pairwise(edges)):
         within = (density.t > low) & (density.t < high)
         grid = np.concatenate([[low], density.t[within], [high]])
         rising = 1.0 if float(np.sum(slope[within[1:-1]])) >= 0.0 else -1.0
-        parts.append(free_arcs.Part(grid, np.interp(grid, density.t, RATIO * density.sum), rising))
+        parts.append(Part(grid, np.interp(grid, density.t, RATIO * density.sum), rising))
         last = high == edges[-1]
         if last or (share[i + 1] - share[begin] >= APART and share[-1] - share[i + 1] >= APART):
             biarcs = math.ceil(0.5 * float(share[i + 1] - share[begin]))

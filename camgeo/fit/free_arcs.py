@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.deviation import Chain, chain_deviation, radial
+from camgeo.fit.parts import ENDS, refined
 from camgeo.fit.staircase import solve_chains
 
 if TYPE_CHECKING:
@@ -27,10 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from camgeo.curve import Array, Curve, Frame
+    from camgeo.fit.parts import Part
 
-CONSTANT = 124.7  # error of an arc of length s with free joints: |kappa'| s^3 / 124.7 (12 sqrt 108)
-END = 0.687  # length, in those of the others, of the arc that touches the curve at its part's end: 3 (1.5/124.7)^(1/3)
-ENDS = 2.0 * (1.0 - END)
 LEVEL = 1.02  # times the level foreseen: a part so near to it has settled
 ALONG = 0.03  # of an arc's length that a joint has moved when its neighbours' deviations change by about the tolerance
 DOUBT = 0.3  # of what a deviation is extrapolated by, so far it is taken to be off
@@ -41,37 +40,10 @@ OUTER = 2.0 / 3.0  # the same for a part's first arc
 RAISED = 4  # times that a part may take more arcs than foreseen,
 MOST_ARCS = 40_000  # unless that many were tried before
 MOST_RAISED = 1.5  # times as many, at once
+NOISE = 20.0  # units in the last place of the curve's size, by which rounding raises the level: arcs to spare for it
 JOINED = 8.0  # units in the last place of the curve's size, by which an arc may miss the tangent of its end
 CLOSING = 12  # steps that bring it there
 PROOF_LOOKS = 16  # steps of an arc at which its deviation is first proved
-
-
-@dataclass(frozen=True)
-class Part:
-    """A part of a curve on which curvature rises or falls: `grid` (m,) and `share` (m,), the integral of arcs up to it.
-
-    `share` is of ``(|kappa'| / 124.7)^(1/3) ds``: arcs at a tolerance of 1 mm. `rising` is 1 or -1.
-    """
-
-    grid: Array
-    share: Array
-    rising: float
-
-    @property
-    def total(self) -> float:
-        """The whole integral."""
-        return float(self.share[-1] - self.share[0])
-
-    def count(self, tolerance: float) -> int:
-        """Arcs foreseen within a tolerance."""
-        return max(2, math.ceil(self.total / math.cbrt(tolerance) + ENDS))
-
-    def nodes(self, count: int) -> Array:
-        """Joints of `count` arcs (count + 1,)."""
-        place = np.concatenate([[0.0], END + np.arange(count - 1), [count - ENDS]])
-        nodes: Array = np.interp(self.share[0] + place * (self.total / place[-1]), self.share, self.grid)
-        nodes[0], nodes[-1] = self.grid[0], self.grid[-1]
-        return nodes
 
 
 @dataclass(frozen=True)
@@ -165,8 +137,10 @@ def free_arcs(curve: Curve, parts: Sequence[Part], aim: float, limit: float) -> 
     grows as the number of arcs: many are not tried again and again.
     """
     done: list[Fitted | None] = [None] * len(parts)
-    enough = JOINED * float(np.finfo(np.float64).eps) * curve.size
-    counts = {i: part.count(aim) for i, part in enumerate(parts)}
+    unit = float(np.finfo(np.float64).eps) * curve.size
+    enough = JOINED * unit
+    parts = refined(curve, parts, aim)
+    counts = {i: part.count(max(aim - NOISE * unit, 0.5 * aim)) for i, part in enumerate(parts)}
     tried = 0
     for _ in range(RAISED):
         if not counts or tried > MOST_ARCS:

@@ -1,0 +1,88 @@
+"""Parts of a curve on which curvature rises or falls, and how arcs with free joints share them (docs/theory.md 3)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.curve import Array, Curve
+
+CONSTANT = 124.7  # error of an arc of length s with free joints: |kappa'| s^3 / 124.7 (12 sqrt 108)
+END = 0.687  # length, in those of the others, of the arc that touches the curve at its part's end: 3 (1.5/124.7)^(1/3)
+ENDS = 2.0 * (1.0 - END)
+CROWDED = 2.0  # arcs to a step of the grid, from which it is too coarse to place them by
+STEP = 2.0  # arcs to a step of the finer one
+FINER = 4  # times as many steps next to an extremum, where the density has no slope
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a curve on which curvature rises or falls: `grid` (m,) and `share` (m,), the integral of arcs up to it.
+
+    `share` is of ``(|kappa'| / 124.7)^(1/3) ds``: arcs at a tolerance of 1 mm. `rising` is 1 or -1.
+    """
+
+    grid: Array
+    share: Array
+    rising: float
+
+    @property
+    def total(self) -> float:
+        """The whole integral."""
+        return float(self.share[-1] - self.share[0])
+
+    def count(self, tolerance: float) -> int:
+        """Arcs foreseen within a tolerance."""
+        return max(2, math.ceil(self.total / math.cbrt(tolerance) + ENDS))
+
+    def nodes(self, count: int) -> Array:
+        """Joints of `count` arcs (count + 1,)."""
+        place = np.concatenate([[0.0], END + np.arange(count - 1), [count - ENDS]])
+        nodes: Array = np.interp(self.share[0] + place * (self.total / place[-1]), self.share, self.grid)
+        nodes[0], nodes[-1] = self.grid[0], self.grid[-1]
+        return nodes
+
+
+def refined(curve: Curve, parts: Sequence[Part], tolerance: float) -> list[Part]:
+    """Parts whose grid is as fine as the arcs on it, so that these begin within a fraction of an arc of their place.
+
+    From a coarse grid thousands of arcs begin several arcs off, most where the density falls to nothing at an extremum
+    of curvature, as the cube root of the distance: more than Newton's method makes good.
+    """
+    grids = {i: _grid(part, tolerance) for i, part in enumerate(parts) if _crowded(part, tolerance)}
+    if not grids:
+        return list(parts)
+    frame = curve.sample(np.concatenate(list(grids.values())))
+    slope = frame.turn_slope * frame.speed - frame.turn * frame.speed_slope
+    density = np.cbrt(np.abs(slope) / CONSTANT)
+    out, begin = list(parts), 0
+    for i, grid in grids.items():
+        here = density[begin : begin + grid.size]
+        begin += grid.size
+        share = np.append(0.0, np.cumsum(0.5 * (here[1:] + here[:-1]) * np.diff(grid)))
+        out[i] = Part(grid, share, parts[i].rising)
+    return out
+
+
+def _crowded(part: Part, tolerance: float) -> bool:
+    return float(np.diff(part.share).max()) > CROWDED * math.cbrt(tolerance)
+
+
+def _grid(part: Part, tolerance: float) -> Array:
+    """Grid of a part with about `STEP` arcs to a step, its first and last steps closing in on the ends."""
+    steps = np.maximum(1, np.ceil(np.diff(part.share) / (STEP * math.cbrt(tolerance)))).astype(np.intp)
+    steps[[0, -1]] *= FINER
+    first = np.repeat(np.cumsum(steps) - steps, steps)
+    owner = np.repeat(np.arange(steps.size), steps)
+    along = (np.arange(owner.size) - first) / steps[owner]
+    # equal steps of the cube root of the distance from the end: the density grows by equal steps there
+    along[: steps[0]] **= 3
+    along[along.size - steps[-1] :] = 1.0 - (1.0 - along[along.size - steps[-1] :]) ** 3
+    width = np.diff(part.grid)
+    return np.append(part.grid[owner] + width[owner] * along, part.grid[-1])
