@@ -9,6 +9,7 @@ import numpy as np
 
 from kin.check import Check, degrees
 from kin.distinct import distinct
+from kin.possible import steepest
 
 if TYPE_CHECKING:
     from camgeo.curve import Array
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from kin.transmission import Transmission
 
 LOOKS = 1440  # shaft angles at which smooth figures are looked at
+STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however short
+ZOOMS, ZOOM = 5, 32  # about the worst of these: so often, into so many parts
 SAME_BREADTH = 1e-9  # of the size: a breadth that varies by less is constant
 EXACT = 1e-9  # of the arm: to this the closing equation must hold
 
@@ -67,7 +70,7 @@ def transmission_checks(law: Transmission) -> list[Check]:
     likes, and rounding with it.
     """
     tau = _angles(law.breaks, 2.0 * math.pi)
-    phi, psi = law.at(tau, 1)
+    phi, psi = law.at(tau, 0)
     image = law.at(law.polar_parameter(law.pitch(tau, 0)[1][0] + law.alpha), 0)[1][0]
     gap = law.arm * np.abs(image + psi[0])
     worst = int(np.argmax(gap))
@@ -79,10 +82,8 @@ def transmission_checks(law: Transmission) -> list[Check]:
         "mm",
         degrees(float(phi[0, worst])),
     )
-    ratio = psi[1] / phi[1]
-    steepest = int(np.argmax(ratio))
-    value = float(ratio[steepest])
-    return [closing, Check("transmission", value < 1.0, value, 1.0, "", degrees(float(phi[0, steepest])))]
+    at, value = steepest(law)
+    return [closing, Check("transmission", value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))]
 
 
 def pressure_angle(profile: Profile, law: Transmission) -> Check:
@@ -90,21 +91,35 @@ def pressure_angle(profile: Profile, law: Transmission) -> Check:
 
     The same at both rollers, each of which runs once round the whole pitch curve. At 90 degrees the cam cannot drive.
     """
+
+    def angle(t: Array) -> Array:
+        at = profile.base.sample(t)
+        phi = law.at(t, 0)[0][0]
+        arm = at.point - law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
+        arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
+        normal = at.normal
+        across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
+        found: Array = np.degrees(np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across))
+        return found
+
     t = _angles(law.breaks, 2.0 * math.pi)
-    at = profile.base.sample(t)
-    phi = law.at(t, 0)[0][0]
-    arm = at.point - law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
-    arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
-    normal = at.normal
-    across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
-    along = np.abs(np.sum(arm * normal, axis=1))
-    angle = np.degrees(np.arctan2(along, across))
-    worst = int(np.argmax(angle))
-    value = float(angle[worst])
-    return Check("pressure-angle", value < 90.0, value, 90.0, "deg", degrees(float(phi[worst])))
+    seen = angle(t)
+    around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
+    worst = int(np.argmax(seen))
+    at, value = float(t[worst]), float(seen[worst])
+    low, high = float(around[worst]), float(around[worst + 2])
+    for _ in range(ZOOMS):
+        t = np.linspace(low, high, ZOOM + 1)
+        seen = angle(t)
+        worst = int(np.argmax(seen))
+        if seen[worst] > value:
+            at, value = float(t[worst]), float(seen[worst])
+        low, high = max(low, t[worst] - (high - low) / ZOOM), min(high, t[worst] + (high - low) / ZOOM)
+    return Check("pressure-angle", value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
 
 
 def _angles(breaks: Array, end: float) -> Array:
-    """Evenly spread parameters in [0, end) with the breaks among them."""
+    """Evenly spread parameters in [0, end) with the breaks among them, and some between any two breaks."""
     inside = breaks[(breaks >= 0.0) & (breaks < end)]
-    return distinct(np.concatenate([np.linspace(0.0, end, LOOKS, endpoint=False), inside]))
+    between = np.linspace(inside[:-1], inside[1:], STRETCH_LOOKS + 1)[:-1].ravel()
+    return distinct(np.concatenate([np.linspace(0.0, end, LOOKS, endpoint=False), between, inside]))

@@ -85,13 +85,18 @@ def _shaft_deg(law: Transmission, tau: float) -> float:
     return math.degrees(float(law.at(tau, 0)[0][0, 0])) % 360
 
 
-def too_steep(law: Transmission, field: str) -> IntentError:
-    """Say where psi'(phi) is largest, and how large."""
+def steepest(law: Transmission) -> tuple[float, float]:
+    """Where psi'(phi) is largest, a parameter tau, and how large: found, however short the stretch that has it."""
     weights = [1 - w for w in law.lean]
     weight = max(weights)  # 1/2 on every polar stretch; 1 on a given law, 0 on its image
-    at, steepest = highest(law.psi, weights, 1)
-    slope = steepest / weight
-    figure = slope / (1 + (1 - weight) * slope)
+    at, most = highest(law.psi, weights, 1)
+    slope = most / weight
+    return at, slope / (1 + (1 - weight) * slope)
+
+
+def too_steep(law: Transmission, field: str) -> IntentError:
+    """Say where psi'(phi) is largest, and how large."""
+    at, figure = steepest(law)
     degrees = _shaft_deg(law, at)
     return IntentError(
         f"psi'(phi) must stay below 1, else the cam cannot be turned through; it reaches {figure:.9g} at a shaft angle "

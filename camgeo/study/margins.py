@@ -10,6 +10,7 @@ import numpy as np
 
 from camgeo.design import intended
 from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
+from kin.possible import steepest
 
 if TYPE_CHECKING:
     from camgeo.curve import Curve
@@ -66,8 +67,8 @@ def _undercut(design: Design) -> list[Margin]:
 def _swinging(cam: DoubleRollerCam | FlatPairCam, law: Transmission) -> list[Margin]:
     tau = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
     tau = np.sort(np.concatenate([tau, law.breaks]))
-    phi, psi = law.at(tau, 1)
-    rate = float((psi[1] / phi[1]).max())
+    psi = law.at(tau, 0)[1]
+    rate = steepest(law)[1]
     widest = float(np.abs(psi[0]).max())
     turning = [Margin("turning-through", 1.0 - rate, "", "the cam cannot be turned through: psi' = 1")]
     # D = -l^2 sin psi under the roots of the analytic route
