@@ -77,7 +77,7 @@ FLOORS = {
         radius turning
         files.gcode part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         bodies.sizes manufacture.toolpath recipe.model recipe.scalars recipe.source recipe.tables
-        recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.table_part
+        recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.model_sweep recipe.table_part
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism
         recipe.table_sweep
         curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors

@@ -6,10 +6,12 @@ import hashlib
 import json
 from dataclasses import replace
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
 from camgeo import pipeline
+from camgeo.design import Clock
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load, read
 from kin.judge import SPLINE_ERROR
@@ -167,6 +169,18 @@ def test_a_scene_without_dxf_imports_no_dxf_library(tmp_path: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_no_second_counts_twice() -> None:
+    heard: list[str] = []
+    clock = Clock(heard.append)
+    with mock.patch("time.perf_counter", side_effect=[0.0, 1.0, 3.0, 4.0, 8.0, 10.0]), clock.stage("outer"):
+        with clock.stage("first"):
+            pass
+        with clock.stage("second"):
+            pass
+    assert heard == ["outer", "first", "second"]
+    assert clock.stages == [("first", 2.0), ("second", 4.0), ("outer", 4.0)]
 
 
 def test_skipped_stages_are_listed_with_the_reason(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from camgeo.recipe import Recipe, RecipeErrors, load_text
 from camgeo.recipe.edit import with_values
-from camgeo.recipe.model import Axis, Limit, Sweep
+from camgeo.recipe.model_sweep import Axis, Limit, Sweep
 from camgeo.recipe.source import join
 from camgeo.recipe.spec import MOST_AXES, MOST_VALUES
 from camgeo.recipe.table_sweep import FIGURES

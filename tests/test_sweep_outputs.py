@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from sweepers import GRID, MEANS, ask, hills
 
 from camgeo.recipe.load import load, read
-from camgeo.recipe.model import Limit
+from camgeo.recipe.model_sweep import Limit
 from camgeo.store import SurroundingsError
 from camgeo.sweep import gather as gathering
 from camgeo.sweep import outputs

@@ -150,6 +150,7 @@ def _judged_body(job: Job, request: FileRequest, path: Path, part: Part, corners
     from kin.printed import judge_body
 
     tolerance = job.tolerance(request)
-    checks = judge_body(part.body.name, corners, slabs(part.body.plates), tolerance, path)
+    with job.clock.stage(f"judge {request.kind}"):
+        checks = judge_body(part.body.name, corners, slabs(part.body.plates), tolerance, path)
     file = FileResult(path, request, tolerance, None, part.bound, None, None, body=part.body.name)
     return Made((file,), tuple(about(check, path.name) for check in checks))

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Literal
 from camgeo.recipe.build_part import build_part
 from camgeo.recipe.model import (
     ArcRoute,
-    Axis,
     Cam,
     ConstantBreadthCam,
     DeltaRoute,
@@ -23,7 +22,6 @@ from camgeo.recipe.model import (
     HypocycloidShape,
     InvertedSliderCrankLinkage,
     LawRoute,
-    Limit,
     Linkage,
     MotionSegment,
     Recipe,
@@ -36,12 +34,12 @@ from camgeo.recipe.model import (
     Shape,
     SliderCrankLinkage,
     SupportCam,
-    Sweep,
     Verify,
 )
 from camgeo.recipe.model_dynamics import Dynamics
 from camgeo.recipe.model_manufacture import Compensation, Manufacture
 from camgeo.recipe.model_mechanism import MechanismAsked
+from camgeo.recipe.model_sweep import Axis, Limit, Sweep
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

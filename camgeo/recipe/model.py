@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_manufacture import Compensation, Manufacture
     from camgeo.recipe.model_mechanism import MechanismAsked
     from camgeo.recipe.model_part import Part
+    from camgeo.recipe.model_sweep import Sweep
 
 Undercut: TypeAlias = Literal["refuse", "trim"]
 Harmonics: TypeAlias = tuple[tuple[int, float], ...]  # (harmonic, coefficient), rising
@@ -266,48 +267,6 @@ class DwellAsked:
     band: float
     at_least: float | None = None
     over: Literal["shaft", "relative"] = "shaft"
-
-
-@dataclass(frozen=True)
-class Axis:
-    """One number that a sweep varies, by its path in the recipe; all values as the recipe writes them.
-
-    `values` are those listed; where there are none the axis runs from `low` to `high`, over a grid in `steps` values.
-    """
-
-    path: str
-    low: float = 0.0
-    high: float = 0.0
-    steps: int | None = None
-    values: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True)
-class Limit:
-    """Bounds of a figure, as figures are told: angles in degrees, lengths in mm, rates per radian of shaft angle."""
-
-    figure: str
-    at_least: float | None = None
-    at_most: float | None = None
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """A search among designs: `count` of them, or of a grid (count None) every combination of the axes' values.
-
-    `rank` is the figure to be best in, `keep` the number of best designs that become recipes, `angles` the number of
-    angles at which a design is sampled, `refine` whether the best are polished.
-    """
-
-    vary: tuple[Axis, ...]
-    method: Literal["grid", "random", "sobol"]
-    count: int | None
-    seed: int
-    limits: tuple[Limit, ...]
-    rank: str
-    keep: int
-    angles: int
-    refine: bool
 
 
 FileKind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "glb", "csv", "html", "gcode"]

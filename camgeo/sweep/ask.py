@@ -7,7 +7,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.model import Axis as Varied
 from camgeo.recipe.model import (
     ConstantBreadthCam,
     DoubleRollerCam,
@@ -18,7 +17,6 @@ from camgeo.recipe.model import (
     Recipe,
     SliderCrankLinkage,
     SupportCam,
-    Sweep,
     Verify,
     output_slides,
 )
@@ -32,6 +30,9 @@ from camgeo.sweep.plan import Axis, Plan, steps
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from camgeo.recipe.model_sweep import Axis as Varied
+    from camgeo.recipe.model_sweep import Sweep
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
 _DEAR = ("dwell-relative", "peak-velocity", "peak-acceleration", "force-angle")

@@ -28,7 +28,8 @@ from camgeo.sweep.windows import Samples, longest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.recipe.model import Limit, Recipe
+    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.model_sweep import Limit
     from camgeo.sweep.linkages import Kind
     from camgeo.sweep.windows import Engine
 

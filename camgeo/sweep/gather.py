@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.recipe.model import Limit
+    from camgeo.recipe.model_sweep import Limit
     from camgeo.sweep.plan import Axis, Plan
 
     Floats: TypeAlias = NDArray[np.float64]

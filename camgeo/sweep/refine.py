@@ -19,7 +19,7 @@ from camgeo.sweep.figures import Evaluator, asked_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.recipe.model import Limit
+    from camgeo.recipe.model_sweep import Limit
     from camgeo.sweep.ask import Ask
 
 Array: TypeAlias = NDArray[np.float64]
