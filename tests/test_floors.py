@@ -62,7 +62,8 @@ FLOORS = {
         manufacture.compensation manufacture.milling
         bodies.dyads bodies.roller bodies.yoke dynamics manufacture.cutter manufacture.inspection
         bodies.site bodies.guide design recipe.load files.step
-        bodies.collide bodies.shaft files.brep files.meshes foreseen part.check part.files part.meant recipe.checks report.linkage
+        bodies.collide bodies.shaft files.brep files.meshes foreseen
+        part.check part.files part.meant recipe.checks report.linkage
         study.least undercut
         figures files.solid fit.polygon linkage part.body recipe.build trim
         crossing files.curves files.prism files.glb files.stl files.svg files.three_mf fit.arcs fit.edges
