@@ -85,7 +85,8 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     tolerance is below rounding, needs too many arcs, or is not reached.
     """
     size = curve.size
-    check_precision(size, tolerance)
+    bent = any(curve.radius(stretch) is None for run in curve.runs for stretch in run.stretches)
+    check_precision(size, tolerance, FLOOR if bent else 1.0)
     aim, limit = USABLE * tolerance, tolerance - 2.0 * rounding(size)
     stretches = _between_extrema(curve, tolerance, limit)
     fits = _free_fits(curve, stretches, min(aim, limit), limit)
@@ -114,8 +115,6 @@ def _between_extrema(curve: Curve, tolerance: float, limit: float) -> list[_Stre
     """
     stretches = [(float(a), float(b)) for run in curve.runs for a, b in run.stretches]
     bent = [stretch for stretch in stretches if curve.radius(stretch) is None]
-    if bent:
-        check_precision(curve.size, tolerance, FLOOR)
     densities = Density.of(curve, np.array(bent).reshape(-1, 2), arc_density)
     check_count(RATIO * sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
     at = curve.sample(np.concatenate([np.zeros(0), *(density.t[1:-1] for density in densities)]))

@@ -9,6 +9,7 @@ from extreme_oracle import fourier
 from camgeo.design import designed
 
 FORMS = "{dxf: {as: arcs}}, {dxf: {as: polyline}}, stl"
+SPLINE = "{dxf: {as: spline}}"
 
 
 def rows():
@@ -60,7 +61,9 @@ def sizes(breadth, unit):
 def shaft_on_the_contour():
     for x in (26.0, 26.0 * (1.0 - 1e-12), 26.0 + 1e-7):
         asked = recipe(
-            f"kind: support\nfourier: {{mean: 25, cos: {{3: 1}}}}\npivot: [{x!r}, 0]", files=FORMS, thickness=10
+            f"kind: support\nfourier: {{mean: 25, cos: {{3: 1}}}}\npivot: [{x!r}, 0]",
+            files=f"{FORMS}, {SPLINE}",
+            thickness=10,
         )
         oracle = fourier(25, {3: 1}, {}, pivot=(x, 0.0))
         what = f"shaft {x - 26.0:.2g} mm outside the contour" if x != 26.0 else "shaft on the contour"
@@ -74,12 +77,15 @@ def shaft_on_the_contour():
 
 
 CAM = "kind: constant-breadth\nbase_radius: 40\nmotion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]"
+FLOOR = 3.42e-12  # mm: 256 roundings of 60
 REFUSALS = (
     (1e-6, "stl", "rounding to single precision alone moves points by 2.7e-06 mm; at least 3.37e-06 mm"),
     (1e-12, "{dxf: {as: polyline}}", "straight edges within 1e-12 mm need about"),
     (1e-13, "{dxf: {as: polyline}}", "at least 8.53e-13 mm"),
-    (1e-13, "{dxf: {as: arcs}}", "at least 8.53e-13 mm"),
-    (1e-16, "{dxf: {as: spline}}", "at least 8.53e-13 mm"),
+    (1e-13, "{dxf: {as: arcs}}", "at least 3.41e-12 mm"),
+    (3.4e-12, "{dxf: {as: arcs}}", "at least 3.41e-12 mm"),
+    (1e-16, "{dxf: {as: spline}}", "at least 3.41e-12 mm"),
+    (3.4e-12, "{dxf: {as: spline}}", "at least 3.41e-12 mm"),
     (1e-20, "stl", "at least 3.37e-06 mm"),
 )
 
@@ -89,9 +95,10 @@ def tolerances():
         said = refused(CAM, files=form, thickness=10, tolerance=tolerance)
         what = f"{re.sub(r'[{}]|dxf: |as: ', '', form)} of a cam that reaches 60 mm"
         yield Row(what, f"{tolerance:g} mm", said, words, "refused with what can be held")
-    files = made(recipe(CAM, files="dxf", tolerance=1e-10))
-    why = "share of the tolerance; about the least that doubles leave to arcs is 1e-11 mm"
-    yield Row("arcs of a cam that reaches 60 mm", "1e-10 mm", files.used(), 1.0, why)
+    for form, tolerance in (("arcs", 1e-10), ("arcs", FLOOR), ("spline", 1e-3), ("spline", 1e-10), ("spline", FLOOR)):
+        files = made(recipe(CAM, files=f"{{dxf: {{as: {form}}}}}", tolerance=tolerance))
+        why = "share of the tolerance" if tolerance > FLOOR else "share of the tolerance; the least that is taken"
+        yield Row(f"{form} of a cam that reaches 60 mm", f"{tolerance:g} mm", files.used(), 1.0, why)
 
 
 @pytest.mark.parametrize("row", rows_of(__name__), ids=lambda row: f"{row.case}: {row.asked}")
