@@ -127,8 +127,7 @@ class Sampled:
     rates by the shaft angle if they are known, else those of the quartics through five samples. For a smooth motion
     the error falls with the fourth power of the step, with the second where an acceleration jumps. It is taken to be
     what leaving a sample out would miss it by: sixteen times the error of a smooth motion, at a jump more than the
-    error too. Raises ValueError for fewer than 8
-    steps, a last pose that is not the first, or angles that jump.
+    error too. Raises ValueError for fewer than 8 steps, a last pose that is not the first, or angles that jump.
     """
 
     pose: Array

@@ -24,6 +24,7 @@ WHOLE = 1e-9
 CLOSED = 1e-9  # mm between the ends of a closed spline
 HIGHEST_DEGREE = 25
 LARGEST_WEIGHT_RATIO = 1e6
+BEYOND = 1e-3  # of its size, by which a spline's ends may miss the edge's before it is taken for a trimmed one
 SAMPLES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])  # of a piece, where it is held against its faces
 # Curves of a surface that carry their curve in space as their first value after the name.
 WRAPPED = ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE")
@@ -235,7 +236,7 @@ def edge_of(space: Space, number: int) -> Edge:
         spline = spline_of(space, curve)
         found = spline._replace(back=not forward)
     edge = Edge(number, start, end, found)
-    if isinstance(found, Spline) and edge.misfit > 1e-3 * float(np.ptp(edge.samples, axis=0).max()):
+    if isinstance(found, Spline) and edge.misfit > BEYOND * float(np.ptp(edge.samples, axis=0).max()):
         raise file.error(number, f"its curve #{curve} goes on beyond its ends; a spline is read whole")
     return edge
 

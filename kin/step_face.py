@@ -223,7 +223,7 @@ class Face:
         control = self.surface.spans.control
         ends = np.stack([control[0, 0], control[-1, -1]])
         for place, _ in crossings:
-            if float(np.hypot(*(ends - place[:2]).T).min()) > max(space.accuracy, 1e-6):
+            if float(np.hypot(*(ends - place[:2]).T).min()) > space.accuracy:
                 raise space.file.error(self.number, "it ends before its curve does; swept curves are read whole")
 
     def _contrary(self, space: Space) -> Exception:
@@ -280,7 +280,7 @@ def _check_loop(space: Space, number: int, uses: list[Use], edges: dict[int, Edg
         end = one.end if use.forward else one.start
         start = other.start if following.forward else other.end
         gap = float(np.linalg.norm(start - end))
-        if gap > max(space.accuracy, 1e-6):
+        if gap > space.accuracy:
             x, y, z = end.tolist()
             where = f"edge #{one.number} ends at ({x:.9g}, {y:.9g}, {z:.9g}) mm"
             message = f"{where}, {gap:.3g} mm from where #{other.number} starts"

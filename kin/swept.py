@@ -1,7 +1,8 @@
 """How far a moving flat body reaches over one turn of the shaft: a box, and a radius about a point; proved bounds.
 
 The greatest reach f over the turn is found by halving intervals of the shaft angle: over half a width h it exceeds that
-at the middle by no more than h times the greatest speed of any point of the body.
+at the middle by no more than h times the greatest speed of any point of the body. It is as close as asked, but where
+that takes more than 200,000 intervals: then it is too large by more.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["swept_box", "swept_radius"]
 
 CELLS = 64
-MOST = 200_000  # intervals, after which the bound is what it is
+MOST = 200_000  # intervals left at once, beyond which the bound is as close as it has come
 
 
 def swept_box(mover: Mover, accuracy: float = 0.05) -> Box:

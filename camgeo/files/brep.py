@@ -218,7 +218,7 @@ def _sound(solid: Shape) -> Shape:
     from OCP.BRepCheck import BRepCheck_Analyzer
 
     if not BRepCheck_Analyzer(solid).IsValid():
-        raise RegionError("Open CASCADE finds the solid unsound")
+        raise RegionError("Open CASCADE finds the solid unsound: another tolerance may do")
     return solid
 
 

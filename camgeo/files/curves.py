@@ -54,7 +54,7 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
     if float(length.min()) < SHORTEST:
         raise RegionError(
             f"a piece of the contour is {float(length.min()):.3g} mm long, and Open CASCADE takes points within "
-            f"{CONFUSION:g} mm as one"
+            f"{CONFUSION:g} mm as one: a larger tolerance would do"
         )
     ends = np.roll(outline.points, -1, axis=0)
     found = []
@@ -124,11 +124,13 @@ def inset(outline: ArcSpline, distance: float) -> ArcSpline:
     last = np.column_stack([along[:, 0] * c - along[:, 1] * s, along[:, 1] * c + along[:, 0] * s])
     corner = np.hypot(*(first - np.roll(last, 1, axis=0)).T)
     if distance * float(corner.max()) > 0.1 * CONFUSION:
-        raise RegionError(f"the arcs meet at {math.degrees(float(corner.max())):.3g} degrees: no chamfer runs there")
+        raise RegionError(
+            f"the arcs meet at {math.degrees(float(corner.max())):.3g} degrees, where no chamfer runs: leave it out"
+        )
     sharp = (outline.bulges > 0.0) & ~flat & (radius <= distance)
     if bool(sharp.any()):
         least = float(radius[sharp].min())
-        raise RegionError(f"an arc of radius {least:.6g} mm is sharper than the chamfer of {distance:.6g} mm")
+        raise RegionError(f"an arc is sharper than the chamfer of {distance:.6g} mm: give less than {least:.6g} mm")
     inward = np.column_stack([-first[:, 1], first[:, 0]])
     return ArcSpline(outline.points + distance * inward, outline.bulges, outline.bound)
 

@@ -43,7 +43,7 @@ def _assembled(job: Job, request: FileRequest) -> tuple[Assembly, tuple[Check, .
     with job.refusals(request), job.clock.stage("bodies"):
         contour = job.outlines.within("arcs", job.tolerance(request))
         if not isinstance(contour, ArcSpline):
-            raise TypeError("arcs are no arcs")
+            raise TypeError("bodies stand round a contour of arcs")
         at = job.contour.sample(job.contour.cells.low).point
         reach = float(np.hypot(at[:, 0], at[:, 1]).max())
         try:
