@@ -30,6 +30,7 @@ def rows():
     yield from (one for share in (0.9, 0.99, 0.999999, 1.0 - 1e-12) for one in near_the_square(share))
     yield from past_the_square()
     yield from small_rises()
+    yield from flat_pairs()
     for lam, mu, share in ((99, 97, 1e-4), (99, 1, 1e-6), (97, 3, 1e-4), (199, 197, 1e-6)):
         yield from many_lobes(lam, mu, share)
     yield from tightest()
@@ -81,20 +82,80 @@ def small_rises():
         ("4/3", 1e-3, 0.01, 0.005),
         ("99/97", 1e-6, 0.01, 0.05),
     ):
-        lam = int(ratio.split("/")[0])
-        rest = 90.0 / lam - over
-        turn = ", ".join(
-            f"{{{kind}: {rise}, over: {over}, law: cycloidal}}, {{dwell: {rest!r}}}" for kind in ("rise", "return")
-        )
-        cam = f"kind: double-roller\nratio: {ratio}\narm: 60\nroller_radius: {radius}\nlaw: [{turn}]"
+        cam, rest = to_and_fro("double-roller", ratio, rise, over, f"roller_radius: {radius}")
         design = designed(recipe(cam, files=ARCS))
         off = max(0.0 if check.ok else 1.0 for check in design.checks)
         what = f"law of {rise:g} degrees over {over:g}, lambda/mu = {ratio}, roller of {radius:g} mm"
         yield Row(
             what, "checks that fail", off, 0.0, "directions by cell: a rise hardly turns the tangent, however bent"
         )
+        yield law_row(what, design.intent, rise, over, rest)
     said = refused("kind: double-roller\nratio: 99/98\narm: 60\nroller_radius: 1\ndelta: {cos: {1: 1}}", files=ARCS)
     yield Row("lambda/mu = 99/98", "file", said, "mu must be odd", "the pitch curve would cross itself")
+
+
+def to_and_fro(kind, ratio, rise, over, more=""):
+    """Lines of a cam whose follower rises and returns over so many degrees each, and how long it rests between."""
+    rest = 90.0 / int(ratio.split("/")[0]) - over
+    turn = ", ".join(f"{{{way}: {rise!r}, over: {over}, law: cycloidal}}, {{dwell: {rest!r}}}" for way in DIRECTIONS)
+    return f"kind: {kind}\nratio: {ratio}\narm: 60\n{more}\nlaw: [{turn}]", rest
+
+
+DIRECTIONS = ("rise", "return")
+
+
+def law_row(what, law, psi, over, rest):
+    """Error of psi(phi) in its rises and returns as a share of its swing of psi degrees, against 50 digits (W 4.9)."""
+    degree = mp.pi / 180
+    width, begin = mp.mpf(over) * degree, [mp.mpf(0), (mp.mpf(over) + mp.mpf(rest)) * degree]
+    swing, off = mp.mpf(psi) * degree, mp.mpf(0)
+    for share in np.linspace(0.05, 0.95, 7):
+        for down in (0, 1):
+            phi = float(begin[down] + mp.mpf(float(share)) * width)
+            u = (mp.mpf(phi) - begin[down]) / width
+            s = u - mp.sin(2 * mp.pi * u) / (2 * mp.pi)
+            exact = swing * (1 - s if down else s)
+            image = mp.mpf(phi) - exact + mp.pi / law.lam
+            for at, wanted in ((mp.mpf(phi), exact), (image, -exact)):
+                shaft = float(at)
+                # the angle itself is rounded: psi' times that
+                slope = float(law.psi_of_shaft(shaft, 1)[1, 0])
+                found = mp.mpf(float(law.psi_of_shaft(shaft, 0)[0, 0]))
+                off = max(off, abs(found - wanted - slope * (mp.mpf(shaft) - at)))
+    why = "angles are doubles: their rounding over the width of the rise"
+    return Row(what, "psi over the shaft angle, share of the swing", float(off / swing), 1e-10, why)
+
+
+def flat_pairs():
+    """Two faces that hold the cam: laws of small rises with many lobes, and ellipses that are almost needles."""
+    for ratio, rise, over in (("3/1", 1.0, 20.0), ("7/5", 1e-5, 0.5), ("99/97", 1e-6, 0.5)):
+        cam, rest = to_and_fro("flat-pair", ratio, rise, over)
+        files = made(recipe(cam, files=ARCS))
+        what = f"flat pair, law of {rise:g} degrees over {over:g}, lambda/mu = {ratio}"
+        yield Row(what, "file within 0.001 mm", files.used(), 1.0, "share of the tolerance")
+        yield law_row(what, designed(recipe(cam, files=ARCS)).intent, 2.0 * rise, over, rest)
+    for thin in (1e-3, 1e-6, 1e-9, 1e-12):
+        cos = 1600.0 * (1.0 - thin)
+        cam = f"kind: flat-pair\nratio: 2\narm: 40\ndelta: {{cos: {{1: {cos!r}}}}}"
+        what = f"flat pair, D = m^2 cos 2t, 1 - m^2/l^2 = {thin:g}: an ellipse"
+        design = designed(recipe(cam, files=ARCS))
+        told = {check.name: check.value for check in design.checks}
+        a2, b2 = 2 * (1600 + mp.mpf(cos)), 2 * (1600 - mp.mpf(cos))
+        off = float(abs(told["radius-of-curvature"] - b2 / mp.sqrt(a2))) / 80.0
+        yield Row(what, "least radius of curvature, share of the size", off, 1e-15, "r + r'', r without psi")
+        closes = told["closing-equation"] / 80.0
+        yield Row(what, "closing equation, share of the size", closes, 2e-15, "at a polar angle, over which psi' stays below 2")
+        if thin > 1e-7:
+            files = made(recipe(cam, files=ARCS))
+        if thin > 1e-5:
+            yield Row(what, "file within 0.001 mm", files.used(), 1.0, "share of the tolerance")
+        elif thin > 1e-7:
+            said = "; ".join(check["detail"] for check in files.failed)
+            yield Row(what, "file", said, "extremes cannot be told", "psi'(phi) comes to 2e6, and rounding with it")
+    said = refused(f"kind: flat-pair\nratio: 2\narm: 40\ndelta: {{cos: {{1: {1600.0 * (1 - 1e-15)!r}}}}}", files=ARCS)
+    yield Row(
+        "flat pair, D = m^2 cos 2t, 1 - m^2/l^2 = 1e-15", "file", said, "rounding does not tell apart", "as it says"
+    )
 
 
 def past_the_square():
