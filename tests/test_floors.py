@@ -92,7 +92,7 @@ FLOORS = {
 }
 HEAVY = {
     *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis", "lib3mf"),
-    *("pyarrow", "numba", "dask", "distributed"),
+    *("pyarrow", "numba", "dask", "distributed", "OCP"),
 }
 
 

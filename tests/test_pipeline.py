@@ -154,7 +154,7 @@ def test_tolerance_that_single_precision_cannot_hold_is_refused_with_the_figure(
     assert not (tmp_path / "shu-wu").exists()
 
 
-def test_a_scene_without_dxf_imports_no_dxf_library(tmp_path: Path) -> None:
+def test_an_stl_alone_imports_nothing_of_what_it_does_not_ask_for(tmp_path: Path) -> None:
     import subprocess
     import sys
 
@@ -165,6 +165,11 @@ def test_a_scene_without_dxf_imports_no_dxf_library(tmp_path: Path) -> None:
         "r = replace(r, export=replace(r.export, files=tuple(f for f in r.export.files if f.kind == 'stl')))\n"
         f"assert pipeline.export(r, Path({str(tmp_path)!r})).ok\n"
         "heavy = {'ezdxf', 'shapely', 'trimesh', 'scipy', 'manifold3d', 'matplotlib', 'pydantic', 'multiprocessing'}\n"
+        "heavy |= {'OCP', 'zipfile', 'xml'}\n"
+        "heavy |= {f'kin.{name}' for name in ('collision', 'dynamics', 'mechanism', 'milled')}\n"
+        "heavy |= {f'kin.read_{kind}' for kind in ('3mf', 'gcode', 'step', 'svg')}\n"
+        "heavy |= {f'camgeo.{name}' for name in ('bodies', 'page', 'study', 'sweep', 'manufacture.milling')}\n"
+        "heavy |= {f'camgeo.making.{name}' for name in ('drawing', 'gcode', 'mechanism', 'parts', 'step', 'view')}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
