@@ -144,7 +144,13 @@ def flat_pairs():
         off = float(abs(told["radius-of-curvature"] - b2 / mp.sqrt(a2))) / 80.0
         yield Row(what, "least radius of curvature, share of the size", off, 1e-15, "r + r'', r without psi")
         closes = told["closing-equation"] / 80.0
-        yield Row(what, "closing equation, share of the size", closes, 2e-15, "at a polar angle, over which psi' stays below 2")
+        yield Row(
+            what,
+            "closing equation, share of the size",
+            closes,
+            2e-15,
+            "at a polar angle, over which psi' stays below 2",
+        )
         if thin > 1e-7:
             files = made(recipe(cam, files=ARCS))
         if thin > 1e-5:
