@@ -52,15 +52,7 @@ def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
     samplers: list[dict[str, Any]] = []
     times: dict[int, int] = {}
     for k, actor in enumerate(actors):
-        points = _turned_up(actor.mesh.points)
-        position = buffer.added(points, "VEC3", _POINTS, bounds=True)
-        triangles = buffer.added(actor.mesh.triangles.astype("<u4").reshape(-1, 1), "SCALAR", _TRIANGLES)
-        meshes.append(
-            {
-                "name": actor.name,
-                "primitives": [{"attributes": {"POSITION": position}, "indices": triangles, "material": k}],
-            }
-        )
+        meshes.append(_mesh(buffer, actor, k))
         materials.append(_material(actor))
         shift = _turned_up(np.column_stack((actor.pose[:, :2], np.zeros(len(actor.pose)))))
         half = 0.5 * actor.pose[:, 2]
@@ -120,6 +112,14 @@ class _Buffer:
         self.accessors.append(accessor)
         self.data += values.tobytes()
         return len(self.accessors) - 1
+
+
+def _mesh(buffer: _Buffer, actor: Actor, material: int) -> dict[str, Any]:
+    """Triangles of a body, put into the buffer."""
+    position = buffer.added(_turned_up(actor.mesh.points), "VEC3", _POINTS, bounds=True)
+    triangles = buffer.added(actor.mesh.triangles.astype("<u4").reshape(-1, 1), "SCALAR", _TRIANGLES)
+    primitive = {"attributes": {"POSITION": position}, "indices": triangles, "material": material}
+    return {"name": actor.name, "primitives": [primitive]}
 
 
 def _turned_up(points: Array) -> NDArray[np.float32]:
