@@ -48,7 +48,7 @@ class Intent:
 
     follower    with its motion law, in mm and radians
     mirrored    the file is drawn mirrored about the x axis (the shaft turns counter-clockwise)
-    mm          mm in one drawing unit of a DXF or SVG file (STL is always in mm)
+    mm          mm in one drawing unit of a DXF or SVG file or a program (solids are always in mm)
     bore        diameter, mm; None for no hole at all
     thickness   of a solid, mm, z from 0; None where only contours are judged
     trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
