@@ -26,6 +26,7 @@ TOKEN = re.compile(
 LARGEST = 1e30  # number that can be computed with
 LONGEST = 60  # characters of a text that an error shows
 MOST_DIGITS = 18  # of a whole number
+DEEPEST = 64  # of lists within lists
 
 
 class Reference(int):
@@ -191,6 +192,8 @@ def _list(tokens: list[tuple[str, str]], at: int, number: int, path: Path) -> tu
         if (kind, text) == ("mark", "("):
             stack.append((name, []))
             name = ""
+            if len(stack) > DEEPEST:
+                raise ReadError("range", f"#{number}: its values lie more than {DEEPEST} brackets deep", path)
         elif not stack or (kind, text) == ("mark", ";") or (name and kind != "mark"):
             break
         elif (kind, text) == ("mark", ")"):

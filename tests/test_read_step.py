@@ -136,6 +136,7 @@ def test_a_file_cut_short(tmp_path, bytes_left):
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1,-3.", "range", r"#\d+ CIRCLE: a length of -3 mm"),
         (r"DIRECTION\('',\(0\.0", "DIRECTION('',(1.E400", "range", r"#\d+ DIRECTION: a value of inf"),
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1,'big'", "syntax", r"CIRCLE: 'big' is no number"),
+        (r"CIRCLE\('',(#\d+),[^)]*", rf"CIRCLE('',\1,{'(' * 5000}{')' * 5000}", "range", "more than 64 brackets deep"),
         ("CYLINDRICAL_SURFACE", "TOROIDAL_SURFACE", "unsupported", r"#\d+ TOROIDAL_SURFACE: is none of PLANE"),
         ("CIRCLE", "HYPERBOLA", "unsupported", r"#\d+ HYPERBOLA: is none of"),
         (r"ADVANCED_FACE\('',\([^)]*\)", "ADVANCED_FACE('',()", "unsupported", r"#\d+ ADVANCED_FACE: it has no bounds"),
