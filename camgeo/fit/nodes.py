@@ -48,13 +48,14 @@ def check_precision(size: float, tolerance: float, times: float = 1.0) -> None:
         )
 
 
-def check_count(needed: float, form: str, tolerance: float, order: float) -> None:
+def check_count(needed: float, form: str, tolerance: float, order: float, lost: float = 0.0) -> None:
     """Refuse a fit that would need more than `MOST_PIECES` pieces, whose error falls as their number to -`order`.
 
-    Raises ToleranceError with the tolerance that about so many pieces hold.
+    `lost`, mm, is what rounding takes of the tolerance before anything is fitted. Raises ToleranceError with the
+    tolerance that about so many pieces hold.
     """
     if needed > MOST_PIECES:
-        reached = tolerance * (needed / MOST_PIECES) ** order
+        reached = (tolerance - lost) * (needed / MOST_PIECES) ** order + lost
         raise ToleranceError(
             f"{form} within {tolerance:.3g} mm need about {needed:.3g} pieces, more than {MOST_PIECES}; "
             f"{reached:.3g} mm can be held",

@@ -91,7 +91,7 @@ def _fit_run(curve: Curve, run: Run, tolerance: float, asked: float) -> Edges:
     """Edges of one run, proved to lie within the tolerance; `asked` is what it was before rounding was taken off."""
     densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
-    check_count(needed, "straight edges", asked, 2.0)
+    check_count(needed, "straight edges", asked, 2.0, lost=asked - tolerance)
     bends, sense = inflections(curve, densities)
     best = math.inf
     for aim in AIMS:
