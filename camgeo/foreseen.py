@@ -111,8 +111,9 @@ def _milled(recipe: Recipe) -> list[str]:
     if asked is None or not asked.holes:
         return []
     least = asked.cutter + 2.0 * LEAST_ROOM
-    plain_bore = part.bore if not (part.sides or part.keyway or part.flat) else None
-    drilled = [one.hole for one in (part.bolts, part.dowel) if one is not None]
+    plain_bore = part.bore if not (part.sides or part.keyway or part.flat or part.hub) else None
+    hub = 0.0 if part.hub is None else part.hub.diameter
+    drilled = [one.hole for one in (part.bolts, part.dowel) if one is not None and one.circle >= hub]
     found = ["bore"] if plain_bore is not None and plain_bore >= least else []
     return [*found, "holes"] if any(hole >= least for hole in drilled) else found
 

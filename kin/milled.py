@@ -41,6 +41,7 @@ class Milling:
     depth_of_cut  that one pass may have at most
     climb         a right-handed cutter meets the metal climbing
     standing      how far metal may stand outside the contour where the cutter does not reach
+    hub           radius and height of the metal about the shaft that stands on the stock; None without
     """
 
     radius: float
@@ -48,6 +49,7 @@ class Milling:
     depth_of_cut: float
     climb: bool = True
     standing: float = 0.0
+    hub: tuple[float, float] | None = None
 
 
 class Cut(NamedTuple):
@@ -93,11 +95,11 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
     checks = (
         _cutter_check(program, milling),
         _arcs_check(program),
-        _rapid_check(program),
+        _rapid_check(program, milling),
         _depth_check(features, milling, tolerance),
         _direction_check(features, outer, milling),
         _entry_check(features),
-        _gouge_check(features, edges, outer, milling, tolerance),
+        _hub_check(program, milling) or _gouge_check(features, edges, outer, milling, tolerance),
     )
     return Milled(contour, holes, checks, len(last[outer].loop))
 
@@ -182,14 +184,36 @@ def _arcs_check(program: Program) -> Check:
     return at_most("arcs", worst.mismatch, ARC_MM, "mm", detail=f"line {worst.line}")
 
 
-def _rapid_check(program: Program) -> Check:
-    """Check that no rapid move goes down into the stock or along it."""
-    bad = []
+def _rapid_check(program: Program, milling: Milling) -> Check:
+    """Check that no rapid move goes down into the stock or along it, nor into a hub that stands on it."""
+    bad = [f"line {move.line} moves fast into the hub" for move in _into_hub(program, milling) if move.rapid]
     for move in program.moves:
         low = min(move.start[2], move.end[2])
         if move.rapid and low <= 0.0 and (_across(move) or move.end[2] < move.start[2]):
             bad.append(f"line {move.line} moves fast at z = {low:.6g} mm")
     return _counted("rapid", bad)
+
+
+def _hub_check(program: Program, milling: Milling) -> Check | None:
+    """Tell feed moves into a hub that stands on the stock; None where there are none."""
+    bad = [move for move in _into_hub(program, milling) if not move.rapid]
+    return failed("gouge", f"line {bad[0].line} cuts into the hub", unit="mm") if bad else None
+
+
+def _into_hub(program: Program, milling: Milling) -> list[Move]:
+    """Moves on which the cutter comes to the hub below its top."""
+    if milling.hub is None:
+        return []
+    radius, top = milling.hub
+    low = [move for move in program.moves if min(move.start[2], move.end[2]) < top]
+    return [move for move in low if _from_shaft(move) < radius + milling.radius]
+
+
+def _from_shaft(move: Move) -> float:
+    """Least distance of a move from the shaft in the plane."""
+    if not _across(move) and move.centre is None:
+        return float(np.hypot(*move.start[:2]))
+    return float(nearest(arcs_of([move]), np.zeros((1, 2)))[1][0])
 
 
 def _counted(name: str, faults: list[str]) -> Check:

@@ -20,6 +20,7 @@ from camgeo.foreseen import Foreseen, foreseen
 from camgeo.manufacture.milling import milling_intent
 from camgeo.manufacture.toolpath import depths
 from camgeo.recipe import read
+from camgeo.recipe.errors import RecipeErrors
 from kin.judge import Limits
 from kin.milled import Milling, milled
 from kin.read_error import ReadError
@@ -37,10 +38,10 @@ PLAIN = "{thickness: 6, bore: 10}"
 FEATURED = "{thickness: 6, bore: 10, keyway: {width: 3, depth: 1.4}, bolts: {count: 3, circle: 34, hole: 8, start: 20}}"
 
 
-def recipe_of(*, cam=SUPPORT, part=PLAIN, top="", cutter=6, more=""):
+def recipe_of(*, cam=SUPPORT, part=PLAIN, top="", cutter=6, more="", safe=5):
     milling = f"manufacture: {{cutter: {cutter}, feed: 400, plunge: 100, spindle: 12000, depth_of_cut: 2.5, "
     body = f"{top}name: c\n{cam}part: {part}\nexport: {{files: [gcode]}}\nverify: {{angles: 90}}\n"
-    return read(f"{body}{milling}safe_height: 5{more}}}\n".encode(), Path("c.yaml"))
+    return read(f"{body}{milling}safe_height: {safe}{more}}}\n".encode(), Path("c.yaml"))
 
 
 def made(folder, **asked):
@@ -206,6 +207,55 @@ def test_metal_that_no_cutter_reaches(tmp_path):
     assert "3.45 mm outside" in checks["contour"]["detail"]
     assert checks["contour"]["value"] < 0.001
     assert "motion" not in checks, "told, not judged"
+
+
+HUBBED = "{thickness: 6, bore: 10, hub: {diameter: 20, height: 12%s}, chamfer: 0.5, mark: {as: engrave}, "
+HUBBED += "set_screw: {diameter: 3}, dowel: {circle: 34, hole: 7, at: 90}}"
+
+
+@pytest.mark.parametrize("safe", [5, 12])
+def test_rapid_moves_below_the_top_of_a_hub_are_refused(safe):
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.check(recipe_of(part=HUBBED % "", more=", holes: true", safe=safe))
+    (slip,) = caught.value.errors
+    what = f"manufacture.safe_height: not above the hub's top, given {safe} mm; give more than 12 mm"
+    assert what in str(slip)
+
+
+@pytest.mark.parametrize(("side", "safe"), [("top", 13), ("both", 12.5), ("bottom", 5)])
+def test_a_hub_stays_and_what_is_not_milled_is_named(tmp_path, side, safe):
+    part = HUBBED % f", side: {side}"
+    recipe, outcome, path = made(tmp_path, part=part, more=", holes: true", safe=safe)
+    named = [line for line in path.read_text().splitlines() if line.startswith("(not milled")]
+    assert [line[13:].partition(",")[0] for line in named] == ["mark", "bore", "hub", "set screw", "chamfer"]
+    assert "(not milled: bore, within the hub, which is higher than the disc)" in named
+    skipped = {item["what"]: item["why"] for item in outcome.report["skipped"]}
+    assert skipped["hub"].startswith("not milled: the stock comes with it")
+    assert {"mark", "bore", "chamfer", "set screw"} <= skipped.keys()
+    low = [move for move in read_gcode(path).moves if min(move.start[2], move.end[2]) < 12.0]
+    near = [np.hypot(*move.end[:2]) for move in low]
+    assert min(near) > 10.0 + 3.0, "the dowel's hole is beside the hub"
+    told = [check["name"] for check in outcome.report["checks"] if check.get("file") == "c.ngc"]
+    assert "holes" in told
+    assert "bore" not in told
+    assert sorted(told) == sorted(one.name for one in foreseen(recipe) if one.file == "c.ngc")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "check"),
+    [
+        ("(contour, pass 1", "G0 X0 Y0 Z5\n(contour, pass 1", "rapid"),
+        ("(contour, pass 1", "G1 Z5 F100\nG1 X0 Y0\nG1 Z13\n(contour, pass 1", "gouge"),
+    ],
+)
+def test_moves_into_a_hub_are_caught(tmp_path, old, new, check):
+    recipe, _, path = made(tmp_path, part=HUBBED % "", more=", holes: true", safe=13)
+    text = path.read_text()
+    path.write_text(text.replace(old, new, 1))
+    verdict = verify(path, milling_intent(recipe, designed(recipe)), 12, Limits(0.001))
+    (bad,) = [one for one in verdict.checks if not one.ok]
+    assert bad.name == check
+    assert "into the hub" in bad.detail
 
 
 # --- planted faults ---------------------------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from camgeo.files.gcode import Cutting, places, rounding, write_gcode
 from camgeo.fit.pieces import ArcSpline
 from camgeo.making.job import Made
-from camgeo.manufacture.milling import milled_holes, path_of, reach_check
+from camgeo.manufacture.milling import clear_of_hub, milled_holes, path_of, reach_check, unmilled
 from camgeo.manufacture.toolpath import begun_at, circle, led, passes
 from camgeo.outlines import Outlines
 from kin.check import about
@@ -32,6 +32,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     recipe, asked = job.recipe, job.recipe.manufacture
     if asked is None:
         raise recipe.error("manufacture", "gcode needs manufacture")
+    clear_of_hub(recipe)
     with job.refusals(request), job.clock.stage("cutter path"):
         check, _ = reach_check(recipe, job.design)
     check = about(check, path.name)
@@ -101,16 +102,16 @@ def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str,
     if asked is None or not (asked.feed and asked.plunge and asked.spindle and asked.safe_height):
         raise recipe.error("manufacture", "gcode needs feed, plunge, spindle, depth_of_cut and safe_height")
     mm = recipe.mm
-    _, skipped = milled_holes(recipe, job.design)
+    top = "top of the stock" if recipe.part.hub is None else "upper face of the disc"
     remarks = [
         recipe.name,
         recipe.about,
         f"units: {'inch' if recipe.units == 'inch' else 'mm'}",
         f"cutter: diameter {asked.cutter / mm:.9g}",
         f"tolerance: {job.tolerance(request) / mm:.9g}",
-        f"zero: the shaft, top of the stock; thickness {(recipe.part.thickness or 0.0) / mm:.9g}",
+        f"zero: the shaft, {top}; thickness {(recipe.part.thickness or 0.0) / mm:.9g}",
         f"{asked.direction} milling, spindle clockwise",
-        *(f"not milled: {name}, {why}" for name, why in skipped),
+        *(f"not milled: {name}, {why}" for name, why in unmilled(recipe, job.design)),
     ]
     cutting = Cutting(asked.feed, asked.plunge, asked.spindle, asked.safe_height)
     write_gcode(path, features, cutting, remarks=[text for text in remarks if text], count=count, mm=mm)

@@ -43,6 +43,10 @@ def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) ->
             found.append((kind, "left out by --only"))
     if design.contour is None:
         found.append(("files", "a check of the exact contour fails"))
+    elif "gcode" in wanted and recipe.manufacture is not None:
+        from camgeo.manufacture.milling import unmilled
+
+        found += [(name, f"not milled: {why}") for name, why in unmilled(recipe, design)]
     return found
 
 

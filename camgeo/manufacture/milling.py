@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -70,9 +71,35 @@ def _shaft_deg(design: Design, parameter: float) -> float:
     return degrees(parameter if at is None else float(at(parameter, 0)[0][0, 0]))
 
 
+def clear_of_hub(recipe: Recipe) -> None:
+    """Raise RecipeErrors where rapid moves at the safe height would run into a hub on the upper side."""
+    hub, asked = recipe.part.hub, recipe.manufacture
+    if hub is None or hub.side == "bottom" or asked is None or asked.safe_height is None:
+        return
+    if asked.safe_height <= hub.height:
+        mm, unit = recipe.mm, recipe.units
+        given = f"{asked.safe_height / mm:.6g} {unit}"
+        what, remedy = "not above the hub's top", f"give more than {hub.height / mm:.6g} {unit}"
+        raise recipe.error("manufacture.safe_height", what, given, remedy)
+
+
+def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
+    """Name what of the part a program leaves unmade, with the reason: it cuts through a disc, straight down."""
+    part = recipe.part
+    found = list(milled_holes(recipe, design)[1])
+    if part.hub is not None:
+        found.append(("hub", "the stock comes with it, its disc as thick as part.thickness"))
+    if part.set_screw is not None:
+        found.append(("set screw", "it runs across the shaft"))
+    if part.chamfer is not None:
+        found.append(("chamfer", "the cutter goes straight down"))
+    return found
+
+
 def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
     """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
     _, asked = _milled(recipe, design)
+    hub = 0.0 if recipe.part.hub is None else 0.5 * recipe.part.hub.diameter
     found: list[RoundHole] = []
     others: list[tuple[str, str]] = []
     if design.body is None:
@@ -83,11 +110,13 @@ def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[
             if opening.circle is not None and opening.depth is None:
                 found.append(RoundHole(opening.name, *opening.circle))
             else:
-                others.append((opening.name, "not a round hole"))
+                others.append((opening.name, "not a round hole" if opening.depth is None else "engraved"))
     if not asked.holes:
         return [], [*((hole.name, "manufacture.holes is not true") for hole in found), *others]
-    wide = [hole for hole in found if hole.radius >= asked.radius + LEAST_ROOM]
-    others += [(hole.name, "not wider than the cutter") for hole in found if hole not in wide]
+    beside = [hole for hole in found if math.hypot(*hole.centre) >= hub]
+    others += [(hole.name, "within the hub, which is higher than the disc") for hole in found if hole not in beside]
+    wide = [hole for hole in beside if hole.radius >= asked.radius + LEAST_ROOM]
+    others += [(hole.name, "not wider than the cutter") for hole in beside if hole not in wide]
     return wide, others
 
 
@@ -101,6 +130,8 @@ def milling_intent(recipe: Recipe, design: Design) -> Intent:
     meant = intended(recipe, design)
     found, _ = milled_holes(recipe, design)
     names = {hole.name for hole in found}
+    hub = recipe.part.hub
+    top = None if hub is None or hub.side == "bottom" else hub
     holes = () if design.body is None else tuple(hole for hole in holes_of(design.body) if hole.name in names)
     milling = Milling(
         radius=asked.radius,
@@ -108,6 +139,7 @@ def milling_intent(recipe: Recipe, design: Design) -> Intent:
         depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
         climb=asked.direction == "climb",
         standing=check.limit or 0.0 if lost else 0.0,
+        hub=None if top is None else (0.5 * top.diameter, top.height),
     )
     return replace(
         meant,
