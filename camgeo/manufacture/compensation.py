@@ -65,7 +65,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         if design.body is not None:
             body = _body(design.body, out, scale)
         part = _part(recipe.part, out, scale)
-    except (TightError, ValueError) as error:
+    except TightError as error:
         raise recipe.error(field, f"an opening cannot be made smaller by {out / recipe.mm:.6g}: {error}") from error
     intent: Lift | Transmission
     checks: list[Check] = []
@@ -130,7 +130,7 @@ def _part(part: Part, out: float, scale: float) -> Part:
 def _across(width: float, out: float, scale: float) -> float:
     left = width - 2.0 * out
     if not left > 0.0:
-        raise ValueError(f"it is {width:.6g} mm across")
+        raise TightError(f"it is {width:.6g} mm across")
     return scale * left
 
 

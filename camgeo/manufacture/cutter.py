@@ -15,6 +15,7 @@ import numpy as np
 from camgeo.causes import UndercutError, causes
 from camgeo.curve import Bounds, Curve, Frame, Run, Shape
 from camgeo.fit.arcs import fit_arcs
+from camgeo.fit.bound import Bound
 from camgeo.fit.pieces import ArcSpline
 from camgeo.offset import Parallel
 from camgeo.radius import least_radius
@@ -116,7 +117,7 @@ class CutterPath:
         bulges = np.tan(0.25 * np.arctan2(sine, cosine))
         points = [row for fit, end in zip(fits, leave.point, strict=True) for row in (fit.points, end[None])]
         turns = [row for fit, bulge in zip(fits, bulges, strict=True) for row in (fit.bulges, np.array([bulge]))]
-        bound = max((fit.bound for fit in fits), key=lambda bound: bound.worst)
+        bound = Bound(max(fit.bound.outward for fit in fits), max(fit.bound.inward for fit in fits))
         return ArcSpline(np.concatenate(points), np.concatenate(turns), bound)
 
 
