@@ -49,6 +49,10 @@ class Compensated:
     checks: tuple[Check, ...]
 
 
+class NothingLeftError(ValueError):
+    """An opening that is no wider than what is taken from it."""
+
+
 def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) -> Compensated:
     """Make a part different from the nominal one; its contour is None where a check fails.
 
@@ -65,7 +69,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         if design.body is not None:
             body = _body(design.body, out, scale)
         part = _part(recipe.part, out, scale)
-    except TightError as error:
+    except (TightError, NothingLeftError) as error:
         raise recipe.error(field, f"an opening cannot be made smaller by {out / recipe.mm:.6g}: {error}") from error
     intent: Lift | Transmission
     checks: list[Check] = []
@@ -130,7 +134,7 @@ def _part(part: Part, out: float, scale: float) -> Part:
 def _across(width: float, out: float, scale: float) -> float:
     left = width - 2.0 * out
     if not left > 0.0:
-        raise TightError(f"it is {width:.6g} mm across")
+        raise NothingLeftError(f"it is {width:.6g} mm across")
     return scale * left
 
 
