@@ -9,8 +9,6 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
-
 from camgeo.bodies.build import assembly_of
 from camgeo.bodies.collide import collision_checks
 from camgeo.design import designed
@@ -35,10 +33,9 @@ def row(name: str) -> str:
     design = designed(recipe)
     if design.contour is None:
         return f"| {name} | | | | no contour | | |"
-    at = design.contour.sample(design.contour.cells.low).point
     contour = Job.of(recipe, design).outlines.within("arcs", TOLERANCE)
     begin = time.process_time()
-    assembly = assembly_of(recipe, design, contour, float(np.hypot(at[:, 0], at[:, 1]).max()))
+    assembly = assembly_of(recipe, design, contour)
     checks = [check for check in collision_checks(assembly) if check.name == "collision"]
     spent = time.process_time() - begin
     told = sorted((check.value, check.detail) for check in checks)

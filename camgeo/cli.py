@@ -18,6 +18,7 @@ from camgeo.sweep import command as sweep_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
 
     from camgeo.recipe.model import Recipe
 
@@ -340,9 +341,10 @@ def _verify(arguments: argparse.Namespace) -> int:
         if arguments.tolerance is not None:
             recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
         paths = [Path(name) for name in arguments.files]
-        faults = [f"{path}: there is no such file" for path in paths if not path.is_file()]
+        files = [path for path in paths if path.is_file()]
+        faults = [f"{p}: {_no_file(p)}" for p in paths if p not in files]
         known = ", ".join(SUFFIXES)
-        faults += [f"{p}: none of {known}" for p in paths if p.suffix.lower() not in SUFFIXES]
+        faults += [f"{p}: none of {known}" for p in files if p.suffix.lower() not in SUFFIXES]
         if faults:
             for fault in faults:
                 _complain(fault)
@@ -356,6 +358,12 @@ def _verify(arguments: argparse.Namespace) -> int:
     else:
         _show(report, verbose=arguments.verbose)
     return OK if report["ok"] else FAILED
+
+
+def _no_file(path: Path) -> str:
+    if path.is_dir():
+        return "a folder; name the files in it"
+    return "not a regular file" if path.exists() else "there is no such file"
 
 
 def _new(arguments: argparse.Namespace) -> int:

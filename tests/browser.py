@@ -36,6 +36,12 @@ def executable() -> str | None:
 
 _FETCHED = {"chrome", "headless_shell", "chrome-headless-shell"}
 
+REPLACED = ("navigated or closed", "context was destroyed", "Cannot find context", "Cannot find default execution")
+
+
+class ReplacedError(AssertionError):
+    """The page that was asked is being replaced by another."""
+
 
 class Browser:
     """One page of one browser, as a context; `problems` are its console errors, exceptions and requests."""
@@ -101,6 +107,9 @@ class Browser:
             answer = self._next(PATIENCE)
             assert answer is not None, f"the browser does not answer {method}"
             if answer.get("id") == number:
+                told = answer.get("error", {}).get("message", "")
+                if any(part in told for part in REPLACED):
+                    raise ReplacedError(f"{method}: {told}")
                 assert "error" not in answer, f"{method}: {answer.get('error')}"
                 result: dict[str, Any] = answer["result"]
                 return result
@@ -145,9 +154,17 @@ class Browser:
     def wait(self, condition: str) -> None:
         """Wait until an expression is true."""
         end = time.monotonic() + PATIENCE
-        while not self.ask(condition):
+        while not self._holds(condition):
             assert time.monotonic() < end, f"never true: {condition}"
             time.sleep(0.05)
+
+    def _holds(self, condition: str) -> bool:
+        """Whether an expression is true; not while a page is being replaced or lacks what the expression looks at."""
+        try:
+            answer = self.call("Runtime.evaluate", expression=condition, returnByValue=True)
+        except ReplacedError:
+            return False
+        return "exceptionDetails" not in answer and bool(answer["result"].get("value"))
 
     def ask(self, expression: str) -> Any:
         """Value of an expression in the page."""

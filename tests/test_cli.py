@@ -175,3 +175,22 @@ def test_only_of_what_the_recipe_does_not_list_exits_2(
     assert main(["export", str(good), "--out", str(tmp_path / "out"), "--only", "csv"]) == 2
     assert f"{good}:3:" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_verify_says_what_is_wrong_with_what_is_no_file(
+    good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    missing = tmp_path / "none.dxf"
+    assert main(["verify", str(good), str(tmp_path), str(missing)]) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        f"camgeo: {tmp_path}: a folder; name the files in it",
+        f"camgeo: {missing}: there is no such file",
+    ]
+
+
+def test_the_module_is_the_command() -> None:
+    call = subprocess.run(
+        [sys.executable, "-m", "camgeo", "new", "nothing"], capture_output=True, text=True, check=False
+    )
+    assert call.returncode == 2
+    assert call.stderr.startswith("camgeo: no recipe is called nothing")

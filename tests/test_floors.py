@@ -34,6 +34,7 @@ FLOORS = {
         arcs ball check chebyshev distinct oscillator read_error
     """,
     "camgeo": """
+        __main__
         cli pytest_plugin testing
         page.command study.command sweep.command
         study.document sweep.means sweep.refine sweep.search

@@ -17,6 +17,7 @@ from camgeo.bodies.body import Plate
 from camgeo.bodies.build import assembly_of
 from camgeo.bodies.collide import collision_checks, movers
 from camgeo.bodies.forms import disc
+from camgeo.bodies.shaft import HELD, drives, shaft_of
 from camgeo.bodies.sizes import BodyError, sizes_of
 from camgeo.design import designed
 from camgeo.files.meshes import body_mesh
@@ -74,9 +75,7 @@ def build(text: str) -> tuple[Recipe, Design, Assembly]:
     recipe = load_text(text, "set.yaml")
     design = designed(recipe)
     assert design.contour is not None
-    at = design.contour.sample(design.contour.cells.low).point
-    reach = float(np.hypot(at[:, 0], at[:, 1]).max())
-    return recipe, design, assembly_of(recipe, design, fit_arcs(design.contour, FIT), reach)
+    return recipe, design, assembly_of(recipe, design, fit_arcs(design.contour, FIT))
 
 
 def polygon(outline: ArcSpline, holes: tuple[ArcSpline, ...] = ()) -> Polygon:
@@ -299,6 +298,48 @@ def test_the_shaft_of_a_flat_or_a_key_keeps_the_clearance_all_round(more: str) -
     assert polygon(bore).contains(polygon(drive))
 
 
+def turns_in(drive: ArcSpline, bore: ArcSpline, play: float) -> bool:
+    """Whether a section can be turned right round in an opening, moved sideways by no more than its play; shapely."""
+    from shapely import affinity
+
+    shaft, opening = (polygon(one) for one in (drive, bore))
+    sideways = np.linspace(-play, play, 5)
+    return all(
+        any(opening.covers(affinity.translate(turned, x, y)) for x in sideways for y in sideways)
+        for turned in (affinity.rotate(shaft, angle, origin=(0, 0)) for angle in np.linspace(0.0, 360.0, 145))
+    )
+
+
+@pytest.mark.parametrize(
+    ("bore", "held"),
+    [
+        ("{square: 5}", True),
+        ("{hexagon: 5}", True),
+        ("10, flat: {across: 9.5}", True),
+        ("10, keyway: {width: 1.1, depth: 0.5}", True),
+        ("10, keyway: {width: 3, depth: 0.15}", True),
+        ("10, flat: {across: 9.85}", False),
+        ("10, keyway: {width: 1.1, depth: 0.12}", False),
+    ],
+)
+def test_a_shaft_that_is_let_pass_turns_the_cam_and_one_that_slips_is_not(bore: str, held: bool) -> None:
+    recipe = load_text(SHAPES["yoke"] + PART.replace("bore: 8", f"bore: {bore}"), "set.yaml")
+    clearance, off = 0.2, 0.01
+    sizes = sizes_of(MechanismAsked(clearance=clearance), 26.0, 10.0, None)
+    shaft = shaft_of(recipe.part, sizes)
+    body = designed(recipe).body
+    assert body is not None
+    opening = body.openings[0]
+    assert turns_in(shaft.drive, opening.outline, 0.5 * clearance) is not held
+    if held:
+        drives(recipe.part, clearance, off)
+        assert shaft.held is not None
+        assert shaft.held > HELD
+    else:
+        with pytest.raises(BodyError, match="slips"):
+            drives(recipe.part, clearance, off)
+
+
 # --- planted collisions -----------------------------------------------------------------------------------------------
 
 
@@ -416,5 +457,5 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
     assert design.contour is not None
     assert design.driven is None or design.driven.turns, "the mechanism must turn"
     with pytest.raises(BodyError, match=part) as caught:
-        assembly_of(recipe, design, fit_arcs(design.contour, 0.05), 40.0)
+        assembly_of(recipe, design, fit_arcs(design.contour, 0.05))
     assert caught.value.field == field

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 YOKE = """\
 cam: {kind: support, fourier: {mean: 20, cos: {3: 1}}, pivot: [6, 0]}
 part: {thickness: 5, bore: {square: 6}}
-export: {tolerance: 0.05, files: [{stl: {parts: all}}]}
+export: {tolerance: 0.02, files: [{stl: {parts: all}}]}
 verify: {angles: 24}
 """
 FOUR_BAR = """\
 cam: {kind: support, fourier: {mean: 25, cos: {3: 2.9}}, pivot: [14.8, 0]}
 linkage: {kind: four-bar, ground: 79.28, coupler: 61.85, rocker: 60}
 part: {thickness: 8, bore: 9}
-export: {tolerance: 0.05, files: [{stl: {parts: all}}]}
+export: {tolerance: 0.02, files: [{stl: {parts: all}}]}
 verify: {angles: 24}
 """
 
@@ -78,7 +78,7 @@ def test_counter_clockwise_and_inch_are_the_same_bodies(tmp_path: Path, yoke: pi
     import trimesh
 
     inch = YOKE
-    for key, mm in (("mean: ", 20), ("{3: ", 1), ("[", 6), ("thickness: ", 5), ("square: ", 6), ("tolerance: ", 0.05)):
+    for key, mm in (("mean: ", 20), ("{3: ", 1), ("[", 6), ("thickness: ", 5), ("square: ", 6), ("tolerance: ", 0.02)):
         assert f"{key}{mm}" in inch
         inch = inch.replace(f"{key}{mm}", f"{key}{mm / 25.4!r}")
     outcome = pipeline.export(load_text(f"units: inch\nrotation: ccw\n{inch}", "yoke.yaml"), tmp_path)
@@ -149,9 +149,33 @@ def test_the_checks_of_a_set_are_foreseen() -> None:
             "mechanism: {knob: 7}\nverify:",
             "mechanism.knob: does not reach beyond the bore; give at least 8.8 mm",
         ),
+        (
+            "0.02",
+            "0.05",
+            "export.tolerance: two facing bodies, each within 0.05 mm, may come 0.1 mm nearer",
+        ),
+        ("{parts: all}", "{parts: all, tolerance: 0.05}", "export.files[0]: two facing bodies"),
+        ("verify:", "mechanism: {clearance: 1.0e-6}\nverify:", "mechanism.clearance: 1e-06 mm is finer than bodies"),
+        (
+            "verify:",
+            "mechanism: {link: 0.1}\nverify:",
+            "mechanism.link: 0.1 mm is too thin to be printed",
+        ),
+        ("thickness: 5", "thickness: 0.2", "part.thickness: 0.2 mm is too thin to be printed"),
+        ("{square: 6}", "10, flat: {across: 9.9}", "part.flat.across: the shaft slips in it"),
+        ("{square: 6}", "10, keyway: {width: 1.1, depth: 0.2}", "part.keyway.depth: the shaft slips in it"),
+        ("{square: 6}", "10, keyway: {width: 0.9, depth: 2}", "part.keyway.width: leaves a key of 0.7 mm on the shaft"),
+        ("{square: 6}}", "{hexagon: 8}}\nmechanism: {clearance: 1.2}", "part.bore: the shaft slips in it"),
     ],
 )
 def test_slips_are_told_at_their_field(old: str, new: str, message: str) -> None:
     assert old in YOKE
     told = faults(YOKE.replace(old, new))
     assert any(message in line for line in told), told
+
+
+def test_a_cam_far_from_its_shaft_has_a_yoke_that_reaches_round_it(tmp_path: Path) -> None:
+    """Greatest distance from the shaft between the ends of the curve's cells."""
+    text = "cam: {kind: support, fourier: {mean: 25}, pivot: [10, 0]}\n" + YOKE.split("\n", 1)[1]
+    outcome = pipeline.export(load_text(text, "far.yaml"), tmp_path)
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]

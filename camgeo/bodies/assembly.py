@@ -52,11 +52,15 @@ class Member:
 
 @dataclass(frozen=True)
 class Fit:
-    """A place where one body runs on another, and by how much the one is wider; mm. `pressed` ones are narrower."""
+    """A place where one body runs on another, and by how much the one is wider; mm. `pressed` ones are narrower.
+
+    `held` is by how much what drives is too wide to turn in what it drives.
+    """
 
     name: str
     clearance: float
     pressed: bool = False
+    held: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,27 +4,31 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from camgeo.bodies.shaft import Drive, disk_of, shaft_of
 from camgeo.bodies.sizes import sizes_of
 from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
 from camgeo.recipe.model_mechanism import MechanismAsked
+from kin.contour import Contour
+from kin.region import farthest
 
 if TYPE_CHECKING:
     from camgeo.bodies.assembly import Assembly
     from camgeo.design import Design
-    from camgeo.fit.pieces import ArcSpline, Polygon
+    from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.model import Recipe
     from kin.lift import Lift
     from kin.transmission import Transmission
 
 
-def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline | Polygon, reach: float) -> Assembly:
-    """Make the bodies round a cam's contour, as drawn for a shaft that turns clockwise; `reach` is the cam's, mm.
+def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline) -> Assembly:
+    """Make the bodies round a cam's contour, as drawn for a shaft that turns clockwise.
 
     Raises BodyError where one of them cannot be made.
     """
     part = recipe.part
-    cam = recipe.cam
+    cam, reach = recipe.cam, _reach_of(contour)
     roller = cam.roller_radius if isinstance(cam, DoubleRollerCam) else None
     s = sizes_of(recipe.mechanism or MechanismAsked(), reach, part.bore or 0.0, roller)
     drive = Drive(disk_of(part, design.body, contour), reach, shaft_of(part, s), s)
@@ -46,3 +50,9 @@ def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline | Polygon, re
     if design.yoke_breadth is None:
         return flat_face(lift, drive)
     return yoke(lift, design.yoke_breadth, drive)
+
+
+def _reach_of(contour: ArcSpline) -> float:
+    """How far a cam whose contour is drawn by arcs reaches from the shaft, mm: no less than it does."""
+    arcs, _ = Contour.from_bulges(contour.points, contour.bulges).as_arcs()
+    return float(farthest(arcs, np.zeros((len(arcs), 2))).max()) + contour.bound.worst

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from kin.poses import Motion
 
 STEPS = 720  # of a turn, at which the exact motion and its rates are taken
+LOOKS = 24  # points of each line and arc of a hole from which its walls are looked at
 AXIAL = 1e-6  # mm, by which rounding may make an axial gap less
 ACCURACY = 0.05  # of the clearance, to which the least distance of two bodies is found
 
@@ -44,12 +45,34 @@ def collision_checks(assembly: Assembly) -> list[Check]:
 
 
 def clearance_check(assembly: Assembly) -> Check:
-    """Tell all fits; the least clearance among those that run must be above 0."""
+    """Tell all fits, what holds the cam on the shaft, and the thinnest wall.
+
+    The least clearance among those that run must be above 0.
+    """
     running = [fit for fit in assembly.fits if not fit.pressed]
     least = min(fit.clearance for fit in running)
     told = [f"{fit.name} {'-' if fit.pressed else ''}{fit.clearance:.6g}" for fit in assembly.fits]
-    detail = "; ".join([f"mm wider by construction: {', '.join(told)}", *assembly.remarks])
+    held = [f"too wide by {fit.held:.4g} mm to turn there: {fit.name}" for fit in assembly.fits if fit.held is not None]
+    wall, where = thinnest(assembly)
+    thin = f"thinnest wall {wall:.3g} mm: {where}"
+    detail = "; ".join([f"mm wider by construction: {', '.join(told)}", *held, thin, *assembly.remarks])
     return Check("clearance", least > 0.0, least, 0.0, "mm", None, "at_least", detail=detail)
+
+
+def thinnest(assembly: Assembly) -> tuple[float, str]:
+    """Least thickness or wall of all bodies but the cam, mm, and where.
+
+    A wall is looked for between the edges of one plate, from points along its holes. A retainer's or arm's thickness is
+    as asked; the cam's walls are told by its own check.
+    """
+    s = assembly.sizes
+    found = [(s.link, "links"), (s.clip, "retainers")]
+    for member in assembly.members[1:]:
+        for plate in member.plates:
+            edges = [_contour(plate.outline), *map(_contour, plate.holes)]
+            for one, other in combinations(edges, 2):
+                found.append((float(one.distance(other.sample(LOOKS)).min()), member.name))
+    return min(found)
 
 
 def exempt(assembly: Assembly) -> Iterable[Allowed]:

@@ -93,13 +93,14 @@ def pin(s: Sizes, at: Point, foot: float, low: float, high: float, *, crowned: b
     return tuple(plates)
 
 
-def retainer(s: Sizes, at: Point, high: float, diameter: float | None = None) -> tuple[Plate, ...]:
+def retainer(s: Sizes, at: Point, high: float, diameter: float | None = None, radius: float = 0.0) -> tuple[Plate, ...]:
     """Return the disc pressed on a pin, of its own `diameter` if it is no common one, above a body that ends at `high`.
 
-    A disc wider than a bar by nothing holds the bar, and passes wherever the bar's end does.
+    A disc wider than a bar by nothing holds the bar, and passes wherever the bar's end does; `radius` is the least that
+    holds something wider.
     """
     x, y = at
     across = s.pin if diameter is None else diameter
-    radius = max(0.5 * s.bar, 0.5 * across + s.wall)
+    radius = max(0.5 * s.bar, 0.5 * across + s.wall, radius)
     low = high + s.gap
     return (Plate(disc(radius, x, y), (disc(0.5 * (across - s.press), x, y),), low, low + s.clip),)

@@ -133,7 +133,8 @@ def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> dict[
     plates = [Plate(block(s), () if linkage.rocker else (eye(s),), frame.low, frame.high)]
     site.fits.append(Fit("block in the frame's slot", s.clearance))
     if linkage.rocker == 0.0:
-        site.post("b", (linkage.ground, 0.0), frame.low, frame.high)
+        over = 0.5 * s.bar + s.play + s.wall  # nothing else holds the frame down: out to the slot's outer edges
+        site.post("b", (linkage.ground, 0.0), frame.low, frame.high, over)
         site.floor += s.gap + s.clip
         site.fits.append(Fit("block on the pivot B", s.clearance))
         site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))

@@ -15,7 +15,7 @@ import numpy as np
 from camgeo.bodies.assembly import GROUND, Fit, Member
 from camgeo.bodies.body import Plate
 from camgeo.bodies.forms import disc, retainer
-from camgeo.bodies.sizes import BodyError
+from camgeo.bodies.sizes import THIN, BodyError, thick
 from camgeo.fit.pieces import ArcSpline
 from camgeo.part.shapes import disc as opening_disc
 from camgeo.part.shapes import flattened, keyed, polygonal
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 CAM = "cam"
 KNOB_SIDES = 8
+HELD = 0.1  # mm by which a shaft is at least too wide to turn in the bore, whatever the files are off
 LOOKS = 180  # places of a turn at which it is looked whether something passes under the knob
 CAM_COLOUR, SHAFT_COLOUR, CLIP_COLOUR, GROUND_COLOUR = "#d08a3c", "#5b6b7f", "#33404f", "#a9b4c0"
 
@@ -58,6 +59,7 @@ def disk_of(part: Part, body: Body | None, contour: ArcSpline | Polygon) -> Disk
     """
     if part.thickness is None or part.bore is None:
         raise ValueError("a cam for a mechanism needs thickness and bore")
+    thick("part.thickness", part.thickness)
     openings = body.openings if body is not None else (opening_disc("bore", "BORE", (0.0, 0.0), 0.5 * part.bore),)
     through = tuple(opening for opening in openings if opening.depth is None)
     plates = [Plate(contour, tuple(opening.outline for opening in through), 0.0, part.thickness)]
@@ -76,13 +78,19 @@ def disk_of(part: Part, body: Body | None, contour: ArcSpline | Polygon) -> Disk
 class Shaft:
     """Sections of a shaft: `drive` in the cam's bore, round `journal` (a radius) in the base.
 
-    `across` is the greatest radius of the drive. One for a round bore alone is pressed into it.
+    `across` is the greatest radius of the drive, `held` by how much it is too wide to turn in the bore. One for a round
+    bore alone is pressed into it, and `held` is None.
     """
 
     drive: ArcSpline
     across: float
     journal: float
-    pressed: bool
+    held: float | None
+
+    @property
+    def pressed(self) -> bool:
+        """Whether nothing but the press turns the cam."""
+        return self.held is None
 
 
 def shaft_of(part: Part, s: Sizes) -> Shaft:
@@ -92,7 +100,7 @@ def shaft_of(part: Part, s: Sizes) -> Shaft:
     """
     bore = part.bore or 0.0
     radius = 0.5 * bore - s.play
-    journal, across, pressed = radius, radius, False
+    journal, across = radius, radius
     if part.sides:
         drive = polygonal(part.sides, bore - s.clearance, part.bore_at)
         across = radius / math.cos(math.pi / part.sides)
@@ -105,11 +113,65 @@ def shaft_of(part: Part, s: Sizes) -> Shaft:
         journal = part.flat.across - s.clearance - radius
     else:
         across = 0.5 * (bore + s.press)
-        drive, pressed = disc(across), True
+        drive = disc(across)
     if journal < 1.0:
         message, remedy = "leaves a journal of {thick} in the base", "give a bore of {such} or more"
         raise BodyError("part.bore", message, remedy, thick=max(2.0 * journal, 0.0), such=4.0)
-    return Shaft(drive, across, journal, pressed)
+    turned = _turned_round(part, s.clearance)
+    return Shaft(drive, across, journal, turned and turned[0] - turned[1])
+
+
+def drives(part: Part, clearance: float, off: float) -> None:
+    """Refuse a bore in which the shaft would turn by itself, drawn by files within `off` mm of what is meant.
+
+    Each of the four sides of bore and shaft may be off by that. Raises BodyError.
+    """
+    turned = _turned_round(part, clearance)
+    if turned is None:
+        return
+    if part.keyway is not None:
+        key = part.keyway.width - clearance
+        if key < THIN:
+            message, remedy = "leaves a key of {key} on the shaft", "give a width of {least} or more"
+            lengths = {"key": max(key, 0.0), "least": clearance + THIN}
+            raise BodyError("part.keyway.width", message, remedy, **lengths)
+    wide, room = turned
+    least = HELD + 4.0 * off
+    if wide - room >= least:
+        return
+    bore = part.bore or 0.0
+    if part.sides:
+        corner = 1.0 / math.cos(math.pi / part.sides)
+        such = (least + clearance * corner) / (corner - 1.0)
+        field, remedy, most = "part.bore", "give a bore of {such} or more", bore - (bore + least) / corner
+    elif part.keyway is not None:
+        radius = 0.5 * (bore - clearance)
+        such = math.sqrt((bore + least - radius) ** 2 - 0.25 * (part.keyway.width - clearance) ** 2) - radius
+        field, remedy, most = "part.keyway.depth", "give a depth of {such} or more", part.keyway.depth - least
+    else:
+        field, remedy, such = "part.flat.across", "give at most {such}", bore - clearance - least
+        most = bore - room - least
+        if such <= 0.5 * bore:
+            remedy = "give a larger bore"
+    if most > 0.0:
+        remedy += ", or a mechanism.clearance of at most {most}"
+    message = (
+        "the shaft slips in it: {wide} wide where it would have to turn through {room}, which has to be {least} less"
+    )
+    raise BodyError(field, message, remedy, wide=wide, room=room, least=least, such=such, most=most)
+
+
+def _turned_round(part: Part, clearance: float) -> tuple[float, float] | None:
+    """Width of the shaft where it is greatest, and that of the bore where this would have to pass; None if pressed."""
+    bore = part.bore or 0.0
+    if part.sides:
+        return (bore - clearance) / math.cos(math.pi / part.sides), bore
+    if part.keyway is not None:
+        radius = 0.5 * (bore - clearance)
+        return radius + math.hypot(radius + part.keyway.depth, 0.5 * (part.keyway.width - clearance)), bore
+    if part.flat is not None:
+        return bore - clearance, part.flat.across
+    return None
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +246,7 @@ def _passing(member: Member, low: float, within: float) -> list[float]:
 def shaft_fits(drive: Drive) -> tuple[Fit, ...]:
     """Fits of the shaft in base, cam and retainer."""
     s, name = drive.sizes, "shaft in the cam's bore"
-    held = Fit(name, s.press, pressed=True) if drive.shaft.pressed else Fit(name, s.clearance)
+    held = Fit(name, s.press, pressed=True) if drive.shaft.pressed else Fit(name, s.clearance, held=drive.shaft.held)
     return (Fit("shaft in the base", s.clearance), held, Fit("retainer on the shaft", s.press, pressed=True))
 
 

@@ -99,15 +99,18 @@ class Site:
         moving = (Member(c.name, tuple(c.plates), c.name, c.place, c.colour) for c in self.carriers)
         return (*moving, *self.members)
 
-    def hold(self, name: str, group: str, at: Point, high: float, place: Place | None = None) -> None:
-        """Add the retainer on a pin of a group, above a body that ends at `high`."""
-        self.members.append(Member(f"retainer-{name}", retainer(self.s, at, high), group, place, CLIP_COLOUR))
+    def hold(
+        self, name: str, group: str, at: Point, high: float, place: Place | None = None, radius: float = 0.0
+    ) -> None:
+        """Add the retainer on a pin of a group, of this radius or more, above a body that ends at `high`."""
+        plates = retainer(self.s, at, high, radius=radius)
+        self.members.append(Member(f"retainer-{name}", plates, group, place, CLIP_COLOUR))
 
-    def post(self, name: str, at: Point, low: float, high: float) -> None:
-        """Stand a pivot on the base, with its retainer and its share of the base plate."""
+    def post(self, name: str, at: Point, low: float, high: float, radius: float = 0.0) -> None:
+        """Stand a pivot on the base, with its retainer of this radius or more and its share of the base plate."""
         self.ground += pin(self.s, at, self.s.plate, low, high)
         self.pads.append(bar((0.0, 0.0), at, self.width))
-        self.hold(name, GROUND, at, high)
+        self.hold(name, GROUND, at, high, radius=radius)
 
     def sampled(self, place: Place) -> Array:
         """Places (n, 3) of a body over a turn."""

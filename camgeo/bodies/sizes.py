@@ -12,7 +12,9 @@ if TYPE_CHECKING:
 HALF = 0.5  # mm: what follows from the cam is a multiple of it
 LEAST_PIN = 3.0  # mm: a thinner one breaks between its layers
 MOST_PIN = 12.0
-THIN = 0.8  # mm: two lines of a common nozzle, the least that is printed
+THIN = 0.8  # mm: two lines of a common nozzle, the least wall that stands by itself
+LINE = 0.4  # mm: one line of it, the least that any size of a body may be
+LEAST_CLEARANCE = 1e-3  # mm: no body is made finer
 
 
 class BodyError(ValueError):
@@ -84,7 +86,7 @@ def sizes_of(asked: MechanismAsked, reach: float, bore: float, roller: float | N
         press=asked.press,
         space=asked.space,
         pin=pin,
-        bar=asked.bar or pin + 2.0 * wall,
+        bar=asked.bar or pin + max(2.0 * wall, asked.clearance + 2.0 * THIN),
         plate=asked.plate or _half(clip + 2.0 * asked.gap + max(3.0, 0.8 * pin)),
         link=asked.link or max(pin, 4.0),
         wall=wall,
@@ -101,12 +103,35 @@ def sizes_of(asked: MechanismAsked, reach: float, bore: float, roller: float | N
     return sizes
 
 
+def runs(clearance: float, field: str, off: float) -> None:
+    """Refuse a clearance that files within `off` mm of what is meant would eat up; `field` asks for that.
+
+    Facets of a hole and of its pin may each be `off` nearer to the other, which stands half the clearance away.
+    Raises BodyError.
+    """
+    if clearance < LEAST_CLEARANCE:
+        message, remedy = "{clearance} is finer than bodies are made", "give at least {least}"
+        raise BodyError("mechanism.clearance", message, remedy, clearance=clearance, least=LEAST_CLEARANCE)
+    if 2.0 * off >= 0.5 * clearance:
+        message = "two facing bodies, each within {off}, may come {both} nearer, and stand {play} apart"
+        remedy = "give a tolerance below {most}, or a mechanism.clearance above {such}"
+        lengths = {"off": off, "both": 2.0 * off, "play": 0.5 * clearance}
+        raise BodyError(field, message, remedy, **lengths, most=0.25 * clearance, such=4.0 * off)
+
+
 def _half(length: float) -> float:
     """Round up to whole halves of a millimetre."""
     return HALF * math.ceil(length / HALF - 1e-9)
 
 
 def _go_together(s: Sizes, bore: float) -> None:
+    for name, length, least in (
+        ("pin", s.pin, THIN),
+        ("link", s.link, LINE),
+        ("wall", s.wall, LINE),
+        ("clip", s.clip, LINE),
+    ):
+        thick(f"mechanism.{name}", length, least)
     least = s.hole + 2.0 * THIN
     if s.bar < least:
         raise BodyError("mechanism.bar", "too narrow for the hole of a pin", "give at least {least}", least=least)
@@ -119,3 +144,11 @@ def _go_together(s: Sizes, bore: float) -> None:
     least = 1.2 * bore + 2.0 * THIN  # a square's corners reach farther than its width
     if s.knob < least:
         raise BodyError("mechanism.knob", "does not reach beyond the bore", "give at least {least}", least=least)
+
+
+def thick(field: str, length: float, least: float = LINE) -> None:
+    """Refuse what is too thin to be printed. Raises BodyError."""
+    if length < least:
+        raise BodyError(
+            field, "{length} is too thin to be printed", "give at least {least}", length=length, least=least
+        )

@@ -98,6 +98,10 @@ class Job:
         """Tolerance of a file, mm: its own, or the export's."""
         return request.tolerance or self.recipe.export.tolerance
 
+    def tolerance_field(self, request: FileRequest) -> str:
+        """Path of the field that a file's tolerance is asked for by."""
+        return self.field(request) if request.tolerance is not None else "export.tolerance"
+
     def outline(self, form: str, tolerance: float) -> Outline:
         """The contour in a form, within a tolerance, mirrored as the recipe has it."""
         outline = self.outlines.within(form, tolerance)
@@ -124,8 +128,7 @@ class Job:
 
     def refused(self, request: FileRequest, error: ToleranceError) -> RecipeErrors:
         """Turn a tolerance that cannot be held into an error at the field that asks for it."""
-        where = self.field(request) if request.tolerance is not None else "export.tolerance"
-        recipe = self.recipe
+        where, recipe = self.tolerance_field(request), self.recipe
         reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
         return recipe.error(where, str(error), None, reached)
 

@@ -58,6 +58,10 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
 
 def foresee(job: Job, request: FileRequest) -> None:
     """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
+    if request.parts == "all":
+        from camgeo.making.mechanism import foresee_mechanism
+
+        foresee_mechanism(job, request)
     job, failed = job.of_file(request)
     if request.kind in SOLIDS - {"step"} and not failed:
         from camgeo.making.solid import aim

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from camgeo.bodies.build import assembly_of
 from camgeo.bodies.collide import collision_checks
-from camgeo.bodies.sizes import BodyError
+from camgeo.bodies.shaft import drives
+from camgeo.bodies.sizes import BodyError, runs
 from camgeo.fit.pieces import ArcSpline
 from camgeo.making.job import Made
 from camgeo.making.parts import make_parts
+from camgeo.recipe.model_mechanism import MechanismAsked
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from camgeo.bodies.assembly import Assembly
     from camgeo.making.job import Job
-    from camgeo.recipe.model import FileRequest
+    from camgeo.recipe.model import FileRequest, Recipe
     from kin.check import Check
 
 
@@ -38,18 +40,35 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
     return Made(made.files, (*checks, *made.checks))
 
 
+def foresee_mechanism(job: Job, request: FileRequest) -> None:
+    """Refuse clearances that the file's tolerance takes away, and a shaft that does not turn the cam.
+
+    Raises RecipeErrors.
+    """
+    recipe, off = job.recipe, job.tolerance(request)
+    clearance = (recipe.mechanism or MechanismAsked()).clearance
+    with _told(recipe):
+        runs(clearance, job.tolerance_field(request), off)
+        drives(recipe.part, clearance, off)
+
+
+@contextmanager
+def _told(recipe: Recipe) -> Iterator[None]:
+    """Turn a body that cannot be made into RecipeErrors at the field to blame."""
+    try:
+        yield
+    except BodyError as error:
+        message, remedy = error.told(recipe.mm, recipe.units)
+        raise recipe.error(error.field, message, None, remedy) from error
+
+
 def _assembled(job: Job, request: FileRequest) -> tuple[Assembly, tuple[Check, ...]]:
     """Build the bodies round the contour as arcs within the file's tolerance, and turn them once round."""
     with job.refusals(request), job.clock.stage("bodies"):
         contour = job.outlines.within("arcs", job.tolerance(request))
         if not isinstance(contour, ArcSpline):
             raise TypeError("bodies stand round a contour of arcs")
-        at = job.contour.sample(job.contour.cells.low).point
-        reach = float(np.hypot(at[:, 0], at[:, 1]).max())
-        try:
-            assembly = assembly_of(job.recipe, job.design, contour, reach)
-        except BodyError as error:
-            message, remedy = error.told(job.recipe.mm, job.recipe.units)
-            raise job.recipe.error(error.field, message, None, remedy) from error
+        with _told(job.recipe):
+            assembly = assembly_of(job.recipe, job.design, contour)
     with job.clock.stage("collision"):
         return assembly, tuple(collision_checks(assembly))
