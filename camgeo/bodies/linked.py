@@ -134,7 +134,7 @@ def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> dict[
     site.fits.append(Fit("block in the frame's slot", s.clearance))
     if linkage.rocker == 0.0:
         over = 0.5 * s.bar + s.play + s.wall  # nothing else holds the frame down: out to the slot's outer edges
-        site.post("b", (linkage.ground, 0.0), frame.low, frame.high, over)
+        site.post("b", (linkage.ground, 0.0), frame.low, frame.high, radius=over)
         site.floor += s.gap + s.clip
         site.fits.append(Fit("block on the pivot B", s.clearance))
         site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))

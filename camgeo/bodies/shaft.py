@@ -116,7 +116,9 @@ def shaft_of(part: Part, s: Sizes) -> Shaft:
         drive = disc(across)
     if journal < 1.0:
         message, remedy = "leaves a journal of {thick} in the base", "give a bore of {such} or more"
-        raise BodyError("part.bore", message, remedy, thick=max(2.0 * journal, 0.0), such=4.0)
+        raise BodyError(
+            "part.bore", message, remedy, thick=max(2.0 * journal, 0.0), such=max(4.0, bore + 2.0 * (1.0 - journal))
+        )
     turned = _turned_round(part, s.clearance)
     return Shaft(drive, across, journal, turned and turned[0] - turned[1])
 

@@ -100,13 +100,13 @@ class Site:
         return (*moving, *self.members)
 
     def hold(
-        self, name: str, group: str, at: Point, high: float, place: Place | None = None, radius: float = 0.0
+        self, name: str, group: str, at: Point, high: float, place: Place | None = None, *, radius: float = 0.0
     ) -> None:
         """Add the retainer on a pin of a group, of this radius or more, above a body that ends at `high`."""
         plates = retainer(self.s, at, high, radius=radius)
         self.members.append(Member(f"retainer-{name}", plates, group, place, CLIP_COLOUR))
 
-    def post(self, name: str, at: Point, low: float, high: float, radius: float = 0.0) -> None:
+    def post(self, name: str, at: Point, low: float, high: float, *, radius: float = 0.0) -> None:
         """Stand a pivot on the base, with its retainer of this radius or more and its share of the base plate."""
         self.ground += pin(self.s, at, self.s.plate, low, high)
         self.pads.append(bar((0.0, 0.0), at, self.width))
