@@ -125,7 +125,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     least = enclosed_least_radius(profile.curve)
     radius = least.radius + profile.roller_radius
-    roomy, at_deg = radius > profile.roller_radius, _shaft_deg(intent, least.at)
+    roomy, at_deg = radius > profile.roller_radius, shaft_deg(intent, least.at)
     bent = Check("radius-of-curvature", roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
     if least.room:
         lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
@@ -158,12 +158,12 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
         if worst is None:
             checks.append(Check(f"undercut-{kind}", True, 0.0, 0.0, "mm"))
             continue
-        first, last = _shaft_deg(intent, worst.start), _shaft_deg(intent, worst.end)
+        first, last = shaft_deg(intent, worst.start), shaft_deg(intent, worst.end)
         everywhere = worst.end - worst.start >= profile.curve.shape.period
         where = "all round" if everywhere else f"from {first:.6g} to {last:.6g} deg"
         detail = f"{where}; {free}{outcome}"
         depth = worst.depth if math.isfinite(worst.depth) else None
-        ok, at_deg = contour is not None, _shaft_deg(intent, worst.at)
+        ok, at_deg = contour is not None, shaft_deg(intent, worst.at)
         limit = None if cut_off else 0.0
         checks.append(Check(f"undercut-{kind}", ok, depth, limit, "mm", at_deg, detail=detail))
     return checks, contour
@@ -187,7 +187,7 @@ def _unproved(recipe: Recipe, error: CurveError, intent: Lift | Transmission) ->
 
     if not isinstance(error, OpenNeckError):
         return str(error)
-    first, second = (_shaft_deg(intent, t) for t in error.pair)
+    first, second = (shaft_deg(intent, t) for t in error.pair)
     most, least = error.most / recipe.mm, error.least / recipe.mm
     half = f"lies between {least:.9g} and {most:.9g}" if error.seen else f"is at least {least:.9g}"
     return (
@@ -203,12 +203,10 @@ def _trimmed(curve: Curve) -> Curve:
     return trimmed(curve)
 
 
-def _shaft_deg(intent: Lift | Transmission, parameter: float) -> float:
-    """Shaft angle in degrees of a parameter of the profile."""
+def shaft_deg(intent: Lift | Transmission, parameter: float) -> float:
+    """Shaft angle in degrees at which the follower touches the contour at a parameter of it."""
     at = getattr(intent, "at", None)
-    phi = parameter if at is None else float(at(parameter, 0)[0][0, 0])
-    found = degrees(phi)
-    return 0.0 if found is None else found
+    return degrees(parameter if at is None else float(at(parameter, 0)[0][0, 0]))
 
 
 def _figures(recipe: Recipe, intent: Lift | Transmission, profile: Profile) -> tuple[float | None, str, list[Check]]:
@@ -238,12 +236,12 @@ def _part(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> tuple[
 
         wall, at = least_wall(contour, part.bore)
         ok = wall > 0.0 if part.wall is None else wall >= part.wall
-        return None, [Check("wall", ok, wall, part.wall or 0.0, "mm", _shaft_deg(intent, at), "at_least")]
+        return None, [Check("wall", ok, wall, part.wall or 0.0, "mm", shaft_deg(intent, at), "at_least")]
     from camgeo.part.body import body_of
     from camgeo.part.check import part_checks
 
     body = body_of(part, contour)
-    return body, part_checks(body, contour, part.wall, lambda t: _shaft_deg(intent, t))
+    return body, part_checks(body, contour, part.wall, lambda t: shaft_deg(intent, t))
 
 
 def intended(recipe: Recipe, design: Design) -> Intent:

@@ -7,11 +7,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.causes import UndercutError
-from camgeo.design import intended
+from camgeo.design import intended, shaft_deg
 from camgeo.foreseen import LEAST_ROOM
 from camgeo.manufacture.cutter import cutter_path, is_convex, least_hollow
 from camgeo.part.meant import holes_of
-from kin.check import Check, degrees, failed
+from kin.check import Check, failed
 
 if TYPE_CHECKING:
     from camgeo.curve import Curve
@@ -48,7 +48,7 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
     told = "no hollow"
     if not is_convex(contour):
         radius, at = least_hollow(contour)
-        told = f"least hollow radius {radius:.6g} mm at {_shaft_deg(design, at):.6g} deg"
+        told = f"least hollow radius {radius:.6g} mm at {shaft_deg(design.intent, at):.6g} deg"
     try:
         path = path_of(recipe, design)
     except UndercutError as error:
@@ -56,19 +56,13 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
     if not path.lost:
         return Check("cutter-reach", True, 0.0, asked.unreached, "mm", detail=told), path
     worst = max(path.lost, key=lambda cut: cut.depth)
-    first, last = _shaft_deg(design, worst.start), _shaft_deg(design, worst.end)
+    first, last = shaft_deg(design.intent, worst.start), shaft_deg(design.intent, worst.end)
     free = 2.0 * min(cut.free_at for cut in path.lost)
     detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
-    at_deg = _shaft_deg(design, worst.at)
+    at_deg = shaft_deg(design.intent, worst.at)
     return Check(
         "cutter-reach", worst.depth <= asked.unreached, worst.depth, asked.unreached, "mm", at_deg, detail=detail
     ), path
-
-
-def _shaft_deg(design: Design, parameter: float) -> float:
-    """Shaft angle in degrees at which the follower touches a parameter of the contour."""
-    at = getattr(design.intent, "at", None)
-    return degrees(parameter if at is None else float(at(parameter, 0)[0][0, 0]))
 
 
 def clear_of_hub(recipe: Recipe) -> None:
