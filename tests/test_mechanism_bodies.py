@@ -15,7 +15,7 @@ import pytest
 from camgeo.bodies.assembly import TURN, Assembly, Member
 from camgeo.bodies.body import Plate
 from camgeo.bodies.build import assembly_of
-from camgeo.bodies.collide import collision_checks, movers
+from camgeo.bodies.collide import COARSE, collision_checks, movers, swept_room
 from camgeo.bodies.forms import disc
 from camgeo.bodies.shaft import HELD, drives, shaft_of
 from camgeo.bodies.sizes import BodyError, sizes_of
@@ -338,6 +338,20 @@ def test_a_shaft_that_is_let_pass_turns_the_cam_and_one_that_slips_is_not(bore: 
     else:
         with pytest.raises(BodyError, match="slips"):
             drives(recipe.part, clearance, off)
+
+
+@pytest.mark.parametrize("name", ["yoke", "double roller", "slider-crank"])
+def test_the_room_that_is_told_holds_all_bodies_at_every_angle(name: str) -> None:
+    assembly = made(name)[2]
+    told = swept_room(movers(assembly))
+    boxes = [p[0].bounds for phi in np.linspace(0.0, TURN, 91) for m in assembly.members for p in placed(m, phi)]
+    low, high = np.min(boxes, axis=0)[:2], np.max(boxes, axis=0)[2:]
+    assert (told[:2] >= high - low - 1e-6).all()
+    assert (told[:2] <= high - low + 2.0 * COARSE + 0.5).all()  # and what the bodies go beyond 91 angles
+    heights = [height for m in assembly.members for plate in m.plates for height in (plate.low, plate.high)]
+    assert told[2] == pytest.approx(max(heights) - min(heights))
+    (check,) = [one for one in collision_checks(assembly) if one.name == "clearance"]
+    assert "takes up " in check.detail
 
 
 # --- planted collisions -----------------------------------------------------------------------------------------------

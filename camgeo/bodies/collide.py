@@ -16,6 +16,7 @@ from kin.collision import Allowed, Mover, Slab, clearances
 from kin.contour import Contour
 from kin.poses import Sampled, Still
 from kin.poses import Turning as Steady
+from kin.swept import swept_box
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 STEPS = 720  # of a turn, at which the exact motion and its rates are taken
 LOOKS = 24  # points of each line and arc of a hole from which its walls are looked at
 AXIAL = 1e-6  # mm, by which rounding may make an axial gap less
+COARSE = 0.25  # mm, within which the room is told
 ACCURACY = 0.05  # of the clearance, to which the least distance of two bodies is found
 
 
@@ -39,13 +41,13 @@ def collision_checks(assembly: Assembly) -> list[Check]:
     as that. What is pressed together, and what touches by design, is left out: the rollers and a single face are held
     against the file of the cam itself.
     """
-    s = assembly.sizes
-    found = clearances(movers(assembly), exempt(assembly), axial=s.gap - AXIAL, accuracy=ACCURACY * s.clearance)
-    return [clearance_check(assembly), *(_checked(pair) for pair in found)]
+    s, bodies = assembly.sizes, movers(assembly)
+    found = clearances(bodies, exempt(assembly), axial=s.gap - AXIAL, accuracy=ACCURACY * s.clearance)
+    return [clearance_check(assembly, bodies), *(_checked(pair) for pair in found)]
 
 
-def clearance_check(assembly: Assembly) -> Check:
-    """Tell all fits, what holds the cam on the shaft, and the thinnest wall.
+def clearance_check(assembly: Assembly, bodies: Sequence[Mover]) -> Check:
+    """Tell all fits, what holds the cam on the shaft, the thinnest wall, and the room that all bodies sweep.
 
     The least clearance among those that run must be above 0.
     """
@@ -55,7 +57,8 @@ def clearance_check(assembly: Assembly) -> Check:
     held = [f"too wide by {fit.held:.4g} mm to turn there: {fit.name}" for fit in assembly.fits if fit.held is not None]
     wall, where = thinnest(assembly)
     thin = f"thinnest wall {wall:.3g} mm: {where}"
-    detail = "; ".join([f"mm wider by construction: {', '.join(told)}", *held, thin, *assembly.remarks])
+    room = "takes up " + " by ".join(f"{length:.0f}" for length in swept_room(bodies)) + " mm as it turns"
+    detail = "; ".join([f"mm wider by construction: {', '.join(told)}", *held, thin, room, *assembly.remarks])
     return Check("clearance", least > 0.0, least, 0.0, "mm", None, "at_least", detail=detail)
 
 
@@ -80,6 +83,14 @@ def exempt(assembly: Assembly) -> Iterable[Allowed]:
     for one, other in combinations(assembly.members, 2):
         if one.group == other.group or frozenset({one.name, other.name}) in assembly.touching:
             yield Allowed(one.name, other.name, -math.inf)
+
+
+def swept_room(bodies: Sequence[Mover]) -> tuple[float, float, float]:
+    """Length, width and height of the box that holds all bodies at every angle, mm; each side within COARSE."""
+    boxes = np.array([swept_box(body, COARSE) for body in bodies])
+    (left, bottom), (right, top) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+    heights = [height for body in bodies for slab in body.slabs for height in (slab.low, slab.high)]
+    return float(right - left), float(top - bottom), max(heights) - min(heights)
 
 
 def movers(assembly: Assembly) -> list[Mover]:
