@@ -317,18 +317,20 @@ def _least(arcs: Arcs, chain: Arcs, side: float, radius: float, tolerance: float
     """Least distance of a path outside (side 1) or inside (-1) a chain, and where; sharp below the radius.
 
     A piece no point of which can come nearer than the nearest found, or than the radius, by a hundredth of the
-    tolerance needs no closer look.
+    tolerance needs no closer look. Where some still do after all looks, the least is what they cannot come below.
     """
-    best, place = np.inf, arcs.start[0]
+    best, place, floor = np.inf, arcs.start[0], np.inf
     for _ in range(LOOKS):
         middle = arcs.points(0.5 * arcs.length)
         distance = side * signed_distance(chain, middle)
         low = int(np.argmin(distance))
         if distance[low] < best:
             best, place = float(distance[low]), middle[low]
-        near = distance - 0.5 * arcs.length < min(best, radius) - 0.01 * tolerance
+        bound = distance - 0.5 * arcs.length
+        near = bound < min(best, radius) - 0.01 * tolerance
         if not near.any():
-            break
+            return best, place
+        floor = float(bound.min())
         arcs = arcs.take(near)
         arcs, _ = arcs.cut(np.full(len(arcs), 2, dtype=np.intp))
-    return best, place
+    return min(best, floor), place
