@@ -31,7 +31,7 @@ from kin.verify import Limits, verify
 ROOT = Path(__file__).parents[1]
 CAMS = {"yoke": "as-figure-2a", "roller": "w-figure-9"}
 COUNTS = [round(32 * 2 ** (k / 2)) for k in range(25)]
-PATIENCE = 8.0  # seconds for one file
+PATIENCE = 3.0  # seconds for one file
 REPEATS = 3  # of whole processes
 FINE = 1e-6  # mm: no peer is taken farther
 LEVELS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
