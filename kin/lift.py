@@ -16,9 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.ball import Ball
-from kin.bounding import unbounded
 from kin.distinct import distinct
-from kin.expression import Expression, FormulaDomainError, FormulaError
+from kin.expression import Expression
 from kin.jet import BallJet, cos, sin
 from kin.law import IntentError, Programme, first_harmonic
 from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Series, Side, Stretch
@@ -26,15 +25,13 @@ from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Series, Side, 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kin.formula import Formula
-
-
 __all__ = [
     "Circle",
     "IntentError",
     "Lift",
+    "about",
+    "joined",
     "lift_constant_breadth",
-    "lift_from_formula",
     "lift_from_fourier",
     "lift_hypocycloid",
     "lift_reuleaux",
@@ -45,18 +42,7 @@ Array = NDArray[np.float64]
 _TURN = 2 * math.pi
 # A jump in p or p' below this, relative to the largest of p, p', p'', is the rounding of a formula.
 _JOIN = 1e-11
-# p(t + 2 pi) against p(t), relative likewise: the parameter itself is rounded to an ulp of 4 pi.
-_PERIOD = 1e-9
-_SEAM_ORDER = 6  # derivatives that must agree at 0 and 2 pi, else 0 is a break
-_SLIVER = 1e-11  # rad: switches closer than this are one, found twice
-_CLEAR = 1e-6  # rad, likewise
 _SAME_CIRCLE = 16 * 2.0**-52
-_WHOLE = "a whole exponent is smooth where what it is put on vanishes"
-_HINTS = (
-    ("fractional power", _WHOLE),
-    ("derivative", _WHOLE),
-    ("division", "where both sides of a fraction vanish, write it out (sin(2*t)/sin(t) is 2*cos(t))"),
-)
 _LOOKS = 1024  # angles at which a formula's rounding is asked for
 
 
@@ -205,10 +191,13 @@ def _farther(function: Stretch, out: float, scale: float) -> Stretch:
     return _Moved(function, scale, 0.0, 0.0, scale * out)
 
 
-def _lift(
+def joined(
     knots: Sequence[float], functions: Sequence[Stretch], field: str, *, datum: float = 0.0, smooth_seam: bool = False
 ) -> Lift:
-    """Join stretches round the turn: arcs of one circle become one, and a corner or a tear is refused."""
+    """Join stretches round the turn, stretch i between knots i and i + 1 (rad): arcs of one circle become one.
+
+    Raises IntentError at `field` where p or p' jumps. `smooth_seam` tells that the last runs on in the first.
+    """
     knots, functions = list(knots), list(functions)
     i = 1
     while i < len(functions):
@@ -249,89 +238,12 @@ def _demand_joined(law: Piecewise, field: str) -> None:
             raise IntentError(f"{what} jumps {step} {unit} at {at:.6g} degrees: {harm}", field, at)
 
 
-def _about(function: Stretch, pivot: tuple[float, float], scale: float = 1.0) -> Stretch:
+def about(function: Stretch, pivot: tuple[float, float], scale: float = 1.0) -> Stretch:
+    """Give scale times a support function, about the shaft at `pivot`, mm."""
     x, y = pivot
     if isinstance(function, Circle):
         return Circle(function.radius * scale, function.x * scale - x, function.y * scale - y)
     return _Moved(function, scale, x, y) if scale != 1 or x or y else function
-
-
-def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0), scale: float = 1.0) -> Lift:
-    """Make p = scale times a formula in t (AS eq. 7 and Figure 2), mm, about the shaft at `pivot`, mm.
-
-    Raises IntentError, each with angle and figure, where the formula has no value or p, p', p'' no bound; where it does
-    not close, p(t + 2 pi) = p(t); and where abs, min, max or the like make p or p' jump. Jumps of p'' become breaks.
-    """
-    try:
-        places, pieces = formula.pieces(0.0, _TURN)
-        _demand_period(formula, places, scale)
-        wide = np.flatnonzero(np.diff(places) > _SLIVER)
-        pieces = tuple(pieces[i] for i in wide)
-        knots = [0.0, *places[wide[1:]].tolist(), _TURN]
-        for piece, begin, end in zip(pieces, knots[:-1], knots[1:], strict=True):
-            _demand_finite(piece, begin, end)
-    except FormulaDomainError as error:
-        at = math.degrees(error.at) % 360
-        what = "p or a derivative of it" if error.operation.startswith("derivative") else "p"
-        hint = next((f"; {hint}" for word, hint in _HINTS if word in error.operation), "")
-        raise IntentError(f"{what} does not exist at {at:.6g} degrees: {error.operation}{hint}", "p", at) from error
-    except FormulaError as error:
-        raise IntentError(error.message, "p") from error
-    functions = [_about(_plain(piece), pivot, scale) for piece in pieces]
-    one_kind = isinstance(functions[0], Circle) == isinstance(functions[-1], Circle)  # an arc ends where it ends
-    return _lift(knots, functions, "p", smooth_seam=one_kind and _runs_on(pieces[-1], pieces[0]))
-
-
-def _runs_on(last: Expression, first: Expression) -> bool:
-    """Tell whether the turn's end runs on in its beginning, by the derivatives there.
-
-    Expressions would not tell: abs(cos(t/2)) is another one at 2 pi and has no break at 0, abs(sin(t/2)) is the same
-    and has one.
-    """
-    try:
-        end, begin = last.jet(_TURN, _SEAM_ORDER).derivatives(), first.jet(0.0, _SEAM_ORDER).derivatives()
-    except FormulaDomainError:  # a high derivative does not exist there: a break
-        return False
-    return bool((np.abs(end - begin) <= _PERIOD * (1 + np.abs(begin).max())).all())
-
-
-def _demand_period(formula: Formula, switches: Array, scale: float) -> None:
-    """Refuse p(t + 2 pi) other than p(t), on a grid that no symmetry of the turn repeats and clear of the switches."""
-    t = np.mod(np.arange(1, 98) * (math.sqrt(5) - 1) * math.pi, _TURN)
-    t = t[np.abs(t[:, None] - switches).min(axis=1) > _CLEAR]
-    here = formula.jet(t, 2).derivatives()
-    miss = formula.jet(t + _TURN, 2).derivatives() - here
-    for row, what, unit in ((0, "p", "mm"), (1, "p'", "mm/rad"), (2, "p''", "mm/rad^2")):
-        worst = int(np.argmax(np.abs(miss[row])))
-        if abs(miss[row, worst]) > _PERIOD * np.abs(here).max():
-            at = math.degrees(t[worst])
-            miss_mm = scale * miss[row, worst]
-            raise IntentError(
-                f"p does not close: {what} is off by {miss_mm:.9g} {unit} a full turn after {at:.6g} degrees", "p", at
-            )
-
-
-def _demand_finite(piece: Expression, begin: float, end: float) -> None:
-    """Prove that p, p' and p'' are finite over a stretch, by halving what cannot be bounded yet."""
-    piece.jet(np.linspace(begin, end, 65), 2)  # raises where there is no value
-    at = unbounded(piece, begin, end, 2)
-    if at is not None:
-        degrees = math.degrees(at) % 360
-        raise IntentError(
-            f"p, p' or p'' cannot be bounded near {degrees:.6g} degrees; {_WHOLE}, and a fraction of which both sides "
-            "vanish has to be written out",
-            "p",
-            degrees,
-        )
-
-
-def _plain(piece: Expression) -> Stretch:
-    """Return the expression, or the circle that it is if it does not depend on t."""
-    enclosed = piece.ball(0.0, _TURN, 1)
-    if not enclosed.mid[1].any() and not enclosed.rad[1].any():
-        return Circle(float(enclosed.mid[0, 0]))
-    function: Stretch = piece
-    return function
 
 
 def lift_from_fourier(
@@ -350,7 +262,7 @@ def lift_from_fourier(
     function: Stretch = Harmonics(float(mean), tuple(terms))
     if all(k == 1 for k, _, _ in terms):
         function = Circle(float(mean), *(terms[0][1:] if terms else ()))
-    return _lift([0.0, _TURN], [_about(function, pivot)], "fourier", smooth_seam=True)
+    return joined([0.0, _TURN], [about(function, pivot)], "fourier", smooth_seam=True)
 
 
 def lift_hypocycloid(cusps: int, size: float, breadth: float, pivot: tuple[float, float] = (0.0, 0.0)) -> Lift:
@@ -360,8 +272,8 @@ def lift_hypocycloid(cusps: int, size: float, breadth: float, pivot: tuple[float
     """
     if cusps < 3 or cusps % 2 == 0:
         raise IntentError(f"constant breadth needs an odd number of cusps, 3 or more, not {cusps}", "hypocycloid.cusps")
-    function = _about(Harmonics(breadth / 2, ((cusps, float(size), 0.0),)), pivot)
-    return _lift([0.0, _TURN], [function], "hypocycloid", smooth_seam=True)
+    function = about(Harmonics(breadth / 2, ((cusps, float(size), 0.0),)), pivot)
+    return joined([0.0, _TURN], [function], "hypocycloid", smooth_seam=True)
 
 
 def lift_reuleaux(sides: int, breadth: float, rounding: float, pivot: tuple[float, float] = (0.0, 0.0)) -> Lift:
@@ -384,9 +296,9 @@ def lift_reuleaux(sides: int, breadth: float, rounding: float, pivot: tuple[floa
     for i in range(2 * sides):  # normals within `half` of i pi/n: about the corner there, or about the one opposite
         corner = (2 * i if i % 2 == 0 else 2 * (i + sides)) * half
         arc = Circle(breadth - rounding if i % 2 else rounding, *_polar(circumradius, corner))
-        functions.append(_about(arc, pivot))
+        functions.append(about(arc, pivot))
     knots = [(2 * i - 1) * half for i in range(2 * sides)] + [_TURN - half]
-    return _lift(knots, functions, "reuleaux")
+    return joined(knots, functions, "reuleaux")
 
 
 def _polar(radius: float, angle: float) -> tuple[float, float]:
@@ -427,7 +339,7 @@ def lift_constant_breadth(base_radius: float, programme: Programme) -> Lift:
         halves += [_raised(f, offset, sense, begin) for f in programme.motion.functions]
     first = programme.motion.knots
     knots = [*first[:-1], *(first + math.pi)]
-    return _lift(knots, halves, "motion", datum=base_radius)
+    return joined(knots, halves, "motion", datum=base_radius)
 
 
 def _raised(function: Stretch, offset: float, sense: float, start: float) -> Stretch:

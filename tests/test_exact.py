@@ -27,7 +27,8 @@ from camgeo.profile.support import SupportShape
 from camgeo.recipe import RecipeErrors, load, read
 from camgeo.recipe.model import FileRequest
 from kin.formula import Formula
-from kin.lift import lift_from_formula, lift_from_fourier, lift_hypocycloid
+from kin.lift import lift_from_fourier, lift_hypocycloid
+from kin.lift_formula import lift_from_formula
 from kin.read_dxf import read_dxf
 
 RECIPES = Path(__file__).parents[1] / "recipes"

@@ -19,7 +19,7 @@ FLOORS = {
         follower
         frame roller
         deviation flat layers resting
-        envelope mechanism
+        envelope lift_formula mechanism
         lift transmission
         chain formula possible read swept
         collision read_3mf read_step

@@ -11,13 +11,8 @@ from hypothesis import strategies as st
 
 from kin.formula import Formula
 from kin.law import LAWS, IntentError, Segment, law, polynomial_law, programme
-from kin.lift import (
-    lift_constant_breadth,
-    lift_from_formula,
-    lift_from_fourier,
-    lift_hypocycloid,
-    lift_reuleaux,
-)
+from kin.lift import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
+from kin.lift_formula import lift_from_formula
 
 TURN = 2 * math.pi
 TEAR = "the contact would jump along the face, and the contour tear open"

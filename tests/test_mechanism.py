@@ -13,7 +13,8 @@ from kin.forces import force
 from kin.formula import Formula
 from kin.jet import Jet
 from kin.law import IntentError
-from kin.lift import lift_from_formula, lift_from_fourier, lift_hypocycloid, lift_reuleaux
+from kin.lift import lift_from_fourier, lift_hypocycloid, lift_reuleaux
+from kin.lift_formula import lift_from_formula
 from kin.linkage import FourBar, InvertedSliderCrank, SliderCrank
 from kin.loop import BindingError
 from kin.mechanism import Mechanism, PlaceError

@@ -18,7 +18,8 @@ from camgeo.profile.wunderlich import PitchShape
 from camgeo.radius import LOOSE, Reversal, enclosed_least_radius, least_radius, reversals
 from kin.formula import Formula
 from kin.law import Segment, law, programme
-from kin.lift import lift_constant_breadth, lift_from_formula, lift_from_fourier, lift_reuleaux
+from kin.lift import lift_constant_breadth, lift_from_fourier, lift_reuleaux
+from kin.lift_formula import lift_from_formula
 from kin.transmission import from_arc
 
 

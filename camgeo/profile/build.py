@@ -88,8 +88,9 @@ def _support(cam: SupportCam) -> Lift:
     shape = cam.shape
     if isinstance(shape, FormulaShape):
         from kin.formula import Formula
+        from kin.lift_formula import lift_from_formula
 
-        return lift.lift_from_formula(Formula(shape.text), cam.pivot, shape.scale)
+        return lift_from_formula(Formula(shape.text), cam.pivot, shape.scale)
     if isinstance(shape, FourierShape):
         return lift.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), cam.pivot)
     if isinstance(shape, ReuleauxShape):
