@@ -8,22 +8,21 @@ import os
 import sys
 from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.batch import Task, result, results
 from camgeo.page import command as page_command
-from camgeo.progress import Progress
 from camgeo.recipe.model import KINDS
+from camgeo.status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.study import command as study_command
 from camgeo.sweep import command as sweep_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
-    from pathlib import Path
 
     from camgeo.recipe.model import Recipe
 
-OK, FAILED, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
-PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
 
@@ -88,35 +87,19 @@ def _parser() -> argparse.ArgumentParser:
         added.set_defaults(run=run)
         return added
 
-    def recipes(to: argparse.ArgumentParser) -> None:
-        to.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
-        tolerance(to)
-        output(to)
-
-    def tolerance(to: argparse.ArgumentParser) -> None:
-        text = "in place of export.tolerance, in the recipe's unit"
-        to.add_argument("--tolerance", type=_length, metavar="E", help=text)
-
-    def output(to: argparse.ArgumentParser) -> None:
-        to.add_argument("-v", "--verbose", action="store_true", help="every check and file as a table")
-        to.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
-
     export = command("export", _export, "Write a recipe's files and judge them from what lies on disk.")
-    recipes(export)
+    _add_recipes(export)
     export.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
     export.add_argument(
         "--only", action="append", default=[], choices=KINDS, help="only files of this kind; repeatable"
     )
-    export.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
     export.add_argument("--watch", action="store_true", help="export again at each saving; a page reloads itself")
     check = command("check", _check, "Every check of a recipe; nothing is written.")
-    recipes(check)
-    check.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
+    _add_recipes(check)
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
-    tolerance(verify)
-    output(verify)
+    _add_options(verify)
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
     sweep_command.add_arguments(sweep, _jobs)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file.")
@@ -130,6 +113,21 @@ def _parser() -> argparse.ArgumentParser:
     laws.add_argument("--json", action="store_true", help="as JSON, for machines")
     command("schema", _schema, "The recipe's JSON schema.")
     return parser
+
+
+def _add_recipes(command: argparse.ArgumentParser) -> None:
+    """Give a command of several recipes what all such take."""
+    command.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
+    _add_options(command)
+    command.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
+
+
+def _add_options(command: argparse.ArgumentParser) -> None:
+    """Give a command that makes reports its options."""
+    text = "in place of export.tolerance, in the recipe's unit"
+    command.add_argument("--tolerance", type=_length, metavar="E", help=text)
+    command.add_argument("-v", "--verbose", action="store_true", help="every check and file as a table")
+    command.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
 
 
 def _length(text: str) -> float:
@@ -160,22 +158,34 @@ def _complain(text: str) -> None:
 def _export(arguments: argparse.Namespace) -> int:
     if arguments.watch:
         return _watch(arguments)
-    return _several(arguments, "export")
+    recipes, status = _loaded(arguments.recipes, arguments.tolerance, arguments.only)
+    names = [recipe.name.casefold() for recipe in recipes]
+    twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
+    for recipe in twice:
+        text = f"the name {recipe.name} is used by several recipes of this call; give each its own `name:`"
+        _complain(f"{recipe.path}: {text}")
+    if twice:
+        return WRONG
+    return max(status, _told(recipes, Task(Path(arguments.out), tuple(arguments.only)), arguments))
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    recipes, status = _loaded(arguments.recipes, arguments.tolerance, ())
+    return max(status, _told(recipes, Task(None), arguments))
 
 
 def _watch(arguments: argparse.Namespace) -> int:
     """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
-    from pathlib import Path
-
     from camgeo.page.watch import watch
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.load import load
     from camgeo.recipe.model import FileRequest
+    from camgeo.store import REJECTED
 
     if len(arguments.recipes) != 1 or arguments.json:
         _complain("--watch takes one recipe, and no --json")
         return WRONG
-    path = Path(arguments.recipes[0])
+    path, out = Path(arguments.recipes[0]), Path(arguments.out)
     only = (*arguments.only, "html") if arguments.only else ()
 
     def exported() -> tuple[str | None, str]:
@@ -186,128 +196,61 @@ def _watch(arguments: argparse.Namespace) -> int:
             return None, str(errors)
         asked = [request for request in recipe.export.files if request.kind != "html"]
         page = FileRequest("html")
-        export = replace(recipe.export, files=(*asked, page))
-        if arguments.tolerance is not None:
-            export = replace(export, tolerance=arguments.tolerance * recipe.mm)
-        recipe = replace(recipe, export=export)
-        report, message, _ = _one(recipe, "export", {"out": arguments.out, "only": only}, None)
-        if report is None:
-            print(message, file=sys.stderr)
-            return None, message
-        _show(report, verbose=arguments.verbose)
-        folder = Path(arguments.out) / (recipe.name if report["ok"] else f"{recipe.name}.rejected")
+        recipe = replace(recipe, export=replace(recipe.export, files=(*asked, page)))
+        found = result(_at(recipe, arguments.tolerance), Task(out, only))
+        if found.report is None:
+            print(found.message, file=sys.stderr)
+            return None, found.message
+        _show(found.report, verbose=arguments.verbose)
+        folder = out / (recipe.name if found.report["ok"] else f"{recipe.name}{REJECTED}")
         return (folder / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
 
     watch(path, exported, lambda address: print(f"watching {path}: {address}  (ctrl-c ends)", flush=True))
     return OK
 
 
-def _check(arguments: argparse.Namespace) -> int:
-    return _several(arguments, "check")
-
-
-def _several(arguments: argparse.Namespace, command: str) -> int:
-    """Load every recipe, run those that are sound, print what came of each; the highest status."""
+def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) -> tuple[list[Recipe], int]:
+    """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong."""
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.load import load
 
-    status = OK
     recipes: list[Recipe] = []
-    for path in arguments.recipes:
+    for path in paths:
         try:
             recipe = load(path)
         except RecipeErrors as errors:
             print(errors, file=sys.stderr)
-            status = WRONG
             continue
-        only = getattr(arguments, "only", ())
         if only and not any(request.kind in only for request in recipe.export.files):
             line, column = recipe.locate("export.files")
             _complain(f"{path}:{line}:{column}: export.files lists no {' or '.join(only)}, which --only asks for")
-            status = WRONG
             continue
-        if arguments.tolerance is not None:
-            recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
-        recipes.append(recipe)
-    if command == "export":
-        names = [recipe.name.casefold() for recipe in recipes]
-        twice = {recipe.name: recipe.path for recipe in recipes if names.count(recipe.name.casefold()) > 1}
-        if twice:
-            for name, path in twice.items():
-                _complain(f"{path}: the name {name} is used by several recipes of this call; give each its own `name:`")
-            return WRONG
-    options = {"out": getattr(arguments, "out", "out"), "only": tuple(getattr(arguments, "only", ()))}
+        recipes.append(_at(recipe, tolerance))
+    return recipes, OK if len(recipes) == len(paths) else WRONG
+
+
+def _at(recipe: Recipe, tolerance: float | None) -> Recipe:
+    """Give the recipe with the tolerance of the call, in its own unit, if there is one."""
+    if tolerance is None:
+        return recipe
+    return replace(recipe, export=replace(recipe.export, tolerance=tolerance * recipe.mm))
+
+
+def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> int:
+    """Run recipes and print what came of each; the highest status."""
+    status = OK
     reports: list[dict[str, Any]] = []
-    for report, message, code in _results(recipes, command, options, arguments.jobs):
-        status = max(status, code)
-        if report is not None:
-            reports.append(report)
+    for found in results(recipes, task, arguments.jobs):
+        status = max(status, found.status)
+        if found.report is not None:
+            reports.append(found.report)
             if not arguments.json:
-                _show(report, verbose=arguments.verbose)
-        if message:
-            print(message, file=sys.stderr)
+                _show(found.report, verbose=arguments.verbose)
+        if found.message:
+            print(found.message, file=sys.stderr)
     if arguments.json:
         _print_json(reports)
     return status
-
-
-Result = tuple["dict[str, Any] | None", str, int]
-
-
-def _results(recipes: list[Recipe], command: str, options: dict[str, Any], jobs: int | None) -> Iterator[Result]:
-    """Result of each recipe in order, several processes at once where that pays."""
-    workers = jobs or (min(os.cpu_count() or 1, len(recipes)) if len(recipes) >= PARALLEL_FROM else 1)
-    if workers <= 1 or len(recipes) < 2:
-        for recipe in recipes:
-            yield _one(recipe, command, options, Progress(recipe.name))
-        return
-    import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
-    from concurrent.futures.process import BrokenProcessPool
-
-    progress = Progress(f"{len(recipes)} recipes")
-    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
-    with ProcessPoolExecutor(workers, context) as pool:
-        futures = [pool.submit(_one, recipe, command, options, None) for recipe in recipes]
-        try:
-            for number, future in enumerate(futures):
-                progress(f"{number} of {len(futures)} done")
-                try:
-                    result = future.result()
-                except BrokenProcessPool:
-                    # one process was killed, and takes with it what the others had in hand
-                    text = "a process was killed before this recipe was done, for want of memory perhaps; see --jobs"
-                    result = None, f"camgeo: {recipes[number].name}: {text}", SURROUNDINGS
-                progress.clear()
-                yield result
-        except KeyboardInterrupt:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-
-
-def _one(recipe: Recipe, command: str, options: dict[str, Any], progress: Progress | None) -> Result:
-    """Run one recipe; the report, a message for standard error, and the status."""
-    from pathlib import Path
-
-    from camgeo import pipeline
-    from camgeo.recipe.errors import RecipeErrors
-    from camgeo.store import SurroundingsError
-
-    try:
-        if command == "check":
-            outcome = pipeline.check(recipe, told=progress)
-        else:
-            outcome = pipeline.export(recipe, Path(options["out"]), only=options["only"], told=progress)
-    except RecipeErrors as errors:
-        return None, str(errors), WRONG
-    except (SurroundingsError, OSError) as error:
-        return None, f"camgeo: {recipe.name}: {error}", SURROUNDINGS
-    except ModuleNotFoundError as error:
-        return None, f"camgeo: {recipe.name}: the package {error.name} is missing", SURROUNDINGS
-    finally:
-        if progress is not None:
-            progress.clear()
-    return outcome.report, "", OK if outcome.ok else FAILED
 
 
 def _show(report: dict[str, Any], *, verbose: bool) -> None:
@@ -329,17 +272,13 @@ def _print_json(data: object) -> None:
 
 def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
-    from pathlib import Path
-
     from camgeo import pipeline
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.load import load
     from kin.read import SUFFIXES
 
     try:
-        recipe = load(arguments.recipe)
-        if arguments.tolerance is not None:
-            recipe = replace(recipe, export=replace(recipe.export, tolerance=arguments.tolerance * recipe.mm))
+        recipe = _at(load(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
         files = [path for path in paths if path.is_file()]
         faults = [f"{p}: {_no_file(p)}" for p in paths if p not in files]

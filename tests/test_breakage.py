@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from camgeo import cli
 from camgeo.cli import main
+from camgeo.status import SURROUNDINGS, WRONG
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -85,7 +85,7 @@ def test_a_tolerance_that_is_none_is_refused(
 ) -> None:
     with pytest.raises(SystemExit) as left:
         exported(tmp_path, "cam: {kind: support, p: '25'}\n", f"--tolerance={tolerance}")
-    assert left.value.code == cli.WRONG
+    assert left.value.code == WRONG
     assert f"a tolerance is a length above 0 and up to 2000000, not {tolerance}" in capsys.readouterr().err
 
 
@@ -95,7 +95,7 @@ def test_a_number_of_processes_that_is_none_is_refused(
 ) -> None:
     with pytest.raises(SystemExit) as left:
         exported(tmp_path, "cam: {kind: support, p: '25'}\n", f"--jobs={jobs}")
-    assert left.value.code == cli.WRONG
+    assert left.value.code == WRONG
     assert f"a whole number from 1, not {jobs}" in capsys.readouterr().err
 
 
@@ -114,7 +114,7 @@ def test_a_full_disk_under_the_output_is_the_surroundings() -> None:
     with open("/dev/full", "w", encoding="utf-8") as full:  # noqa: PTH123
         call = [sys.executable, "-m", "camgeo.cli", "schema"]
         done = subprocess.run(call, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
-    assert done.returncode == cli.SURROUNDINGS
+    assert done.returncode == SURROUNDINGS
     assert done.stderr == "camgeo: the output cannot be written: No space left on device\n"
 
 
@@ -126,7 +126,7 @@ def test_a_killed_process_is_told_for_each_recipe(
     for path in paths:
         path.write_text("cam: {kind: support, p: '25'}\n", encoding="utf-8")
     monkeypatch.setattr("camgeo.pipeline.check", lambda *_, **__: os._exit(9))
-    assert main(["check", *map(str, paths), "--jobs", "2"]) == cli.SURROUNDINGS
+    assert main(["check", *map(str, paths), "--jobs", "2"]) == SURROUNDINGS
     said = capsys.readouterr().err.splitlines()
     assert [line.split(": ")[:2] for line in said] == [["camgeo", "one"], ["camgeo", "two"]]
     assert all("a process was killed" in line for line in said)

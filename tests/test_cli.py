@@ -99,7 +99,9 @@ def test_two_recipes_of_one_name_are_an_error(good: Path, tmp_path: Path, capsys
     other.parent.mkdir()
     other.write_text(GOOD, encoding="utf-8")
     assert main(["export", str(good), str(other), "--out", str(tmp_path / "out")]) == 2
-    assert "used by several recipes" in capsys.readouterr().err
+    said = capsys.readouterr().err.splitlines()
+    assert [line.split(": ")[1] for line in said] == [str(good), str(other)]
+    assert all("the name good is used by several recipes" in line for line in said)
     assert not (tmp_path / "out").exists()
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.progress import Progress
+from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
 
 if TYPE_CHECKING:
     import argparse
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from camgeo.page.content import Content
     from camgeo.recipe.model import Recipe
 
-OK, FAILED, WRONG, SURROUNDINGS = 0, 1, 2, 3
 REPORT, PAGE, PICTURE = "page.json", "page.html", "page"
 FORMS = ("svg", "png")
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.progress import Progress
+from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.study import FORMS
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
     from camgeo.study.ladder import Ended, Rung
 
-OK, FAILED, WRONG, SURROUNDINGS = 0, 1, 2, 3
 REPORT, PICTURE = "study.json", "study.png"
 PATIENCE = 2.0  # seconds of a run, fit, write and judge together, after which a ladder goes no further
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.progress import Progress
+from camgeo.status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 
 if TYPE_CHECKING:
     import argparse
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from camgeo.sweep.run import Told
     from camgeo.sweep.search import Means, Outcome
 
-FOUND, NOTHING, WRONG, SURROUNDINGS, INTERRUPTED = 0, 1, 2, 3, 130
 _EXTRAS = {"distributed": "dask", "numba": "fast"}  # of packages that are not in the extra `sweep`
 _SAID = 5  # best designs that -v tells
 
@@ -91,7 +91,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
         return None, f"{where}: {error.strerror or error}; {resume}", SURROUNDINGS
     finally:
         progress.clear()
-    return outcome, "", FOUND if outcome.report["ok"] else NOTHING
+    return outcome, "", OK if outcome.report["ok"] else FAILED
 
 
 def _means() -> Means:

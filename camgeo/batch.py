@@ -1,0 +1,90 @@
+"""The recipes of one call, one after another or several at once; of each its report, a message, an exit status."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from camgeo.progress import Progress
+from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from camgeo.recipe.model import Recipe
+
+PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is done with each recipe: files of the kinds `only`, or of all, into `out`; without `out` only checks."""
+
+    out: Path | None
+    only: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of one recipe: its report, None where it came to none; a message for standard error; the status."""
+
+    report: dict[str, Any] | None
+    message: str
+    status: int
+
+
+def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Result]:
+    """Give the result of each recipe in their order; `jobs` processes at once, None for as many as pay."""
+    workers = jobs or (min(os.cpu_count() or 1, len(recipes)) if len(recipes) >= PARALLEL_FROM else 1)
+    if workers <= 1 or len(recipes) < 2:
+        for recipe in recipes:
+            yield result(recipe, task, Progress(recipe.name))
+        return
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures.process import BrokenProcessPool
+
+    progress = Progress(f"{len(recipes)} recipes")
+    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+    with ProcessPoolExecutor(workers, context) as pool:
+        futures = [pool.submit(result, recipe, task) for recipe in recipes]
+        try:
+            for number, future in enumerate(futures):
+                progress(f"{number} of {len(futures)} done")
+                try:
+                    found = future.result()
+                except BrokenProcessPool:
+                    # one process was killed, and takes with it what the others had in hand
+                    text = "a process was killed before this recipe was done, for want of memory perhaps; see --jobs"
+                    found = Result(None, f"camgeo: {recipes[number].name}: {text}", SURROUNDINGS)
+                progress.clear()
+                yield found
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Result:
+    """Run one recipe; a wrong recipe, the disk and a missing package are told in the result, not raised."""
+    from camgeo import pipeline
+    from camgeo.recipe.errors import RecipeErrors
+    from camgeo.store import SurroundingsError
+
+    try:
+        if task.out is None:
+            outcome = pipeline.check(recipe, told=progress)
+        else:
+            outcome = pipeline.export(recipe, task.out, only=task.only, told=progress)
+    except RecipeErrors as errors:
+        return Result(None, str(errors), WRONG)
+    except (SurroundingsError, OSError) as error:
+        return Result(None, f"camgeo: {recipe.name}: {error}", SURROUNDINGS)
+    except ModuleNotFoundError as error:
+        return Result(None, f"camgeo: {recipe.name}: the package {error.name} is missing", SURROUNDINGS)
+    finally:
+        if progress is not None:
+            progress.clear()
+    return Result(outcome.report, "", OK if outcome.ok else FAILED)
