@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import math
 import re
@@ -19,7 +20,7 @@ from pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
 
 from camgeo.cli import main
 from camgeo.design import designed
-from camgeo.page import svg
+from camgeo.page import svg, tables
 from camgeo.page.content import content
 from camgeo.page.outline import MEASURED, read
 from camgeo.page.pack import packed, unpacked
@@ -151,7 +152,7 @@ def test_checks_stand_with_their_values_failed_ones_first(tmp_path: Path) -> Non
 
 
 def test_figures_are_shown_short_and_told_exactly(made: Made) -> None:
-    table = made.text.partition('id="checks-head"')[2].partition("</table>")[0]
+    table = made.text.partition('id="checks-head"')[2].partition("</section>")[0]
     for check in made.outcome.report["checks"]:
         if check["value"] is not None:
             assert f"{check['value']:.6g}" in table
@@ -159,6 +160,21 @@ def test_figures_are_shown_short_and_told_exactly(made: Made) -> None:
                 assert repr(check["value"]) in table
     for file in made.outcome.report["files"]:
         assert file["path"] in made.text
+
+
+def test_of_many_checks_those_of_files_that_hold_are_folded_up(made: Made, monkeypatch: pytest.MonkeyPatch) -> None:
+    report = copy.deepcopy(made.outcome.report)
+    fails = next(check for check in report["checks"] if check.get("file"))
+    fails["ok"] = False
+    monkeypatch.setattr(tables, "MANY", 3)
+    shown, *folded = tables.checks(report).split("<details")
+    rows = r'<tr class="(ok|failed)">'
+    assert re.findall(rows, shown).count("failed") == 1
+    assert len(re.findall(rows, shown)) == 1 + sum(not check.get("file") for check in report["checks"])
+    assert {state for part in folded for state in re.findall(rows, part)} == {"ok"}
+    told = [int(re.findall(r"<summary>(\d+) check", part)[0]) for part in folded]
+    assert told == [len(re.findall(rows, part)) for part in folded]
+    assert sum(told) + len(re.findall(rows, shown)) == len(report["checks"])
 
 
 # --- the numbers ------------------------------------------------------------------------------------------------------

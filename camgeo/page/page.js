@@ -488,8 +488,17 @@
     width = document.body.clientWidth;
     fit();
   }).observe(document.body);
-  window.addEventListener("beforeprint", fit);
-  window.addEventListener("afterprint", fit);
+  // what is folded up on a screen stands open on paper
+  let folded = [];
+  window.addEventListener("beforeprint", () => {
+    folded = [...document.querySelectorAll("details:not([open])")];
+    for (const one of folded) one.open = true;
+    fit();
+  });
+  window.addEventListener("afterprint", () => {
+    for (const one of folded) one.open = false;
+    fit();
+  });
   fit();
   // #deg=90 begins there and stands still, #deg=90&play turns on from there
   const begin = /^#deg=(-?[0-9.]+)(&play)?$/.exec(location.hash);

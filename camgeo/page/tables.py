@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 # With a linkage these concern the cam in its frame alone, and their place is the relative angle (docs/report.md).
 OVER_RELATIVE = frozenset({"contour", "motion", "constant-breadth", "breadth-max"})
 NONE = "–"
+MANY = 40  # checks, beyond which those of files that hold are folded up
 
 
 def failing(checks: Sequence[dict[str, Any]]) -> str:
@@ -22,23 +23,41 @@ def failing(checks: Sequence[dict[str, Any]]) -> str:
 
 
 def checks(report: dict[str, Any]) -> str:
-    """Return the table of checks; a place is a button that turns the shaft there."""
-    rows = []
+    """Return the table of checks, failed ones first; a place is a button that turns the shaft there.
+
+    Of many, those of files that hold are folded up, file by file.
+    """
+    shown: list[dict[str, Any]] = sorted(report["checks"], key=lambda check: bool(check["ok"]))
+    folded: dict[str, list[dict[str, Any]]] = {}
+    if len(shown) > MANY:
+        for check in shown:
+            if check["ok"] and check.get("file"):
+                folded.setdefault(check["file"], []).append(check)
+        shown = [check for check in shown if not check["ok"] or not check.get("file")]
     linked = "linkage" in report
-    for check in sorted(report["checks"], key=lambda check: bool(check["ok"])):
-        sign = "≥" if check["sense"] == "at_least" else "≤"
-        limit = NONE if check["limit"] is None else f"{sign} {number(check['limit'])}"
-        over = "relative" if linked and check["name"] in OVER_RELATIVE else "shaft"
-        detail = f'<div class="detail">{escape(check["detail"])}</div>' if check.get("detail") else ""
-        rows.append(
-            f'<tr class="{"ok" if check["ok"] else "failed"}">'
-            f'<td class="state">{"holds" if check["ok"] else "fails"}</td>'
-            f'<th scope="row">{escape(check["name"])}{detail}</th>'
-            f'<td class="number">{number(check["value"])}</td>'
-            f"<td>{escape(_unit(check['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
-            f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
-        )
-    return _table("Checks", ("", "check", "value", "unit", "limit", "at", "file"), rows, "checks")
+    head = ("", "check", "value", "unit", "limit", "at", "file")
+    text = _table("Checks", head, [_check(check, linked=linked) for check in shown], "checks")
+    for file, held in folded.items():
+        rows = [_check(check, linked=linked) for check in held]
+        told = f"{len(held)} check{'s' * (len(held) != 1)} of {escape(file)} hold{'s' * (len(held) == 1)}"
+        table = _table(f"Checks of {escape(file)}", head, rows, "checks")
+        text += f'<details class="file"><summary>{told}</summary>{table}</details>'
+    return text
+
+
+def _check(check: dict[str, Any], *, linked: bool) -> str:
+    sign = "≥" if check["sense"] == "at_least" else "≤"
+    limit = NONE if check["limit"] is None else f"{sign} {number(check['limit'])}"
+    over = "relative" if linked and check["name"] in OVER_RELATIVE else "shaft"
+    detail = f'<div class="detail">{escape(check["detail"])}</div>' if check.get("detail") else ""
+    return (
+        f'<tr class="{"ok" if check["ok"] else "failed"}">'
+        f'<td class="state">{"holds" if check["ok"] else "fails"}</td>'
+        f'<th scope="row">{escape(check["name"])}{detail}</th>'
+        f'<td class="number">{number(check["value"])}</td>'
+        f"<td>{escape(_unit(check['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
+        f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
+    )
 
 
 def written(report: dict[str, Any]) -> str:
