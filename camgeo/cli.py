@@ -102,8 +102,8 @@ def _parser() -> argparse.ArgumentParser:
     _add_options(verify)
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
     sweep_command.add_arguments(sweep, _jobs)
-    new = command("new", _new, "A starter recipe, on the terminal or in a new file.")
-    new.add_argument("kind", metavar="KIND")
+    new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, which there are.")
+    new.add_argument("kind", nargs="?", metavar="KIND")
     new.add_argument("file", nargs="?", metavar="FILE")
     study = command("study", study_command.run, "Error against run time of each output form; a recipe's margins.")
     study_command.add_arguments(study)
@@ -306,10 +306,13 @@ def _no_file(path: Path) -> str:
 
 
 def _new(arguments: argparse.Namespace) -> int:
-    """Print a starter recipe, or write it where no file is yet."""
+    """Print a starter recipe, or write it where no file is yet; without a kind, print the kinds."""
     from camgeo.recipe.starter import KINDS as STARTERS
     from camgeo.recipe.starter import starter
 
+    if arguments.kind is None:
+        print("\n".join(STARTERS))
+        return OK
     if arguments.kind not in STARTERS:
         _complain(f"no recipe is called {arguments.kind}; there are: {', '.join(STARTERS)}")
         return WRONG

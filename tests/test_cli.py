@@ -144,6 +144,8 @@ def test_new_gives_recipes_that_pass(tmp_path: Path, capsys: pytest.CaptureFixtu
         assert main(["new", kind, str(path)]) == 2
     assert main(["new", "square"]) == 2
     assert "support" in capsys.readouterr().err
+    assert main(["new"]) == 0
+    assert tuple(capsys.readouterr().out.split()) == KINDS
 
 
 def test_laws_and_schema(capsys: pytest.CaptureFixture[str]) -> None:

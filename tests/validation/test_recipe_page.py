@@ -1,4 +1,4 @@
-"""docs/recipe.md against the schema, and every YAML block of it and of README.md through the product."""
+"""docs/recipe.md against the schema; every YAML block of the pages, and what README.md prints, by the product."""
 
 import re
 from dataclasses import replace
@@ -7,11 +7,12 @@ import pytest
 import recipe_page
 
 from camgeo import pipeline
+from camgeo.cli import main
 from camgeo.recipe import read
 from kin.expression import FUNCTIONS
 from kin.law import LAWS
 
-PAGES = ("README.md", "docs/recipe.md", "docs/linkages.md", "docs/manufacture.md")
+PAGES = ("README.md", *(f"docs/{name}.md" for name in ("recipe", "linkages", "manufacture", "mechanism", "sweep")))
 
 
 def blocks():
@@ -36,6 +37,15 @@ def test_every_recipe_shown_is_made_and_passes(text):
     recipe = replace(recipe, verify=replace(recipe.verify, angles=360))
     outcome = pipeline.check(recipe)
     assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+
+
+def test_the_readme_prints_what_its_recipe_gives(tmp_path, capsys):
+    text = (recipe_page.ROOT / "README.md").read_text(encoding="utf-8")
+    recipe, *_ = re.findall(r"^```yaml\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    (tmp_path / "shu-wu.yaml").write_text(recipe, encoding="utf-8")
+    assert main(["check", str(tmp_path / "shu-wu.yaml")]) == 0
+    (shown,) = re.findall(r"^```text\n(shu-wu: .*?)^```", text, re.MULTILINE | re.DOTALL)
+    assert capsys.readouterr().out == shown
 
 
 @pytest.mark.parametrize("name", recipe_page.tables())
