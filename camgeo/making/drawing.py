@@ -87,25 +87,23 @@ def _write(job: Job, outline: Outline, request: FileRequest, path: Path, tool: l
 
 def _reference(job: Job) -> list[Reference]:
     """Centre, base or prime circle, and the pitch curve: to look at, not to cut."""
-    import numpy as np
-
     from camgeo.files.dxf import Circle, Point, Trace
     from camgeo.fit.arcs import fit_arcs
+    from camgeo.part.wall import distance_inside
 
     recipe, profile = job.recipe, job.design.profile
     cam = recipe.cam
     found: list[Reference] = [Point("shaft", (0.0, 0.0))]
     if recipe.part.hub is not None:
         found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
-    base = profile.base.sample(profile.base.cells.low).point
     if isinstance(cam, ConstantBreadthCam):
         found.append(Circle("base circle", (0.0, 0.0), cam.base_radius))
     elif isinstance(cam, SupportCam):
-        radius = float(np.hypot(base[:, 0], base[:, 1]).min())
-        if radius > 0.0:  # the shaft may stand on the contour itself
+        radius = abs(distance_inside(profile.base, (0.0, 0.0))[0])
+        if radius > recipe.export.tolerance:  # the shaft may stand on the contour itself
             found.append(Circle("base circle", (0.0, 0.0), radius))
     elif isinstance(cam, DoubleRollerCam):
-        found.append(Circle("prime circle", (0.0, 0.0), float(np.hypot(base[:, 0], base[:, 1]).min())))
+        found.append(Circle("prime circle", (0.0, 0.0), abs(distance_inside(profile.base, (0.0, 0.0))[0])))
         pitch = fit_arcs(profile.base, COARSE)
         found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
         found.append(Circle("pivot circle", (0.0, 0.0), cam.arm))
