@@ -8,12 +8,15 @@ from dataclasses import replace
 from pathlib import Path
 from unittest import mock
 
+import ezdxf
+import numpy as np
 import pytest
 
 from camgeo import pipeline
-from camgeo.design import Clock
+from camgeo.design import Clock, designed
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load, read
+from camgeo.recipe.model import FileRequest
 from kin.judge import SPLINE_ERROR
 
 RECIPES = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
@@ -214,3 +217,15 @@ def test_a_file_is_verified_to_its_own_tolerance(tmp_path: Path) -> None:
     report = pipeline.judged(recipe, [folder / f"{recipe.name}.dxf", folder / f"{recipe.name}.stl"])
     assert report["ok"]
     assert [file["tolerance"] for file in report["files"]] == pytest.approx([0.005, 0.01])
+
+
+@pytest.mark.parametrize("name", ["reuleaux", "reuleaux-nine", "as-figure-13-1", "w-figure-9"])
+def test_the_circle_drawn_for_reference_is_the_largest_about_the_shaft(name: str, tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].parent / f"{name}.yaml")
+    drawing = replace(recipe.export, files=(FileRequest("dxf", "arcs", "R2010"),))
+    outcome = pipeline.export(replace(recipe, export=drawing), tmp_path)
+    assert outcome.folder is not None
+    shapes = ezdxf.readfile(outcome.folder / f"{recipe.name}.dxf").query('CIRCLE[layer=="REFERENCE"]')
+    base = designed(recipe).profile.base
+    points = base.sample(np.linspace(base.cells.low.min(), base.cells.high.max(), 100_001)).point
+    assert shapes[0].dxf.radius * recipe.mm == pytest.approx(np.hypot(*points.T).min(), abs=1e-6)
