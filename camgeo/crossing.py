@@ -21,28 +21,78 @@ if TYPE_CHECKING:
 SHORT = 0.02  # of the period: parameter lengths over which points' differences are integrated, not subtracted
 STEPS = 40
 MOST_PAIRS = 200_000  # looked at together
-NODES = 12  # of the quadrature between two breaks
+NODES = 12  # of the quadrature of one panel
+SHARPER = 0.05  # of the size: paths of less are told better by their integral than by their ends' points
+PANEL_SHARPNESS = 1e-10  # of a panel's path: halves that agree with it so far are right to the last digits
+PANEL_HALVINGS = 8
 
 
 def displacement(curve: Curve, start: Array, end: Array) -> Array:
-    """Give ``c(end) - c(start)`` (n, 2) for start <= end (n,), exact to the last digits of its own size where short."""
-    out = np.empty((start.size, 2))
-    short = end - start <= SHORT * curve.shape.period
-    if (~short).any():
-        count = int((~short).sum())
-        ends = curve.sample(np.concatenate([start[~short], end[~short]])).point
-        out[~short] = ends[count:] - ends[:count]
-    if short.any():
-        breaks = all_breaks(curve, float(start[short].min()), float(end[short].max()))
-        knots = np.clip(breaks[None], start[short, None], end[short, None])
-        knots = np.concatenate([start[short, None], knots, end[short, None]], axis=1)
-        half = 0.5 * np.diff(knots, axis=1)
-        node, weight = np.polynomial.legendre.leggauss(NODES)
-        t = 0.5 * (knots[:, 1:] + knots[:, :-1])[..., None] + half[..., None] * node
-        at = curve.sample(t.ravel())
-        velocity = (at.speed[:, None] * at.tangent).reshape(*t.shape, 2)
-        out[short] = np.einsum("npg,npga->na", half[..., None] * weight, velocity)
+    """Give ``c(end) - c(start)`` (n, 2) for start <= end (n,), exact to the last digits of its own size where short.
+
+    A path about as long as the curve's size, however short in parameter, is the difference of its ends.
+    """
+    ends = curve.sample(np.concatenate([start, end])).point
+    out: Array = ends[start.size :] - ends[: start.size]
+    short = np.flatnonzero(end - start <= SHORT * curve.shape.period)
+    if short.size:
+        knots = _between(
+            all_breaks(curve, float(start[short].min()), float(end[short].max())), start[short], end[short]
+        )
+        which, path = _short_paths(curve, knots)
+        out[short[which]] = path
     return out
+
+
+def _short_paths(curve: Curve, knots: Array) -> tuple[NDArray[np.intp], Array]:
+    """Integral of the velocity (m, 2) over the short ones of stretches that `knots` (n, k) divide at breaks, and which.
+
+    Panels are halved until both halves together say what the whole said; what these are off by is far below that.
+    """
+    count = knots.shape[0]
+    low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
+    owner = np.repeat(np.arange(count), knots.shape[1] - 1)
+    whole, length, _ = _quadrature(curve, low, high)
+    short = np.bincount(owner, length, count) < SHARPER * curve.size
+    panels = short[owner] & (high > low)
+    owner, low, high, whole = owner[panels], low[panels], high[panels], whole[panels]
+    path = np.zeros((count, 2))
+    for level in range(PANEL_HALVINGS + 1):
+        middle = 0.5 * (low + high)
+        halves, speeds, turned = _quadrature(curve, np.concatenate([low, middle]), np.concatenate([middle, high]))
+        parts, both = halves.reshape(2, -1, 2), speeds.reshape(2, -1).sum(axis=0)
+        # what a parallel's speed loses in the difference that it is
+        noise = ROUNDING * curve.size * (high - low + turned.reshape(2, -1).sum(axis=0))
+        off = np.abs(parts.sum(axis=0) - whole).max(axis=1, initial=0.0)
+        done = (off <= PANEL_SHARPNESS * both + noise) | (level == PANEL_HALVINGS)
+        np.add.at(path, owner[done], parts.sum(axis=0)[done])
+        if done.all():
+            break
+        rest = ~done
+        whole = np.concatenate([parts[0, rest], parts[1, rest]])
+        low, high = np.concatenate([low[rest], middle[rest]]), np.concatenate([middle[rest], high[rest]])
+        owner = np.tile(owner[rest], 2)
+    which = np.flatnonzero(short)
+    return which, path[which]
+
+
+def _quadrature(curve: Curve, low: Array, high: Array) -> tuple[Array, Array, Array]:
+    """Integrals over panels (n,) by one rule each: of the velocity (n, 2), of absolute speed and turn (n,)."""
+    node, weight = np.polynomial.legendre.leggauss(NODES)
+    half = 0.5 * (high - low)
+    at = curve.sample((0.5 * (low + high)[:, None] + half[:, None] * node).ravel())
+    share = half[:, None] * weight
+    velocity = (at.speed[:, None] * at.tangent).reshape(low.size, NODES, 2)
+    speed, turn = (np.abs(a).reshape(low.size, NODES) for a in (at.speed, at.turn))
+    return np.einsum("np,npa->na", share, velocity), np.sum(share * speed, axis=1), np.sum(share * turn, axis=1)
+
+
+def _between(breaks: Array, start: Array, end: Array) -> Array:
+    """Start, breaks between and end of each stretch (n, m), as many times the end as others have more breaks."""
+    first, after = np.searchsorted(breaks, start, side="right"), np.searchsorted(breaks, end, side="left")
+    own = first[:, None] + np.arange(int((after - first).max()))
+    inside = np.append(breaks, np.inf)[np.minimum(own, breaks.size)]
+    return np.concatenate([start[:, None], np.minimum(inside, end[:, None]), end[:, None]], axis=1)
 
 
 def all_breaks(curve: Curve, low: float, high: float) -> Array:
@@ -107,27 +157,30 @@ def settled(curve: Curve, pairs: Array, size: float) -> Array:
     t, s = t[s > t], s[s > t]
     if t.size == 0:
         return np.empty((0, 2))
-    step = np.full((2, t.size), np.inf)
+    last = np.full(t.size, np.inf)
+    moving = np.arange(t.size)
     for _ in range(STEPS):
-        gap = displacement(curve, t, s)
-        at = curve.sample(np.concatenate([t, s]))
-        one, two = at.tangent[: t.size], at.tangent[t.size :]
-        turn = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = np.stack(
-                [
-                    (gap[:, 0] * two[:, 1] - gap[:, 1] * two[:, 0]) / (at.speed[: t.size] * turn),
-                    (gap[:, 0] * one[:, 1] - gap[:, 1] * one[:, 0]) / (at.speed[t.size :] * turn),
-                ]
-            )
-        most = 0.2 * (s - t)
-        step = np.clip(np.where(np.isfinite(step), step, most), -most, most)
-        t, s = t + step[0], s + step[1]
-        if (np.abs(step) <= 2.0 * np.spacing(np.maximum(np.abs(t), np.abs(s)))).all():
+        one, two = t[moving], s[moving]
+        by = np.stack(_towards(curve, one, two))
+        most = 0.2 * (two - one)
+        by = np.clip(np.where(np.isfinite(by), by, most), -most, most)
+        t[moving], s[moving] = one + by[0], two + by[1]
+        last[moving] = np.abs(by).max(axis=0)
+        moving = moving[last[moving] > 2.0 * np.spacing(np.maximum(np.abs(t), np.abs(s)))[moving]]
+        if moving.size == 0:
             break
     at = curve.sample(np.concatenate([t, s]))
     forward = (at.speed[: t.size] > 0.0) & (at.speed[t.size :] > 0.0)
     close = np.abs(displacement(curve, t, s)).max(axis=1) <= ROUNDING * size
-    still = np.abs(step).max(axis=0) <= 1e-3 * (s - t)
+    still = last <= 1e-3 * (s - t)
     found = forward & close & still
     return np.column_stack([t[found], s[found]])
+
+
+def _towards(curve: Curve, t: Array, s: Array) -> tuple[Array, Array]:
+    """Newton's steps of parameters t < s (n,) to where both points agree; not finite where both tangents do."""
+    gap = displacement(curve, t, s)
+    at, to = curve.sample(np.concatenate([t, s])).split(t.size)
+    turn = _side(at.tangent, to.tangent)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return _side(gap, to.tangent) / (at.speed * turn), _side(gap, at.tangent) / (to.speed * turn)

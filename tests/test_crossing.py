@@ -13,7 +13,10 @@ from camgeo.crossing import all_breaks, displacement, seen_crossings, settled
 from camgeo.curve import Curve
 from camgeo.offset import Parallel
 from camgeo.profile.support import SupportShape
+from camgeo.profile.wunderlich import PitchShape
+from kin.law import Segment, law, programme
 from kin.lift import lift_from_fourier, lift_reuleaux
+from kin.transmission import from_law
 
 PERIOD = 2.0 * math.pi
 
@@ -51,6 +54,19 @@ def test_displacement_across_breaks():
     ends = np.array([at - 0.04]), np.array([at + 0.03])
     points = curve.sample(np.concatenate(ends)).point
     assert displacement(curve, *ends)[0] == pytest.approx(points[1] - points[0], abs=2e-14)
+
+
+def test_displacement_along_a_path_that_swings():
+    """A rise within a hundredth of a degree turns the tangent to and fro: one rule over all of it was off by 1e-8."""
+    width = math.radians(0.01)
+    rest = Segment("dwell", math.pi / 14.0 - width)
+    ways = [Segment(way, width, math.radians(0.001), law("cycloidal")) for way in ("rise", "return")]
+    motion = from_law(7, 5, 60.0, programme([ways[0], rest, ways[1], rest], math.pi / 7.0))
+    for radius in (0.5, 20.0):
+        curve = Curve.whole(Parallel(PitchShape(motion), radius))
+        low, high = curve.runs[0].low + np.array([[-0.3], [0.94]]) * width
+        points = curve.sample(np.concatenate([low, high])).point
+        assert displacement(curve, low, high)[0] == pytest.approx(points[1] - points[0], abs=1e-12)
 
 
 def test_breaks_repeat():

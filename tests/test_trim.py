@@ -20,9 +20,11 @@ from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.offset import Parallel
 from camgeo.profile.support import SupportShape
+from camgeo.profile.wunderlich import PitchShape
 from camgeo.trim import remains, trimmed
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_reuleaux
+from kin.transmission import from_law
 
 TURN = 2.0 * math.pi
 
@@ -219,6 +221,28 @@ def test_no_contact_cuts_into_what_is_left(e):
     pitch = STAR.sample(t).point
     apart = outline(curve, 1000)[:, None] - pitch[None]
     assert np.hypot(apart[..., 0], apart[..., 1]).min() > e - 1e-12
+
+
+@pytest.mark.parametrize("e", [0.5, 20.0])
+def test_rises_that_turn_the_tangent_within_a_hair(e):
+    """A thousandth of a degree over a hundredth: the contour of a large roller swings to and fro by millimetres."""
+    rise = [Segment(way, math.radians(0.01), math.radians(0.001), law("cycloidal")) for way in ("rise", "return")]
+    rest = Segment("dwell", math.pi / 6.0 - math.radians(0.01))
+    pitch = PitchShape(from_law(3, 1, 60.0, programme([rise[0], rest, rise[1], rest], math.pi / 3.0)))
+    whole = Curve.whole(Parallel(pitch, e))
+    what = remains(whole, causes(whole))
+    assert len(what.lost) == 12
+    assert what.pieces == 1
+    centres = pitch.sample(np.array(whole.runs[0].breaks)).point
+    fine = np.concatenate([np.linspace(a, b, 4001) for a, b in whole.runs[0].stretches])
+    path = np.concatenate([centres, pitch.sample(fine).point])
+    for lost in what.lost:
+        distance = np.hypot(*(path - lost.corners[0]).T)
+        # both rollers that make the corner touch it, no other comes nearer
+        assert distance.min() == pytest.approx(e, abs=2e-7)
+        ends = pitch.sample(np.array([lost.start, lost.end])).point
+        assert np.hypot(*(ends - lost.corners[0]).T) == pytest.approx([e, e], abs=1e-12)
+        assert 0.0 < lost.depth < 0.0011  # no more than the rise
 
 
 def test_corners_of_radius_zero_are_corners():

@@ -8,11 +8,14 @@ import pytest
 from accuracy import Row, in_time, made, off_profile, recipe, refused, rows_of
 from extreme_oracle import Pitch, worst
 
+from camgeo.causes import causes
 from camgeo.curve import Curve
 from camgeo.design import designed
 from camgeo.pairs import Pitch as PitchCurve
+from camgeo.profile.build import intent_of, profile_of
 from camgeo.profile.wunderlich import PitchShape
 from camgeo.reach import narrowest_necks
+from camgeo.trim import remains
 from kin.contour import Contour
 from kin.envelope import RollerEnvelope, TransmissionPitch
 from kin.roller import DoubleRoller
@@ -90,8 +93,28 @@ def small_rises():
             what, "checks that fail", off, 0.0, "directions by cell: a rise hardly turns the tangent, however bent"
         )
         yield law_row(what, design.intent, rise, over, rest)
+    yield from undercut_by_small_rises()
     said = refused("kind: double-roller\nratio: 99/98\narm: 60\nroller_radius: 1\ndelta: {cos: {1: 1}}", files=ARCS)
     yield Row("lambda/mu = 99/98", "file", said, "mu must be odd", "the pitch curve would cross itself")
+
+
+def undercut_by_small_rises():
+    """A rise of a thousandth of a degree in a hundredth, on rollers that pass over it: where contact is lost."""
+    for radius in (0.5, 20.0):
+        cam, _ = to_and_fro("double-roller", "7/5", 1e-3, 0.01, f"roller_radius: {radius}")
+        with in_time(20):
+            curve = profile_of(asked := recipe(cam, files=ARCS).cam, intent_of(asked)).curve
+            lost = remains(curve, causes(curve)).lost
+        corners = np.concatenate([one.corners for one in lost])
+        ends = PitchCurve.of(curve).at(np.array([[one.start, one.end] for one in lost]).ravel()).point
+        off = np.abs(np.hypot(*(ends - np.repeat(corners, 2, axis=0)).T) - radius).max() / radius
+        yield Row(
+            f"law of 0.001 degrees over 0.01, lambda/mu = 7/5, roller of {radius:g} mm",
+            f"corners of the {len(lost)} stretches that are lost, from both rollers that leave them, share of the radius",
+            float(off),
+            1e-12,
+            "paths that swing are integrated in panels, or told by their ends",
+        )
 
 
 def to_and_fro(kind, ratio, rise, over, more=""):
