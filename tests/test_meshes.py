@@ -1,5 +1,6 @@
 """Printable bodies as meshes: closed forms, a second reader, their places; the judge of bodies and planted faults."""
 
+import itertools
 import math
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 import trimesh
 
 from camgeo.bodies.body import Plate, PrintBody
+from camgeo.bodies.forms import bar
 from camgeo.files.meshes import GAP, body_mesh, flat, laid_out, mirrored, standing
 from camgeo.files.precision import DECIMALS, SINGLE
 from camgeo.files.triangulate import RegionError
@@ -100,6 +102,30 @@ def test_plates_become_one_closed_body_of_their_volume(name, precision):
     again, _ = body_mesh(one, tolerance=E, precision=precision)
     assert np.array_equal(again.points, mesh.points)
     assert np.array_equal(again.triangles, mesh.triangles)
+
+
+@pytest.mark.parametrize("precision", [SINGLE, DECIMALS], ids=["stl", "3mf"])
+def test_crossing_walls_that_go_on_through_storeys_leave_no_slivers(precision):
+    """Arms of a base: each storey by itself would round the corners where they cross in its own way."""
+    ends = [
+        (91.035, 0.0),
+        (133.274, 206.75),
+        (170.09, 148.309),
+        (148.437, -50.642),
+        (161.3, 152.9),
+        (112.425, -137.333),
+    ]
+    for first, second in itertools.combinations(ends, 2):
+        arms = [disc(0.0, 0.0, 16.3), bar((0.0, 0.0), first, 32.6), bar((0.0, 0.0), second, 32.6)]
+        plates = [
+            Plate(arm, (disc(0.0, 0.0, radius),), low, high)
+            for low, high, radius in ((0.0, 2.8, 9.35), (2.8, 6.0, 5.85))
+            for arm in arms
+        ]
+        mesh, _ = body_mesh(body(plates), tolerance=E, precision=precision)
+        read = as_trimesh(mesh)
+        assert read.is_watertight
+        assert read.euler_number == 0
 
 
 def test_plates_may_overlap_and_fill_each_other_s_holes_in_part():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from camgeo.files.precision import Precision
     from camgeo.files.triangulate import Array
     from camgeo.fit.pieces import ArcSpline
+
+    Outline: TypeAlias = ArcSpline | Polygon
 
 GAP = 5.0  # mm between bodies that are laid out
 _STEP = 100.0  # places on the plate are whole steps of 1/100 mm
@@ -40,12 +42,18 @@ def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tup
     for plate in body.plates:
         for height in (plate.low, plate.high):
             precision.within(f"{body.name}: a height", abs(precision.number(height) - height), tolerance)
-        outer, off = _loop(plate.outline, tolerance, precision)
-        slab = manifold(*prism(outer, plate.low, plate.high, precision))
+    for storeys in _columns([(plate.outline, plate.low, plate.high) for plate in body.plates]):
+        plates = [body.plates[k] for k in storeys]
+        low, high = plates[0].low, plates[-1].high
+        outer, off = _loop(plates[0].outline, tolerance, precision)
+        slab = manifold(*prism(outer, low, high, precision))
         worst = max(worst, off)
-        for hole in plate.holes:
+        holes = [(hole, plate.low, plate.high) for plate in plates for hole in plate.holes]
+        for through in _columns(holes):
+            (hole, foot, _), (_, _, top) = holes[through[0]], holes[through[-1]]
             inner, off = _loop(hole, tolerance, precision)
-            slab -= manifold(*prism(inner, plate.low - BEYOND, plate.high + BEYOND, precision))
+            foot, top = foot - BEYOND if foot == low else foot, top + BEYOND if top == high else top
+            slab -= manifold(*prism(inner, foot, top, precision))
             worst = max(worst, off)
         joined = slab if joined is None else joined + slab
     pieces = len(joined.decompose())
@@ -54,7 +62,31 @@ def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tup
     return meshed(joined, precision), worst
 
 
-def _loop(outline: ArcSpline | Polygon, tolerance: float, precision: Precision) -> tuple[Array, float]:
+def _columns(walls: Sequence[tuple[Outline, float, float]]) -> list[list[int]]:
+    """Numbers of outlines from one height to another, upward, those of one shape that stand on each other together.
+
+    Where walls cross, each storey's corners would be rounded in their own way: joined one above the other they leave
+    slivers.
+    """
+    found: list[list[int]] = []
+    for k in sorted(range(len(walls)), key=lambda k: walls[k][1]):
+        outline, low, _ = walls[k]
+        below = (column for column in found if walls[column[-1]][2] == low and _same(walls[column[-1]][0], outline))
+        column = next(below, None)
+        if column is None:
+            found.append([k])
+        else:
+            column.append(k)
+    return found
+
+
+def _same(one: Outline, other: Outline) -> bool:
+    if isinstance(one, Polygon) or isinstance(other, Polygon):
+        return one is other
+    return np.array_equal(one.points, other.points) and np.array_equal(one.bulges, other.bulges)
+
+
+def _loop(outline: Outline, tolerance: float, precision: Precision) -> tuple[Array, float]:
     """Rounded vertices (n, 2) of an outline, and how far it is off in all."""
     if isinstance(outline, Polygon):
         loop, moved, _ = rounded_contour(outline, precision)
