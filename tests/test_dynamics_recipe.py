@@ -242,6 +242,17 @@ def test_what_has_no_dynamics_is_refused_at_its_field(train: str, cam: str, mess
     assert error.line > 1
 
 
+@pytest.mark.parametrize("stiffness", ["2.0e5", "2.1e5", "2.2e5", "2.3e5"])
+def test_too_much_damping_is_told_with_what_will_do(stiffness: str) -> None:
+    train = TRAIN.replace("2.0e5", stiffness)
+    with pytest.raises(RecipeErrors, match="times critical; give at most") as caught:
+        recipe(train.replace("damping: 20", "damping: 50000"))
+    (error,) = caught.value.errors
+    most = str(error).rsplit("at most ", 1)[1]
+    recipe(train.replace("damping: 20", f"damping: {most}"))
+    assert float(most) == pytest.approx(20.0 * math.sqrt(0.4 * float(stiffness)), rel=2e-5)
+
+
 def test_a_spoilt_file_shows_in_its_own_run(tmp_path: Path) -> None:
     """A corner that stands out by 0.03 mm shortly before the dwell: the train of the file rings on, the other not."""
     import ezdxf

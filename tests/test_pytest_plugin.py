@@ -120,6 +120,36 @@ def test_the_checks_of_a_run_are_foreseen(name: str | None, tmp_path: Path) -> N
     assert sorted(map(str, foreseen(recipe))) == sorted(map(str, made))
 
 
+MILLED = """\
+cam: {{kind: support, p: 30 + 2*cos(2*t)}}
+part: {{thickness: 5, {part}}}
+export: {{tolerance: 0.01, files: [gcode, dxf]}}
+verify: {{angles: 360}}
+manufacture: {{cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5, safe_height: 5, {holes}}}
+"""
+
+
+@pytest.mark.parametrize("holes", ["holes: true", "holes: false"])
+@pytest.mark.parametrize(
+    "part",
+    [
+        "bore: 10",
+        "bore: 6",
+        "bore: 10, keyway: din6885",
+        "bolts: {count: 3, circle: 40, hole: 5}, dowel: {circle: 40, hole: 8, at: 60}",
+        "bore: 6, bolts: {count: 3, circle: 40, hole: 5}",
+        "bore: 10, hub: {diameter: 20, height: 4}, bolts: {count: 3, circle: 40, hole: 8}",
+        "hub: {diameter: 30, height: 4}, bolts: {count: 3, circle: 20, hole: 8}",
+    ],
+)
+def test_the_checks_of_a_milled_part_are_foreseen(part: str, holes: str, tmp_path: Path) -> None:
+    path = tmp_path / "milled.yaml"
+    path.write_text(MILLED.format(part=part, holes=holes))
+    recipe = load(path)
+    made = [Foreseen(check["name"], check.get("file")) for check in pipeline.check(recipe).report["checks"]]
+    assert sorted(map(str, foreseen(recipe))) == sorted(map(str, made))
+
+
 def test_a_recipe_runs_once_and_not_before_its_first_item(project: Pytester, counted: list[str]) -> None:
     add(project, "tiny", SMALL)
     assert len(collected(project)) == 2 * len(ITEMS)

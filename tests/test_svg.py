@@ -124,6 +124,8 @@ def test_inches_are_inches_and_the_same_bytes_come_each_time(tmp_path):
     _, _, path, checks, _ = made(tmp_path, cam=cam, part="{bore: 0.5}", tolerance=0.0004)
     first = path.read_bytes()
     assert b'in" viewBox' in first
+    # from -0.92 to 1.08 inch, 1 mm of margin on either side, outward to the next hundredth
+    assert re.search(rb'viewBox="(\S+) \S+ (\S+) ', first).groups() == (b"-0.96", b"2.08")
     assert read_svg(path).units_mm == 25.4
     assert checks["units"].value == 0.0
     made(tmp_path, cam=cam, part="{bore: 0.5}", tolerance=0.0004)

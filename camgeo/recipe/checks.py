@@ -116,7 +116,8 @@ def _train(train: Values, reader: Reader) -> None:
     if {"mass", "stiffness"} <= train.keys() and "damping" in train:
         ratio = train["damping"] / math.sqrt((train["stiffness"] + train.get("rate", 0.0)) * train["mass"]) / 2
         if ratio > MOST_DAMPING:
-            remedy = f"give at most {train['damping'] * MOST_DAMPING / ratio:.6g}"
+            most = train["damping"] * MOST_DAMPING / ratio
+            remedy = f"give at most {most * (1.0 - 1e-5):.6g}"  # not rounded upward
             reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
 
 
