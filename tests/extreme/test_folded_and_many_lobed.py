@@ -110,7 +110,7 @@ def undercut_by_small_rises():
         off = np.abs(np.hypot(*(ends - np.repeat(corners, 2, axis=0)).T) - radius).max() / radius
         yield Row(
             f"law of 0.001 degrees over 0.01, lambda/mu = 7/5, roller of {radius:g} mm",
-            f"corners of the {len(lost)} stretches that are lost, from both rollers that leave them, share of the radius",
+            f"corners of all {len(lost)} lost stretches, from the rollers that make them, share of the radius",
             float(off),
             1e-12,
             "paths that swing are integrated in panels, or told by their ends",
