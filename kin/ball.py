@@ -122,21 +122,22 @@ class Ball:
         return self**-1 * other
 
     @_quiet
-    def __pow__(self, exponent: float) -> Ball:
-        """Powers are monotone on each side of 0, so the ends decide; infinite where no real power exists."""
+    def __pow__(self, exponent: float | Array) -> Ball:
+        """Powers are monotone on each side of 0, so the ends decide; infinite where no real power exists.
+
+        A column (m, 1) of exponents gives a row for each.
+        """
+        n = np.asarray(exponent, dtype=float)
         lower, upper = self.bounds()
-        if exponent == 0:
-            return Ball.exact(1.0, self.mid.shape)
-        low, high = np.power(lower, exponent), np.power(upper, exponent)
-        if not float(exponent).is_integer():
-            low, high = _only(lower >= 0, low), _only(lower >= 0, high)
-        elif exponent < 0:
-            low = _only((lower > 0) | (upper < 0), low)
-        least, greatest = np.minimum(low, high), np.maximum(low, high)
-        if exponent > 0 and exponent % 2 == 0:
-            least = np.where((lower < 0) & (upper > 0), 0.0, least)
-        floor = np.where((lower >= 0) | (exponent % 2 == 0), 0.0, -math.inf)
-        return _outward(least, greatest, _LIBRARY, np.minimum(self.magnitude, _TINY), floor)
+        even, one_side = n % 2 == 0, (lower >= 0) | (upper <= 0)
+        exists = np.where(n % 1 == 0, (n >= 0) | (lower > 0) | (upper < 0), lower >= 0)
+        low, high = _only(exists, np.power(lower, n)), _only(exists, np.power(upper, n))
+        least = np.where(one_side | ~even, np.minimum(low, high), 0.0)
+        floor = np.where((lower >= 0) | even, 0.0, -math.inf)
+        found = _outward(least, np.maximum(low, high), _LIBRARY, np.minimum(self.magnitude, _TINY), floor)
+        if (n == 0).any():
+            return Ball(np.where(n == 0, 1.0, found.mid), np.where(n == 0, 0.0, found.rad))
+        return found
 
     def powers(self, count: int) -> Ball:
         """x**0, x**1, ..., x**(count - 1), one a row: shape (count, *shape of x)."""

@@ -27,11 +27,11 @@ from kin.taylor import (
     compose,
     compose_balls,
     exp_rows,
+    led,
     log_rows,
     power_rows,
     sine_rows,
     sinh_rows,
-    stack,
     tan_rows,
 )
 
@@ -53,13 +53,13 @@ Number = TypeVar("Number", Jet, BallJet, Array, float)
 class Elementary:
     """An elementary function of one argument, for numbers, arrays, balls, jets and ball jets.
 
-    `point_rows` and `ball_rows` give its Taylor coefficients at x (n,), one row for each order up to the given one;
+    `point_rows` and `ball_rows` give its Taylor coefficients at x (n,) up to an order, (order + 1, n);
     `domain` says where its value exists, `open_domain` where its derivatives do, each with the words for a DomainError.
     """
 
     name: str
-    point_rows: Callable[[Array, int], list[Array]]
-    ball_rows: Callable[[Ball, int], list[Ball]]
+    point_rows: Callable[[Array, int], Array]
+    ball_rows: Callable[[Ball, int], Ball]
     domain: Domain | None = None
     open_domain: Domain | None = None
 
@@ -76,7 +76,7 @@ class Elementary:
     def __call__(self, x: float | Array | Ball | Jet | BallJet) -> float | Array | Ball | Jet | BallJet:
         """Return the function of x, of x's own kind; raise DomainError unless x is a ball or a ball jet."""
         if isinstance(x, BallJet):
-            return BallJet.of(compose_balls(stack(self.ball_rows(x.rows[0], x.order)), x.rows))
+            return BallJet.of(compose_balls(self.ball_rows(x.rows[0], x.order), x.rows))
         if isinstance(x, Ball):
             return self.ball_rows(x, 0)[0]
         if not isinstance(x, Jet):
@@ -101,11 +101,11 @@ def _as_value(jet: Jet, like: float | Array) -> float | Array:
     return jet.c[0].reshape(like.shape) if isinstance(like, np.ndarray) else float(jet.c[0, 0])
 
 
-def _ball_sine_rows(x: Ball, order: int) -> list[Ball]:
+def _ball_sine_rows(x: Ball, order: int) -> Ball:
     return sine_rows(*ball.sin_cos(x), order)
 
 
-def _ball_cosine_rows(x: Ball, order: int) -> list[Ball]:
+def _ball_cosine_rows(x: Ball, order: int) -> Ball:
     s, c = ball.sin_cos(x)
     return sine_rows(c, -s, order)
 
@@ -122,8 +122,8 @@ asin = Elementary(
 )
 acos = Elementary(
     "acos",
-    lambda x, m: [np.arccos(x), *(-row for row in asin_rows(x, x, m)[1:])],
-    lambda x, m: [ball.acos(x), *(-row for row in asin_rows(x, x, m)[1:])],
+    lambda x, m: led(-asin_rows(x, x, m), np.arccos(x)),
+    lambda x, m: led(-asin_rows(x, x, m), ball.acos(x)),
     (lambda x: np.abs(x) <= 1, "acos of a number outside -1 to 1"),
     (lambda x: np.abs(x) < 1, "derivative of acos at -1 or 1"),
 )
@@ -148,8 +148,8 @@ log = Elementary(
 )
 sqrt = Elementary(
     "sqrt",
-    lambda x, m: [np.sqrt(x), *power_rows(x, 0.5, m)[1:]],
-    lambda x, m: [ball.sqrt(x), *power_rows(x, 0.5, m)[1:]],
+    lambda x, m: power_rows(x, 0.5, m),
+    lambda x, m: led(power_rows(x, 0.5, m), ball.sqrt(x)),
     (lambda x: x >= 0, "sqrt of a negative number"),
     (lambda x: x > 0, "derivative of sqrt at zero"),
 )

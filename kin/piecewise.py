@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,9 @@ from numpy.typing import NDArray
 from kin.ball import Ball, hull
 from kin.jet import BallJet, DomainError, Jet, cos, sin
 from kin.series import finite
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -157,11 +160,14 @@ class _Group:
                 ways[:, place] = member.offset, member.scale, member.start, 1 / member.width
         return _Group(function, ways)
 
-    def __call__(self, t: Jet, index: Indices) -> Jet:
-        """Apply the function to points t (n,), each in its stretch (n,)."""
+    def __call__(self, t: Series, index: Indices) -> Series:
+        """Apply the function to points or intervals t (n,), each in its stretch (n,)."""
         if self.ways is None:
             return self.function(t)
         offset, scale, start, rate = self.ways[:, index]
+        if isinstance(t, BallJet):
+            value: BallJet = self.function((t - start) * rate) * scale + offset
+            return value
         c = t.c.copy()
         with np.errstate(all="ignore"):
             c[0] -= start
@@ -180,11 +186,40 @@ class _Round:
 
     parts: Array
 
-    def __call__(self, t: Jet, index: Indices) -> Jet:
-        """Apply each stretch's function to its points t (n,), in stretches (n,)."""
+    def __call__(self, t: Series, index: Indices) -> Series:
+        """Apply each stretch's function to its points or intervals t (n,), in stretches (n,)."""
         mean, x, y = self.parts[:, index]
         total = t.constant(mean)
         return total + cos(t) * x + sin(t) * y if self.parts[1:].any() else total
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where points or intervals (n,) lie among the stretches of a piecewise function.
+
+    Each begins at `low` in the stretch `first` and ends at `high`, `steps` stretches further on; the ends are folded.
+    """
+
+    first: Indices
+    low: Array
+    high: Array
+    steps: Indices
+
+    def each(self, count: int) -> Iterator[tuple[int, Indices, Indices]]:
+        """List by rising steps those that reach so far, and the stretch there, out of `count` in a period."""
+        for step in range(int(self.steps.max(initial=0)) + 1):
+            active = np.flatnonzero(self.steps >= step)
+            yield step, active, (self.first[active] + step) % count
+
+    def weigh(self, series: Series, numbers: Array) -> Series:
+        """Multiply by the number that belongs to each place, out of one for each stretch (m,)."""
+        least, most = numbers[self.first], numbers[self.first]
+        if isinstance(series, Jet) or not self.steps.any():
+            return series * least
+        for _, active, index in self.each(len(numbers)):
+            least[active] = np.minimum(least[active], numbers[index])
+            most[active] = np.maximum(most[active], numbers[index])
+        return series * Ball.between(least, most)
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,9 +282,34 @@ class Piecewise:
 
     def on(self, t: Series, side: Side = 1) -> Series:
         """Apply the function to any jet or ball jet; `side` decides for jets whose value is a knot."""
+        return self.at(t, self.places(t, side))
+
+    def at(self, t: Series, places: Places) -> Series:
+        """Apply the function to a jet or ball jet whose places are known."""
         if isinstance(t, Jet):
-            return self._on_points(t, side)
-        return self._on_intervals(t)
+            c = t.c.copy()
+            c[0] = places.low
+            return self._apply(Jet(c), places.first)
+        return self._on_intervals(t, places)
+
+    def places(self, t: Series, side: Side = 1) -> Places:
+        """Tell in which stretches a jet's points lie, or which ones a ball jet's intervals meet."""
+        if isinstance(t, Jet):
+            index, x = self.locate(t.c[0], side)
+            return Places(index, x, x, np.zeros_like(index))
+        lower, upper = t.rows[0].bounds()
+        span = math.inf if self.period is None else self.period
+        unbounded = ~(upper - lower < span)
+        lower = np.where(unbounded, self.knots[0], lower)
+        upper = np.where(unbounded, self.knots[-1], upper)
+        index, x, turns = self._place(np.concatenate([lower, upper]), np.repeat([1, -1], lower.size))
+        (first, last), (low, high) = index.reshape(2, -1), x.reshape(2, -1)
+        steps = last - first + len(self.functions) * np.diff(turns.reshape(2, -1), axis=0)[0].astype(np.intp)
+        # An interval within the rounding of one knot: both of its sides.
+        tiny = steps < 0
+        if tiny.any():
+            first, low, high = np.where(tiny, last, first), np.where(tiny, high, low), np.where(tiny, low, high)
+        return Places(first, low, high, np.abs(steps))
 
     def _snap(self, t: Array) -> Array:
         scale = np.maximum(np.abs(t), max(abs(self.knots[0]), abs(self.knots[-1])))
@@ -271,10 +331,12 @@ class Piecewise:
         snap = self._snap(t)
         if self.period is None and ((x < knots[0] - snap) | (x > knots[-1] + snap)).any():
             raise ValueError(f"a parameter lies outside {knots[0]} to {knots[-1]}")
-        near = np.clip(np.searchsorted(knots, x), 1, last + 1)
-        near = np.where(x - knots[near - 1] < knots[near] - x, near - 1, near)
-        on_knot = np.abs(x - knots[near]) <= snap
-        inside = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, last)
+        inside = np.minimum(np.maximum(np.searchsorted(knots, x, side="right") - 1, 0), last)
+        below, above = np.abs(x - knots[inside]), np.abs(knots[inside + 1] - x)
+        on_knot = np.minimum(below, above) <= snap
+        if not on_knot.any():
+            return inside, x, turns
+        near = np.where(below < above, inside, inside + 1)
         right = np.asarray(side) > 0
         index = np.where(on_knot, near - 1 + right, inside)
         if self.period is not None:  # the seam belongs to either end
@@ -282,7 +344,7 @@ class Piecewise:
             index = index - wrap * (last + 1)
             turns = turns + wrap
             near = np.where(on_knot, index + 1 - right, near)
-        index = np.clip(index, 0, last)
+        index = np.minimum(np.maximum(index, 0), last)
         return index, np.where(on_knot, knots[near], x), turns
 
     @cached_property
@@ -306,62 +368,45 @@ class Piecewise:
             groups.append(_Round(parts))
         return owner, tuple(groups)
 
-    def _on_points(self, t: Jet, side: Side) -> Jet:
-        index, x = self.locate(t.c[0], side)
-        owner, groups = self._groups
-        if len(groups) == 1:
-            c = t.c.copy()
-            c[0] = x
-            return groups[0](Jet(c), index)
-        out = np.empty_like(t.c)
-        which = owner[index]
-        for number in np.flatnonzero(np.bincount(which)):
-            here = np.flatnonzero(which == number)
-            c = t.c[:, here]
-            c[0] = x[here]
-            try:
-                out[:, here] = groups[number](Jet(c), index[here]).c
-            except DomainError as error:
-                raise DomainError(error.operation, here[error.indices]) from None
-        return Jet(out)
-
-    def _on_intervals(self, t: BallJet) -> BallJet:
-        lower, upper = t.rows[0].bounds()
-        span = math.inf if self.period is None else self.period
-        unbounded = ~(upper - lower < span)
-        lower = np.where(unbounded, self.knots[0], lower)
-        upper = np.where(unbounded, self.knots[-1], upper)
-        first, low, turn_low = self._place(lower, 1)
-        last, high, turn_high = self._place(upper, -1)
-        count = len(self.functions)
-        steps = (last + turn_high * count - first - turn_low * count).astype(int)
-        # An interval within the rounding of one knot: both of its sides.
-        tiny = steps < 0
-        first, low, last, high = (
-            np.where(tiny, last, first),
-            np.where(tiny, high, low),
-            np.where(tiny, first, last),
-            np.where(tiny, low, high),
-        )
-        steps = np.abs(steps)
+    def _on_intervals(self, t: BallJet, places: Places) -> BallJet:
         mid, rad = np.zeros_like(t.mid), np.full_like(t.rad, math.inf)
-        for step in range(int(steps.max(initial=0)) + 1):
-            active = np.flatnonzero(steps >= step)
-            index = (first[active] + step) % count
-            for i in np.flatnonzero(np.bincount(index)).tolist():
-                here = active[index == i]
-                begin = np.where(step == 0, low[here], self.knots[i])
-                end = np.where(steps[here] == step, high[here], self.knots[i + 1])
-                part = self._ball_on(i, begin, end, t, here)
-                if step:
-                    part = hull(Ball(mid[:, here], rad[:, here]), part)
-                mid[:, here], rad[:, here] = part.mid, part.rad
+        for step, active, index in places.each(len(self.functions)):
+            begin = places.low[active] if step == 0 else self.knots[index]
+            end = np.where(places.steps[active] == step, places.high[active], self.knots[index + 1])
+            part = self._apply(self._within(index, begin, end, t, active), index).rows
+            if step:
+                part = hull(Ball(mid[:, active], rad[:, active]), part)
+            mid[:, active], rad[:, active] = part.mid, part.rad
         return BallJet(mid, rad)
 
-    def _ball_on(self, i: int, begin: Array, end: Array, t: BallJet, here: Indices) -> Ball:
+    def _within(self, index: Indices, begin: Array, end: Array, t: BallJet, here: Indices) -> BallJet:
+        """Take those intervals of t with their values replaced by [begin, end], each inside its stretch."""
         # The fold t - turns * period is rounded; its ulp is covered, within the stretch.
         room = np.where(np.abs(begin) > 0, np.spacing(np.maximum(np.abs(t.mid[0, here]), np.abs(begin))), 0.0)
-        interval = Ball.between(np.maximum(begin - room, self.knots[i]), np.minimum(end + room, self.knots[i + 1]))
-        rows_mid, rows_rad = t.mid[:, here], t.rad[:, here]
-        rows_mid[0], rows_rad[0] = interval.mid, interval.rad
-        return self.functions[i](BallJet(rows_mid, rows_rad)).rows
+        interval = Ball.between(
+            np.maximum(begin - room, self.knots[index]), np.minimum(end + room, self.knots[index + 1])
+        )
+        mid, rad = t.mid[:, here], t.rad[:, here]
+        mid[0], rad[0] = interval.mid, interval.rad
+        return BallJet(mid, rad)
+
+    def _apply(self, t: Series, index: Indices) -> Series:
+        """Apply to each of the points or intervals t (n,) the function of its stretch (n,)."""
+        owner, groups = self._groups
+        if len(groups) == 1:
+            return groups[0](t, index)
+        which, kind, rows = owner[index], type(t), _rows(t)
+        out = [np.empty_like(row) for row in rows]
+        for number in np.flatnonzero(np.bincount(which)):
+            here = np.flatnonzero(which == number)
+            try:
+                part = groups[number](kind(*(row[:, here] for row in rows)), index[here])
+            except DomainError as error:
+                raise DomainError(error.operation, here[error.indices]) from None
+            for row, found in zip(out, _rows(part), strict=True):
+                row[:, here] = found
+        return kind(*out)
+
+
+def _rows(t: Jet | BallJet) -> tuple[Array, ...]:
+    return (t.c,) if isinstance(t, Jet) else (t.mid, t.rad)

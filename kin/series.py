@@ -20,7 +20,6 @@ from kin.taylor import (
     power_rows,
     product,
     quotient,
-    stack,
 )
 
 Array = NDArray[np.float64]
@@ -250,10 +249,10 @@ class BallJet:
     def __pow__(self, exponent: float | BallJet) -> BallJet:
         x = self.rows[0]
         if isinstance(exponent, BallJet):
-            logarithm = compose_balls(stack(log_rows(x, ball.log(x), self.order)), self.rows)
+            logarithm = compose_balls(log_rows(x, ball.log(x), self.order), self.rows)
             product_of_log = ball_product(exponent.rows, logarithm)
-            return BallJet.of(compose_balls(stack(exp_rows(ball.exp(product_of_log[0]), self.order)), product_of_log))
-        return BallJet.of(compose_balls(stack(power_rows(x, exponent, self.order)), self.rows))
+            return BallJet.of(compose_balls(exp_rows(ball.exp(product_of_log[0]), self.order), product_of_log))
+        return BallJet.of(compose_balls(power_rows(x, exponent, self.order), self.rows))
 
     def __rpow__(self, base: Ball | float) -> BallJet:
         return self.constant(base) ** self

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.jet import Ball, BallJet, Jet, cos
-from kin.piecewise import Affine, Constant, Piecewise, Series, Side
+from kin.piecewise import Affine, Constant, Piecewise, Places, Series, Side
 from kin.routes import DeltaDistance, FromDelta, FromLeaf
 
 Array = NDArray[np.float64]
@@ -111,17 +111,18 @@ class Transmission:
     @cached_property
     def _lead(self) -> _Lead:
         """The angle phi - tau."""
-        return _Lead.of(self.psi, self.lean, self.offset)
+        return _Lead.of(self.lean, self.offset)
 
     @cached_property
     def _polar_lead(self) -> _Lead:
         """The angle t - tau, t = phi - (psi + alpha)/2: nothing at all where tau is t."""
-        return _Lead.of(self.psi, tuple(w - 0.5 for w in self.lean), self.offset - self.alpha / 2)
+        return _Lead.of(tuple(w - 0.5 for w in self.lean), self.offset - self.alpha / 2)
 
     def jets(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
         """Give phi and psi of a jet or ball jet tau; `side` decides at breaks."""
-        psi = self.psi.on(tau, side)
-        return self._lead.on(tau, psi, side), psi
+        places = self.psi.places(tau, side)
+        psi = self.psi.at(tau, places)
+        return self._lead.on(tau, psi, places), psi
 
     @cached_property
     def _distance(self) -> Piecewise | None:
@@ -139,8 +140,9 @@ class Transmission:
         """
         if self._distance is not None:
             return self._distance.on(tau, side), tau
-        psi = self.psi.on(tau, side)
-        return cos(psi * 0.5 + self.alpha / 2) * (2 * self.arm), self._polar_lead.on(tau, psi, side)
+        places = self.psi.places(tau, side)
+        psi = self.psi.at(tau, places)
+        return cos(psi * 0.5 + self.alpha / 2) * (2 * self.arm), self._polar_lead.on(tau, psi, places)
 
     def at(self, tau: float | Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Give phi and psi with their derivatives by tau at tau (n,), (order + 1, n) each."""
@@ -198,7 +200,8 @@ class Transmission:
 
         def at(tau: Array, order: int) -> Array:
             variable = Jet.variable(tau, order)
-            return lead.on(variable, self.psi.on(variable, 1), 1).c
+            places = self.psi.places(variable)
+            return lead.on(variable, self.psi.at(variable, places), places).c
 
         ends = np.append(at(knots[:-1], 0)[0], 0.0)
         ends[-1] = ends[0] + period
@@ -225,23 +228,20 @@ class Transmission:
 
 @dataclass(frozen=True, eq=False)
 class _Lead:
-    """An angle less tau, `weight` psi + `offset`; `pieces` where the weight is not the same on all stretches."""
+    """An angle less tau: psi times `weight`, or times one of `weights` for each stretch, and `offset`."""
 
     weight: float
     offset: float
-    pieces: Piecewise | None
+    weights: Array | None
 
     @staticmethod
-    def of(psi: Piecewise, weights: tuple[float, ...], offset: float) -> _Lead:
-        if len(set(weights)) == 1:
-            return _Lead(weights[0], offset, None)
-        pairs = zip(psi.functions, weights, strict=True)
-        functions = tuple(Affine(f, offset, w) if w else Constant(offset) for f, w in pairs)
-        return _Lead(0.0, offset, Piecewise(psi.knots, functions, psi.period, psi.smooth_seam))
+    def of(weights: tuple[float, ...], offset: float) -> _Lead:
+        alike = len(set(weights)) == 1
+        return _Lead(weights[0], offset, None if alike else np.array(weights))
 
-    def on(self, tau: Series, psi: Series, side: Side) -> Series:
-        """Give the angle, psi being the law's at tau."""
-        if self.pieces is not None:
-            return tau + self.pieces.on(tau, side)
+    def on(self, tau: Series, psi: Series, places: Places) -> Series:
+        """Give the angle, psi being the law's at tau, which lies at these places of the law."""
+        if self.weights is not None:
+            return tau + places.weigh(psi, self.weights) + self.offset
         found = tau + psi * self.weight if self.weight else tau
         return found + self.offset if self.offset else found

@@ -17,6 +17,7 @@ from camgeo.curve import Bounds, Frame
 from kin import jet
 from kin.ball import Ball
 from kin.jet import BallJet, Jet
+from kin.taylor import factorials
 
 if TYPE_CHECKING:
     from camgeo.curve import Array, Side
@@ -229,21 +230,22 @@ def _bounds(figures: _Figures, low: Array, high: Array, rates: _Rates) -> Bounds
     middle = low + 0.5 * (high - low)
     reach = np.maximum(high - middle, middle - low)
     order = ORDER if reach.max(initial=0.0) > NARROW else FINE_ORDER
-    exact = figures(BallJet.variable(middle, middle, order))
-    over = figures(BallJet.variable(low, high, order))
-    sharp = [_ball(*_sharpened(ball, centre, reach)) for ball, centre in zip(over, exact, strict=True)]
-    found = zip(rates(sharp[0], sharp[1]), rates(*exact), strict=True)
-    speed, turn = (_sharpened(ball, centre, reach) for ball, centre in found)
+    # One call for both: intervals first, then their middles.
+    both = BallJet.variable(np.concatenate([low, middle]), np.concatenate([high, middle]), order)
+    first, second = (_over_sharpened(ball, reach) for ball in figures(both))
+    speed, turn = (_sharpened(ball, reach) for ball in rates(first, second))
     speed_size, turn_size = np.abs(speed).max(axis=0), np.abs(turn).max(axis=0)
     return Bounds(
         speed[0][0], speed[1][0], turn[0][0], turn[1][0], speed_size[1], turn_size[1], speed_size[2], turn_size[2]
     )  # fmt: skip
 
 
-def _sharpened(ball: BallJet, middle: BallJet, reach: Array) -> tuple[Array, Array]:
-    """Lower and upper bounds (order + 1, n) of the derivatives over intervals, from those within reach (n,)."""
-    low, high = (rows.copy() for rows in ball.bounds())
-    least, most = middle.bounds()
+def _sharpened(ball: BallJet, reach: Array) -> tuple[Array, Array]:
+    """Lower and upper bounds (order + 1, n) of the derivatives over intervals, from those within reach (n,).
+
+    The balls are those over the n intervals, and then those in their middles.
+    """
+    (low, least), (high, most) = (np.hsplit(rows, 2) for rows in ball.bounds())
     for k in range(len(low) - 2, -1, -1):
         spread = reach * np.maximum(np.abs(low[k + 1]), np.abs(high[k + 1])) * (1.0 + ROUNDING)
         low[k] = np.fmax(low[k], least[k] - spread)
@@ -251,8 +253,10 @@ def _sharpened(ball: BallJet, middle: BallJet, reach: Array) -> tuple[Array, Arr
     return low, high
 
 
-def _ball(low: Array, high: Array) -> BallJet:
-    """Ball jets from bounds of true derivatives (order + 1, n)."""
-    factorial = np.array([math.factorial(k) for k in range(len(low))], dtype=np.float64)[:, None]
-    ball = Ball.between(low, high)
-    return BallJet(ball.mid / factorial, ball.rad / factorial * (1.0 + ROUNDING) + 1e-15 * np.abs(ball.mid))
+def _over_sharpened(ball: BallJet, reach: Array) -> BallJet:
+    """Balls over intervals sharpened, then the same in their middles."""
+    sharp = Ball.between(*_sharpened(ball, reach))
+    factorial = factorials(ball.order)
+    rad = sharp.rad / factorial * (1.0 + ROUNDING) + 1e-15 * np.abs(sharp.mid)
+    mids, rads = ball.mid[:, reach.size :], ball.rad[:, reach.size :]
+    return BallJet(np.hstack([sharp.mid / factorial, mids]), np.hstack([rad, rads]))
