@@ -20,7 +20,7 @@ from kin.distinct import distinct
 from kin.expression import Expression
 from kin.jet import BallJet, cos, sin
 from kin.law import IntentError, Programme, first_harmonic
-from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Series, Side, Stretch
+from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Round, Series, Side, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -47,7 +47,7 @@ _LOOKS = 1024  # angles at which a formula's rounding is asked for
 
 
 @dataclass(frozen=True)
-class Circle:
+class Circle(Round):
     """p of a circular arc: radius + centre . u(t), the centre (x, y) seen from the shaft. Here rho is the radius."""
 
     radius: float
@@ -223,7 +223,8 @@ def _one_circle(first: Stretch, second: Stretch) -> bool:
 def _demand_joined(law: Piecewise, field: str) -> None:
     """Refuse a jump of p or p' at any knot, the seam included."""
     knots = law.knots[np.argsort(np.mod(law.knots[:-1], _TURN))]
-    right, left = (law.derivatives(knots, 2, side) + 0.0 for side in (1, -1))  # no -0 in a message
+    side = np.repeat([1, -1], knots.size)
+    right, left = np.hsplit(law.derivatives(np.tile(knots, 2), 2, side) + 0.0, 2)  # no -0 in a message
     jump = np.abs(right - left)
     allowed = _JOIN * max(np.abs(right).max(), np.abs(left).max())
     for row, what, unit, harm in (

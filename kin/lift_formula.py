@@ -54,7 +54,7 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
         raise IntentError(f"{what} does not exist at {at:.6g} degrees: {error.operation}{hint}", "p", at) from error
     except FormulaError as error:
         raise IntentError(error.message, "p") from error
-    functions = [about(_plain(piece), pivot, scale) for piece in pieces]
+    functions = [about(_plain(piece, begin), pivot, scale) for piece, begin in zip(pieces, knots[:-1], strict=True)]
     one_kind = isinstance(functions[0], Circle) == isinstance(functions[-1], Circle)  # an arc ends where it ends
     return joined(knots, functions, "p", smooth_seam=one_kind and _runs_on(pieces[-1], pieces[0]))
 
@@ -76,8 +76,8 @@ def _demand_period(formula: Formula, switches: Array, scale: float) -> None:
     """Refuse p(t + 2 pi) other than p(t), on a grid that no symmetry of the turn repeats and clear of the switches."""
     t = np.mod(np.arange(1, 98) * (math.sqrt(5) - 1) * math.pi, _TURN)
     t = t[np.abs(t[:, None] - switches).min(axis=1) > _CLEAR]
-    here = formula.jet(t, 2).derivatives()
-    miss = formula.jet(t + _TURN, 2).derivatives() - here
+    here, after = np.hsplit(formula.jet(np.concatenate([t, t + _TURN]), 2).derivatives(), 2)
+    miss = after - here
     for row, what, unit in ((0, "p", "mm"), (1, "p'", "mm/rad"), (2, "p''", "mm/rad^2")):
         worst = int(np.argmax(np.abs(miss[row])))
         if abs(miss[row, worst]) > _PERIOD * np.abs(here).max():
@@ -102,10 +102,12 @@ def _demand_finite(piece: Expression, begin: float, end: float) -> None:
         )
 
 
-def _plain(piece: Expression) -> Stretch:
-    """Return the expression, or the circle that it is if it does not depend on t."""
+def _plain(piece: Expression, begin: float) -> Stretch:
+    """Return the expression, or the circle that it is if it does not depend on t from `begin` on."""
+    function: Stretch = piece
+    if piece.jet(begin, 1).c[1].any():
+        return function
     enclosed = piece.ball(0.0, _TURN, 1)
     if not enclosed.mid[1].any() and not enclosed.rad[1].any():
         return Circle(float(enclosed.mid[0, 0]))
-    function: Stretch = piece
     return function

@@ -8,9 +8,10 @@ belongs to the side asked for. So a jump of a derivative is given as its two lim
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,18 +42,17 @@ class Stretch(Protocol):
         """Apply the function to a jet or ball jet."""
 
 
-@runtime_checkable
-class Round(Stretch, Protocol):
+class Round(ABC):
     """A stretch mean + x cos t + y sin t; such stretches are worked out together."""
 
     @property
+    @abstractmethod
     def first_harmonic(self) -> tuple[float, float, float]:
         """Mean, x and y."""
-        ...
 
 
 @dataclass(frozen=True)
-class Constant:
+class Constant(Round):
     """The same value everywhere."""
 
     value: float

@@ -109,7 +109,8 @@ def too_steep(law: Transmission, field: str) -> IntentError:
 def _demand_joined(law: Transmission, field: str) -> None:
     """Refuse a jump of psi, or of its slope psi'(phi), between stretches."""
     knots = law.psi.knots[:-1]
-    (phi, psi), (phi_left, psi_left) = (law.at(knots, 1, side) for side in (1, -1))
+    both = law.at(np.tile(knots, 2), 1, np.repeat([1, -1], knots.size))
+    (phi, phi_left), (psi, psi_left) = (np.hsplit(rows, 2) for rows in both)
     slope, slope_left = psi[1] / phi[1] + 0.0, psi_left[1] / phi_left[1] + 0.0  # no -0 in a message
     for i in range(len(knots)):
         at = math.degrees(phi[0, i]) % 360
