@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, cast
 from camgeo.curve import CurveError
 from camgeo.profile.build import Profile, intent_of, profile_of
 from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, output_slides
+from camgeo.rounded import downward, upward
 from kin.check import Check, degrees
 
 if TYPE_CHECKING:
@@ -177,8 +178,8 @@ def _free(recipe: Recipe, profile: Profile, free_at: float) -> str:
     if profile.roller_radius and not value > 0.0:
         return "no roller radius is proved to be free of it"
     if profile.roller_radius:
-        return f"a roller radius of {value:.6g} would be free of it"
-    return f"a base radius larger by {value:.6g} would be free of it"
+        return f"a roller radius below {downward(value)} would be free of it"
+    return f"a base radius larger by more than {upward(value)} would be free of it"
 
 
 def _unproved(recipe: Recipe, error: CurveError, intent: Lift | Transmission) -> str:
@@ -193,8 +194,8 @@ def _unproved(recipe: Recipe, error: CurveError, intent: Lift | Transmission) ->
     return (
         f"whether a roller radius of {most:.9g} is free of undercut between {first:.6g} and {second:.6g} deg cannot be "
         f"proved: half the width of the neck there {half}; "
-        f"{f'a roller radius of {least * (1.0 - 1e-5):.6g}' if least > 0.0 else 'none'} is proved to be free of it"
-    )  # not rounded upward
+        f"{f'one below {downward(least)}' if least > 0.0 else 'none'} is proved to be free of it"
+    )
 
 
 def _trimmed(curve: Curve) -> Curve:

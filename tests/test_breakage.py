@@ -70,7 +70,7 @@ def test_undercut_that_parts_the_metal_keeps_its_figures(tmp_path: Path, capsys:
     assert exported(tmp_path, recipe + "\n") == 1
     said = capsys.readouterr().out
     assert "undercut-global: " in said
-    assert "a roller radius of 17.8885 would be free of it; it cannot be trimmed: " in said
+    assert "a roller radius below 17.8885 would be free of it; it cannot be trimmed: " in said
     assert "undercut-local" not in said
 
 

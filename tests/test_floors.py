@@ -83,7 +83,7 @@ FLOORS = {
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism
         recipe.table_sweep
         curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors
-        recipe.spec report status store
+        recipe.spec report rounded status store
         page.followers page.pack page.svg
         page.scene
         bodies files.missing making manufacture page fit.rational part recipe.din6885 recipe.model_part study

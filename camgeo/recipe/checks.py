@@ -16,6 +16,7 @@ from camgeo.recipe.model import SOLIDS
 from camgeo.recipe.spec import either
 from camgeo.recipe.table_cam import SWINGING
 from camgeo.recipe.table_manufacture import NEEDED
+from camgeo.rounded import downward
 
 if TYPE_CHECKING:
     from camgeo.recipe.reader import Reader, Values
@@ -117,7 +118,7 @@ def _train(train: Values, reader: Reader) -> None:
         ratio = train["damping"] / math.sqrt((train["stiffness"] + train.get("rate", 0.0)) * train["mass"]) / 2
         if ratio > MOST_DAMPING:
             most = train["damping"] * MOST_DAMPING / ratio
-            remedy = f"give at most {most * (1.0 - 1e-5):.6g}"  # not rounded upward
+            remedy = f"give less than {downward(most)}"
             reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, SupportCam
+from camgeo.rounded import downward, upward
 
 if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
@@ -70,9 +71,11 @@ def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str
     if name == "wall" and check.get("detail"):
         return ""  # the check names the edges
     if name == "chamfer" and "file" not in check:
-        return f"a chamfer below {value:.6g} {unit}" if value > 0.0 else "no chamfer, or a contour without corners"
+        return (
+            f"a chamfer below {downward(value)} {unit}" if value > 0.0 else "no chamfer, or a contour without corners"
+        )
     if name == "wall":
-        return f"a bore smaller by more than {2.0 * (limit - value):.6g} {unit}"
+        return f"a bore smaller by more than {upward(2.0 * (limit - value))} {unit}"
     if name == "motion" and recipe.verify.motion_error is not None and value > 0.0:
         return _nearer(check, report, recipe)
     return ""
@@ -81,7 +84,7 @@ def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str
 def _nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
     """Tell what would bring the motion error, or its limit, to where it holds."""
     value, limit = check["value"], check["limit"]
-    looser = f"verify.motion_error above {value:.6g}"
+    looser = f"verify.motion_error above {upward(value)}"
     if isinstance(recipe.cam, ConstantBreadthCam | SupportCam):  # a flat face is off by no more than the contour
         return f"a tolerance of {limit:.6g}, or {looser}"
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
@@ -91,11 +94,11 @@ def _nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> st
 def _rounder(recipe: Recipe, value: float, limit: float, unit: str) -> str:
     """Tell what would make the least radius of curvature, `value`, large enough."""
     if isinstance(recipe.cam, DoubleRollerCam):
-        return f"a roller radius below {value:.6g} {unit}" if value > 0.0 else ""
+        return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
     if isinstance(recipe.cam, ConstantBreadthCam):
-        return f"a base radius larger by more than {limit - value:.6g} {unit}"
+        return f"a base radius larger by more than {upward(limit - value)} {unit}"
     if isinstance(recipe.cam, SupportCam):
-        return f"a support function larger by more than {limit - value:.6g} {unit}"
+        return f"a support function larger by more than {upward(limit - value)} {unit}"
     return ""
 
 

@@ -1,0 +1,21 @@
+"""Figures as messages tell them: where one says what would do, it is rounded to the side on which that is true."""
+
+from __future__ import annotations
+
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
+
+NOISE = 1e-9  # share of a figure that is its own rounding: 6.000000000000001 is told as 6
+
+
+def upward(value: float, digits: int = 6) -> str:
+    """A positive figure with so many digits, not below it but for noise: more than that will do."""
+    return _rounded(value * (1.0 - NOISE), digits, ROUND_CEILING)
+
+
+def downward(value: float, digits: int = 6) -> str:
+    """A positive figure with so many digits, not above it but for noise: less than that will do."""
+    return _rounded(value * (1.0 + NOISE), digits, ROUND_FLOOR)
+
+
+def _rounded(value: float, digits: int, rounding: str) -> str:
+    return f"{float(Context(prec=digits, rounding=rounding).create_decimal_from_float(value)):.{digits}g}"
