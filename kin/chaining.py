@@ -19,6 +19,9 @@ __all__ = ["Loop", "close_pairs", "loops"]
 
 # Ends closer than this, mm, are one point; only ends that find no partner here look farther, up to the permitted gap.
 SAME_POINT = 1e-9
+# A drawing smaller than 50 mm is read as closely for its size: what is one point, and what gap is permitted by default.
+SAME_SHARE = SAME_POINT / 50.0
+GAP, GAP_SHARE = 1e-6, 1e-6 / 50.0
 # An opening wider than this share of the drawing is called a missing segment, a smaller one a gap.
 MISSING_SHARE = 0.01
 # Rounding of a point computed from an arc's centre, radius and angle, in units of its coordinates.
@@ -61,19 +64,19 @@ def close_pairs(points: Array, tolerance: float) -> tuple[Indices, Indices]:
     return np.concatenate(first), np.concatenate(second)
 
 
-def loops(start: Array, end: Array, gap: float, path: Path) -> list[Loop]:
+def loops(start: Array, end: Array, gap: float, same: float, path: Path) -> list[Loop]:
     """Join runs into closed loops: runs with these starts and ends (n, 2), where ends lie within `gap` of each other.
 
-    A gap smaller than the rounding of the ends themselves counts as that. Raises ReadError: "branch" where more than
-    two ends meet, "gap" or "open" where an end finds no partner.
+    Ends within `same` are one point. A gap smaller than the rounding of the ends themselves counts as that. Raises
+    ReadError: "branch" where more than two ends meet, "gap" or "open" where an end finds no partner.
     """
     count = len(start)
     ends = np.concatenate([start, end])  # end k of run k % count
     gap = max(gap, ROUNDING * float(np.abs(ends).max()))
     partner = np.full(2 * count, -1, dtype=np.intp)
-    closed = np.flatnonzero((np.abs(start - end) <= min(SAME_POINT, gap)).all(axis=1))
+    closed = np.flatnonzero((np.abs(start - end) <= min(same, gap)).all(axis=1))
     partner[closed], partner[closed + count] = closed + count, closed
-    for tolerance in (min(SAME_POINT, gap), gap):
+    for tolerance in (min(same, gap), gap):
         free = np.flatnonzero(partner < 0)
         join(free, ends, tolerance, partner, path)
     free = np.flatnonzero(partner < 0)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.bezier import Beziers
-from kin.chaining import SAME_POINT, close_pairs, loops
+from kin.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.contour import Box, Contour
 from kin.flaws import first_meeting
 from kin.nesting import counter_clockwise, met, nested
@@ -44,12 +44,6 @@ BESIDE = frozenset({BORE, "HOLES", "MARK"})
 ENGRAVED = "ENGRAVE"
 # Layers that are never cut: our own reference geometry and cutter's path, and AutoCAD's definition points.
 REFERENCE = frozenset({"REFERENCE", "TOOLPATH", "DEFPOINTS"})
-# Pieces shorter than this, mm, have no direction to speak of.
-ZERO_LENGTH = 1e-9
-# Pieces whose ends and middles agree to this, mm, are drawn twice.
-DUPLICATE = 1e-9
-# Heights above the drawing's plane may differ by so much, mm.
-FLAT = 1e-6
 
 
 class Fault(NamedTuple):
@@ -122,7 +116,7 @@ def drawing_of(
     found: Found,
     marks: Found | None,
     unit: float | None,
-    gap: float,
+    gap: float | None,
     path: Path,
     *,
     version: str,
@@ -132,24 +126,29 @@ def drawing_of(
 ) -> Drawing:
     """Join what is to be cut, and what is engraved, in drawing units, to the contours of a drawing in mm.
 
-    `gap` in mm; the rest is told as it is given. Raises ReadError as the readers do.
+    `gap` in mm, by default GAP, or less in a small drawing; the rest is told as it is given. Heights may differ by as
+    much as such a gap. Raises ReadError as the readers do.
     """
     scale = 1.0 if unit is None else unit
+    pieces, run = gathered(found.shapes)
+    pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
+    size = extent(pieces)
+    same = max(min(SAME_POINT, SAME_SHARE * size), ROUNDING * float(np.abs(pieces.start).max()))
+    usual = max(min(GAP, GAP_SHARE * size), same)
+    gap = usual if gap is None else gap
     scratched: tuple[Contour, ...] = ()
     if marks is not None and marks.shapes:
         lines, owner = gathered(marks.shapes)
         lines = lines.enlarged(scale) if scale != 1.0 else lines
-        scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, gap, path))
-    pieces, run = gathered(found.shapes)
-    pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
+        scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, gap, same, path))
     heights = np.concatenate([s.heights for s in found.shapes]) * scale
-    if np.ptp(heights) > FLAT:
+    if np.ptp(heights) > usual:
         message = f"the entities do not lie in one plane: heights from {heights.min():g} to {heights.max():g}"
         raise ReadError("unsupported", message, path)
-    keep, faults = without_faults(pieces, run, found)
+    keep, faults = without_faults(pieces, run, found, same)
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
-    chained = chain(pieces.take(keep), run[keep], gap, path)
+    chained = chain(pieces.take(keep), run[keep], gap, same, path)
     meeting = first_meeting([c.contour for c in chained])
     if meeting:
         raise met(meeting, path)
@@ -195,21 +194,30 @@ def gathered(shapes: list[Shape]) -> tuple[Pieces, Indices]:
     return (pieces, run) if (np.diff(run) >= 0).all() else (pieces.take(order), run[order])
 
 
-def without_faults(pieces: Pieces, run: Indices, found: Found) -> tuple[NDArray[np.bool_], list[Fault]]:
+def extent(pieces: Pieces) -> float:
+    """Return the greater side of a box round the pieces, mm, to within a half: how large a drawing is."""
+    every = np.arange(len(pieces))
+    points = [pieces.start, pieces.end, pieces.points(every, np.full(every.size, 0.5))]
+    return float(np.ptp(np.concatenate(points), axis=0).max())
+
+
+def without_faults(pieces: Pieces, run: Indices, found: Found, same: float) -> tuple[NDArray[np.bool_], list[Fault]]:
     """Which pieces (n,) to keep, and the faults: pieces of no length, and pieces drawn twice, whichever way round.
 
-    An entity all of whose pieces are drawn by entities before it is left out. Where only some are, the pieces stay.
+    Pieces no longer than `same`, mm, have no direction to speak of; those whose ends and middles agree to that are
+    drawn twice. An entity all of whose pieces are drawn by entities before it is left out. Where only some are, the
+    pieces stay.
     """
-    keep = reach(pieces) > ZERO_LENGTH
+    keep = reach(pieces) > same
     faults = [fault("zero-length", pieces, int(k), run, found) for k in np.flatnonzero(~keep)]
     kept = np.flatnonzero(keep)
     middle = pieces.points(kept, np.full(kept.size, 0.5))
     start, end = pieces.start[kept], pieces.end[kept]
     chord = end - start
-    size = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), ZERO_LENGTH)
+    size = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), same)
     # The same whichever way the piece is run through: middle of the chord, of the piece, and the direction doubled.
     doubled = np.stack([chord[:, 0] ** 2 - chord[:, 1] ** 2, 2.0 * chord[:, 0] * chord[:, 1]], axis=1) / size[:, None]
-    one, other = close_pairs(np.column_stack([(start + end) / 2.0, middle, doubled]), DUPLICATE)
+    one, other = close_pairs(np.column_stack([(start + end) / 2.0, middle, doubled]), same)
     again = np.zeros(len(pieces), dtype=bool)
     again[kept[np.maximum(one, other)]] = True
     if not again.any():
@@ -246,23 +254,23 @@ class Chained(NamedTuple):
     gap: float
 
 
-def chain(pieces: Pieces, run: Indices, gap: float, path: Path) -> list[Chained]:
-    """Contours out of pieces whose runs (n,), rising, are joined end to end."""
+def chain(pieces: Pieces, run: Indices, gap: float, same: float, path: Path) -> list[Chained]:
+    """Contours out of pieces whose runs (n,), rising, are joined end to end, as `loops` does."""
     first = np.flatnonzero(np.diff(run, prepend=-1))
     count = np.diff(first, append=len(run))
     made = []
-    for loop in loops(pieces.start[first], pieces.end[first + count - 1], gap, path):
+    for loop in loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path):
         many, back = count[loop.runs], loop.backwards
         owner = np.repeat(np.arange(len(many)), many)
         step = np.arange(len(owner)) - np.repeat(np.cumsum(many) - many, many)
         step = np.where(back[owner], many[owner] - 1 - step, step)
         ordered = pieces.take(first[loop.runs][owner] + step).turned_round(back[owner])
-        made.append(Chained(Contour.from_pieces(closed_up(ordered)), run[first[loop.runs]], loop.gap))
+        made.append(Chained(Contour.from_pieces(closed_up(ordered, same)), run[first[loop.runs]], loop.gap))
     return made
 
 
-def closed_up(pieces: Pieces) -> Pieces:
-    """Return the pieces of a loop, ends that lie within rounding of the next start set to it."""
+def closed_up(pieces: Pieces, same: float) -> Pieces:
+    """Return the pieces of a loop, ends that lie within `same` of the next start set to it."""
     following = np.roll(pieces.start, -1, axis=0)
-    near = np.abs(following - pieces.end).max(axis=1, keepdims=True) <= SAME_POINT
+    near = np.abs(following - pieces.end).max(axis=1, keepdims=True) <= same
     return replace(pieces, end=np.where(near, following, pieces.end))

@@ -52,7 +52,7 @@ def kind_of(path: Path | str) -> Kind:
     return found
 
 
-def read_drawing(path: Path | str, gap: float = 1e-6, *, engraved: bool = False) -> Drawing:
+def read_drawing(path: Path | str, gap: float | None = None, *, engraved: bool = False) -> Drawing:
     """Read a DXF or SVG; raises as `read_dxf` does."""
     if kind_of(path) == "svg":
         from kin.read_svg import read_svg

@@ -34,11 +34,16 @@ DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, A
 
 
 def read_dxf(
-    path: Path | str, gap: float = 1e-6, layer: str | None = None, *, audit: bool = False, engraved: bool = False
+    path: Path | str,
+    gap: float | None = None,
+    layer: str | None = None,
+    *,
+    audit: bool = False,
+    engraved: bool = False,
 ) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
 
-    gap     mm; ends of loose pieces are joined if they lie within it
+    gap     mm; ends of loose pieces are joined if they lie within it. Default: 1e-6, or 2e-8 of a drawing below 50 mm
     layer   the one to cut. Default: CUT, with holes also from BORE, HOLES and MARK, if there is something on CUT; else
             all layers but those of reference geometry. The outermost closed chain is the contour, those inside it are
             holes.

@@ -53,7 +53,7 @@ class _Drawn(NamedTuple):
     to: Affine
 
 
-def read_svg(path: Path | str, gap: float = 1e-6, *, engraved: bool = False) -> Drawing:
+def read_svg(path: Path | str, gap: float | None = None, *, engraved: bool = False) -> Drawing:
     """Read the outer contour and the holes that an SVG file gives to cut.
 
     Groups named CUT, BORE, HOLES, MARK and ENGRAVE (by id, or by Inkscape's label) are the layers of a DXF; where

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import ezdxf
@@ -263,6 +264,34 @@ def test_gaps_are_bridged_up_to_what_is_permitted_and_reported(tmp_path: Path) -
     assert error.place in {(-20.0, -8.0), (-20.0, 8.0), (-19.997, -8.0), (-19.997, 8.0)} or error.place is not None
     assert str(error).startswith(f"{path}: the contour is open between (-")
     assert "0.003 apart, permitted are 0.0029; 2 such places" in str(error)
+
+
+@pytest.mark.parametrize("side", [1e-3, 1.0, 50.0, 1e6])
+def test_gaps_permitted_by_default_go_with_a_small_drawing(tmp_path: Path, side: float) -> None:
+    def square(gap: float) -> Path:
+        document = new()
+        corners = side * np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, gap)])
+        for a, b in pairwise(corners.tolist()):
+            document.modelspace().add_line(a, b)
+        return saved(document, tmp_path)
+
+    assert read_dxf(square(1e-15)).contour.area == pytest.approx(side * side)
+    share = min(2e-8, 1e-6 / side)
+    assert read_dxf(square(0.9 * share)).widest_gap == pytest.approx(0.9 * share * side)
+    with pytest.raises(ReadError) as caught:
+        read_dxf(square(1.1 * share))
+    assert caught.value.reason == "gap"
+
+
+def test_no_piece_of_a_small_drawing_is_without_length(tmp_path: Path) -> None:
+    """256 loose lines round a circle of 1e-8 mm: each shorter than what counts as one point in a drawing of 50 mm."""
+    points = 1e-8 * unit(np.arange(256) * 2.0 * np.pi / 256)
+    document = new()
+    for a, b in zip(points.tolist(), np.roll(points, -1, axis=0).tolist(), strict=True):
+        document.modelspace().add_line(a, b)
+    drawing = read_dxf(saved(document, tmp_path))
+    assert len(drawing.contour) == 256
+    assert not drawing.faults
 
 
 def test_a_circle_far_out_closes_without_any_gap(tmp_path: Path) -> None:
