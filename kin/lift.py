@@ -111,7 +111,7 @@ class Lift:
         """Angles in [0, 2 pi) at which p'' or a higher derivative may jump, rising."""
         return self.law.breaks
 
-    @property
+    @cached_property
     def radius(self) -> Array:
         """For each stretch its radius of curvature if that is exactly constant, else nan; (max(1, breaks),)."""
         ends = self.breaks if len(self.breaks) else self.law.knots[:1]

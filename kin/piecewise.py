@@ -248,7 +248,7 @@ class Piecewise:
         if self.period is not None and abs(knots[-1] - knots[0] - self.period) > self._snap(knots[-1:])[0]:
             raise ValueError(f"the knots span {knots[-1] - knots[0]!r}, the period is {self.period!r}")
 
-    @property
+    @cached_property
     def breaks(self) -> Array:
         """Parameters where the function changes, rising: in [0, period), or inside the ends without a period."""
         if self.period is None:
@@ -256,7 +256,9 @@ class Piecewise:
         first = 1 if self.smooth_seam else 0
         folded = np.mod(self.knots[first:-1], self.period)
         folded[self.period - folded <= self._snap(folded)] = 0.0
-        return np.sort(folded)
+        folded.sort()
+        folded.setflags(write=False)
+        return folded
 
     def derivatives(self, t: float | Array, order: int, side: Side = 1) -> Array:
         """Give derivatives 0..order at t (n,) as (order + 1, n); at a knot the right-hand limit, or left (side -1).

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.curve import columns
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation
 from kin.distinct import distinct
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve import Array, Curve, Run
+    from camgeo.curve import Array, Curve, Frame, Run
 
 EVEN = 0.02  # change of curvature over an edge, of itself, up to which one look in the middle is enough
 LOOKS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0)  # the other places
@@ -75,27 +76,31 @@ class Edges:
         return outward, inward
 
 
-def placed(curve: Curve, run: Run, nodes: Array, away: Array) -> Placed:
-    """Edges between vertices that stand `away` (n + 1,) outside the curve; a corner of an open run stays on it."""
+def frames(curve: Curve, run: Run, nodes: Array) -> Frame:
+    """Frames at the nodes (n + 1,) of a run; the last one of a closed run is the first again."""
+    if not run.closed:
+        return curve.sample(nodes, np.where(np.arange(nodes.size) < nodes.size - 1, 1, -1))
     at = curve.sample(nodes[:-1])
-    last = at if run.closed else curve.sample(nodes[-1:], -1)
-    end = 0 if run.closed else -1
-    turn = np.append(at.turn, last.turn[end:][:1])
+    return at.joined(at.split(1)[0])
+
+
+def placed(at: Frame, run: Run, nodes: Array, away: Array) -> Placed:
+    """Edges between vertices that stand `away` (n + 1,) outside the frames at the nodes of a run.
+
+    A corner of an open run stays on the curve.
+    """
     # where a slight bend the other way was not worth two crossings, a vertex on the far side would only add to it
-    away = np.where(away * turn < 0.0, 0.0, away)
+    away = np.where(away * at.turn < 0.0, 0.0, away)
     away[-1] = away[0]
     if not run.closed:
         away[[0, -1]] = 0.0
-    normal = np.append(at.normal, last.normal[end:][:1], axis=0)
-    heading = np.append(at.tangent, last.tangent[end:][:1], axis=0)
-    pace = np.append(at.speed, last.speed[end:][:1]) + away * turn
-    vertices = np.append(at.point, last.point[end:][:1], axis=0) + away[:, None] * normal
+    normal, heading = at.normal, at.tangent
+    pace = at.speed + away * at.turn
+    vertices = at.point + away[:, None] * normal
     chord = np.diff(vertices, axis=0)
     tangent = chord / np.hypot(chord[:, 0], chord[:, 1])[:, None]
-    across = np.column_stack([tangent[:, 1], -tangent[:, 0]])
-    lean = np.column_stack(
-        [pace[:-1] * np.sum(heading[:-1] * across, axis=1), pace[1:] * np.sum(heading[1:] * across, axis=1)]
-    )
+    across = columns(tangent[:, 1], -tangent[:, 0])
+    lean = columns(pace[:-1] * np.sum(heading[:-1] * across, axis=1), pace[1:] * np.sum(heading[1:] * across, axis=1))
     # nodes of a closed run may begin later than it does and end as much later: pieces beyond its end are folded back
     span = run.high - run.low
     breaks = np.array(run.breaks)
@@ -129,7 +134,7 @@ def look(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
     if uneven.size:
         piece = np.append(piece, np.repeat(uneven, len(LOOKS)))
         t = edges.low[uneven, None] + width[uneven, None] * np.array(LOOKS)
-        at = curve.sample(np.append(edges.low + 0.5 * width, t.ravel()))
+        at = at.joined(curve.sample(t.ravel()))
         reach[uneven] /= len(LOOKS) + 1
         reach = reach[piece]
     edge = edges.edge[piece]

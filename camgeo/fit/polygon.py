@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.edges import Edges, look, placed, proved
+from camgeo.fit.edges import Edges, frames, look, placed, proved
 from camgeo.fit.inflection import REACH, crossings, inflections
 from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, Polygon
@@ -109,12 +109,13 @@ def _fit_run(curve: Curve, run: Run, tolerance: float, asked: float) -> Edges:
 def _balanced(curve: Curve, run: Run, parts: list[_Part], shift: float, tolerance: float) -> Edges:
     """Proved edges; moved once more where one side is used more than the other, which runs without corners allow."""
     nodes, _, sides = _chained(parts)
-    edges = proved(curve, placed(curve, run, nodes, shift * sides), tolerance)
+    at = frames(curve, run, nodes)
+    edges = proved(curve, placed(at, run, nodes, shift * sides), tolerance)
     outward, inward = edges.extremes
     level = run.closed and bool((sides == sides[0]).all())
     if level and math.isfinite(outward + inward) and abs(outward - inward) > BALANCED * tolerance:
         shift = min(0.5 * (outward + inward), tolerance)
-        moved = proved(curve, placed(curve, run, nodes, shift * sides), tolerance)
+        moved = proved(curve, placed(at, run, nodes, shift * sides), tolerance)
         if max(moved.extremes) < max(outward, inward):
             return moved
     return edges
@@ -199,7 +200,7 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
     height = math.inf
     for _ in range(TRIES):
         nodes, owner, sides = _chained(parts)
-        seen = look(curve, placed(curve, run, nodes, tolerance * sides), sides, tolerance)
+        seen = look(curve, placed(frames(curve, run, nodes), run, nodes, tolerance * sides), sides, tolerance)
         height = 0.5 * float(seen.load.max())
         busy = False
         for i, part in enumerate(parts):
@@ -310,7 +311,7 @@ def _level(curve: Curve, run: Run, nodes: Array, sense: float, tolerance: float)
     sides = np.full(nodes.size, sense)
     best, spread, move, pace = nodes, math.inf, np.zeros_like(nodes), 1.0
     for _ in range(LEVELLINGS):
-        seen = look(curve, placed(curve, run, nodes, tolerance * sides), sides, tolerance)
+        seen = look(curve, placed(frames(curve, run, nodes), run, nodes, tolerance * sides), sides, tolerance)
         top = float(seen.load.max())
         if top <= 2.0 * tolerance * EXACT:
             return nodes, 0.5 * top

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve import Bounds, Frame
+from camgeo.curve import Bounds, Frame, columns
 from kin.taylor import factorials
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class SupportShape:
     @property
     def steady(self) -> Array:
         """Radius of curvature and turn, (m, 2), on stretches that are circular arcs; nan on the others."""
-        radius = np.where(self.lift.steady, self.lift.radius, np.nan)
+        radius = self.lift.radius
         return np.column_stack([radius, np.where(np.isnan(radius), np.nan, 1.0)])
 
     @property
@@ -55,9 +55,8 @@ class SupportShape:
         """Frame at normal directions t (n,)."""
         p = self.lift.derivatives(t, 3, side)
         cosine, sine = np.cos(t), np.sin(t)
-        tangent = np.column_stack([-sine, cosine])
-        point = np.column_stack([p[0] * cosine - p[1] * sine, p[0] * sine + p[1] * cosine])
-        return Frame(point, tangent, p[0] + p[2], np.ones_like(t), p[1] + p[3], np.zeros_like(t))
+        point = columns(p[0] * cosine - p[1] * sine, p[0] * sine + p[1] * cosine)
+        return Frame(point, columns(-sine, cosine), p[0] + p[2], np.ones_like(t), p[1] + p[3], np.zeros_like(t))
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Taylor coefficients (order + 1, n) of speed and turn at normal directions t (n,)."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
-from camgeo.curve import Bounds, Frame
+from camgeo.curve import Bounds, Frame, columns
 from kin import jet
 from kin.ball import Ball
 from kin.jet import BallJet, Jet
@@ -94,9 +94,10 @@ class PitchShape(_OfLaw):
         rows_phi, rows_psi = self.law.at(t, 3, side)
         phi, chi = rows_phi[0], rows_phi[0] - rows_psi[0] - self.law.alpha
         arm = self.law.arm
-        point = arm * np.column_stack([np.cos(phi) + np.cos(chi), np.sin(phi) + np.sin(chi)])
+        pivot, end = (np.cos(phi), np.sin(phi)), (np.cos(chi), np.sin(chi))
+        point = arm * columns(pivot[0] + end[0], pivot[1] + end[1])
         a, b = rows_phi[1], rows_phi[1] - rows_psi[1]
-        velocity = np.column_stack([-a * np.sin(phi) - b * np.sin(chi), a * np.cos(phi) + b * np.cos(chi)])
+        velocity = columns(-a * pivot[1] - b * end[1], a * pivot[0] + b * end[0])
         length = np.hypot(velocity[:, 0], velocity[:, 1])
         return Frame(point, velocity / length[:, None], *self._rates_at(rows_phi, rows_psi))
 
@@ -168,9 +169,10 @@ class FlatPairShape(_OfLaw):
         slope1 = (r[2] - slope * turn1) / turn
         slope2 = (r[3] - slope * turn2 - 2.0 * slope1 * turn1) / turn
         cosine, sine = np.cos(normal[0]), np.sin(normal[0])
-        point = np.column_stack([r[0] * cosine - slope * sine, r[0] * sine + slope * cosine])
-        tangent = np.column_stack([-sine, cosine])
-        return Frame(point, tangent, r[0] * turn + slope1, turn, r[1] * turn + r[0] * turn1 + slope2, turn1)
+        point = columns(r[0] * cosine - slope * sine, r[0] * sine + slope * cosine)
+        return Frame(
+            point, columns(-sine, cosine), r[0] * turn + slope1, turn, r[1] * turn + r[0] * turn1 + slope2, turn1
+        )
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,) of the law."""
