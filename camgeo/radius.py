@@ -36,7 +36,8 @@ GROWTH = 1.6  # from part to part away from a minimum already found
 LEVELS = 30
 MOST_INTERVALS = 100_000  # undecided at a time
 FRESH = 1_000  # so many undecided: the bounds over them are formed anew, not taken over from their cells
-_ROOT_STEPS = 60
+_FALSE_POSITIONS = 40  # steps of that rule, at the most; then halving alone
+_ROOT_STEPS = _FALSE_POSITIONS + 56  # of a bracket: 53 halvings reach the rounding of its ends
 
 
 @dataclass(frozen=True)
@@ -300,34 +301,34 @@ def _least_end(state: _Intervals) -> tuple[float, float]:
 def roots(
     function: Callable[[Array], Array], low: Array, high: Array, values: tuple[Array, Array], precision: float
 ) -> Array:
-    """Roots of a function that changes its sign in each interval (n,), to `precision` of the interval.
+    """Roots of a function that changes its sign in each interval (n,), enclosed to `precision` of the interval.
 
     `values` are the function's at both ends, (n,) each.
 
-    The Illinois form of the rule of false position, halving where it is slow.
+    The Illinois form of the rule of false position, halving where it is slow, and throughout where it stays so: every
+    bracket is closed within the steps that there are.
     """
-    if low.size == 0:
-        return low
-    a, b = low.copy(), high.copy()
+    a, b = low, high
     fa, fb = values
     close = precision * (high - low) + 2.0 * np.spacing(np.maximum(np.abs(low), np.abs(high)))
-    last = np.full_like(a, np.inf)
+    found = np.zeros(low.shape, dtype=bool)
     for step in range(_ROOT_STEPS):
+        if found.all():
+            break
         with np.errstate(divide="ignore", invalid="ignore"):
             x = b - fb * (b - a) / (fb - fa)
-        halve = ~((x >= np.minimum(a, b)) & (x <= np.maximum(a, b))) | (step % 8 == 7)
-        x = np.where(halve, 0.5 * (a + b), x)
+        # a step beyond the root closes the bracket; small steps alone are no sign of one
+        x = np.where(np.abs(x - b) < 0.5 * close, b + np.copysign(0.5 * close, a - b), x)
+        halve = ~((x >= np.minimum(a, b)) & (x <= np.maximum(a, b))) | (step % 8 == 7) | (step >= _FALSE_POSITIONS)
+        x = np.where(found, b, np.where(halve, 0.5 * (a + b), x))
         fx = function(x)
-        done = (np.abs(x - last) <= close) | (fx == 0.0)
-        last = x
-        if done.all():
-            break
-        crossed = np.sign(fx) != np.sign(fb)
+        crossed = (np.sign(fx) != np.sign(fb)) & ~found
         # the end that stays has its weight halved, so that both ends move
         fa = np.where(crossed, fb, 0.5 * fa)
         a = np.where(crossed, b, a)
         b, fb = x, fx
-    return last
+        found |= (np.abs(b - a) <= close) | (fb == 0.0)
+    return b
 
 
 def _arcs_below_zero(state: _Intervals, radii: Array, tolerance: float) -> list[tuple[float, float, bool]]:

@@ -93,7 +93,7 @@ def narrowest_necks(pitch: Pitch, below: float) -> tuple[Neck, ...]:
 def neck_from(pitch: Pitch, first: float, second: float) -> Neck | None:
     """Double normal across the inside that Newton's method finds from two parameters, None if it finds none."""
     ends = _double_normals(pitch, np.array([[first, second]]))
-    neck, inside = _measured(pitch, ends)
+    neck, inside, _ = _measured(pitch, ends)
     return Neck(float(ends[0, 0]), float(ends[0, 1]), float(neck[0])) if inside[0] else None
 
 
@@ -183,8 +183,10 @@ class _Search:
         bowls = np.flatnonzero((pairs.bowl > 0.0) & (pairs.chord < 2.0 * least[0] * (1.0 + NECK_SHARPNESS)))
         if bowls.size:
             ends = _double_normals(self.pitch, pairs.centre[bowls])
-            half, inside = _measured(self.pitch, ends)
+            half, inside, slant = _measured(self.pitch, ends)
             held = ((ends >= boxes.low[bowls]) & (ends <= boxes.high[bowls])).all(axis=1) & inside
+            # |x - y| falls by no more than its share slant^2 / 2 bowl from there: Newton's method has come close enough
+            held &= slant * slant <= 2.0 * NECK_SHARPNESS * pairs.bowl[bowls]
             free[bowls[held]] = True
             found += [Neck(float(t), float(s), float(h)) for (t, s), h in zip(ends[held], half[held], strict=True)]
             narrowest = min(found, key=lambda n: n.half, default=None)
@@ -251,16 +253,21 @@ def _double_normals(pitch: Pitch, ends: Array) -> Array:
     return ends
 
 
-def _measured(pitch: Pitch, ends: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Half the chord between parameters (n, 2), and whether it is a double normal that runs across the inside."""
+def _measured(pitch: Pitch, ends: Array) -> tuple[Array, NDArray[np.bool_], Array]:
+    """Half the chord between parameters (n, 2), whether it is a double normal that runs across the inside, its slant.
+
+    The slant is how far both tangents are from square to it.
+    """
     count = ends.shape[0]
     both = pitch.at(ends.T.ravel())
     x, y = both.part(slice(None, count)), both.part(slice(count, None))
     d = x.point - y.point
     length = np.hypot(d[:, 0], d[:, 1])
-    square = np.maximum(np.abs(np.sum(d * x.tangent, axis=1)), np.abs(np.sum(d * y.tangent, axis=1))) <= 1e-6 * length
+    slant = np.full(count, np.inf)
+    along = np.hypot(np.sum(d * x.tangent, axis=1), np.sum(d * y.tangent, axis=1))
+    np.divide(along, length, out=slant, where=length > 0.0)
     inside = (np.sum(d * x.normal, axis=1) > 0.0) & (np.sum(d * y.normal, axis=1) < 0.0)
-    return 0.5 * length, square & inside
+    return 0.5 * length, (slant <= 1e-6) & inside, slant
 
 
 def _distinct(found: list[Neck], limit: float, period: float) -> tuple[Neck, ...]:

@@ -7,7 +7,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapes import booth
 
@@ -15,7 +15,7 @@ from camgeo.curve import Curve
 from camgeo.offset import Parallel
 from camgeo.profile.support import SupportShape
 from camgeo.profile.wunderlich import PitchShape
-from camgeo.radius import LOOSE, Reversal, enclosed_least_radius, least_radius, reversals
+from camgeo.radius import LOOSE, Reversal, enclosed_least_radius, least_radius, reversals, roots
 from kin.formula import Formula
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_reuleaux
@@ -214,3 +214,22 @@ def test_no_enclosure_is_wide_where_the_sign_is_in_doubt():
         found = enclosed_least_radius(Curve.whole(Parallel(pitch, least * (1.0 + share))))
         assert found.room == 0.0
         assert found.radius == pytest.approx(-share * least, rel=0.05)
+
+
+@given(st.floats(1e-15, 0.5), st.integers(1, 40), st.booleans(), st.floats(-9.0, 9.0))
+@example(1e-12, 2, False, 0.0)
+@example(1e-12, 20, True, 0.0)
+@settings(deadline=None)
+def test_roots_are_enclosed_however_flat_the_function(low, power, turned, shift):
+    """u^k = a: steps of the false position from the flat end are far smaller than the way to the root."""
+    root = low ** (1.0 / power)
+
+    def f(x):
+        u = shift + 1.0 - x if turned else x - shift
+        return u**power - low
+
+    ends = np.array([shift]), np.array([shift + 1.0])
+    found = roots(f, *ends, (f(ends[0]), f(ends[1])), 1e-12)[0]
+    assert (shift + 1.0 - found if turned else found - shift) == pytest.approx(
+        root, abs=1e-12 + 1e-14 * abs(shift) + 1e-9 * root
+    )
