@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -85,6 +84,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, progress: Progress) -> list[Rung | Ended]:
     """All rungs of all forms."""
+    import tempfile
+
     from camgeo.study.ladder import climb
 
     if design.contour is None:
