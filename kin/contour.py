@@ -196,18 +196,23 @@ class Contour(Pieces):
         return apart(np.concatenate([active, self._switches(probes)]))
 
     def _switches(self, theta: Array) -> Array:
-        """Angles strictly between neighbours in theta (k,), rising, at which the farthest point leaps: by bisection."""
+        """Angles at which the farthest point leaps: strictly between neighbours in theta (k,), rising, and of theta.
+
+        Between two of theta it is found by bisection.
+        """
         width = np.diff(theta, append=theta[0] + TURN)
         wide = width > 4.0 * np.finfo(float).eps / INSET
         low, high = (theta + INSET * width)[wide], (theta + (1.0 - INSET) * width)[wide]
-        piece = self.support(low).piece
-        leaps = piece != self.support(high).piece
+        piece, last = self.support(low).piece, self.support(high).piece
+        # an arc whose end lies beside it, by a file's rounding, is not quite the farthest where the next one takes over
+        at = theta[wide][piece != np.roll(last, 1)]
+        leaps = piece != last
         low, high, piece = low[leaps], high[leaps], piece[leaps]
         for _ in range(60):
             middle = (low + high) / 2.0
             same = self.support(middle).piece == piece
             low, high = np.where(same, middle, low), np.where(same, high, middle)
-        found: Array = np.mod(low, TURN)
+        found: Array = np.mod(np.concatenate([low, at]), TURN)
         return found
 
     @cached_property

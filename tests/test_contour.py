@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import mpmath
@@ -13,12 +13,13 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from kin.arcs import unit
+from kin.bearing import bearing_of
 from kin.bezier import Beziers
 from kin.biarc import arcs_along
 from kin.contour import ARC, BEZIER, LINE, Contour
 from kin.hull import convex_hull
 from kin.nearest import nearest
-from kin.pieces import Pieces, wrapped
+from kin.pieces import TURN, Pieces, wrapped
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -514,3 +515,28 @@ def test_a_hundred_thousand_pieces() -> None:
     theta = np.arange(3600) * np.pi / 1800.0
     np.testing.assert_allclose(contour.support(theta).q, 25.0 + unit(theta) @ (3.0, 1.0), atol=2e-14)
     assert contour.is_convex
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10_000), off=st.sampled_from([1e-13, 1e-12, 1e-11, 1e-9]))
+def test_arcs_that_a_file_rounds_bear_one_after_the_other(seed, off):
+    """Thirteen digits put an arc's end beside it by more than doubles do; no arc may bear in place of the next one."""
+    rng = np.random.default_rng(seed)
+    turn = np.sort(rng.uniform(0.0, TURN, 12))
+    if np.diff(turn, append=turn[0] + TURN).max() > 1.5:
+        turn = TURN * np.arange(12) / 12
+    sweep = np.diff(turn, append=turn[0] + TURN)
+    radius = rng.uniform(10.0, 40.0, 12)
+    # opposite arcs alike: the chain closes
+    turn, sweep = np.concatenate([0.5 * turn, 0.5 * turn + np.pi]), np.tile(0.5 * sweep, 2)
+    radius = np.tile(radius, 2)
+    step = radius[:, None] * (unit(turn + sweep) - unit(turn))
+    start = np.cumsum(step, axis=0) - step
+    start -= start.mean(axis=0)
+    true = Contour.from_bulges(start, np.tan(0.25 * sweep))
+    angle = true.angle + rng.uniform(-off, off, 24) / 30.0
+    rounded = replace(true, radius=true.radius + rng.uniform(-off, off, 24), angle=angle)
+    bearing = bearing_of(rounded)
+    theta = rng.uniform(0.0, TURN, 500)
+    q = bearing.derivatives(theta, bearing.find(theta))[0]
+    assert np.abs(q - true.support(theta).q).max() < 20.0 * off + 1e-12
