@@ -306,6 +306,18 @@ def test_a_dent_in_a_hollow_that_neither_roller_feels(tmp_path, depth):
     assert failures(write_dxf(tmp_path / "cam.dxf", vertices), intent) == {"contour"}
 
 
+@pytest.mark.parametrize("depth", [0.0005, 0.002])
+def test_a_dent_that_no_flat_face_feels_counts_with_its_depth(tmp_path, depth):
+    """A face passes over a dent of any depth; it is metal missing, measured as such and held against the tolerance."""
+    intent, points = CAMS["yoke"]
+    vertices = points(20_000)
+    vertices[7] -= depth * outward(vertices, 7)
+    verdict = verify(write_dxf(tmp_path / "cam.dxf", vertices), intent, 360, LIMITS)
+    assert verdict.measured_error == pytest.approx(depth, rel=0.01)
+    assert verdict.motion.max < 1e-5
+    assert [check.name for check in verdict.checks if not check.ok] == ["contour"] * (depth > LIMITS.tolerance)
+
+
 def test_metal_left_in_a_hollow_is_felt_and_seen(tmp_path):
     intent, points = CAMS["double roller"]
     vertices = points(20_000)
