@@ -364,6 +364,11 @@ def test_figures_against_dense_samples(driven):
         assert driven.at(place.relative, 0).faces[0, 0, 0] == pytest.approx(25, abs=1e-12)
 
 
+def test_dead_centres_on_either_side_of_zero_are_all_told():
+    places = Mechanism(LINKAGES["four-bar"], lift_hypocycloid(3, 1.0, 50.0), 50.0).figures().dead_centres
+    assert [place.relative / DEGREE for place in places] == pytest.approx([30, 90, 150, 210, 270, 330], abs=1e-9)
+
+
 def largest(row):
     return np.abs(row).max()
 
