@@ -229,3 +229,16 @@ def test_the_circle_drawn_for_reference_is_the_largest_about_the_shaft(name: str
     base = designed(recipe).profile.base
     points = base.sample(np.linspace(base.cells.low.min(), base.cells.high.max(), 100_001)).point
     assert shapes[0].dxf.radius * recipe.mm == pytest.approx(np.hypot(*points.T).min(), abs=1e-6)
+
+
+def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path: Path) -> None:
+    files = b"[dxf, {stl: {tolerance: 0.02}}]"
+    recipe = read(UNDERCUT.replace(b"10 + ", b"25 + ").replace(b"[dxf, stl]", files) % b"", "own.yaml")
+    folder = pipeline.export(recipe, tmp_path).folder
+    assert folder is not None
+    other = folder.rename(tmp_path / "sent") / "other.stl"
+    other.write_bytes((other.parent / "own.stl").read_bytes())
+    report = pipeline.judged(recipe, [other.parent / "own.dxf", other.parent / "own.stl", other])
+    assert [file["tolerance"] for file in report["files"]] == [0.001, 0.02, 0.001]
+    assert {"contour", "motion"} <= failed(report)
+    assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}

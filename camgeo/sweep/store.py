@@ -87,10 +87,6 @@ class Chunks:
         """File of a chunk."""
         return self.folder / f"chunk-{number:07d}.bin"
 
-    def there(self, number: int) -> bool:
-        """Whether a chunk's file is there, good or bad."""
-        return self.path(number).exists()
-
     def read(self, number: int) -> dict[str, NDArray[np.float64]] | None:
         """Figures of a chunk, or None where there is no file; raises ChunkError where there is a bad one."""
         try:
