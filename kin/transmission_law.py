@@ -242,6 +242,6 @@ class _Lead:
     def on(self, tau: Series, psi: Series, places: Places) -> Series:
         """Give the angle, psi being the law's at tau, which lies at these places of the law."""
         if self.weights is not None:
-            return tau + places.weigh(psi, self.weights) + self.offset
+            return tau + (places.weigh(psi, self.weights) + self.offset)
         found = tau + psi * self.weight if self.weight else tau
         return found + self.offset if self.offset else found
