@@ -34,6 +34,7 @@ FACET = {0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b
 FACET |= {19: b"endloop", 20: b"endfacet"}
 WORDS = 21
 LONGEST_WORD = 40
+SPACES = str.maketrans("", "", "\r\n\t")
 NUMBERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 # Beyond this, mm, products of three coordinates have no digits left for a part.
 LARGEST = 1e7
@@ -216,6 +217,9 @@ def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "te
         return facets(raw, path), "text"
     if len(raw) < HEADER:
         raise ReadError("truncated", f"{len(raw)} bytes are no STL file, whose header alone has {HEADER}", path)
+    begin = raw[:HEADER]
+    if begin.isascii() and begin.decode("ascii").translate(SPACES).isprintable():
+        raise ReadError("syntax", f"no STL file, neither binary nor text: it begins with {begin[:20]!r}", path)
     reason = "truncated" if len(raw) < expected else "syntax"
     raise ReadError(reason, f"{count} triangles make a file of {expected} bytes, not {len(raw)}", path)
 

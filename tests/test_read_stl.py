@@ -367,3 +367,11 @@ def test_welding_survives_points_of_one_hash(monkeypatch: pytest.MonkeyPatch) ->
 def test_a_missing_file_is_the_file_systems_error(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         read_stl(tmp_path / "none.stl")
+
+
+def test_what_is_no_stl_at_all_is_told_by_how_it_begins(tmp_path: Path) -> None:
+    path = tmp_path / "cam.stl"
+    path.write_bytes(b"ISO-10303-21;\nHEADER;\n" + b"FILE_DESCRIPTION(('a part'),'2;1');\n" * 40)
+    with pytest.raises(ReadError, match=r"neither binary nor text: it begins with b'ISO-10303-21;") as caught:
+        read_stl(path)
+    assert caught.value.reason == "syntax"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from camgeo.files.gcode import Cutting, places, rounding, write_gcode
 from camgeo.fit.pieces import ArcSpline
 from camgeo.making.job import Made
-from camgeo.manufacture.milling import clear_of_hub, milled_holes, path_of, reach_check, unmilled
+from camgeo.manufacture.milling import clear_of_hub, few_passes, milled_holes, path_of, reach_check, unmilled
 from camgeo.manufacture.toolpath import begun_at, circle, led, passes
 from camgeo.outlines import Outlines
 from kin.check import about
@@ -33,6 +33,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     if asked is None:
         raise recipe.error("manufacture", "gcode needs manufacture")
     clear_of_hub(recipe)
+    few_passes(recipe)
     with job.refusals(request), job.clock.stage("cutter path"):
         check, _ = reach_check(recipe, job.design)
     check = about(check, path.name)

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_manufacture import Manufacture
     from kin.verify import Intent
 
+MOST_PASSES = 2000  # through the part
+ALIKE = 1e-9  # share by which hollows of a regular cam differ through rounding: the first of them is told
+
 
 class RoundHole(NamedTuple):
     """A round hole through the part, in the cam's axes, mm."""
@@ -55,7 +58,8 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
         return failed("cutter-reach", f"{error}; {told}", unit="mm", limit=asked.unreached), None
     if not path.lost:
         return Check("cutter-reach", True, 0.0, asked.unreached, "mm", detail=told), path
-    worst = max(path.lost, key=lambda cut: cut.depth)
+    deepest = max(cut.depth for cut in path.lost)
+    worst = next(cut for cut in path.lost if cut.depth >= (1.0 - ALIKE) * deepest)
     first, last = shaft_deg(design.intent, worst.start), shaft_deg(design.intent, worst.end)
     free = 2.0 * min(cut.free_at for cut in path.lost)
     detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
@@ -75,6 +79,19 @@ def clear_of_hub(recipe: Recipe) -> None:
         given = f"{asked.safe_height / mm:.6g} {unit}"
         what, remedy = "not above the hub's top", f"give more than {hub.height / mm:.6g} {unit}"
         raise recipe.error("manufacture.safe_height", what, given, remedy)
+
+
+def few_passes(recipe: Recipe) -> None:
+    """Raise RecipeErrors for a depth of cut so slight that a program of it would not come to an end."""
+    thickness, asked = recipe.part.thickness, recipe.manufacture
+    if thickness is None or asked is None or asked.depth_of_cut is None:
+        return
+    count = thickness / asked.depth_of_cut
+    if count > MOST_PASSES:
+        given = f"{asked.depth_of_cut / recipe.mm:.6g} {recipe.units}"
+        what = f"makes {math.ceil(count)} passes, more than {MOST_PASSES}"
+        remedy = f"give at least {thickness / MOST_PASSES / recipe.mm:.6g} {recipe.units}"
+        raise recipe.error("manufacture.depth_of_cut", what, given, remedy)
 
 
 def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:

@@ -183,7 +183,8 @@ def summary(report: dict[str, Any]) -> str:
     for file in report["files"]:
         if file.get("stale"):
             continue
-        text = file["path"].removeprefix(report["recipe"]).lstrip(".-")
+        own = (report["recipe"] + ".", report["recipe"] + "-")
+        text = file["path"][len(own[0]) :] if file["path"].startswith(own) else file["path"]
         if file.get("pieces"):
             text += f" {file['pieces']} {pieces_word(file)}"
         motion = file.get("motion")
