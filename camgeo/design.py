@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from camgeo.linkage import Driven
     from camgeo.part.body import Body
     from camgeo.recipe.model import Recipe
+    from camgeo.undercut import Undercut
     from kin.follower import Follower
     from kin.lift import Lift
     from kin.transmission import Transmission
@@ -155,19 +156,22 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
         cuts = [cut for cut in found if cut.kind == kind]
         if kind == "global" and profile.roller_radius == 0.0 and not cuts:
             continue
-        worst = max(cuts, key=lambda cut: cut.depth, default=None)
-        if worst is None:
+        if not cuts:
             checks.append(Check(f"undercut-{kind}", True, 0.0, 0.0, "mm"))
             continue
-        first, last = shaft_deg(intent, worst.start), shaft_deg(intent, worst.end)
-        everywhere = worst.end - worst.start >= profile.curve.shape.period
-        where = "all round" if everywhere else f"from {first:.6g} to {last:.6g} deg"
-        detail = f"{where}; {free}{outcome}"
+        worst = max(cuts, key=lambda cut: cut.depth)
+        detail = f"{_extent(profile, intent, worst)}; {free}{outcome}"
         depth = worst.depth if math.isfinite(worst.depth) else None
-        ok, at_deg = contour is not None, shaft_deg(intent, worst.at)
-        limit = None if cut_off else 0.0
+        ok, at_deg, limit = contour is not None, shaft_deg(intent, worst.at), None if cut_off else 0.0
         checks.append(Check(f"undercut-{kind}", ok, depth, limit, "mm", at_deg, detail=detail))
     return checks, contour
+
+
+def _extent(profile: Profile, intent: Lift | Transmission, cut: Undercut) -> str:
+    """Say from where to where contact is lost, in shaft angles."""
+    if cut.end - cut.start >= profile.curve.shape.period:
+        return "all round"
+    return f"from {shaft_deg(intent, cut.start):.6g} to {shaft_deg(intent, cut.end):.6g} deg"
 
 
 def _free(recipe: Recipe, profile: Profile, free_at: float) -> str:
