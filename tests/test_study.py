@@ -6,6 +6,7 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from camgeo import cli
@@ -122,6 +123,15 @@ def test_margins_of_an_ellipse_under_a_flat_pair() -> None:
     ratio = max(abs(c) for _, c in recipe.cam.route.cos) / recipe.cam.arm**2
     assert found["square-root"].value == pytest.approx(math.degrees(math.acos(ratio)), abs=1e-6)
     assert found["turning-through"].value > 0.0
+
+
+def test_margins_of_a_roller_to_the_shaft_and_to_a_stretched_arm() -> None:
+    recipe = load(RECIPES / "w-figure-9.yaml")
+    base = designed(recipe).profile.base
+    distance = np.hypot(*base.sample(np.linspace(0.0, 2.0 * math.pi, 20_001)).point.T)
+    found = named("w-figure-9")
+    assert found["shaft"].value == pytest.approx(distance.min(), rel=1e-5)
+    assert found["stretched"].value == pytest.approx(2.0 * recipe.cam.arm - distance.max(), rel=1e-4)
 
 
 def test_a_cam_at_the_brink_of_undercut_has_hardly_any_margin() -> None:

@@ -232,3 +232,16 @@ def test_jobs_and_a_scheduler_exclude_each_other(tmp_path: Path, capsys: pytest.
         main(["sweep", str(written(tmp_path)), "--jobs", "2", "--scheduler", "tcp://a:1"])
     assert stop.value.code == 2
     assert "not allowed with argument" in capsys.readouterr().err
+
+
+def test_the_time_left_is_told_from_the_speed_so_far() -> None:
+    told: list[str] = []
+    tell = command._teller(told.append)
+    tell("designs", 0, 40_000, 0.0)
+    tell("designs", 10_000, 40_000, 20.0)
+    tell("chunks", 1, 4, 60.0)
+    assert told == [
+        "0 of 40,000 designs",
+        "10,000 of 40,000 designs, 500 a second, 60 s left",
+        "1 of 4 chunks, 3 min left",
+    ]
