@@ -99,7 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
-    _add_options(verify)
+    _add_options(verify, "to which all the files are held, in the recipe's unit")
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
     sweep_command.add_arguments(sweep, _jobs)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, which there are.")
@@ -118,14 +118,13 @@ def _parser() -> argparse.ArgumentParser:
 def _add_recipes(command: argparse.ArgumentParser) -> None:
     """Give a command of several recipes what all such take."""
     command.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
-    _add_options(command)
+    _add_options(command, "in place of export.tolerance, in the recipe's unit")
     command.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
 
 
-def _add_options(command: argparse.ArgumentParser) -> None:
-    """Give a command that makes reports its options."""
-    text = "in place of export.tolerance, in the recipe's unit"
-    command.add_argument("--tolerance", type=_length, metavar="E", help=text)
+def _add_options(command: argparse.ArgumentParser, tolerance: str) -> None:
+    """Give a command that makes reports its options; `tolerance` is what it does with that."""
+    command.add_argument("--tolerance", type=_length, metavar="E", help=tolerance)
     command.add_argument("-v", "--verbose", action="store_true", help="every check and file as a table")
     command.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
 
@@ -288,7 +287,8 @@ def _verify(arguments: argparse.Namespace) -> int:
             for fault in faults:
                 _complain(fault)
             return WRONG
-        report = pipeline.judged(recipe, paths)
+        given = arguments.tolerance
+        report = pipeline.judged(recipe, paths, tolerance=None if given is None else given * recipe.mm)
     except RecipeErrors as errors:
         print(errors, file=sys.stderr)
         return WRONG

@@ -79,8 +79,11 @@ def shown(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> tuple
         return Outcome(document(recipe, found), found.ok, None), _content(recipe, design, found, clock)
 
 
-def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
-    """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does."""
+def judged(recipe: Recipe, paths: list[Path], *, tolerance: float | None = None) -> dict[str, Any]:
+    """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does.
+
+    They are held to `tolerance`, mm; without one to that of the recipe's file of the same name, or of its export.
+    """
     from camgeo.recipe.model import FileRequest
     from kin.read import kind_of
     from kin.verify import verify
@@ -90,15 +93,13 @@ def judged(recipe: Recipe, paths: list[Path]) -> dict[str, Any]:
     checks, files = list(design.checks), []
     for path in paths:
         with clock.stage("judge"):
-            tolerance = _tolerance_of(recipe, path)
+            within = _tolerance_of(recipe, path) if tolerance is None else tolerance
             by, field = _compensation_of(recipe, path)
             meant = intent_of_file(recipe, design, kind_of(path), by, field)
-            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance))
+            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within))
         request = FileRequest(verdict.kind, compensation=by)
         measured = verdict.measured_error
-        files.append(
-            FileResult(path, request, tolerance, verdict.pieces, None, measured, verdict.motion, verdict.linkage)
-        )
+        files.append(FileResult(path, request, within, verdict.pieces, None, measured, verdict.motion, verdict.linkage))
         checks += verdict.checks
     return document(recipe, _findings(recipe, design, checks, files, clock))
 

@@ -194,9 +194,8 @@ def _judged(
         verify = replace(verify, motion_error=math.radians(limit) if swings else limit * recipe.mm)
     if angles is not None:
         verify = replace(verify, angles=angles)
-    mm = _tolerance(recipe, path) if tolerance is None else tolerance * recipe.mm
-    recipe = replace(recipe, verify=verify, export=replace(recipe.export, tolerance=mm))
-    report = judged(recipe, [path])
+    recipe = replace(recipe, verify=verify)
+    report = judged(recipe, [path], tolerance=None if tolerance is None else tolerance * recipe.mm)
     own = [check for check in report["checks"] if check.get("file") == path.name]
     if len(own) == 1 and own[0]["name"] in UNREAD:
         _all_hold(own, report, recipe, str(path))
@@ -206,13 +205,6 @@ def _judged(
     _all_hold(asked, report, recipe, str(path))
     entry: dict[str, Any] = report["files"][0]
     return entry
-
-
-def _tolerance(recipe: Recipe, path: Path) -> float:
-    """Tolerance in mm that the recipe gives a file of that name, else that of the export."""
-    files = recipe.export.files
-    own = [request.tolerance for request in files if request.filename(recipe.name, files) == path.name]
-    return own[0] if own and own[0] is not None else recipe.export.tolerance
 
 
 # --- a recipe ---------------------------------------------------------------------------------------------------------

@@ -241,4 +241,6 @@ def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path:
     report = pipeline.judged(recipe, [other.parent / "own.dxf", other.parent / "own.stl", other])
     assert [file["tolerance"] for file in report["files"]] == [0.001, 0.02, 0.001]
     assert {"contour", "motion"} <= failed(report)
+    assert not pipeline.judged(recipe, [other.parent / "own.stl"], tolerance=0.001)["ok"]
+    assert pipeline.judged(recipe, [other], tolerance=0.02)["ok"]
     assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}

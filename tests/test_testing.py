@@ -262,6 +262,8 @@ def test_a_file_has_the_tolerance_its_name_has_in_the_recipe(tmp_path, vertices,
     recipe.write_text(CAM.replace("[dxf, stl]", "[{dxf: {tolerance: 0.05}}, stl]"))
     path = dxf(tmp_path, moved(vertices, -0.02))
     assert testing.assert_contour(recipe, path) == pytest.approx(0.02, rel=0.1)
+    with pytest.raises(AssertionError, match=r"at most 0\.01 mm"):
+        testing.assert_contour(recipe, path, tolerance=0.01)
     with pytest.raises(AssertionError, match=r"at most 0\.002 mm"):
         testing.assert_contour(recipe, path.rename(tmp_path / "other.dxf"))
 
