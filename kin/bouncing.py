@@ -2,7 +2,7 @@
 
 The train is in one of three states: on the lower face, on the upper one, or free. In each the equation of motion is
 linear, and solved exactly (`kin.response`); what is searched for are the instants at which the state changes
-(`kin.instants`).
+(`kin.instants`, `kin.flight`).
 
     contact ends    where its force would fall below 0, which with damping is before the contact's spring is slack
     contact begins  where the spring is compressed and its force, damping included, above 0
@@ -19,9 +19,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kin.chebyshev import evaluated
+from kin.chebyshev import DERIVATIVE, evaluated
 from kin.dynamics import DynamicsError, Running, Train
-from kin.instants import FREE, LOWER, UPPER, Driven, Gap, Loose, Pressed, Span, SpentError, Work, dips, first, windows
+from kin.flight import Flight, Path
+from kin.instants import FREE, LOWER, UPPER, Driven, Pressed, SpentError, Work, dips, first, windows
 from kin.response import Response, Samples, response
 from kin.turn import Log, Seen, Turn
 
@@ -194,21 +195,23 @@ class _Course:
         x = (phi - self.lower.knots[at]) / self.lower.half[at] - 1.0
         return np.stack([evaluated(self.gap[:, row], at, x) for row in (0, 1)])
 
-    def _span(self, contact: int, place: int, free: Free) -> Span:
-        """A state of contact on one stretch."""
-        here = self.found[contact]
-        half = float(here.half[place])
+    def _pressed(self, contact: int, place: int, free: Free) -> Pressed:
+        """A face that bears on one stretch."""
+        half = float(self.found[contact].half[place])
         k, c = self.contact
-        if contact != FREE:
-            return Pressed(
-                Driven(self.forces[contact].series[place], half), free, (-contact * k, -contact * c), self.limit
-            )
+        series = self.forces[contact].series[place]
+        return Pressed(Driven(series, half), free, (-contact * k, -contact * c), self.limit)
+
+    def _flight(self, place: int, free: Free) -> Flight:
+        """A train without contact on one stretch."""
+        here = self.found[FREE]
+        half = float(here.half[place])
         gap = None
         if self.gap is not None:
             begin = float(here.drive.knots[place])
             own = self.lower.find(begin + half)
-            gap = Gap(self.gap[own], float(self.lower.half[own]), begin - float(self.lower.knots[own]))
-        return Loose(Driven(np.stack([here.p[place], here.v[place]]), half), free, (k, c), gap, self.limit)
+            gap = Path(self.gap[own], float(self.lower.half[own]), begin - float(self.lower.knots[own]))
+        return Flight(Path(np.stack([here.p[place], here.v[place]]), half), free, self.contact, gap, self.limit)
 
     def _on(self, contact: int, place: int, time: float, current: Array, log: Log) -> _Event | Array:
         """Run on to the next event, or to the end of the turn: the state (2,) there."""
@@ -249,8 +252,15 @@ class _Course:
         """Run on along one stretch to the next event, or to its end: the state (2,) there."""
         here = self.found[contact]
         free = here.free(place, time, current)
-        span = self._span(contact, place, free)
         end = 2.0 * float(here.half[place])
+        if contact == FREE:
+            flight, knot = self._flight(place, free), float(here.drive.knots[place])
+            landed = flight.landed(time, end, self.work)
+            log.fly(knot + time, knot + (end if landed is None else landed))
+            if landed is not None:
+                return flight.face(landed), place, landed, here.moved(place, free, landed)
+            return here.moved(place, free, end)
+        span = self._pressed(contact, place, free)
         bound = here.oscillator.bound(np.array([[free.z], [free.v]]))
         ringing = time + float(here.lasting(bound, np.array([place]))[0])
         for at in windows(time, end, ringing, here.step):
@@ -260,7 +270,7 @@ class _Course:
             seen = Seen(np.full(len(at), place), at, level, here.drive.knots)
             log.see(contact, seen, lambda _: span, None if hit is None else (place, hit))
             if hit is not None:
-                return span.next(hit), place, hit, here.moved(place, free, hit)
+                return FREE, place, hit, here.moved(place, free, hit)
         return here.moved(place, free, end)
 
     def _many(self, contact: int, starts: Array, place: int, count: int, log: Log) -> _Event | None:
@@ -268,34 +278,57 @@ class _Course:
         here = self.found[contact]
         at = here.samples(starts, np.arange(place, place + count))
         self.work.take(len(at.time))
-        level = self._levels(contact, starts, at)
+        if contact == FREE:
+            return self._far(starts, at, log)
+        level = self.forces[contact].at(starts, at)
         seen = Seen(at.stretch, at.time, level, here.drive.knots)
 
-        def span_of(stretch: int) -> Span:
-            return self._span(contact, stretch, here.free(stretch, 0.0, starts[:, stretch]))
+        def span_of(stretch: int) -> Pressed:
+            return self._pressed(contact, stretch, here.free(stretch, 0.0, starts[:, stretch]))
 
         doubtful = np.union1d(np.flatnonzero(level < self.limit), dips(level))
         for stretch in np.unique(at.stretch[doubtful]).tolist():
             inside = at.stretch == stretch
-            span = span_of(stretch)
-            hit = first(span, at.time[inside], level[inside], self.work)
+            hit = first(span_of(stretch), at.time[inside], level[inside], self.work)
             if hit is not None:
                 log.see(contact, seen, span_of, (stretch, hit))
                 state = here.moved(stretch, here.free(stretch, 0.0, starts[:, stretch]), hit)
-                return span.next(hit), stretch, hit, state
+                return FREE, stretch, hit, state
         log.see(contact, seen, span_of)
         return None
 
-    def _levels(self, contact: int, starts: Array, at: Samples) -> Array:
-        """Level of a state of contact, see `kin.instants.Span`, at places on many stretches."""
-        if contact != FREE:
-            return self.forces[contact].at(starts, at)
-        here, (k, c) = self.found[FREE], self.contact
-        z, v = here.states(starts, at)
-        lower: Array = np.minimum(-k * z, -k * z - c * v)
-        if self.gap is None:
-            return -1.0 * lower
-        gap, rate = self._gaps(here.drive.knots[at.stretch] + at.time)
-        over = k * (z - gap)
-        level: Array = -np.maximum(lower, np.minimum(over, over + c * (v - rate)))
-        return level
+    def _far(self, starts: Array, at: Samples, log: Log) -> _Event | None:
+        """Fly along whole stretches; those on which a face may be met between two samples are looked along alone."""
+        here = self.found[FREE]
+        knots = here.drive.knots
+        first_, last = int(at.stretch[0]), int(at.stretch[-1])
+        begin = float(knots[first_])
+        z = here.states(starts, at)[0]
+        deep, bend = -z, self._bends(starts)
+        if self.gap is not None:
+            deep = np.maximum(deep, z - self._gaps(knots[at.stretch] + at.time)[0])
+        # between two places a function is no more above both than this
+        above = np.maximum(deep[:-1], deep[1:]) + bend[at.stretch[1:]] * np.diff(at.time) ** 2 / 8.0
+        near = (above >= 0.0) & (at.stretch[1:] == at.stretch[:-1])
+        for stretch in np.unique(at.stretch[1:][near]).tolist():
+            free = here.free(stretch, 0.0, starts[:, stretch])
+            flight = self._flight(stretch, free)
+            landed = flight.landed(0.0, 2.0 * float(here.half[stretch]), self.work)
+            if landed is not None:
+                log.fly(begin, float(knots[stretch]) + landed)
+                return flight.face(landed), stretch, landed, here.moved(stretch, free, landed)
+        log.fly(begin, float(knots[last + 1]))
+        return None
+
+    def _bends(self, starts: Array) -> Array:
+        """Bound (m,) of the second derivative of the distance to either face in flight, on each stretch."""
+        here = self.found[FREE]
+        found: Array = np.abs(here.v @ DERIVATIVE.T).sum(axis=1) / here.half
+        oscillator = here.oscillator
+        if oscillator.square:
+            found = found + oscillator.square * oscillator.bound(starts - here.ends[0].T)
+        if self.gap is not None:
+            bends = np.abs(self.gap[:, 1] @ DERIVATIVE.T).sum(axis=1) / self.lower.half
+            middle = here.drive.knots[:-1] + here.half
+            found = found + bends[np.searchsorted(self.lower.knots, middle, side="right") - 1]
+        return found

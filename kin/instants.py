@@ -1,4 +1,4 @@
-"""When a state of contact ends: how far it is from that along one stretch, and the first instant at which it does.
+"""When contact ends: how far it is from that along one stretch, and the first instant at which it does.
 
 Along a stretch everything is a Chebyshev series and a free motion. Windows of samples show where the state may end;
 the instant itself is found with plain floats, since a turn may hold thousands.
@@ -28,9 +28,9 @@ _GRID = 17  # places of a closer look, of which each round keeps an eighth
 _ROUNDS = 15
 _FIRST, _MOST = 64, 4096  # samples of a window
 _COARSE = 32  # steps in what is left of a stretch, at least
-_ROUNDING = 16.0  # times the last bit
 _EPS = float(np.finfo(float).eps)
 CALL = 100  # places that a look costs besides those it takes
+_STRIDE = 40  # places that a stride of a flight costs
 
 
 class SpentError(Exception):
@@ -46,7 +46,14 @@ class Work:
 
     def take(self, places: int) -> None:
         """Count; SpentError beyond the most."""
-        self.places += places + CALL
+        self._count(places + CALL)
+
+    def stride(self) -> None:
+        """Count a stride of a flight."""
+        self._count(_STRIDE)
+
+    def _count(self, places: int) -> None:
+        self.places += places
         if self.places > self.most:
             raise SpentError
 
@@ -68,10 +75,6 @@ class Span(Protocol):
 
     def once(self, time: float) -> float:
         """Level at one time."""
-        ...
-
-    def next(self, time: float) -> int:
-        """The state that begins where this one ends."""
         ...
 
 
@@ -103,84 +106,6 @@ class Pressed:
         one, other = self._free.oscillator.basis_at(time - self._free.since)
         first, second = self._factors
         return value(self._plain, time / self._half - 1.0) + first * one + second * other
-
-    def next(self, time: float) -> int:  # noqa: ARG002 - a force has one way to end
-        """See `Span`."""
-        return FREE
-
-
-@dataclass(frozen=True, eq=False)
-class Gap:
-    """Upper less lower face and its rate, series (2, DEGREE + 1), on a stretch of half width `half`.
-
-    `ahead` is how far into it the span's own stretch begins.
-    """
-
-    series: Array
-    half: float
-    ahead: float
-
-
-class Loose:
-    """A free train: its level is what both faces' forces would have to gain.
-
-    A flight is far longer than what a stiff contact is pressed in by: `limit` is moved down by its rounding.
-    """
-
-    def __init__(self, driven: Driven, free: Free, contact: tuple[float, float], gap: Gap | None, limit: float) -> None:
-        series, half = driven
-        self._series, self._half, self._free = series, half, free
-        self._k, self._c = contact
-        self._gap = gap
-        self._place, self._rate = series.tolist()
-        self._first, self._second = free.summed(1.0, 0.0), free.summed(0.0, 1.0)
-        self._gap_place, self._gap_rate = ([], []) if gap is None else gap.series.tolist()
-        size = np.abs(series).sum(axis=1) + np.abs([free.z, free.v])
-        if gap is not None:
-            size += np.abs(gap.series).sum(axis=1)
-        place, rate = size.tolist()
-        self.limit = limit - _ROUNDING * _EPS * (self._k * (place + 2.0 * half * abs(free.v)) + self._c * rate)
-
-    def at(self, time: Array) -> Array:
-        """See `Span`."""
-        lower, upper = self._both(time)
-        found: Array = -np.maximum(lower, upper)
-        return found
-
-    def _both(self, time: Array) -> tuple[Array, Array]:
-        one, other = self._free.oscillator.basis(time - self._free.since)
-        z, v = together(self._series, time / self._half - 1.0)
-        z = z + self._first[0] * one + self._first[1] * other
-        v = v + self._second[0] * one + self._second[1] * other
-        k, c = self._k, self._c
-        lower = np.minimum(-k * z, -k * z - c * v)
-        if self._gap is None:
-            return lower, np.full(len(time), -math.inf)
-        gap, rate = together(self._gap.series, (time + self._gap.ahead) / self._gap.half - 1.0)
-        over = k * (z - gap)
-        return lower, np.minimum(over, over + c * (v - rate))
-
-    def once(self, time: float) -> float:
-        """See `Span`."""
-        return -max(self._forces(time))
-
-    def _forces(self, time: float) -> tuple[float, float]:
-        one, other = self._free.oscillator.basis_at(time - self._free.since)
-        x = time / self._half - 1.0
-        k, c = self._k, self._c
-        z = value(self._place, x) + self._first[0] * one + self._first[1] * other
-        v = value(self._rate, x) + self._second[0] * one + self._second[1] * other if c else 0.0
-        lower = -k * z - c * max(v, 0.0)
-        if self._gap is None:
-            return lower, -math.inf
-        x = (time + self._gap.ahead) / self._gap.half - 1.0
-        over = k * (z - value(self._gap_place, x))
-        return lower, over + c * min(v - value(self._gap_rate, x), 0.0) if c else over
-
-    def next(self, time: float) -> int:
-        """See `Span`."""
-        lower, upper = self._forces(time)
-        return LOWER if lower > upper else UPPER
 
 
 def windows(begin: float, end: float, fine: float, step: float) -> Iterator[Array]:

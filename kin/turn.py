@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kin.instants import FREE, Span, Work, top
+from kin.instants import Span, Work, top
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -73,20 +73,21 @@ class Log:
     def see(
         self, contact: int, seen: Seen, span_of: Callable[[int], Span], hit: tuple[int, float] | None = None
     ) -> None:
-        """Note the extremes of the contact force, and the time without contact, up to an event in (stretch, time)."""
-        begin = seen.phi(0)
+        """Note the extremes of a contact's force, up to its end in (stretch, time)."""
         end = float(seen.phi(-1) if hit is None else seen.knots[hit[0]] + hit[1])
         self.reached = end
-        if contact == FREE:
-            self._free += end - begin
-            self.force(0.0, begin)
-            return
         self._bore.add(contact)
         if hit is not None:
             seen = seen.until(*hit)
         self._extremes(1.0, seen, span_of, end)
         if self._least > 0.0:
             self._extremes(-1.0, seen, span_of, end)
+
+    def fly(self, begin: float, end: float) -> None:
+        """Note a time without contact, as shaft angles."""
+        self.reached = end
+        self._free += end - begin
+        self.force(0.0, begin)
 
     def _extremes(self, sign: float, seen: Seen, span_of: Callable[[int], Span], end: float) -> None:
         level = sign * seen.level

@@ -2,15 +2,18 @@
 
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from dynamics_oracle import Cycloid
 from test_dynamics import Harmonic, Saw
 
+from camgeo.design import designed, intended
+from camgeo.recipe import load
 from kin.bouncing import MOST_WORK, State, course, least_gap
 from kin.drive import drives
-from kin.driven import Moved
+from kin.driven import Moved, intended_faces
 from kin.dynamics import DynamicsError, Train, steady
 from kin.floating import float_speed
 from kin.holding import Look, Range
@@ -18,6 +21,7 @@ from kin.instants import FREE, LOWER, UPPER, Work, crossing
 from kin.integrated import integrated
 
 TURN = 2.0 * math.pi
+ROOT = Path(__file__).parents[1]
 
 
 class Still:
@@ -128,6 +132,47 @@ def test_no_play_is_refused_with_its_place():
     assert math.cos(at) == pytest.approx(1.0)
     with pytest.raises(DynamicsError, match="no play is left at 0 degrees: -5e-05"):
         course(Train(1.0, 1.0, 1e5), drives_, 100.0, 1)
+
+
+def test_a_touch_between_two_samples_is_met():
+    """A face that first falls away from the follower, then reaches for it again, within a hundredth of a radian."""
+
+    class Wave(Still):
+        def rows(self, phi):
+            x = 12.0 * phi - 0.5 * math.pi - 8.0 * 0.01
+            return 1e-3 * np.stack([np.cos(x), -12.0 * np.sin(x), -144.0 * np.cos(x)])
+
+    face = Wave()
+    start = face.rows(np.zeros(1))[:, 0]
+    for share, meets in ((0.99, 1), (0.998, 1), (1.002, 0)):
+        # z is 288 t (t - a)^2 c or so, its least close to t = a = 0.01; x keeps its speed upwards
+        rate = share * 288e-3 * 0.01**2
+        time = np.linspace(0.0, TURN, 1_000_001)[1:]
+        z = start[0] + (start[1] + rate) * time - face.rows(time)[0]
+        assert (z.min() < 0.0) == bool(meets)
+        found = course(Train(0.4, 0.0, 1e13), faces(face), 300.0, 1, State(FREE, 0.0, rate))
+        assert found.turns[0].impacts == meets
+        if meets:
+            first = time[int(np.argmax(z < 0.0))]
+            assert found.turns[0].velocity_at == pytest.approx(first, abs=2.0 * time[0])
+
+
+@pytest.mark.parametrize(
+    ("play", "ratio", "zeta", "impacts", "peak"),
+    [(0.05, 123.3, 0.03, 79, 30.797), (0.02, 400.3, 0.05, 157, 41.34), (0.002, 400.3, 0.05, 57, 11.937)],
+)
+def test_as_many_meetings_as_another_integration_of_the_same_law(play, ratio, zeta, impacts, peak):
+    """Pinned figures: flight as a straight line, contact by Duhamel's integral in steps of a sixth of a swing.
+
+    That integration shares the motion alone, and met the same faces in the same order, within 1e-6 rad or closer.
+    """
+    recipe = load(ROOT / "recipes" / "w-law.yaml")
+    follower = intended(recipe, designed(recipe)).follower
+    both = intended_faces(follower, play / follower.transmission.arm)
+    lower, upper = drives([both.lower, both.upper])
+    found = course(stiff(ratio, zeta, mass=2e-3), (lower, upper), 300.0, 1).turns[0]
+    assert found.impacts == impacts
+    assert found.greatest == pytest.approx(peak, rel=1e-3)
 
 
 # --- what it takes ----------------------------------------------------------------------------------------------------
