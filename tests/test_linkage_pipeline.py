@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from camgeo import pipeline
+from camgeo.design import designed
 from camgeo.foreseen import foreseen
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load, read
@@ -58,6 +59,22 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
     outcome = pipeline.export(recipe(), out)
     assert outcome.ok
     return out / "four-bar", outcome.report
+
+
+def test_a_dwell_is_told_over_the_angle_that_was_asked_for() -> None:
+    def told(over: str) -> tuple[float | None, str]:
+        asked = recipe("{band: 0.1, at_least: 36}", f"{{band: 0.1, at_least: 36, over: {over}}}")
+        (check,) = (check for check in designed(asked).checks if check.name == "dwell")
+        return check.at_deg, check.detail
+
+    at, detail = told("shaft")
+    assert at == pytest.approx(287.83, abs=0.01)
+    assert detail.startswith(f"from {at:.6g} over 37.0")
+    assert detail.endswith(" deg of the shaft angle")
+    at, detail = told("relative")
+    assert at is None  # a place is a shaft angle
+    assert detail.startswith("from 269.0")
+    assert detail.endswith(" deg of the relative angle")
 
 
 def test_the_report_has_what_its_contract_names(exported: tuple[Path, dict]) -> None:
