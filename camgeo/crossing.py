@@ -106,21 +106,26 @@ def all_breaks(curve: Curve, low: float, high: float) -> Array:
     return turns[(turns > low) & (turns < high)]
 
 
-def seen_crossings(t: Array, points: Array, period: float) -> Array:
+def seen_crossings(t: Array, points: Array, period: float, own: int) -> Array:
     """Crossings of the closed polygon with vertices `points` (n, 2) at parameters t (n,): parameters (m, 2).
 
-    Linear along each edge: a beginning for `settled`. Cost grows as n^2.
+    Of one of the first `own` edges with any. Linear along each edge: a beginning for `settled`. Cost grows as own n.
     """
     count = t.size
     edge = np.roll(points, -1, axis=0) - points
     length = np.diff(np.append(t, t[0] + period))
-    parted = np.empty((count, count), dtype=bool)
-    for rows in in_parts(count):
+    found = []
+    for rows in in_parts(own, count):
         side = _side(edge[rows, None], points[None] - points[rows, None])
-        parted[rows] = (side < 0.0) != (np.roll(side, -1, axis=1) < 0.0)
-    first, second = np.nonzero(np.triu(parted & parted.T, 2))
-    apart = (first != 0) | (second != count - 1)
-    first, second = first[apart], second[apart]
+        one, other = np.nonzero((side < 0.0) != (np.roll(side, -1, axis=1) < 0.0))
+        one += rows.start
+        # each pair once, and no neighbours
+        new = (other > one + 1) & ((one > 0) | (other < count - 1))
+        one, other = one[new], other[new]
+        start, end = (_side(edge[other], points[k % count] - points[other]) for k in (one, one + 1))
+        both = (start < 0.0) != (end < 0.0)
+        found.append(np.stack([one[both], other[both]]))
+    first, second = np.concatenate(found, axis=1) if found else np.empty((2, 0), dtype=np.intp)
 
     def share(cut: NDArray[np.intp], by: NDArray[np.intp]) -> Array:
         """Where edges are cut by the lines of others, as a share of their length."""
@@ -138,10 +143,10 @@ def _side(edge: Array, to: Array) -> Array:
     return side
 
 
-def in_parts(count: int) -> list[slice]:
-    """Rows of a table of `count` by `count` pairs, so many at a time that memory stays small."""
+def in_parts(rows: int, count: int) -> list[slice]:
+    """Rows of a table of `rows` by `count` pairs, so many at a time that memory stays small."""
     step = max(1, MOST_PAIRS // max(count, 1))
-    return [slice(i, min(i + step, count)) for i in range(0, count, step)]
+    return [slice(i, min(i + step, rows)) for i in range(0, rows, step)]
 
 
 def settled(curve: Curve, pairs: Array, size: float) -> Array:

@@ -19,7 +19,7 @@ import numpy as np
 
 from camgeo.causes import UndercutError, causes, follower_radius
 from camgeo.crossing import SHORT, all_breaks, displacement, in_parts, seen_crossings, settled
-from camgeo.curve import Curve, Run
+from camgeo.curve import SHIFT, Curve, Run
 from camgeo.radius import ROUNDING, roots
 
 if TYPE_CHECKING:
@@ -105,8 +105,10 @@ def remains(curve: Curve, why: Causes) -> Remains:
     for turn in range(ROUNDS):
         nodes = _nodes(curve, why, NODES << turn)
         on = curve.sample(nodes)
-        guesses = np.concatenate([seen_crossings(nodes, on.point, curve.shape.period), _guesses(curve, why)])
-        corners = contact.standing(_corners(curve, settled(curve, guesses, contact.size), why), nodes, on)
+        own = int(np.searchsorted(nodes, _first_part(curve)))
+        guesses = np.concatenate([seen_crossings(nodes, on.point, curve.shape.period, own), _guesses(curve, why)])
+        corners = contact.standing(_crossed(curve, settled(curve, guesses, contact.size)), nodes, on)
+        corners = _turned(curve, corners) + contact.standing(_still_corners(curve, why), nodes, on)
         stretches = _lost_stretches(curve, corners)
         if stretches is not None and _explained(stretches, contact, why, nodes, on):
             return _with_depths(curve, contact, corners, stretches)
@@ -175,10 +177,10 @@ class _Contact:
         g: Array = 0.5 * self.k * np.sum(apart * apart, axis=-1) - np.sum(apart * normal, axis=-1)
         return g
 
-    def cut(self, on: Frame) -> NDArray[np.bool_]:
-        """Whether contour points (n,) are cut away by contact at any of them (n,)."""
-        least = np.empty(len(on.point))
-        for rows in in_parts(len(on.point)):
+    def cut(self, on: Frame, own: int) -> NDArray[np.bool_]:
+        """Whether the first `own` contour points (n,) are cut away by contact at any of them (own,)."""
+        least = np.empty(own)
+        for rows in in_parts(own, len(on.point)):
             least[rows] = self.clearance(on.point[rows, None] - on.point[None], on.normal[None]).min(axis=1)
         return np.asarray(least < -self.tolerance)
 
@@ -228,15 +230,36 @@ def _nodes(curve: Curve, why: Causes, count: int) -> Array:
     return apart
 
 
+def _first_part(curve: Curve) -> float:
+    """Where the first of the parts ends that the curve repeats, and a hair beyond."""
+    part: float = curve.shape.period / curve.shape.repeats
+    return curve.runs[0].low + part * (1.0 + SHIFT)
+
+
+def _turned(curve: Curve, corners: list[Corner]) -> list[Corner]:
+    """Corners, among them all that begin in the curve's first part, and their images in the other parts."""
+    if curve.shape.repeats == 1 or not corners:
+        return corners
+    turns = curve.shape.period / curve.shape.repeats * np.arange(curve.shape.repeats)
+    pairs = np.array([(c.leave, c.enter) for c in corners])
+    return _crossed(curve, (turns[:, None, None] + pairs).reshape(-1, 2))
+
+
 def _guesses(curve: Curve, why: Causes) -> Array:
-    """Where crossings lie if a reversal's speed is a parabola, a neck's two sides are circles; (m, 2)."""
+    """Where crossings lie if a reversal's speed is a parabola, a neck's two sides are circles; (m, 2).
+
+    Of those that a turn of the curve leads into each other one at least is given.
+    """
+    last = _first_part(curve)
     out = [
         (r.start - share * (r.end - r.start), r.end + share * (r.end - r.start))
         for r in why.reversals
-        if not r.still
+        if not r.still and r.start <= last
         for share in STARTS
     ]
     for neck in why.necks:
+        if curve.runs[0].low + (min(neck.first, neck.second) - curve.runs[0].low) % curve.shape.period > last:
+            continue
         at = curve.sample(np.array([neck.first, neck.second]))
         opening = -float(at.curvature.sum())
         if opening > 0.0:
@@ -246,8 +269,8 @@ def _guesses(curve: Curve, why: Causes) -> Array:
     return np.array(out).reshape(-1, 2)
 
 
-def _corners(curve: Curve, pairs: Array, why: Causes) -> list[Corner]:
-    """Corners at crossings (m, 2), each once, and at arcs of radius 0; the contour turns left in them."""
+def _crossed(curve: Curve, pairs: Array) -> list[Corner]:
+    """Corners at crossings (m, 2), each once; the contour turns left in them."""
     at, to = curve.sample(pairs[:, 0], -1), curve.sample(pairs[:, 1])
     left = at.tangent[:, 0] * to.tangent[:, 1] - at.tangent[:, 1] * to.tangent[:, 0] > 0.0
     kept: list[Corner] = []
@@ -258,8 +281,13 @@ def _corners(curve: Curve, pairs: Array, why: Causes) -> list[Corner]:
         near = 1e-2 * _around(s - t, period)
         if not any(_around(leave - c.leave, period) < near and _around(enter - c.enter, period) < near for c in kept):
             kept.append(Corner(leave, enter, 0.5 * (at.point[i] + to.point[i])))
+    return kept
+
+
+def _still_corners(curve: Curve, why: Causes) -> list[Corner]:
+    """Corners at arcs of radius 0."""
     still = [r for r in why.reversals if r.still]
-    return kept + [Corner(r.start, r.end, curve.sample(np.array([r.start])).point[0]) for r in still]
+    return [Corner(r.start, r.end, curve.sample(np.array([r.start])).point[0]) for r in still]
 
 
 def _around(gap: float, period: float) -> float:
@@ -290,12 +318,13 @@ def _explained(
 ) -> bool:
     """Whether every cause and every node that is cut away lies within a lost stretch, and nothing else is lost."""
     period = contact.curve.shape.period
-    cut = contact.cut(on)
+    own = int(np.searchsorted(nodes, _first_part(contact.curve)))
+    cut = contact.cut(on, own)
     if not stretches:
         # a node where the contour runs backwards may be cut by less than rounding: such a one has left corners
-        return bool((cut | (on.speed < 0.0)).all())
+        return bool((cut | (on.speed[:own] < 0.0)).all())
     causes_at = [0.5 * (r.start + r.end) for r in why.reversals] + [n.first for n in why.necks]
-    doubtful = np.concatenate([nodes[cut], np.array(causes_at)])
+    doubtful = np.concatenate([nodes[:own][cut], np.array(causes_at)])
     inside = np.zeros(doubtful.size, dtype=bool)
     for _, _, start, end in stretches:
         room = 1e-9 * period
@@ -309,10 +338,14 @@ def _with_depths(
     if not stretches:
         low, period = curve.runs[0].low, curve.shape.period
         return Remains((Lost(low, low + period, np.empty((0, 2)), math.inf),), (), 0)
-    lost = []
+    lost: list[Lost] = []
+    own = len(stretches) // curve.shape.repeats if len(stretches) % curve.shape.repeats == 0 else len(stretches)
     for first, last, start, end in stretches:
         points = np.array([corners[i].point for i in sorted({first, last})])
-        lost.append(Lost(start, end, points, _depth(curve, contact, points, start, end)))
+        # the curve's parts are alike: so are the stretches lost from them
+        alike = len(lost) >= own
+        depth = lost[len(lost) - own].depth if alike else _depth(curve, contact, points, start, end)
+        lost.append(Lost(start, end, points, depth))
     # the corner in which the run after each corner ends
     follows = {now[1]: then[0] for now, then in zip(stretches, stretches[1:] + stretches[:1], strict=True)}
     unseen, pieces = set(follows), 0

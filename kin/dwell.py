@@ -91,7 +91,7 @@ def dwells(
         raise ValueError(f"a band of {band:.3g} is lost in the rounding of the output, {of.noise:.3g}")
     _demand_continuous(of, band)
     (least, _), (greatest, _) = of.least(), of.greatest()
-    if greatest - least <= band + of.noise:
+    if greatest - least <= band + 2.0 * of.noise:  # a run that begins a little above the least takes in all of it
         return (Dwell(0.0, period, least, greatest),)
     search = _Search.through(of, band, period)
     at_nodes = search.node_windows()

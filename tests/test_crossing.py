@@ -95,9 +95,9 @@ def test_crossings_of_a_polygon():
     t = np.arange(6.0)
     for shift in range(6):
         moved = np.roll(points, -shift, axis=0)
-        (found,) = seen_crossings(t, moved, 6.0)
+        (found,) = seen_crossings(t, moved, 6.0, t.size)
         assert sorted((found + shift) % 6.0) == pytest.approx([0.5, 3.5])
-    assert seen_crossings(t[:4], np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), 4.0).shape == (0, 2)
+    assert seen_crossings(t[:4], np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), 4.0, 4).shape == (0, 2)
 
 
 def test_crossings_settle_across_the_seam():
@@ -105,7 +105,7 @@ def test_crossings_settle_across_the_seam():
     nodes = np.linspace(0.0, PERIOD, 401)[:-1]
     for shift in (0.0, 1.62, 3.0):
         t = nodes + shift
-        seen = seen_crossings(t, curve.sample(t).point, PERIOD)
+        seen = seen_crossings(t, curve.sample(t).point, PERIOD, t.size)
         assert seen.shape == (2, 2)
         found = settled(curve, seen, 50.0)
         gap = curve.sample(found[:, 0]).point - curve.sample(found[:, 1]).point

@@ -11,11 +11,14 @@ from extreme_oracle import Pitch, worst
 from camgeo.causes import causes
 from camgeo.curve import Curve
 from camgeo.design import designed
+from camgeo.offset import Parallel
 from camgeo.pairs import Pitch as PitchCurve
 from camgeo.profile.build import intent_of, profile_of
 from camgeo.profile.wunderlich import PitchShape
+from camgeo.radius import least_radius
 from camgeo.reach import narrowest_necks
 from camgeo.trim import remains
+from camgeo.undercut import undercuts
 from kin.contour import Contour
 from kin.envelope import RollerEnvelope, TransmissionPitch
 from kin.roller import DoubleRoller
@@ -314,3 +317,14 @@ def test_a_small_roller_meets_every_corner(radius):
     found = DoubleRoller(law, radius).contact(contour, phi[0])
     assert np.abs(found - psi[0]).max() < 1e-3
     assert np.abs(found[0] - psi[0]).max() < 1e-9 + 1e-2 * radius
+
+
+def test_a_hair_too_large_a_roller_on_many_lobes():
+    """168 hollows and crests, each crest with a swallowtail of its own, far below what any point could show."""
+    pitch = PitchShape(from_delta(8, 5, 60.0, {21: 1.408}, {}))
+    least, _ = least_radius(Curve.whole(pitch))
+    with in_time(40):
+        found = undercuts(Curve.whole(Parallel(pitch, least * (1.0 + 1e-9))))
+    assert [one.kind for one in found] == ["local"] * 168
+    assert [one.free_at for one in found] == pytest.approx([least] * 168, rel=1e-12)
+    assert np.diff([one.start for one in found]) == pytest.approx([2.0 * np.pi / 168] * 167, abs=1e-9)
