@@ -28,6 +28,7 @@ UNIT_NAMES = {"mm": 1.0, "millimetre": 1.0, "millimeter": 1.0, "inch": 25.4, "in
 UNIT_COMMENT = re.compile(rb"^[ \t]*999[ \t]*\r?\n[^\r\n]*\bunits?[ \t]*[:=][ \t]*(\w+)", re.IGNORECASE | re.MULTILINE)
 COMMENT_BYTES = 4000
 END_MARK = re.compile(rb"(^|\n)[ \t]*0[ \t]*\r?\n[ \t]*EOF\s*$")
+NO_LAYER = "0"  # what is drawn without choosing a layer stands there
 BINARY_MARK = b"AutoCAD Binary DXF"
 # What wrong text causes in code that expects numbers, names and references.
 DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError, StopIteration)
@@ -44,9 +45,9 @@ def read_dxf(
     """Read the outer contour and the holes that a DXF file gives to cut.
 
     gap     mm; ends of loose pieces are joined if they lie within it. Default: 1e-6, or 2e-8 of a drawing below 50 mm
-    layer   the one to cut. Default: CUT, with holes also from BORE, HOLES and MARK, if there is something on CUT; else
-            all layers but those of reference geometry. The outermost closed chain is the contour, those inside it are
-            holes.
+    layer   the one to cut. Default: CUT, with holes also from BORE, HOLES, MARK and 0, if there is something on CUT;
+            else all layers but those of reference geometry. The outermost closed chain is the contour, those inside
+            it are holes.
     audit   have ezdxf's auditor look at the file too, which takes as long again
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
 
@@ -131,8 +132,10 @@ def entities_to_cut(document: Document, layer: str | None, path: Path) -> Found:
         raise ReadError("layer", f"nothing is drawn on a layer {layer}; layers with curves: {there}", path)
     chosen = layer if layer is not None else (CUT if CUT in drawn else None)
     beside = BESIDE if layer is None else {BORE}
-    wanted = drawn - REFERENCE if chosen is None else {chosen.upper(), *beside}
-    refuse_elsewhere(document, wanted, path)
+    named = drawn - REFERENCE if chosen is None else {chosen.upper(), *beside}
+    refuse_elsewhere(document, named, path)
+    # what is drawn with no thought for layers goes to the machine too
+    wanted = named | {NO_LAYER} if layer is None else named
     found = gather(space, wanted, path)
     if not found.shapes:
         others = ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(found.aside.items())) or "nothing at all"

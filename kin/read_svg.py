@@ -34,6 +34,8 @@ LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z]*)\s*")
 STEP = re.compile(r"\s*([A-Za-z]+)\s*\(([^()]*)\)[\s,]*")
 VALUE = re.compile(NUMBER)
 HIDDEN = re.compile(r"(?:^|;)\s*display\s*:\s*none\s*(?:;|$)")
+# What a style sheet could move, hide or draw otherwise than the elements say.
+MOVING = re.compile(r"(?<![-\w])(transform|translate|scale|rotate|display|visibility|offset-path|cx|cy|r|d)\s*:")
 # Scales along the width and the height of the page may differ by so much.
 SQUARE = 1e-6
 # Least and greatest unit, mm, and number of groups within groups: bounds against nonsense.
@@ -56,9 +58,9 @@ class _Drawn(NamedTuple):
 def read_svg(path: Path | str, gap: float | None = None, *, engraved: bool = False) -> Drawing:
     """Read the outer contour and the holes that an SVG file gives to cut.
 
-    Groups named CUT, BORE, HOLES, MARK and ENGRAVE (by id, or by Inkscape's label) are the layers of a DXF; where
-    nothing stands on CUT all elements are cut but those on REFERENCE. What is hidden is left out. `gap`, mm, and
-    `engraved` as in `read_dxf`.
+    Groups named CUT, BORE, HOLES, MARK and ENGRAVE (by id, or by Inkscape's label) are the layers of a DXF; what stands
+    in none of them is cut too, and where nothing stands on CUT all elements are but those on REFERENCE. What is hidden
+    is left out. `gap`, mm, and `engraved` as in `read_dxf`.
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs of circles and cubics, and for elements and transforms that are not read.
@@ -68,7 +70,8 @@ def read_svg(path: Path | str, gap: float | None = None, *, engraved: bool = Fal
     unit = unit_of(root, path)
     elements = list(_elements(root, "", TURNED_OVER, path))
     by_name = any(one.layer == CUT for one in elements)
-    wanted = {CUT, *BESIDE} if by_name else {one.layer for one in elements} - REFERENCE
+    # what stands on no layer is seen, and cut, all the same
+    wanted = {CUT, *BESIDE, ""} if by_name else {one.layer for one in elements} - REFERENCE
     found = _gathered(elements, wanted, path)
     if not found.shapes:
         others = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(found.aside.items()))
@@ -127,6 +130,8 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
     for element in parent:
         tag = element.tag if isinstance(element.tag, str) else ""  # not a comment
         kind = tag.removeprefix(SVG)
+        if kind == "style" and (moving := MOVING.search(element.text or "")):
+            raise ReadError("unsupported", f"a style sheet tells {moving[1]}; give it to the elements", path)
         if not tag or kind.rpartition("}")[2] in SILENT:
             continue
         style = element.get("style", "")

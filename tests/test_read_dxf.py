@@ -142,6 +142,18 @@ def test_a_circle_and_its_bore(tmp_path: Path) -> None:
     assert drawing.layers == ("BORE", "CUT")
 
 
+def test_what_is_drawn_without_choosing_a_layer_is_cut_too(tmp_path: Path) -> None:
+    document = new()
+    space = document.modelspace()
+    space.add_circle(CENTRE.tolist(), RADIUS, dxfattribs={"layer": "CUT"})
+    space.add_circle(CENTRE.tolist(), 5.0)
+    document.layout("Layout1").add_line((0, 0), (9, 9))  # of a frame on paper
+    path = saved(document, tmp_path)
+    (hole,) = read_dxf(path).holes
+    assert hole.area == pytest.approx(25.0 * np.pi)
+    assert read_dxf(path, layer="CUT").holes == ()
+
+
 @pytest.mark.parametrize(("side", "expected"), [(1, 1.0), (-1, -1.0)])
 def test_an_extrusion_along_minus_z_mirrors(tmp_path: Path, side: int, expected: float) -> None:
     points = np.array([[0.0, -10.0], [30.0, 0.0], [0.0, 10.0]])

@@ -209,6 +209,12 @@ def test_planted_faults_are_caught(tmp_path, pattern, replacement, found):
     assert found <= failures(path, recipe, design)
 
 
+def test_what_stands_on_no_layer_is_cut_too(tmp_path):
+    body = '<g id="CUT"><circle r="9"/></g><g id="X"><circle cx="4" r="1"/></g><style>.a {fill: none}</style>'
+    (hole,) = read_svg(written(tmp_path, body)).holes
+    assert hole.area == pytest.approx(np.pi)
+
+
 def test_a_flipped_flag_is_caught_on_every_arc(tmp_path):
     recipe, design, path, _, _ = made(tmp_path, part="{bore: 12}")
     text = path.read_text()
@@ -323,6 +329,8 @@ BARE = '<svg xmlns="http://www.w3.org/2000/svg" '
         (BARE + 'width="6mm" height="7mm" viewBox="0 0 6 6">', DISC, "unsupported", "along the height"),
         (BARE + 'width="6mm" viewBox="0 0 6">', DISC, "syntax", "the viewBox is '0 0 6'"),
         (BARE + 'width="1e300mm" viewBox="0 0 6 6">', DISC, "range", "a unit of"),
+        (HEAD, '<g id="CUT"><circle r="2"/></g><use href="#CUT" x="9"/>', "unsupported", "use #2 is none of path"),
+        (HEAD, f"<style>path {{ transform: scale(2) }}</style>{DISC}", "unsupported", "a style sheet tells transform"),
         ("<svg>", DISC, "syntax", "not an SVG file: its first element is svg"),
         ('<!DOCTYPE svg [<!ENTITY a "b">]>' + HEAD, DISC, "unsupported", "declares entities"),
     ],
