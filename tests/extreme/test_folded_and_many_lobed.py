@@ -220,7 +220,7 @@ def many_lobes(lam, mu, share):
     yield Row(what, "file within 0.001 mm", files.used(), 1.0, "share of the tolerance")
 
 
-def least_radius():
+def exact_least_radius():
     """Of the pitch curve D = 625 cos 4t, lambda/mu = 4/3, l = 60: in 50 digits, by golden sections."""
     oracle = Pitch(4, 3, 60.0, {1: 625.0}, 0.0)
     t = np.linspace(0.0, np.pi / 2, 201)
@@ -248,7 +248,7 @@ class Exact:
 
 
 def tightest():
-    least = least_radius()
+    least = exact_least_radius()
     for off in (-1e-9, 1e-9):
         radius = least * (1.0 + off)
         what = f"roller {abs(off):g} {'smaller' if off < 0 else 'larger'} than the least radius of curvature"
