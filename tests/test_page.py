@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import threading
+import urllib.error
 import urllib.request
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING
@@ -524,6 +525,10 @@ def test_the_watch_serves_each_version_and_goes_on_after_a_fault(tmp_path: Path)
         wait(lambda: bool(address))
         wait(lambda: "<p>1 connect-src 'self'</p>" in fetched(address[0]))
         assert "EventSource" in fetched(address[0])
+        with pytest.raises(urllib.error.HTTPError, match="403"):  # another site's name that leads here
+            urllib.request.urlopen(
+                urllib.request.Request(address[0], headers={"Host": "elsewhere.example:80"}), timeout=20
+            )
         with urllib.request.urlopen(address[0] + "events", timeout=20) as stream:
             assert told(stream)["fault"] == ""
             path.write_text("?", encoding="utf-8")

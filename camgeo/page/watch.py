@@ -59,7 +59,10 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         """Answer the page, the stream of events, or that there is nothing."""
-        if self.path == "/":
+        if self.headers.get("Host", "").rpartition(":")[0] not in (HOST, "localhost"):
+            # a site whose name is made to lead here would read the page as its own
+            self._answer(403, "text/plain", b"ask for 127.0.0.1\n")
+        elif self.path == "/":
             script = f"<script>\n{asset('reload.js')}</script>"
             text = self._shown.page.replace(LOCAL, "connect-src 'self'", 1).replace(RELOAD, script, 1)
             self._answer(200, "text/html; charset=utf-8", text.encode("utf-8"))
