@@ -32,6 +32,11 @@ __all__ = ["DwellAsked", "Intent", "Limits", "Verdict", "verify"]
 UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
 MOST_NAMED = 5  # faults named in a message
+OTHERS = (
+    ("inches", 25.4),
+    ("centimetres", 10.0),
+    ("metres", 1000.0),
+)  # what an STL, which has no unit, may be drawn in
 
 
 @dataclass(frozen=True)
@@ -191,6 +196,9 @@ def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Che
     """Check that the part reaches from z = 0 to its thickness, with walls that stand upright all the way."""
     off = max(abs(solid.z_min), abs(solid.z_max - thickness))
     detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, 0 to {thickness:.9g} mm is meant"
+    for unit, mm in OTHERS:
+        if abs(mm * solid.thickness - thickness) <= 1e-3 * thickness:
+            detail += f"; as if drawn in {unit} and told as mm"
     if not solid.prism:
         return failed("thickness", f"the sections at different heights differ; {detail}", unit="mm", limit=tolerance)
     return at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING * thickness)

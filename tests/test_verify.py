@@ -299,3 +299,13 @@ def test_volume_from_the_intent_in_closed_form(tmp_path):
     verdict = verify(path, Intent(yoke, bore=4.0, thickness=4.0), 90, Limits(1e-5))
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
     assert verdict.kind == "stl"
+
+
+@pytest.mark.parametrize(("unit", "mm"), [("inches", 25.4), ("metres", 1000.0)])
+def test_a_solid_that_is_too_small_by_a_unit_is_told_as_that(tmp_path, unit, mm):
+    points = support_points(200, mean=9.0, harmonics=((3, 0.5, 0.0),))
+    path = write_stl(tmp_path / "cam.stl", solid_triangles(points, 2.0 * circle_points(200), 0.0, 4.0) / mm)
+    yoke = Yoke(lift_from_fourier(9.0, {3: 0.5}, {}), 18.0)
+    checks = named(verify(path, Intent(yoke, bore=4.0, thickness=4.0), 90, Limits(1e-3)))
+    assert not checks["thickness"].ok
+    assert checks["thickness"].detail.endswith(f"as if drawn in {unit} and told as mm")
