@@ -453,3 +453,10 @@ def test_enclosures_shrink_with_the_interval():
     widths = [lift.radius_enclosure(lower, lower + w, 0)[1].max() for w in (1e-2, 1e-4, 1e-6)]
     assert widths[1] < 1.1e-2 * widths[0]
     assert widths[2] < 1.1e-2 * widths[1]
+
+
+def test_a_cusp_on_the_shaft_is_no_jump():
+    """p, p' and p'' vanish at the seam: rounding of what they are the sum of is all that is left of them there."""
+    size = 25.0 / (151 * 151 - 1)
+    found = lift_from_fourier(25.0, {151: size}, {}, (25.0 + size, 0.0))
+    assert np.abs(found.derivatives(0.0, 2)).max() < 1e-11
