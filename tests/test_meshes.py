@@ -8,12 +8,16 @@ import pytest
 import trimesh
 
 from camgeo.bodies.body import Plate, PrintBody
+from camgeo.bodies.build import assembly_of
 from camgeo.bodies.forms import bar
+from camgeo.design import designed
 from camgeo.files.meshes import GAP, body_mesh, flat, laid_out, mirrored, standing
 from camgeo.files.precision import DECIMALS, SINGLE
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import ArcSpline, Bound, Polygon
+from camgeo.making.job import Job
+from camgeo.recipe.load import load_text
 from kin.collision import Slab
 from kin.contour import Contour
 from kin.printed import judge_body
@@ -126,6 +130,32 @@ def test_crossing_walls_that_go_on_through_storeys_leave_no_slivers(precision):
         read = as_trimesh(mesh)
         assert read.is_watertight
         assert read.euler_number == 0
+
+
+SLANTED = """
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [9.65, 0.831]}
+part: {thickness: 8, bore: {hexagon: 9}}
+linkage:
+  kind: four-bar
+  ground: 76.481
+  coupler: 79.102
+  rocker: 123.475
+  dyads:
+    - {kind: rrr, point: [75.484, 3.813], ground: [188.578, -99.672], links: [101.29, 158.912]}
+    - {kind: rrp, on: previous, point: [84.81, 11.181], link: 171.84, through: [138.318, 124.086], direction: 92.47}
+    - {kind: rpr, on: coupler, point: [3.706, -6.773], ground: [181.009, 147.426]}
+"""
+
+
+def test_corners_that_are_one_once_rounded_leave_nothing_open():
+    """The edge of an arm passes under a rail at a slant: three pairs of corners lie within a millionth of a mm."""
+    recipe = load_text(SLANTED, "c.yaml")
+    design = designed(recipe)
+    base = assembly_of(recipe, design, Job.of(recipe, design).outlines.within("arcs", E)).member("base").body()
+    mesh, off = body_mesh(base, tolerance=E, precision=SINGLE)
+    assert off <= E
+    assert as_trimesh(mesh).is_watertight
+    assert failing(mesh, base) == set()
 
 
 def test_plates_may_overlap_and_fill_each_other_s_holes_in_part():

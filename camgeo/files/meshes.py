@@ -59,7 +59,9 @@ def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tup
     pieces = len(joined.decompose())
     if pieces != 1:
         raise RegionError(f"{body.name}: its plates make {pieces} separate bodies, where one is meant")
-    return meshed(joined, precision), worst
+    mesh, merged = meshed(joined, precision)
+    precision.within(f"{body.name}: an outline", worst + merged, tolerance)
+    return mesh, worst + merged
 
 
 def _columns(walls: Sequence[tuple[Outline, float, float]]) -> list[list[int]]:

@@ -101,7 +101,9 @@ def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Preci
         part -= manifold(*prism(loop, low, cut.high + BEYOND, precision))
     if solid.drill is not None:
         part -= manifold(*_drill(solid.drill, fine, precision))
-    mesh = meshed(part, precision)
+    mesh, merged = meshed(part, precision)
+    bound, off, moved = bound.widened(merged), off + merged, moved + merged
+    precision.within("the contour", bound.worst, tolerance)
     return mesh, MeshFacts(len(mesh.triangles), len(outer), 0, dropped, moved, bound, Bound(off, off))
 
 
@@ -124,11 +126,24 @@ def manifold_maker(what: str) -> Callable[[Array, Triangles], Any]:
     return made
 
 
-def meshed(part: Any, precision: Precision) -> Mesh:  # noqa: ANN401 - manifold3d has no types
-    """Mesh of a manifold3d body; raises RegionError where it does not close once rounded."""
+def meshed(part: Any, precision: Precision) -> tuple[Mesh, float]:  # noqa: ANN401 - manifold3d has no types
+    """Mesh of a manifold3d body, and by how much its walls were moved to close it, mm: 0 but for slivers.
+
+    Where walls cross at a slant, corners may lie so close that they are one once rounded, and what lay between them is
+    left open. Edges that short are then made points before. Raises RegionError where it does not close even so.
+    """
+    points, triangles = _arrays(part)
+    try:
+        return settled(points, triangles, precision), 0.0
+    except RegionError:
+        apart = 2.0 * precision.spacing(float(np.abs(points).max()))
+        return settled(*_arrays(part.simplify(apart)), precision), apart
+
+
+def _arrays(part: Any) -> tuple[Array, Triangles]:  # noqa: ANN401 - manifold3d has no types
     mesh = part.to_mesh64()
     points = np.asarray(mesh.vert_properties, dtype=np.float64)[:, :3]
-    return settled(points, np.asarray(mesh.tri_verts, dtype=np.int64), precision)
+    return points, np.asarray(mesh.tri_verts, dtype=np.int64)
 
 
 def prism(loop: Array, low: float, high: float, precision: Precision) -> tuple[Array, Triangles]:
