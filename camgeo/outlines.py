@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from camgeo.fit.nodes import ToleranceError
+from camgeo.rounded import upward
 
 if TYPE_CHECKING:
     from camgeo.curve import Curve
@@ -50,7 +51,7 @@ def _fitted(form: str, contour: Curve, tolerance: float, unsure: float) -> Outli
     if 4.0 * unsure > tolerance:
         raise ToleranceError(
             f"{tolerance:.3g} mm cannot be held: digits cancel in the formula, so that it is known to {unsure:.3g} mm "
-            f"only; at least {4.0 * unsure:.3g} mm, or write the formula so that they do not",
+            f"only; at least {upward(4.0 * unsure, 3)} mm, or write the formula so that they do not",
             4.0 * unsure,
         )
     outline = _exactly_fitted(form, contour, tolerance - 2.0 * unsure)

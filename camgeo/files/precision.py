@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.nodes import ToleranceError
+from camgeo.rounded import upward
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -64,7 +65,7 @@ class Precision:
             least = _LEAST * self.bound(size + 2.0 * _LEAST * self.bound(size))
             raise ToleranceError(
                 f"{self.file} of a contour that reaches {size:.6g} mm from the shaft cannot hold {tolerance:.3g} mm: "
-                f"rounding to {self.name} alone moves points by {moved:.3g} mm; at least {least:.3g} mm",
+                f"rounding to {self.name} alone moves points by {moved:.3g} mm; at least {upward(least, 3)} mm",
                 least,
             )
         return tolerance - moved

@@ -20,6 +20,7 @@ from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_
 from camgeo.fit.parts import CONSTANT as FREE
 from camgeo.fit.parts import Part
 from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.rounded import upward
 
 if TYPE_CHECKING:
     from camgeo.curve import Array, Curve, Frame
@@ -190,7 +191,7 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
     if not limit > 0.0:
         raise ToleranceError(
             f"arcs within {limit + cover:.3g} mm are below what double precision holds on this contour: rounding alone "
-            f"takes {cover:.3g} mm; at least {2.0 * cover:.3g} mm",
+            f"takes {cover:.3g} mm; at least {upward(2.0 * cover, 3)} mm",
             2.0 * cover,
         )
     tolerance = min(aim, limit)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve import CurveError
+from camgeo.rounded import upward
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -43,7 +44,7 @@ def check_precision(size: float, tolerance: float, times: float = 1.0) -> None:
     if not tolerance >= least:
         raise ToleranceError(
             f"a tolerance of {tolerance:.3g} mm is below what double precision holds on a contour that reaches "
-            f"{size:.6g} mm from the shaft: at least {least:.3g} mm",
+            f"{size:.6g} mm from the shaft: at least {upward(least, 3)} mm",
             least,
         )
 
