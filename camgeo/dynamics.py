@@ -277,9 +277,13 @@ def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
 
 
 def _impacts(followed: Course) -> dict[str, Any]:
-    """Of the last turn that was followed; `settled` says that all later turns are like it."""
+    """Of the last turn that was followed; `settled` says that all later turns are like it.
+
+    If they are not, `of_turns` has the least and the greatest of the later half of the turns: no two are alike, and
+    rounding decides which of them is the last.
+    """
     last: Turn = followed.turns[-1]
-    return {
+    found: dict[str, Any] = {
         "settled": followed.settled,
         "count": last.impacts,
         "greatest_velocity": last.velocity,
@@ -288,6 +292,15 @@ def _impacts(followed: Course) -> dict[str, Any]:
         "peak_at_deg": degrees(last.greatest_at),
         "free_deg": math.degrees(last.free),
     }
+    if not followed.settled:
+        half = followed.turns[len(followed.turns) // 2 :]
+        found["of_turns"] = {
+            "turns": len(half),
+            "count": [min(turn.impacts for turn in half), max(turn.impacts for turn in half)],
+            "greatest_velocity": [min(turn.velocity for turn in half), max(turn.velocity for turn in half)],
+            "peak_force": [min(turn.greatest for turn in half), max(turn.greatest for turn in half)],
+        }
+    return found
 
 
 def _float_speed(scene: _Scene, drive: Drive) -> dict[str, Any]:

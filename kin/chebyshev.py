@@ -14,7 +14,8 @@ Indices = NDArray[np.intp]
 
 DEGREE = 24
 _COUNT = DEGREE + 1
-_ORDERS = np.arange(_COUNT, dtype=np.float64)
+ORDERS: Array = np.arange(_COUNT, dtype=np.float64)
+"""0 to DEGREE: the series' value at x = cos t is their sum with cos(ORDERS t)."""
 _FEW = 2000
 _ANGLES = np.pi * (np.arange(_COUNT) + 0.5) / _COUNT
 
@@ -72,7 +73,7 @@ def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
     found: Array
     if len(x) <= _FEW:
         angle = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
-        found = np.einsum("nk,nk->n", coefficients[row], np.cos(angle[:, None] * _ORDERS))
+        found = np.einsum("nk,nk->n", coefficients[row], np.cos(angle[:, None] * ORDERS))
         return found
     used = np.flatnonzero(coefficients.any(axis=0))
     columns = np.ascontiguousarray(coefficients.T)
@@ -87,7 +88,7 @@ def evaluated(coefficients: Array, row: Indices, x: Array) -> Array:
 def together(coefficients: Array, x: Array) -> Array:
     """Values (r, n) of all rows of `coefficients` (r, DEGREE + 1) at the same x (n,) in [-1, 1]."""
     angle = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
-    found: Array = coefficients @ np.cos(_ORDERS[:, None] * angle)
+    found: Array = coefficients @ np.cos(ORDERS[:, None] * angle)
     return found
 
 

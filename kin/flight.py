@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kin.chebyshev import DERIVATIVE, value
+from kin.chebyshev import DERIVATIVE, ORDERS
 from kin.instants import LOWER, UPPER, crossing
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Path:
     def __init__(self, series: Array, half: float, ahead: float = 0.0) -> None:
         rate = series[1]
         bend = rate @ DERIVATIVE.T / half
-        self._series: list[list[float]] = [series[0].tolist(), rate.tolist(), bend.tolist()]
+        self._series = np.stack([series[0], rate, bend])
         self.half, self._ahead = half, ahead
         self.size, self.rate = (float(size) for size in np.abs(series).sum(axis=1))
         self.bend = float(np.abs(bend).sum())
@@ -50,7 +50,8 @@ class Path:
     def at(self, time: float) -> Depth:
         """Value and two derivatives at a time."""
         x = (time + self._ahead) / self.half - 1.0
-        return Depth(*(value(row, x) for row in self._series))
+        place, rate, bend = (self._series @ np.cos(math.acos(min(max(x, -1.0), 1.0)) * ORDERS)).tolist()
+        return Depth(place, rate, bend)
 
 
 class Flight:

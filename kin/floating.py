@@ -33,6 +33,7 @@ _WIDE = 1.0  # in turns of the shaft: ranges wider are tried by the bound that k
 _DAMPED = 0.25  # of the decay in a radian, which may be wider
 _CLOSE = 0.25  # in turns of the shaft: narrower ranges are cut as their ends' forces suggest
 _STRIDE = 1.02  # ratio of the speeds at which a floating one is looked for
+_BESIDE = 1e-9  # of a speed: so near a resonance, and not on it, where nothing may be steady
 _RESOLUTION = 1e-11
 _CORNER = 1e-9  # of the greatest velocity: a lesser leap is a tangent's rounding
 _LEAST_RATIO = 0.5  # natural frequency in turns of the shaft, below which nobody asks
@@ -73,7 +74,10 @@ def float_speed(train: Train, drive: Drive, *, most: int = MOST_WORK) -> FloatSp
     try:
         begins = search.run()
     except SpentError:
-        between = search.holds, search.floats or _floats(train, drive, search.holds)
+        floats = search.floats or _floats(train, drive, search.holds)
+        if floats is not None:
+            floats = _floats_below(train, drive, search.holds, floats)
+        between = search.holds, floats
         return FloatSpeed(None, None, rigid, between, search.work.places)
     at = None if begins is None else steady(train, drive, begins).force.least_at
     return FloatSpeed(begins, at, rigid, None, search.work.places)
@@ -160,6 +164,31 @@ def _floats(train: Train, drive: Drive, rpm: float) -> float | None:
     except SpentError:
         return None
     return None
+
+
+def _floats_below(train: Train, drive: Drive, holds: float, floats: float) -> float:
+    """A speed that floats, no greater than `floats`: by halving, at resonances alone, as if all above it floated."""
+    work, low = Work(MOST_WORK // 6), holds
+    try:
+        while floats > _STRIDE * low:
+            middle = math.sqrt(low * floats)
+            tried = (rpm for rpm in _resonances(train, middle) if low < rpm < floats)
+            found = next((rpm for rpm in tried if Look(train, drive, rpm, work).least < 0.0), None)
+            low, floats = (middle, floats) if found is None else (low, found)
+    except SpentError:
+        return floats
+    return floats
+
+
+def _resonances(train: Train, rpm: float) -> list[float]:
+    """Speeds near another at which a harmonic resonates, of orders that a drive's symmetry is likely to leave.
+
+    A cam of constant breadth has odd ones alone, one of three lobes multiples of 3, a rise of 120 degrees all others.
+    """
+    order = math.sqrt(max(1.0 - train.damping_ratio**2, 0.0)) * train.ratio(rpm)
+    odd = max((step for step in (1, 3, 15, 105) if step <= 0.05 * order), default=1)
+    orders = [odd * (2 * round(0.5 * (order / odd - 1.0)) + 1)] + [round(order) + i for i in (0, 1, -1, 2)]
+    return [(1.0 + _BESIDE) * rpm * order / near for near in orders if near > 0]
 
 
 def _rigid(train: Train, drive: Drive) -> float | None:

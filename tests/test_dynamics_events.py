@@ -408,6 +408,14 @@ def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(rat
     assert steady(train, drive, high).force.least < 0.0
 
 
+def test_the_speed_that_floats_is_looked_for_at_resonances_below_it():
+    (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])
+    train = stiff(1e5, 1e-8, preload=150.0)
+    low, high = float_speed(train, drive, most=200_000).between
+    assert steady(train, drive, high).force.least < 0.0
+    assert high / low < 1.1
+
+
 @pytest.mark.parametrize(("ratio", "zeta"), [(1.3, 1.0), (123.3, 0.03), (1e3 + 0.3, 0.01), (1e5 + 0.3, 0.01)])
 def test_ordinary_and_stiff_trains_are_settled_within_the_budget(ratio, zeta):
     train = stiff(ratio, zeta, preload=150.0)

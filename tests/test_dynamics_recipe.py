@@ -123,6 +123,21 @@ def test_play_makes_impacts() -> None:
     assert 0.018 <= play[1]["value"] <= 0.02
 
 
+def test_turns_that_do_not_settle_are_told_by_their_range() -> None:
+    cam = (
+        "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}\n"
+    )
+    train = "dynamics: {mass: 0.4, damping: 25, stiffness: 6.0e+6, play: 0.05, rpm: 300}\n"
+    impacts = pipeline.check(recipe(train, cam)).report["dynamics"]["runs"][0]["impacts"]
+    assert not impacts["settled"]
+    found = impacts["of_turns"]
+    assert found["turns"] == 10
+    for key in ("count", "greatest_velocity", "peak_force"):
+        least, most = found[key]
+        assert 0 < least <= impacts[key] <= most
+    assert found["peak_force"][1] > 1.01 * found["peak_force"][0]
+
+
 def test_play_that_the_file_takes_up_fails() -> None:
     tight = TRAIN.replace("preload: 150", "play: 0.000001")
     outcome = pipeline.check(recipe(tight))
