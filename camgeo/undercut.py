@@ -68,11 +68,22 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
 def stretches(curve: Curve, why: Causes, what: Remains) -> tuple[Undercut, ...]:
     """Tell the stretches that undercut of a curve whose causes and remains are found already."""
     found: list[Undercut] = []
-    for lost in what.lost:
+    local: list[Undercut | None] = []
+    repeats = curve.shape.repeats
+    own = len(what.lost) // repeats if len(what.lost) % repeats == 0 else len(what.lost)
+    for i, lost in enumerate(what.lost):
         inside = [r for r in why.reversals if not r.still and _within(curve, lost, 0.5 * (r.start + r.end))]
         necks = [n for n in why.necks if _within(curve, lost, n.first) or _within(curve, lost, n.second)]
-        if inside:
-            found.append(_local(curve, lost, inside))
+        before = local[i - own] if i >= own else None
+        mine = None
+        if inside and before is not None:  # the curve's parts are alike
+            at = before.at + curve.shape.period / repeats
+            mine = replace(before, start=lost.start, end=lost.end, at=at, depth=lost.depth)
+        elif inside:
+            mine = _local(curve, lost, inside)
+        local.append(mine)
+        if mine is not None:
+            found.append(mine)
         if necks:
             found.append(_global(curve, lost, min(necks, key=lambda n: n.half)))
         if not inside and not necks and not _still(curve, lost, why):
