@@ -250,7 +250,7 @@ def test_the_wrong_sense_of_turning_is_caught(tmp_path):
         '<path d="m 20 0 A 2e1 20 0 0 1 0 20 20 20 0 0 1 -20 0 A 20 20 0 1 1 20 0"/>',
         '<g transform="translate(5 5)"><circle cx="-5" cy="-5" r="20"/></g>',
         '<g transform="matrix(0 2 -2 0 10 0)"><circle cy="5" r="10"/></g>',
-        '<g id="CUT"><circle r="20"/></g><circle r="25"/><g id="x"><rect width="3"/></g><g id="REFERENCE"><line/></g>',
+        '<g id="CUT"><circle r="20"/></g><g id="TOOLPATH"><circle r="25"/></g><g id="REFERENCE"><line/></g>',
         '<g style="fill:none; display:none"><circle r="25"/></g><rect display="none"/><circle r="20"/>',
         '<defs><path d="nonsense"/></defs><!-- a comment --><circle r="20"/><text>words</text>',
         '<path d="M20 0C20 11.045694996615872 11.045694996615872 20 0 20" id="a"/><path d="M20 0A20 20 0 1 0 0 20"/>',
