@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -322,11 +323,17 @@ class _Course:
 
     def _bends(self, starts: Array) -> Array:
         """Bound (m,) of the second derivative of the distance to either face in flight, on each stretch."""
+        here, oscillator = self.found[FREE], self.found[FREE].oscillator
+        if not oscillator.square:
+            return self._driven_bends
+        found: Array = self._driven_bends + oscillator.square * oscillator.bound(starts - here.ends[0].T)
+        return found
+
+    @cached_property
+    def _driven_bends(self) -> Array:
+        """What `_bends` are without free motion."""
         here = self.found[FREE]
         found: Array = np.abs(here.v @ DERIVATIVE.T).sum(axis=1) / here.half
-        oscillator = here.oscillator
-        if oscillator.square:
-            found = found + oscillator.square * oscillator.bound(starts - here.ends[0].T)
         if self.gap is not None:
             bends = np.abs(self.gap[:, 1] @ DERIVATIVE.T).sum(axis=1) / self.lower.half
             middle = here.drive.knots[:-1] + here.half

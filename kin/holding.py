@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from kin.chebyshev import AT_START, DEGREE, DERIVATIVE, evaluated
+from kin.chebyshev import AT_START, DERIVATIVE, ORDERS, evaluated
 from kin.dynamics import periodic
 from kin.response import Samples
 
@@ -45,8 +45,7 @@ _POWER = 4.0  # of the speed, with which kicks grow at most
 _PART = 8.0  # radians of free motion in a stretch that is not slow, at most: its kicks' own phase
 _GRID = np.linspace(-1.0, 1.0, PARTS + 1)
 _BLUNT = 0.9  # damping ratio from which a free motion is bounded as one that does not swing
-_ORDERS = np.arange(DEGREE + 1, dtype=np.float64)
-_CURVED = _ORDERS**2 * (_ORDERS**2 - 1.0) / 3.0  # greatest second derivative of each Chebyshev polynomial
+_CURVED = ORDERS**2 * (ORDERS**2 - 1.0) / 3.0  # greatest second derivative of each Chebyshev polynomial
 
 
 class Look:
