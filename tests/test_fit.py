@@ -21,6 +21,7 @@ from camgeo.fit.polygon import fit_polygon, least_vertices
 from camgeo.fit.spans import HOPELESS
 from camgeo.fit.spline import USABLE, fit_spline
 from camgeo.profile.support import SupportShape
+from camgeo.rounded import upward
 from kin.law import Segment, law, programme
 from kin.lift import Lift, lift_constant_breadth, lift_from_fourier, lift_reuleaux
 
@@ -208,7 +209,7 @@ def test_arcs_hold_their_floor_and_below_it_are_refused_with_it(name: str) -> No
     curve = Curve.whole(SupportShape(LIFTS[name]))
     floor = 2.0 * FLOOR * rounding(curve.size)
     assert fit_arcs(curve, floor).bound.worst <= floor
-    with pytest.raises(ToleranceError, match=f"at least {floor:.3g} mm") as caught:
+    with pytest.raises(ToleranceError, match=f"at least {upward(floor, 3)} mm") as caught:
         fit_arcs(curve, 0.999 * floor)
     assert caught.value.reached == pytest.approx(floor, rel=1e-12)
 

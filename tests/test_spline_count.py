@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from shapes import booth
 
+from camgeo import pipeline
 from camgeo.curve import Curve
 from camgeo.design import designed
 from camgeo.fit import spline as module
@@ -19,6 +20,7 @@ from camgeo.fit.spans import plane
 from camgeo.fit.spline import fit_spline
 from camgeo.profile.support import SupportShape
 from camgeo.recipe import load
+from camgeo.recipe.load import load_text
 from camgeo.study.least import least_pieces, least_spline
 from kin.lift import lift_from_fourier, lift_reuleaux
 
@@ -213,3 +215,19 @@ def test_roundings_too_small_to_have_a_direction_become_corners(sides: int, roun
     found = fit_spline(curve, 1e-3)
     assert found.count == count
     assert found.bound.worst <= 1e-3
+
+
+@pytest.mark.parametrize(
+    ("fourier", "pivot", "tolerance"),
+    [
+        ("mean: 74518.6029814693, cos: {199: 1.8817829035705753}", "[74520.48476437287, 0]", 10.0077),
+        ("mean: 25, cos: {3: 3.124999999996875}", "[7.5, -5]", 9.05e-5),
+        ("mean: 25, cos: {33: 0.02297794117644761}", "[0, 0]", 0.0055),
+    ],
+)
+def test_next_to_cusps_no_span_is_lost_to_the_knots_or_to_a_reader(fourier: str, pivot: str, tolerance: float) -> None:
+    """Least radii of curvature of 1e-12 of the size: spans differ in length and in pace by many orders."""
+    text = f"cam: {{kind: support, fourier: {{{fourier}}}, pivot: {pivot}}}\n"
+    text += f"export: {{tolerance: {tolerance}, files: [{{dxf: {{as: spline}}}}]}}\nverify: {{angles: 360}}\n"
+    outcome = pipeline.check(load_text(text, "cusps.yaml"))
+    assert outcome.ok, [one for one in outcome.report["checks"] if not one["ok"]]

@@ -42,6 +42,8 @@ GROWTH = 0.01  # by this share of them at least,
 FASTER = 1.6  # which itself grows by this factor each time
 TRIES = 40
 LAST_TRIES = 8  # are spent on halving spans that fail, wherever they are
+NOTHING = 4e-9  # of the size: a span so short is none to a reader of its file
+UNEVEN = 1e-7  # of a run's length of parameter, the least that a span of it has
 DAMPED = 12.0  # power for the error where nodes were shared before, so that they come to rest
 
 
@@ -57,33 +59,63 @@ def fit_spline(curve: Curve, tolerance: float) -> BSpline:
     stretches = np.concatenate([run.stretches for run in curve.runs])
     limit = tolerance - 2.0 * rounding(size)
     spans = _fit_stretches(curve, stretches, USABLE * limit, limit)
+    outward, inward = max(out for _, out, _ in spans), max(into for _, _, into in spans)
+    # a span that is shorter than rounding has no direction: what it joins meets in a corner that no one can tell; nor
+    # does a reader take one that is next to nothing, which is left out where the tolerance has room for it
+    nothing = max(rounding(size), min(NOTHING * size, 0.5 * (limit - max(outward, inward))))
     groups, first, lost = [], 0, 0.0
     for run in curve.runs:
         count = len(run.stretches)
         beziers = np.concatenate([control for control, _, _ in spans[first : first + count]])
-        # a span that is shorter than rounding has no direction: what it joins meets in a corner that no one can tell
         length = np.abs(np.diff(plane(beziers), axis=1)).sum(axis=1)
-        short = length <= rounding(size)
+        short = length <= nothing
         lost = max(lost, float(length[short].max(initial=0.0)))
         ends = np.flatnonzero(np.diff(np.concatenate([[True], short, [True]]).astype(np.int8)))
-        groups += [beziers[low:high] for low, high in ends.reshape(-1, 2)]
+        groups += [part for low, high in ends.reshape(-1, 2) for part in _even(beziers[low:high])]
         first += count
-    outward, inward = max(out for _, out, _ in spans), max(into for _, _, into in spans)
     spline = _assembled(groups, Bound(outward, inward))
     # joints are no longer given but follow from the knots
     moved = math.sqrt(2.0) * float(np.abs(spline.beziers() - np.concatenate(groups)).max())
     return replace(spline, bound=spline.bound.widened(rounding(size) + moved + lost))
 
 
+def _even(beziers: Array) -> list[Array]:
+    """Runs of spans (n, 4, 2) in which no span's share of the parameter is lost beside the others'.
+
+    Next to a cusp speeds differ so much from joint to joint that knots would coincide. There a run ends, in a threefold
+    knot: the curve stays as smooth as it is, its parameter does not.
+    """
+    steps = _steps(beziers)
+    if bool(np.isfinite(steps).all()) and steps.min() >= UNEVEN * steps.sum():
+        return [beziers]
+    runs, first = [], 0
+    for last in range(1, len(beziers)):
+        steps = _steps(beziers[first : last + 1])
+        if not (np.isfinite(steps).all() and steps.min() >= UNEVEN * steps.sum()):
+            runs.append(beziers[first:last])
+            first = last
+    return [*runs, beziers[first:]]
+
+
+def _steps(beziers: Array) -> Array:
+    """Lengths of parameter (n,) of spans in a run, at whose joints both sides run equally fast."""
+    leaving, arriving = (np.hypot(*(beziers[:, i + 1] - beziers[:, i]).T) for i in (0, 2))
+    if len(beziers) == 1:
+        return np.array([np.hypot(*np.diff(beziers[0], axis=0).T).sum()])
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore", under="ignore"):
+        steps: Array = np.cumprod(np.append(1.0, leaving[1:] / arriving[:-1])) * leaving[0]
+    return steps
+
+
 def _assembled(groups: list[Array], bound: Bound) -> BSpline:
     """One closed clamped B-spline from the Bezier spans of each run (n, 4, 2): C1 in a run, corners between runs."""
     control, knots = [groups[0][0, :1]], [np.zeros(4)]
     at = 0.0
-    for number, beziers in enumerate(groups):
-        leaving, arriving = (np.hypot(*(beziers[:, i + 1] - beziers[:, i]).T) for i in (0, 2))
-        # a span's share of the parameter: at a joint both sides run equally fast
-        share = np.cumprod(np.append(1.0, leaving[1:] / arriving[:-1]))
-        ends = at + np.cumsum(share * leaving[0])
+    steps = [_steps(beziers) for beziers in groups]
+    least = UNEVEN * sum(float(one.sum()) for one in steps)
+    for number, (beziers, step) in enumerate(zip(groups, steps, strict=True)):
+        # how fast a run goes is free: none so fast that its knots would coincide
+        ends = at + np.cumsum(step * max(1.0, least / float(step.sum())))
         at = float(ends[-1])
         control.append(beziers[:, 1:3].reshape(-1, 2))
         knots.append(np.repeat(ends[:-1], 2))
