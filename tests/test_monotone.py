@@ -34,7 +34,9 @@ def test_every_piece_is_monotone_and_so_is_its_slope(cos, sin):
     every = np.arange(len(of.width))
     for row in at:
         assert np.abs(of.at(every, row) - derivative(row, 0)[0]).max() < 1e-12 * max(size, 1)
-        assert np.abs(of.slope(every, row) - derivative(row, 1)[0]).max() < 1e-9 * max(size, 1)
+        # a piece may be as narrow as 1e-8, and its slope is known to the rounding of its values over its width
+        known = 1e-9 * max(size, 1) + of.blur / of.width
+        assert (np.abs(of.slope(every, row) - derivative(row, 1)[0]) < known).all()
 
 
 def test_roots_and_touching_roots():

@@ -153,20 +153,13 @@ def test_polygons_of_outlines_keep_their_tolerance(outline, tolerance):
     assert worst == pytest.approx(off, rel=0.05, abs=1e-12)
 
 
-@settings(max_examples=30, deadline=None)
-@given(st.integers(2, 7), st.integers(3, 9), st.floats(0.02, 0.9), st.randoms(use_true_random=False))
-def test_regions_with_holes_are_covered_once(count, corners, turn, random):
-    outer = np.array([[30, -30], [30, 30], [-30, 30], [-30, -30]], dtype=float)
-    cells = [(x, y) for x in (-20, 0, 20) for y in (-20, 0, 20)]
-    angle = turn + np.arange(corners) * 2 * np.pi / corners
-    ring = np.column_stack([np.cos(angle), np.sin(angle)])
-    holes = []
-    for x, y in random.sample(cells, count):
-        hole = (np.array([x, y]) + random.uniform(1, 9.5) * ring).astype(np.float32).astype(float)
-        holes.append(hole)
+SQUARE = np.array([[30, -30], [30, 30], [-30, 30], [-30, -30]], dtype=float)
+
+
+def covers_once(outer, holes):
     triangles = region(outer, holes)
     points = np.concatenate([outer, *holes])
-    assert len(triangles) == len(points) + 2 * count - 2
+    assert len(triangles) == len(points) + 2 * len(holes) - 2
     a, b, c = points[triangles].transpose(1, 0, 2)
     areas = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
     assert (areas > 0).all()
@@ -174,11 +167,34 @@ def test_regions_with_holes_are_covered_once(count, corners, turn, random):
     assert areas.sum() == pytest.approx(3600 - inner, rel=1e-12)
 
 
+@settings(max_examples=60, deadline=None)
+@given(st.integers(2, 9), st.integers(3, 9), st.floats(0.02, 0.9), st.randoms(use_true_random=False))
+def test_regions_with_holes_are_covered_once(count, corners, turn, random):
+    cells = [(x, y) for x in (-20, 0, 20) for y in (-20, 0, 20)]
+    angle = turn + np.arange(corners) * 2 * np.pi / corners
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    holes = []
+    for x, y in random.sample(cells, count):
+        hole = (np.array([x, y]) + random.uniform(1, 9.5) * ring).astype(np.float32).astype(float)
+        holes.append(hole)
+    covers_once(SQUARE, holes)
+
+
+@pytest.mark.parametrize("corners", [3, 4, 5, 7, 24])
+@pytest.mark.parametrize("turn", [0.0, 0.5, math.pi / 4])
+@pytest.mark.parametrize("side", [3, 5, 9])
+def test_rows_of_equal_holes_have_bridges(corners, turn, side):
+    """Corners of all holes in line, and more holes than the square has corners to bridge them to."""
+    angle = turn + np.arange(corners) * 2 * np.pi / corners
+    ring = np.round(np.column_stack([np.cos(angle), np.sin(angle)]) * 1.5, 3)
+    places = np.linspace(-24, 24, side)
+    covers_once(SQUARE, [np.array([x, y]) + ring for x in places for y in places])
+
+
 def test_holes_that_meet_have_no_region():
-    outer = np.array([[30, -30], [30, 30], [-30, 30], [-30, -30]], dtype=float)
     square = np.array([[4, -4], [4, 4], [-4, 4], [-4, -4]], dtype=float)
     with pytest.raises(RegionError, match="a hole reaches another"):
-        region(outer, [square, square + 3.0])
+        region(SQUARE, [square, square + 3.0])
 
 
 # --- STL: solids ----------------------------------------------------------------------------------------------------

@@ -238,7 +238,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         (FLAT_PAIR, "1:43: cam.roller_radius: unknown key; it belongs under cam of kind double-roller"),
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, damping: 300, play: 0.1}\n",
-            "2:55: dynamics.damping: 15 times critical; give at most 200",
+            "2:55: dynamics.damping: 15 times critical; give less than 200",
         ),
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, play: 0.1, rate: 2}\n",

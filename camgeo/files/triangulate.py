@@ -70,7 +70,7 @@ def region(outer: Array, inners: Sequence[Array]) -> Triangles:
     if len(inners) < 2:
         return ring(outer, inners[0]) if len(inners) else disc(outer)
     points = np.concatenate((outer, *inners))
-    chain = _bridged_all(points, [len(outer), *map(len, inners)])
+    chain = _bridged(points, [len(outer), *map(len, inners)])
     triangles = None if chain is None else _clip_ears(points, chain)
     if triangles is None or not _all_positive(points, triangles):
         raise RegionError("a hole reaches another or the contour, or the contour touches or crosses itself")
@@ -111,7 +111,8 @@ def clip(outer: Array, inner: Array | None = None) -> Triangles:
         points = outer
         chain: NDArray[np.int64] | None = np.arange(len(outer))
     else:
-        points, chain = np.concatenate((outer, inner)), _bridged(outer, inner)
+        points = np.concatenate((outer, inner))
+        chain = _bridged(points, [len(outer), len(inner)])
     triangles = None if chain is None else _clip_ears(points, chain)
     if triangles is None or not _all_positive(points, triangles):
         reached = "the bore reaches the contour, or " if inner is not None else ""
@@ -171,69 +172,47 @@ def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], NDArray[np
     return cut, left
 
 
-def _bridged(outer: Array, inner: Array) -> NDArray[np.int64] | None:
-    """One chain of vertex indices round the outer loop and, over a bridge and back, clockwise round the inner one.
-
-    The bridge runs from the inner vertex farthest right to the nearest outer vertex that it sees; None if it sees none.
-    """
-    n, m = len(outer), len(inner)
-    q = int(np.argmax(inner[:, 0]))
-    loops = [(outer, np.roll(outer, -1, axis=0)), (inner, np.roll(inner, -1, axis=0))]
-    start, end = (np.concatenate(parts) for parts in zip(*loops, strict=True))
-    there = np.broadcast_to(inner[q], start.shape)
-    for p in np.argsort(np.hypot(*(outer - inner[q]).T)):
-        here = np.broadcast_to(outer[p], start.shape)
-        crosses = (sides(there, here, start) * sides(there, here, end) <= 0) & (
-            sides(start, end, there) * sides(start, end, here) <= 0
-        )
-        # edges that end in p or q touch the bridge there, and only there unless they run along it
-        own = np.zeros(len(start), dtype=bool)
-        own[[p, (p - 1) % n, n + q, n + (q - 1) % m]] = True
-        along = (sides(there, here, start) == 0) & (sides(there, here, end) == 0)
-        if not np.any(crosses & (~own | along)):
-            round_outer = (p + np.arange(n + 1)) % n
-            round_inner = n + (q - np.arange(m + 1)) % m
-            return np.concatenate((round_outer, round_inner))
-    return None
-
-
-def _bridged_all(points: Array, counts: list[int]) -> NDArray[np.int64] | None:
+def _bridged(points: Array, counts: list[int]) -> NDArray[np.int64] | None:
     """One chain of vertex indices round the first loop and, over bridges and back, clockwise round all others.
 
-    Each hole's vertex farthest right is joined to the nearest vertex of the chain that it sees and that no bridge has
-    taken, holes farther right first; None if one sees none.
+    Each hole's vertex farthest right is joined to the nearest vertex of the chain that it sees, holes farther right
+    first: what it sees to its right is then of the chain, so each sees one if no hole reaches another. None if one
+    sees none.
     """
     first = np.cumsum([0, *counts[:-1]])
     following = np.concatenate([start + np.roll(np.arange(n), -1) for start, n in zip(first, counts, strict=True)])
     start, end = np.arange(len(points)), following
     chain = np.arange(counts[0])
-    bridged: set[int] = set()
     rightmost = [int(f + np.argmax(points[f : f + n, 0])) for f, n in zip(first[1:], counts[1:], strict=True)]
     for hole in sorted(range(len(rightmost)), key=lambda k: (-points[rightmost[k], 0], k)):
         q, low, n = rightmost[hole], int(first[hole + 1]), counts[hole + 1]
-        place = _seen_from(points, q, chain, (start, end), bridged)
+        place = _seen_from(points, q, chain, (start, end))
         if place is None:
             return None
         p = int(chain[place])
         round_hole = low + (q - low - np.arange(n + 1)) % n
         chain = np.concatenate((chain[: place + 1], round_hole, chain[place:]))
-        bridged |= {p, q}
         start, end = np.append(start, p), np.append(end, q)
     return chain
 
 
 def _seen_from(
-    points: Array, q: int, chain: NDArray[np.int64], edges: tuple[NDArray[np.intp], NDArray[np.intp]], taken: set[int]
+    points: Array, q: int, chain: NDArray[np.int64], edges: tuple[NDArray[np.intp], NDArray[np.intp]]
 ) -> int | None:
-    """Place in the chain of the nearest vertex that q sees past all edges, starts and ends; None if there is none."""
+    """Place in the chain of the nearest vertex that q sees past all edges, starts and ends; None if there is none.
+
+    A vertex that bridges end in stands in the chain once for each sector between them: the place is that of the sector
+    in which q is seen.
+    """
     start, end = edges
     a, b = points[start], points[end]
     there = np.broadcast_to(points[q], a.shape)
     own_q = (start == q) | (end == q)
-    for place in np.argsort(np.hypot(*(points[chain] - points[q]).T), kind="stable"):
+    at = points[chain]
+    opens = _in_sector(np.roll(at, 1, axis=0), at, np.roll(at, -1, axis=0), points[q])
+    distance = np.where(opens, np.hypot(*(at - points[q]).T), np.inf)
+    for place in np.argsort(distance, kind="stable")[: np.count_nonzero(opens)]:
         p = int(chain[place])
-        if p in taken:
-            continue
         here = np.broadcast_to(points[p], a.shape)
         side_a, side_b = sides(there, here, a), sides(there, here, b)
         crosses = (side_a * side_b <= 0) & (sides(a, b, there) * sides(a, b, here) <= 0)
@@ -241,6 +220,13 @@ def _seen_from(
         if not np.any(crosses & (~own | ((side_a == 0) & (side_b == 0)))):
             return int(place)
     return None
+
+
+def _in_sector(before: Array, at: Array, after: Array, point: Array) -> NDArray[np.bool_]:
+    """Whether a point is seen from corners (n, 2) strictly inside their sectors, left of the chain's two edges (n,)."""
+    there = np.broadcast_to(point, at.shape)
+    left_in, left_out = sides(before, at, there) > 0, sides(at, after, there) > 0
+    return np.where(sides(before, at, after) > 0, left_in & left_out, left_in | left_out)
 
 
 def _clip_ears(points: Array, chain: NDArray[np.int64]) -> Triangles | None:
