@@ -63,7 +63,7 @@ def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Res
                 progress.clear()
                 yield found
         except KeyboardInterrupt:
-            pool.shutdown(wait=False, cancel_futures=True)
+            pool.shutdown(cancel_futures=True)
             raise
 
 

@@ -45,6 +45,7 @@ class Counted:
         monkeypatch.setattr(free_arcs, "_newton", of_newton)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["as-figure-2a", "as-figure-2c", "fourier", "w-ellipse"])
 @pytest.mark.parametrize("roundings", [2.0 * FLOOR, 20.0, 1000.0])
 def test_near_rounding_arcs_are_found_at_once(name, roundings, monkeypatch):

@@ -267,6 +267,7 @@ def brute(one, other):
     return -deepest
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(st.integers(0, 100_000))
 def test_against_brute_force(seed):

@@ -116,6 +116,7 @@ def complete(f, found, band, most, period=TURN):
 coefficients = st.lists(st.floats(-1, 1), min_size=1, max_size=6)
 
 
+@pytest.mark.slow
 @settings(max_examples=50)
 @given(coefficients, coefficients, st.floats(-3, 0.7))
 def test_random_waves(cos, sin, exponent):
@@ -128,6 +129,7 @@ def test_random_waves(cos, sin, exponent):
     complete(f, found, band, 20)
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(
     st.lists(st.tuples(st.floats(0.05, 1), st.integers(-4, 4)), min_size=3, max_size=9),

@@ -342,6 +342,7 @@ def test_float_of_a_rise_is_found_in_its_first_dip():
     assert min(below) > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("ratio", "zeta"),
     [

@@ -340,7 +340,9 @@ def test_a_shaft_that_is_let_pass_turns_the_cam_and_one_that_slips_is_not(bore: 
             drives(recipe.part, clearance, off)
 
 
-@pytest.mark.parametrize("name", ["yoke", "double roller", "slider-crank"])
+@pytest.mark.parametrize(
+    "name", ["yoke", *(pytest.param(name, marks=pytest.mark.slow) for name in ("double roller", "slider-crank"))]
+)
 def test_the_room_that_is_told_holds_all_bodies_at_every_angle(name: str) -> None:
     assembly = made(name)[2]
     told = swept_room(movers(assembly))

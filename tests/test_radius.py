@@ -186,6 +186,7 @@ def test_all_backwards_is_one_reversal():
     assert reversals(Curve.whole(shape)) == (Reversal(0.0, 2.0 * math.pi, still=False),)
 
 
+@pytest.mark.slow
 def test_lobes_that_are_almost_circles_are_enclosed():
     """Booth's lemniscate next to its fold: an enclosure where a sharp proof would divide without end, told as such."""
     thin = 1e-6

@@ -169,6 +169,7 @@ known = {
 recipes = st.fixed_dictionaries({}, optional={key: known.get(key, structures) for key in RECIPE.keys})
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(recipes | structures)
 def test_structures_near_the_schema(structure: object) -> None:

@@ -89,6 +89,7 @@ def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster:
     assert landed == {number: result(slow, number, slow.key) for number in numbers}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["processes", "dask"])
 def test_figures_of_linkages_are_the_same_bytes_from_every_engine(engine: str, cluster: LocalCluster) -> None:
     text = ask().recipe.text
@@ -281,6 +282,7 @@ def assert_whole(folder: Path) -> None:
             assert hashlib.sha256((folder / file["path"]).read_bytes()).hexdigest() == file["sha256"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
     jobs: int, plain: dict[str, bytes], tmp_path: Path

@@ -95,6 +95,7 @@ def compute_one(recipe, given, **how):
     return {name: float(column[0]) for name, column in found.figures.items()}
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=40)
 @given(
     st.sampled_from(list(PATHS)),

@@ -57,6 +57,7 @@ def start(ask, values):
     return given, {name: float(column[0]) for name, column in found.figures.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rank", "limits", "sense"),
     [

@@ -77,9 +77,10 @@ def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Gen
             text = "a process was killed before it was done, for want of memory perhaps; see --jobs"
             raise EngineError(text) from error
         finally:
-            pool.shutdown(wait=False, cancel_futures=True)
             if running:
-                ours.close()  # nobody waits for what is still at work
+                ours.close()  # nobody waits for what is still at work: the workers end
+            # waited for, since a pool that is still ending when the interpreter exits may print a traceback
+            pool.shutdown(cancel_futures=True)
 
 
 def _start_server() -> None:
