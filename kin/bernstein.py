@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.newton import zeros
+
 if TYPE_CHECKING:
     from kin.arcs import Array
 
@@ -19,8 +21,6 @@ END_MARGIN = 1e-12
 TOUCHING = 1e-9
 # Newton's steps double their digits: after one this short the next would be below rounding.
 SETTLED = 1e-12
-# Enough for bisection alone, should Newton's steps never fall inside the bracket.
-BISECTIONS = 60
 # Below the spacing of floating-point numbers next to 1.
 NARROWEST = 2e-16
 
@@ -112,26 +112,14 @@ def restrict(coefficients: Array, a: Array, b: Array) -> Array:
 def rising_root(coefficients: Array) -> Array:
     """Where polynomials (n, k+1) that rise through zero at most once do so: t (n,), 0 or 1 where they do not.
 
-    Newton's steps, kept inside a shrinking bracket.
+    To within `SETTLED`, mostly to rounding. Raises UnsettledError where a coefficient is not a number.
     """
     n, k = len(coefficients), coefficients.shape[1] - 1
     slope = k * np.diff(coefficients, axis=1) if k else np.zeros((n, 1))
-    low, high = np.zeros(n), np.ones(n)
     with np.errstate(invalid="ignore", divide="ignore"):
         t = coefficients[:, 0] / (coefficients[:, 0] - coefficients[:, -1])
     t = np.where((t > 0.0) & (t < 1.0), t, 0.5)
-    for _ in range(BISECTIONS):
-        g = values(coefficients, t)
-        low, high = np.where(g < 0.0, t, low), np.where(g < 0.0, high, t)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            following = t - g / values(slope, t)
-        inside = (following >= low) & (following <= high)
-        following = np.where(inside, following, (low + high) / 2.0)
-        moved = np.abs(following - t)
-        t = following
-        if not bool((moved > SETTLED).any()):
-            break
-    return t
+    return zeros(lambda t: (values(coefficients, t), values(slope, t)), np.zeros(n), np.ones(n), t, SETTLED)
 
 
 def roots(coefficients: Array) -> list[float]:

@@ -45,7 +45,8 @@ _EQUAL = 1e-10
 _BALANCED = 1e-9
 # More open cells than this: the slopes balance over a whole stretch, and any window in it will do.
 _MOST_CELLS = 4096
-_BISECTIONS = 60
+# Steps of the rule of false position, and halvings after them: so many bring any part of the period below _SAME.
+_FALSE_POSITIONS, _HALVINGS = 24, 42
 # An end that f itself would move by more than this part of the period is not moved: f is flat there.
 _FARTHEST_STEP = 1e-6
 _STEPS = 2
@@ -337,14 +338,18 @@ class _Family:
         return which, self.take(which).refined(left, right, before, after)
 
     def refined(self, left: Array, right: Array, before: Array, after: Array) -> Array:
-        """Where the difference of slopes, `before` >= 0 at left and `after` <= 0 at right, is 0: Illinois' method."""
+        """Where the difference of slopes, `before` >= 0 at left and `after` <= 0 at right, is 0.
+
+        Illinois' method, and halving where that does not end soon.
+        """
         if not len(left):
             return left
         last = left
-        for _ in range(_BISECTIONS):
+        for step in range(_FALSE_POSITIONS + _HALVINGS):
             drop = before - after
             with np.errstate(divide="ignore", invalid="ignore"):
-                a = np.where(drop > 0, left + (right - left) * (before / drop), left)
+                share = np.where(drop > 0, before / drop, 0.0) if step < _FALSE_POSITIONS else 0.5
+            a = left + (right - left) * share
             _, at_a, at_b = self.ends(a)
             h = at_a - at_b
             rises = h > 0
@@ -390,7 +395,10 @@ def _polished(w: _Windows, f: Callable[[Array], Array], search: _Search) -> tupl
 
 
 def _moved(x: Array, piece: Indices, level: Array, f: Callable[[Array], Array], search: _Search) -> Array:
-    """Newton's method for f itself, by the slopes of its polynomial."""
+    """Newton's method for f itself, by the slopes of its polynomial, which `cells` has made alike to `_RESOLUTION`.
+
+    Each of the two steps leaves of what an end is off no more than the part by which the slopes differ.
+    """
     for _ in range(_STEPS):
         with np.errstate(divide="ignore", invalid="ignore"):
             step = (f(x) - level) / search.slope(piece, x)

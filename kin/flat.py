@@ -19,6 +19,7 @@ from kin.envelope import FlatEnvelope, Outset, PairSupport
 from kin.extremes import Extremes, extremes, resolution
 from kin.foot import FINE_STEP, grid
 from kin.motion import TURN, ContactError, Judged, MotionError, Play, Unit, motion_error, with_steps
+from kin.newton import zeros
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -284,18 +285,16 @@ class FlatPair:
         width = np.diff(start, append=start[0] + TURN)[stretch]
         share = np.where(width > 0.0, (reduced - start[stretch]) / np.where(width > 0.0, width, 1.0), 0.0)
         theta = low + np.clip(share, 0.0, 1.0) * (high - low)
-        for _ in range(MOST_STEPS):
-            value, slope, bend = _shaft(theta, bearing.derivatives(theta, stretch), self._pivot, side)
-            miss = reduced - value
-            low, high = np.where(miss > 0.0, theta, low), np.where(miss > 0.0, high, theta)
-            new = theta + miss / slope
-            new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
-            moved = np.abs(new - theta).max(initial=0.0)
-            theta = new
-            if moved <= SETTLED:
-                break
-        else:
-            raise UnsettledError(f"contact was not found in {MOST_STEPS} steps; the last was of {moved:.3g} rad")
+
+        def shaft(theta: Array) -> Array:
+            return _shaft(theta, bearing.derivatives(theta, stretch), self._pivot, side)
+
+        def over(theta: Array) -> tuple[Array, Array]:
+            value, slope, _ = shaft(theta)
+            return value - reduced, slope
+
+        theta = zeros(over, low, high, theta, SETTLED)
+        _, slope, bend = shaft(theta)
         return np.stack([theta + turns * TURN, 1.0 / slope, -bend / slope**3])
 
     def _error_extremes(self, bearing: Bearing, side: int) -> Extremes:

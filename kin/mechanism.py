@@ -25,6 +25,7 @@ from kin.law import IntentError
 from kin.loop import BindingError
 from kin.mobility import Mobility, mobility
 from kin.monotone import between, cells, pieces
+from kin.newton import zeros
 from kin.taylor import factorials
 
 if TYPE_CHECKING:
@@ -44,7 +45,6 @@ QUARTER = 0.5 * math.pi
 _ROUNDED = 1e-9
 _EDGE = 1e-12
 _TABLE = 256  # steps of the table that Newton's method for phi(theta) begins from
-_NEWTON = 60  # steps at most, were each a bisection
 _SETTLED = 1e-9  # rad: after a Newton step below this the next is lost in rounding
 
 
@@ -188,18 +188,12 @@ class Mechanism:
         x, rise = (goal - phi[k]) / h, high - low
         x = low + x * (h * first + x * (3 * rise - h * (2 * first + last) + x * (h * (first + last) - 2 * rise)))
         x = np.clip(x, low, high)
-        for _ in range(_NEWTON):
+
+        def over(x: Array) -> tuple[Array, Array]:
             at = self.at(x, 1).shaft
-            miss = goal - at[0]
-            low, high = np.where(miss >= 0, x, low), np.where(miss <= 0, x, high)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                new = x + miss / at[1]
-            new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
-            moved = np.abs(new - x).max(initial=0.0)
-            x = new
-            if moved <= _SETTLED:
-                break
-        return x + turns * TURN
+            return at[0] - goal, at[1]
+
+        return zeros(over, low, high, x, _SETTLED) + turns * TURN
 
     def sensitivity(self, theta: float | Array) -> Array:
         """Change of the output per change of S and of S1 (2, n), rad/mm or 1, at relative angles, the shaft held."""

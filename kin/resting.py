@@ -18,6 +18,7 @@ from kin.check import degrees
 from kin.contour import apart
 from kin.jet import Jet
 from kin.loop import BindingError
+from kin.newton import zeros
 
 if TYPE_CHECKING:
     from kin.arcs import Array, Indices
@@ -28,7 +29,6 @@ TURN = 2.0 * np.pi
 QUARTER = 0.5 * np.pi
 COARSEST = 720  # intervals of a turn at least, however few the breaks
 SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in rounding
-MOST_STEPS = 60
 SHORT = 1e-6  # rad: over less, the mean rate of the shaft is rounding
 
 
@@ -117,19 +117,13 @@ class Resting:
         interval, reduced = _place(self.shaft, shaft, side)
         low, high = self.nodes[interval], self.nodes[interval + 1]
         share = (reduced - self.shaft[interval]) / (self.shaft[interval + 1] - self.shaft[interval])
-        theta = low + np.clip(share, 0.0, 1.0) * (high - low)
-        begin, end = low, high
-        for _ in range(MOST_STEPS):
+        theta = np.clip(low + np.clip(share, 0.0, 1.0) * (high - low), low, high)
+
+        def over(theta: Array) -> tuple[Array, Array]:
             value, slope = self.rows(theta, interval)[0, :2]
-            miss = reduced - value
-            low, high = np.where(miss > 0.0, theta, low), np.where(miss > 0.0, high, theta)
-            new = np.clip(theta + miss / slope, begin, end)
-            new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
-            moved = np.abs(new - theta).max(initial=0.0)
-            theta = new
-            if moved <= SETTLED:
-                break
-        return theta, interval
+            return value - reduced, slope
+
+        return zeros(over, low, high, theta, SETTLED), interval
 
     def shaft_at(self, theta: float) -> float:
         """Shaft angle at any relative angle, to whole turns."""

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.check import UnsettledError
+from kin.newton import zeros
 
 if TYPE_CHECKING:
     from kin.ball import Ball
@@ -173,22 +174,14 @@ def _multiple(
 
 
 def _refine(g: Expression, m: int, low: Array, high: Array) -> Array:
-    """Return the zeros of the (m - 1)-th derivative, monotone over each [low, high]: Newton's method, guarded."""
-    low, high = low.copy(), high.copy()
-    rising = g.jet(high, m - 1).c[m - 1] > 0
-    t = 0.5 * (low + high)
-    for _ in range(120):  # bisection alone would need fewer than 64
+    """Return the zeros of the (m - 1)-th derivative, monotone over each [low, high], to the spacing of its ends."""
+    sense = np.where(g.jet(high, m - 1).c[m - 1] > 0, 1.0, -1.0)
+
+    def rising(t: Array) -> tuple[Array, Array]:
         c = g.jet(t, m).c
-        above = (c[m - 1] > 0) == rising
-        high, low = np.where(above, t, high), np.where(above, low, t)
-        with np.errstate(all="ignore"):
-            following = t - c[m - 1] / (m * c[m])
-        inside = (following >= low) & (following <= high)
-        following = np.where(c[m - 1] == 0, t, np.where(inside, following, 0.5 * (low + high)))
-        if (np.abs(following - t) <= np.spacing(np.abs(t))).all():
-            return following
-        t = following
-    return t
+        return sense * c[m - 1], sense * m * c[m]
+
+    return zeros(rising, low, high, 0.5 * (low + high), np.spacing(np.maximum(np.abs(low), np.abs(high))))
 
 
 def _merged(zeros: list[_Zero]) -> list[float]:

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.jet import Ball, BallJet, Jet, cos
+from kin.newton import zeros
 from kin.piecewise import Affine, Constant, Piecewise, Places, Series, Side
 from kin.routes import DeltaDistance, FromDelta, FromLeaf
 
@@ -209,18 +210,12 @@ class Transmission:
         index, x = places.locate(angle, side)
         low, high = knots[index], knots[index + 1]
         tau = low + (x - ends[index]) * (high - low) / (ends[index + 1] - ends[index])
-        for _ in range(80):
+
+        def over(tau: Array) -> tuple[Array, Array]:
             value, slope = at(tau, 1)
-            miss = value - x
-            low, high = np.where(miss < 0, tau, low), np.where(miss > 0, tau, high)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                step = tau - miss / slope
-            better = np.where((step > low) & (step < high), step, 0.5 * (low + high))
-            better = np.where(miss == 0, tau, better)
-            settled = np.abs(better - tau) <= 2 * np.spacing(np.maximum(np.abs(tau), period))
-            tau = better
-            if settled.all():
-                break
+            return value - x, slope
+
+        tau = zeros(over, low, high, tau, 2 * np.spacing(np.maximum(np.abs(tau), period)))
         tau = np.where(x == ends[index], knots[index], np.where(x == ends[index + 1], knots[index + 1], tau))
         turns = np.round((angle - x) / period)
         return tau + turns * period

@@ -3,13 +3,14 @@
 import math
 from collections import deque
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from kin.dwell import Dwell, dwells
+from kin.dwell import Dwell, _Family, dwells
 
 TURN = 2 * math.pi
 SAMPLES = 3000
@@ -288,3 +289,16 @@ def test_a_band_close_to_rounding_is_still_resolved():
     found = dwells(f, [], band)
     judged(f, found, band)
     assert found[0].length > 1e-5
+
+
+@pytest.mark.parametrize("power", [1, 3, 9, 15])
+def test_slopes_that_hardly_differ_are_balanced_nevertheless(power):
+    class Flat(_Family):
+        def ends(self, a):
+            return a, np.maximum(0.3 - a, 0.0) ** power, np.maximum(a - 0.3, 0.0) ** power
+
+    search = SimpleNamespace(period=1.0)
+    family = Flat(search, *(np.zeros(1, dtype=dtype) for dtype in (int, int, bool)))
+    at = np.array([0.0]), np.array([0.9])
+    before, after = np.array([0.3**power]), np.array([-(0.6**power)])
+    assert family.refined(*at, before, after)[0] == pytest.approx(0.3, abs=3e-12)

@@ -31,7 +31,8 @@ FLOORS = {
         biarc dwell figures jet mobility peaks pieces shape
         bezier flight monotone motion response series turn
         bernstein chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles
-        arcs ball check chebyshev distinct oscillator read_error
+        arcs ball chebyshev distinct newton oscillator read_error
+        check
     """,
     "camgeo": """
         __main__

@@ -527,3 +527,17 @@ def test_the_cam_must_be_of_the_frame_s_breadth():
     with pytest.raises(IntentError, match="constant breadth") as refused:
         Mechanism(LINKAGES["four-bar"], lift_from_fourier(25.0, {2: 1e-6}, {}), 50.0)
     assert refused.value.field == "p"
+
+
+def test_the_shaft_angle_is_inverted_where_newton_s_method_creeps():
+    """With a rate six times too great a step covers a sixth of the way: 60 of them would leave a hundred thousandth."""
+
+    class Steep(Mechanism):
+        def at(self, theta, order, side=1):
+            found = super().at(theta, order, side)
+            found.shaft[1:] *= 6.0
+            return found
+
+    of = Steep(LINKAGES["four-bar"], cam_2a(), 50.0)
+    shaft = np.linspace(0.01, 6.2, 50)
+    assert np.abs(of.at(of.relative(shaft), 0).shaft[0] - shaft).max() < 1e-8
