@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kin.check import UnsettledError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kin.arcs import Array
+Array = NDArray[np.float64]
 
 # Steps of Newton's method before brackets are halved alone: where it converges, it does in fewer.
 FREE = 16

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from camgeo.sweep import windows
-from camgeo.sweep.ends import Ends, cell_bounds, ends, greatest, least, lengths
+from camgeo.sweep.ends import Ends, _Cubic, _passed, cell_bounds, ends, greatest, least, lengths
 from camgeo.sweep.linkages import angles
 from camgeo.sweep.windows import Samples, longest
 from kin.dwell import dwells
@@ -218,6 +218,21 @@ def test_bounds_of_cells_hold_the_function():
     inside = np.concatenate([f[:, :, None], after], axis=2)
     assert np.abs(low - inside.min(axis=2)).max() < 1e-5
     assert np.abs(high - inside.max(axis=2)).max() < 1e-5
+
+
+def test_where_cubics_pass_a_level():
+    """Every hundredth of such cubics takes more steps than all are given together."""
+    rng = np.random.default_rng(8)
+    size = 10.0 ** rng.uniform(-3.0, 3.0, (4, 200_000))
+    every = _Cubic(*(rng.standard_normal(size.shape) * size))
+    slopes = np.stack([every.slope(x) for x in np.linspace(0.0, 1.0, 65)])
+    for sense, monotone in ((1, (slopes > 0.0).all(axis=0)), (-1, (slopes < 0.0).all(axis=0))):
+        cubic = _Cubic(*(row[monotone] for row in every))
+        count = np.count_nonzero(monotone)
+        x = rng.uniform(0.0, 1.0, count)
+        found = _passed(cubic, np.full(count, sense, dtype=np.int8), cubic(x), np.zeros(count), np.ones(count))
+        rise = np.abs(cubic(np.ones(count)) - cubic.f)
+        assert (np.abs(cubic(found) - cubic(x)) < 1e-12 * (rise + np.abs(cubic.f))).all()
 
 
 def test_extremes_between_samples():

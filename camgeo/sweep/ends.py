@@ -12,12 +12,15 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from kin.newton import zeros
+
 Array: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.intp]
 
 _TURN = 2.0 * math.pi
-_BISECTIONS = 12
+_BISECTIONS = 12  # of a band; about the best one a window's length is flat
 _STEPS = 7  # of Newton's method, kept within a bracket
+_SETTLED = 1e-9  # of a cell: to this a level is met within it
 
 
 def greatest(values: Array, smooth: NDArray[np.bool_] | bool = True) -> Array:
@@ -241,8 +244,11 @@ def _exit(cell: _Cubic, floor: Array, ceiling: Array) -> tuple[Array, NDArray[np
 
 
 def _passed(cell: _Cubic, sense: NDArray[np.int8], level: Array, low: Array, high: Array) -> Array:
-    """Where a cubic that is monotone in [low, high] passes a level, upward where `sense` is 1, else downward."""
-    x = 0.5 * (low + high)
+    """Where a cubic that is monotone in [low, high] passes a level, upward where `sense` is 1, else downward.
+
+    Found to `_SETTLED` of a cell; the few that some steps of all together leave are looked for alone.
+    """
+    x, moved = 0.5 * (low + high), np.zeros_like(low)
     for step in range(_STEPS):
         miss = (cell(x) - level) * sense
         low, high = np.where(miss < 0.0, x, low), np.where(miss < 0.0, high, x)
@@ -250,5 +256,10 @@ def _passed(cell: _Cubic, sense: NDArray[np.int8], level: Array, low: Array, hig
             newton = x - miss / (cell.slope(x) * sense)
         # beyond its bracket it is held at the end, which from a bent side it then leaves for good, or in the middle
         beyond = np.clip(newton, low, high) if step % 2 == 0 else 0.5 * (low + high)
-        x = np.where((newton >= low) & (newton <= high), newton, beyond)
+        following = np.where((newton >= low) & (newton <= high), newton, beyond)
+        x, moved = following, np.abs(following - x)
+    left = np.flatnonzero(~(moved <= _SETTLED))
+    if left.size:
+        part, at, way = _Cubic(*(column[left] for column in cell)), level[left], sense[left]
+        x[left] = zeros(lambda x: ((part(x) - at) * way, part.slope(x) * way), low[left], high[left], x[left], _SETTLED)
     return x
