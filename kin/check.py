@@ -63,6 +63,14 @@ def failed(name: str, detail: str, *, unit: str = "", limit: float | None = None
     return Check(name, ok=False, value=None, limit=limit, unit=unit, detail=detail)
 
 
+def less_sure(check: Check, by: float) -> Check:
+    """Count into an `at_most` what the measured thing itself may be off by; a check without a figure stays."""
+    if not by or check.value is None or check.limit is None:
+        return check
+    value = check.value + by
+    return replace(check, ok=check.ok and value <= check.limit, value=value)
+
+
 def degrees(angle: float) -> float:
     """Return an angle in radians as degrees in [0, 360)."""
     turned = math.degrees(angle) % 360.0

@@ -107,10 +107,11 @@ class Findings:
     linkage: LinkageVerdict | None = None
 
 
-def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) -> Findings:
+def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits, uneven: float = 0.0) -> Findings:
     """Judge a contour at shaft angles phi (n,): the checks from contour and motion to linkage-error and dwell.
 
     With a mechanism phi are relative angles for the plain frame's checks, and shaft angles for the mechanism's.
+    `uneven` is how far a solid's other sections may be off this one, mm; what that can do is counted into everything.
     """
     spline = 0.0
     if contour.beziers.count:
@@ -119,7 +120,7 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) 
     slack = spline + ROUNDING * float(np.abs(contour.vertices).max())
     judged, checks = None, []
     try:
-        judged = intent.follower.judge(contour, phi)
+        judged = _less_sure(intent.follower.judge(contour, phi), intent.follower, uneven)
         checks = _motion_checks(judged, intent, limits, slack)
     except (ContactError, UnsettledError) as error:
         checks = [failed("motion", str(error), unit=intent.follower.unit)]
@@ -132,13 +133,26 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits) 
         except UnsettledError as error:
             unsettled = failed("contour", str(error), unit="mm", limit=limits.tolerance)
             return Findings(judged, None, (unsettled, *checks))
+    if uneven:
+        away = (found.outside + uneven, found.inside + uneven, found.bare + uneven)
+        found = replace(found, outside=away[0], inside=away[1], bare=away[2])
     linkage = None
     if intent.mechanism is not None:
-        linkage, more = _judge_linkage(contour, intent, phi, limits, slack)
+        linkage, more = _judge_linkage(contour, intent, phi, limits, slack=slack, uneven=uneven)
         checks += more
     standing = 0.0 if intent.milling is None else intent.milling.standing
     judged_contour = _contour_check(found, intent.follower, limits.tolerance, slack, standing)
     return Findings(judged, found, (judged_contour, *checks), linkage)
+
+
+def _less_sure(judged: Judged, follower: Follower, uneven: float) -> Judged:
+    """Count in what a contour that is off by `uneven`, mm, can do to the motion and the play."""
+    if not uneven:
+        return judged
+    play = judged.play
+    if play is not None and isinstance(follower, Yoke | FlatPair | DoubleRoller):
+        play = play.less_sure(follower.play_limit(uneven))
+    return judged._replace(motion=judged.motion.less_sure(follower.motion_limit(uneven)), play=play)
 
 
 def _contour_check(
@@ -191,7 +205,7 @@ def _limit(
 
 
 def _judge_linkage(
-    contour: Contour, intent: Intent, phi: Array, limits: Limits, slack: float
+    contour: Contour, intent: Intent, phi: Array, limits: Limits, *, slack: float, uneven: float
 ) -> tuple[LinkageVerdict | None, list[Check]]:
     """Judge how a contour drives the mechanism: checks linkage-error and, if the dwell must last, dwell."""
     from kin.frame import FrameError, judge_frame  # a plain follower does without
@@ -202,10 +216,21 @@ def _judge_linkage(
         return None, []
     at_least = None if asked is None or asked.at_least is None else float(np.degrees(asked.at_least))
     try:
+        off = _output_less_sure(mechanism, uneven)
         if asked is None:
             found = judge_frame(contour, mechanism, phi, limits.tolerance)
         else:
-            found = judge_frame(contour, mechanism, phi, limits.tolerance, band=asked.band, over=asked.over)
+            band = _band_less_sure(asked, mechanism, off)
+            found = judge_frame(contour, mechanism, phi, limits.tolerance, band=band, over=asked.over)
+        if uneven:
+            found = replace(
+                found,
+                error=found.error.less_sure(off),
+                centred=found.centred.less_sure(off),
+                play_across=found.play_across.less_sure(2.0 * uneven),
+                play_along=found.play_along.less_sure(2.0 * uneven),
+                dwells=tuple(replace(one, band=one.band + 2.0 * off) for one in found.dwells),
+            )
     except (FrameError, BindingError) as problem:
         what = str(problem) if isinstance(problem, FrameError) else f"the intended mechanism: {problem}"
         checks = [failed("linkage-error", what, unit=mechanism.unit, limit=limits.output)]
@@ -218,6 +243,28 @@ def _judge_linkage(
     if at_least is not None:
         checks.append(_dwell_check(found.dwells[0], mechanism.unit, at_least))
     return found, checks
+
+
+def _output_less_sure(mechanism: Mechanism, uneven: float) -> float:
+    """What a contour that is off by `uneven`, mm, can do to the output."""
+    from kin.frame import FrameError, implied_limit
+
+    off = implied_limit(mechanism, uneven) if uneven else 0.0
+    if off is None:
+        raise FrameError(f"the mechanism binds within the {uneven:.3g} mm by which the solid's sections differ")
+    return off
+
+
+def _band_less_sure(asked: DwellAsked, mechanism: Mechanism, off: float) -> float:
+    """Band within which an output stays for certain in the band asked for, if it may be off either way, rad or mm."""
+    from kin.frame import FrameError
+
+    band = asked.band - 2.0 * (float(np.radians(off)) if mechanism.unit == "deg" else off)
+    if band <= 0.0:
+        raise FrameError(
+            f"the output may be off by {off:.3g} {mechanism.unit}, which leaves nothing of the dwell's band"
+        )
+    return band
 
 
 def _output_check(found: LinkageVerdict, limits: Limits, slack: float) -> Check:

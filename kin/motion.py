@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -37,6 +37,17 @@ class MotionError:
     step_deg: float
     dwell_flatness: float | None = None
 
+    def less_sure(self, by: float) -> MotionError:
+        """Count in that every measured position may be off by as much."""
+        flat = self.dwell_flatness
+        return replace(
+            self,
+            max=self.max + by,
+            rms=self.rms + by,
+            increment=self.increment + 2.0 * by,
+            dwell_flatness=None if flat is None else flat + 2.0 * by,
+        )
+
 
 @dataclass(frozen=True)
 class Play:
@@ -52,6 +63,10 @@ class Play:
     most: float
     most_at_deg: float
     unit: Unit
+
+    def less_sure(self, by: float) -> Play:
+        """Count in that it may be off by as much."""
+        return replace(self, least=self.least - by, most=self.most + by)
 
 
 class Judged(NamedTuple):

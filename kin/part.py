@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.check import Check, at_most
+from kin.check import Check, at_most, less_sure
 from kin.deviation import deviation
 from kin.hole import FINE, Tallies, Tally, apart, tally
 from kin.judge import exact_area
@@ -48,7 +48,8 @@ def levels(intent: Intent) -> list[float]:
 def solid_checks(solid: AnySolid, sections: Sequence[Section], intent: Intent, tolerance: float) -> list[Check]:
     """Check the openings, faces and sections of a solid, in mm and no longer mirrored, and its volume.
 
-    The plain disc's contour is judged elsewhere; here its sections need only be the same all along.
+    The plain disc's contour is judged elsewhere; here its sections need only be the same all along,
+    but for what the rounding of the file's own numbers makes of them, which is counted.
     """
     layers, cross_holes = intent.layers, intent.cross_holes
     tallies: Tallies = {"thickness": Tally()}
@@ -64,7 +65,8 @@ def solid_checks(solid: AnySolid, sections: Sequence[Section], intent: Intent, t
         tallies["thickness"].faults.append("the sections at different heights differ")
     for (z, layer), section in zip(heights(layers, cross_holes), sections, strict=True):
         _section(tallies, (z, layer), section, intent, tolerance)
-    return [*_told(tallies, tolerance), _volume(solid, sections[0].contour, intent, tolerance)]
+    told = [less_sure(check, solid.uneven) for check in _told(tallies, tolerance)]
+    return [*told, _volume(solid, sections[0].contour, intent, tolerance)]
 
 
 def _told(tallies: Tallies, tolerance: float) -> list[Check]:

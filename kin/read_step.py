@@ -88,6 +88,8 @@ class StepSolid:
     schema: str
     units_mm: float
 
+    uneven = 0.0  # its numbers are doubles: walls stand upright or they do not
+
     @property
     def thickness(self) -> float:
         """Height of the part, mm."""

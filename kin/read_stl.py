@@ -13,16 +13,15 @@ from kin.distinct import distinct
 from kin.flaws import first_meeting
 from kin.nesting import counter_clockwise, met, nested
 from kin.read_error import ReadError
-from kin.triangles import EdgeFaults, Mesh, plan_welded, welded
+from kin.upright import Outline, evened, upright
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from kin.arcs import Array, Indices
+    from kin.triangles import EdgeFaults, Mesh
+    from kin.upright import Corners
 
-    Corners = NDArray[np.float32] | NDArray[np.float64]
     Form = Literal["binary", "text", "3mf"]
 
 __all__ = ["Section", "Solid", "read_stl", "solid_of"]
@@ -59,7 +58,8 @@ class Solid:
     contour, holes      polygons of the section at `height`, counter-clockwise all of them
     z_min, z_max        least and greatest height
     height              at which the section was taken
-    prism               the walls stand upright and every section is the same, to the bit
+    prism               the walls stand upright and every section is the same, to the file's rounding (`kin.upright`)
+    uneven              by how much at most a point of the mesh is off that prism, mm; 0 for one to the bit
     volume              mm^3, negative if the triangles face inward
     triangles           number of them
     edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
@@ -84,6 +84,7 @@ class Solid:
     form: Form
     sections: tuple[Section, ...] = ()
     faces: tuple[float, ...] = ()
+    uneven: float = 0.0
 
     @property
     def closed(self) -> bool:
@@ -143,12 +144,17 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
     z_min, z_max = float(z.min()), float(z.max())
     if z_min == z_max:
         raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
-    two_levels = bool(((z == z_min) | (z == z_max)).all())
-    mesh = plan_welded(corners, z_min, z_max) if two_levels else welded(corners)
-    outline = prism_outline(mesh) if two_levels else None
+    found = upright(corners)
+    read, uneven = found.mesh, 0.0  # faults are those of the mesh as it is in the file
+    if not found.prism:
+        moved = evened(corners)
+        again = None if moved is None else upright(moved.corners)
+        if moved is not None and again is not None and again.prism:
+            corners, uneven, found = moved.corners, moved.by, again
+    mesh, outline = found.mesh, found.outline
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
-    prism = outline is not None or (not two_levels and walls_upright(mesh, z_min, z_max))
     whole = outline
+    z = corners[:, :, 2]
     levels = distinct(z[(z == z[:, :1]).all(axis=1), 0].astype(np.float64))
     if outline is None:
         stepped = len(levels) > 2 and not len(heights)
@@ -166,15 +172,16 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
         z_min=z_min,
         z_max=z_max,
         height=height,
-        prism=prism,
-        volume=mesh.volume,
-        triangles=len(mesh.corners),
-        edges=mesh.edge_faults,
-        degenerate=mesh.degenerate,
-        duplicate=mesh.duplicate,
+        prism=found.prism,
+        volume=read.volume,
+        triangles=len(read.corners),
+        edges=read.edge_faults,
+        degenerate=read.degenerate,
+        duplicate=read.duplicate,
         form=form,
         sections=tuple(sections),
         faces=tuple(levels.tolist()),
+        uneven=uneven,
     )
 
 
@@ -250,45 +257,6 @@ def facets(raw: bytes, path: Path) -> Array:
         return table[:, NUMBERS].astype(np.float64).reshape(-1, 3, 3)
     except ValueError as error:
         raise ReadError("syntax", f"a coordinate is no number: {error}", path) from error
-
-
-class Outline(NamedTuple):
-    """Directed edges (k,), (k,) by point number, the solid on their left, and the points (n, 2)."""
-
-    points: Array
-    start: Indices
-    end: Indices
-
-
-def prism_outline(mesh: Mesh) -> Outline | None:
-    """Return the outline of the bottom if a mesh between two levels, of `plan_welded`, is a prism; None if it is not.
-
-    Each triangle between the levels stands upright, with but two corners as seen from above; and their edges at the
-    bottom are the same as those at the top, the other way round.
-    """
-    high, plan = (mesh.corners & 1).astype(bool), mesh.corners >> 1
-    above = np.count_nonzero(high, axis=1)
-    wall = plan[(above == 1) | (above == 2)]
-    a, b, c = wall.T
-    if not bool(((a == b) ^ (b == c) ^ (c == a)).all()):
-        return None
-    edges = []
-    for many, lone in ((1, True), (2, False)):
-        rows = np.flatnonzero(above == many)
-        apex = (high[rows] == lone).argmax(axis=1)
-        edges.append((plan[rows, (apex + 1) % 3], plan[rows, (apex + 2) % 3]))
-    (start, end), (top_start, top_end) = edges
-    if not np.array_equal(np.sort(mesh.code(start, end)), np.sort(mesh.code(top_end, top_start))):
-        return None
-    return Outline(mesh.points[::2, :2], start, end)
-
-
-def walls_upright(mesh: Mesh, z_min: float, z_max: float) -> bool:
-    """Whether each triangle lies in the bottom, in the top, or upright: a closed mesh of these is a prism."""
-    z = mesh.points[:, 2][mesh.corners]
-    lid = (z == z_min).all(axis=1) | (z == z_max).all(axis=1)
-    _, _, seen_from_above = mesh.area_vectors
-    return bool((lid | (seen_from_above == 0.0)).all()) and sum(mesh.edge_faults) == 0
 
 
 def section(mesh: Mesh, height: float) -> tuple[float, Outline]:

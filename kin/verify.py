@@ -7,11 +7,11 @@ intended motion alone (`kin.envelope`), the motion from contact with the file's 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.check import Check, about, at_most, failed
+from kin.check import Check, about, at_most, failed, less_sure
 from kin.flaws import crossings
 from kin.judge import ROUNDING, DwellAsked, Intent, Limits, bore_check, judge_contour, volume_check
 from kin.motion import TURN, MotionError, Play
@@ -77,33 +77,45 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
     phi = TURN / angles * np.arange(angles, dtype=np.float64)
     try:
         read = _of_program if kind == "gcode" else _of_solid if kind in SOLIDS else _of_drawing
-        checks, contour, pieces = read(path, intent, limits)
+        one = read(path, intent, limits)
     except ReadError as error:
         unread = "watertight" if kind in SOLIDS else "closed" if error.reason in NOT_CLOSED else "readable"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
-    found = judge_contour(contour, intent, phi, limits)
+    found = judge_contour(one.contour, intent, phi, limits, one.uneven)
     return Verdict(
         kind=kind,
-        checks=tuple(about(check, path.name) for check in (*checks, *found.checks)),
+        checks=tuple(about(check, path.name) for check in (*one.checks, *found.checks)),
         motion=found.judged and found.judged.motion,
         play=found.judged and found.judged.play,
         measured_error=found.deviation.worst[0] if found.deviation else None,
-        pieces=pieces,
+        pieces=one.pieces,
         linkage=found.linkage,
     )
 
 
-def _of_drawing(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
+class _Read(NamedTuple):
+    """The checks on what a file holds, its contour in mm as if not mirrored, and the number of its pieces.
+
+    `uneven`: by how much a solid's other sections differ from that contour, mm, where only rounding is behind it.
+    """
+
+    checks: list[Check]
+    contour: Contour
+    pieces: int
+    uneven: float = 0.0
+
+
+def _of_drawing(path: Path, intent: Intent, limits: Limits) -> _Read:
     """Read a DXF or SVG: the checks on what is drawn, contour in mm as if not mirrored, number of its pieces."""
     drawing = read_drawing(path, engraved=any(hole.depth is not None for hole in intent.holes))
     scale = intent.mm if drawing.units_mm is None else 1.0
     contour, *holes = (_placed(c, scale, intent.mirrored) for c in (drawing.contour, *drawing.holes))
     checks = [_units_check(drawing.units_mm, intent.mm), _closed_check(drawing, contour)]
     engraved = [_placed(c, scale, intent.mirrored) for c in drawing.engraved]
-    return [*checks, *_opening_checks(holes, engraved, intent, limits)], contour, drawing.pieces
+    return _Read([*checks, *_opening_checks(holes, engraved, intent, limits)], contour, drawing.pieces)
 
 
-def _of_program(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
+def _of_program(path: Path, intent: Intent, limits: Limits) -> _Read:
     """Read a program: the checks on it and on what it mills, that contour as if not mirrored, number of its moves."""
     from kin.milled import milled
     from kin.read_gcode import read_gcode
@@ -114,7 +126,7 @@ def _of_program(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check]
     done = milled(program, intent.milling, limits.tolerance)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (done.contour, *done.holes))
     checks = [_units_check(program.units_mm, intent.mm), _count_check("closed", _crossing_places(contour))]
-    return [*checks, *done.checks, *_opening_checks(holes, [], intent, limits)], contour, done.pieces
+    return _Read([*checks, *done.checks, *_opening_checks(holes, [], intent, limits)], contour, done.pieces)
 
 
 def _opening_checks(holes: list[Contour], engraved: list[Contour], intent: Intent, limits: Limits) -> list[Check]:
@@ -160,7 +172,7 @@ def _count_check(name: str, faults: list[str]) -> Check:
     return at_most(name, len(faults), 0, "faults", detail="; ".join(faults[:MOST_NAMED]) + more)
 
 
-def _of_solid(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], Contour, int]:
+def _of_solid(path: Path, intent: Intent, limits: Limits) -> _Read:
     """Read a solid: the checks on the solid, its contour in mm as if not mirrored, and the number of its edges."""
     from kin.read_stl import Section
 
@@ -173,18 +185,18 @@ def _of_solid(path: Path, intent: Intent, limits: Limits) -> tuple[list[Check], 
             for one in solid.sections
         ]
         contour = sections[0].contour
-        checks = [_watertight_check(solid, contour)]
-        return [*checks, *solid_checks(solid, sections, intent, limits.tolerance)], contour, solid.pieces
+        checks = [_watertight_check(solid, contour), *solid_checks(solid, sections, intent, limits.tolerance)]
+        return _Read(checks, contour, solid.pieces, solid.uneven)
     solid = read_solid(path)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (solid.contour, *solid.holes))
     checks = [_watertight_check(solid, contour)]
     bore = bore_check(holes, intent.bore, limits.tolerance)
     if bore:
-        checks.append(bore)
+        checks.append(less_sure(bore, solid.uneven))
     if intent.thickness is not None:
         checks.append(_thickness_check(solid, intent.thickness, limits.tolerance))
         checks.append(volume_check(solid.volume, solid.thickness, contour, intent, limits.tolerance))
-    return checks, contour, solid.pieces
+    return _Read(checks, contour, solid.pieces, solid.uneven)
 
 
 def _watertight_check(solid: AnySolid, contour: Contour) -> Check:
@@ -193,7 +205,10 @@ def _watertight_check(solid: AnySolid, contour: Contour) -> Check:
 
 
 def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Check:
-    """Check that the part reaches from z = 0 to its thickness, with walls that stand upright all the way."""
+    """Check that the part reaches from z = 0 to its thickness, with walls that stand upright all the way.
+
+    Walls that only the rounding of the file's own numbers makes lean do stand upright; what they differ by is counted.
+    """
     off = max(abs(solid.z_min), abs(solid.z_max - thickness))
     detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, 0 to {thickness:.9g} mm is meant"
     for unit, mm in OTHERS:
@@ -201,4 +216,5 @@ def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Che
             detail += f"; as if drawn in {unit} and told as mm"
     if not solid.prism:
         return failed("thickness", f"the sections at different heights differ; {detail}", unit="mm", limit=tolerance)
-    return at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING * thickness)
+    checked = at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING * thickness)
+    return less_sure(checked, solid.uneven)
