@@ -40,6 +40,7 @@ LINKS = 96  # about as many intervals make the first boxes
 LINKS_PER_PART = 8  # and at least so many of each part that the curve repeats
 LEVELS = 60
 MOST_BOXES = 40_000
+NEWTON = 30  # steps towards a double normal; what they leave off it is measured
 HALVINGS = 50  # of the radius for which what was left open is free, and as many to tell it sharply
 
 
@@ -234,10 +235,13 @@ def _divided(boxes: Boxes, centre: Array, doubt: Array, kept: NDArray[np.bool_])
 
 
 def _double_normals(pitch: Pitch, ends: Array) -> Array:
-    """Parameters (n, 2) at which the chord is normal to the curve at both ends, by Newton's method from (n, 2)."""
+    """Parameters (n, 2) that Newton's method comes to from (n, 2), for the chord to be normal to the curve at both ends.
+
+    Whether it has come there is for `_measured` to tell: without a double normal nearby it ends anywhere.
+    """
     ends = ends.copy()
     count = ends.shape[0]
-    for _ in range(30):
+    for _ in range(NEWTON):
         both = pitch.at(ends.T.ravel())
         x, y = both.part(slice(None, count)), both.part(slice(count, None))
         d = x.point - y.point

@@ -40,6 +40,8 @@ NORMAL_ROUNDING = 1e-12
 PROBES = 720
 # How far within an interval between two directions, as a part of it, the contact is looked at to see whether it leaps.
 INSET = 1e-6
+# Of the angles between which the farthest point leaps: more than a number has bits.
+HALVINGS = 60
 
 
 class Support(NamedTuple):
@@ -198,7 +200,7 @@ class Contour(Pieces):
     def _switches(self, theta: Array) -> Array:
         """Angles at which the farthest point leaps: strictly between neighbours in theta (k,), rising, and of theta.
 
-        Between two of theta it is found by bisection.
+        Between two of theta it is found by bisection, to the last places: `HALVINGS` exceed the bits of a number.
         """
         width = np.diff(theta, append=theta[0] + TURN)
         wide = width > 4.0 * np.finfo(float).eps / INSET
@@ -208,7 +210,7 @@ class Contour(Pieces):
         at = theta[wide][piece != np.roll(last, 1)]
         leaps = piece != last
         low, high, piece = low[leaps], high[leaps], piece[leaps]
-        for _ in range(60):
+        for _ in range(HALVINGS):
             middle = (low + high) / 2.0
             same = self.support(middle).piece == piece
             low, high = np.where(same, middle, low), np.where(same, high, middle)

@@ -30,6 +30,7 @@ LEAST_PARTS = 1024  # a contour of fewer pieces is cut into about so many
 TIGHT = 4.0  # a radius of curvature below so many widths of the tube makes a tight corner
 CUT_OFF = 2e-11  # of the extent; points of the exact curve with more excess are no part of the trimmed contour
 MOST_TURN = 0.05  # rad; greatest turn of a part
+HALVINGS = 50  # between two looks, in the search for a corner: to the last places
 JOINED = 1e-12  # ends closer than this share of the contour's extent are one point
 
 
@@ -131,7 +132,7 @@ def _trimmed(envelope: Envelope, parameter: Array, tight: NDArray[np.bool_]) -> 
     after = np.roll(kept, -1)
     edge = np.flatnonzero(kept != after)
     low, high = parameter[edge], np.append(parameter[1:], parameter[0] + 2.0 * np.pi)[edge]
-    for _ in range(50):
+    for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         same = (envelope.feet(envelope.points(middle)).excess <= cut_off) == kept[edge]
         low, high = np.where(same, middle, low), np.where(same, high, middle)

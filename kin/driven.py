@@ -39,7 +39,7 @@ TURN = 2.0 * math.pi
 METRE = 1e-3  # a millimetre in metres
 SPLINE_ERROR = 1e-7  # mm, within which arcs stand in for a spline that a roller runs on
 _INSET = 1e-6  # how far within an interval between two angles it is looked for the piece that is met there
-_HALVINGS = 60
+_HALVINGS = 60  # of an interval, more than a number has bits: a passage is found to its last places
 
 
 class Faces(NamedTuple):

@@ -36,6 +36,7 @@ _STRIDE = 1.02  # ratio of the speeds at which a floating one is looked for
 _BESIDE = 1e-9  # of a speed: so near a resonance, and not on it, where nothing may be steady
 _RESOLUTION = 1e-11
 _CORNER = 1e-9  # of the greatest velocity: a lesser leap is a tangent's rounding
+_BISECTIONS = 200  # of the logarithm of a speed: many times the bits of a number
 _LEAST_RATIO = 0.5  # natural frequency in turns of the shaft, below which nobody asks
 
 
@@ -227,7 +228,7 @@ def _safe(train: Train, drive: Drive) -> float:
         return running.inertia * (gain * bend + (1.0 + 2.0 * zeta) * oscillator.natural * kicks / lasting)
 
     low, high = 1e-9, train.natural * 60.0
-    for _ in range(200):
+    for _ in range(_BISECTIONS):  # `low` is safe after any number of them
         middle = math.sqrt(low * high)
         low, high = (middle, high) if driven(middle) < held else (low, middle)
     return low

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 FREE, LOWER, UPPER = 0, 1, -1
 
 _GRID = 17  # places of a closer look, of which each round keeps an eighth
-_ROUNDS = 15
+_ROUNDS = 15  # after which what is left of two steps is lost in rounding
 _FIRST, _MOST = 64, 4096  # samples of a window
 _COARSE = 32  # steps in what is left of a stretch, at least
 _EPS = float(np.finfo(float).eps)

@@ -6,7 +6,8 @@ from math import comb
 import numpy as np
 import pytest
 
-from kin.bernstein import bernstein_product, halves, restrict, split, values
+from kin.bernstein import SETTLED, bernstein_product, halves, restrict, rising_root, split, values
+from kin.check import UnsettledError
 
 EPS = float(np.finfo(float).eps)
 
@@ -56,3 +57,19 @@ def test_parts_are_the_same_polynomial_over_less(degree):
         assert np.array_equal(part, half)
     inner = restrict(rows, 0.25 * at, 0.25 * at + 0.5)
     assert values(inner, t) == pytest.approx(values(rows, 0.25 * at + 0.5 * t), abs=1e-13)
+
+
+@pytest.mark.parametrize("degree", [1, 3, 9])
+def test_rising_roots_are_found_or_the_end_beyond_which_they_lie(degree):
+    rng = np.random.default_rng(degree)
+    rows = np.cumsum(rng.exponential(size=(200, degree + 1)), axis=1)
+    at = rng.random(200)
+    rows -= values(rows, at)[:, None]
+    assert rising_root(rows) == pytest.approx(at, abs=1e-13)
+    assert rising_root(rows - rows[:, :1] + 1e-9) == pytest.approx(0.0, abs=SETTLED)
+    assert rising_root(rows - rows[:, -1:] - 1e-9) == pytest.approx(1.0, abs=SETTLED)
+
+
+def test_a_root_of_what_is_not_a_number_is_refused():
+    with pytest.raises(UnsettledError, match="1 zeros were not found"):
+        rising_root(np.array([[-1.0, 1.0], [-1.0, np.nan]]))

@@ -121,6 +121,16 @@ def test_newtons_method_tells_inside_from_outside():
     assert neck_from(star, 0.1, 2 * math.pi / 5 - 0.1) is None
 
 
+@pytest.mark.parametrize("steps", [1, 2])
+def test_where_newtons_method_has_not_come_to_is_no_neck(monkeypatch, steps):
+    monkeypatch.setattr("camgeo.reach.NEWTON", steps)
+    curve = pitch(booth(LENGTH, 0.9 * LENGTH))
+    assert neck_from(curve, 1.0, 5.4) is None
+    # the search divides its boxes until so few steps suffice
+    (neck,) = narrowest_necks(curve, 0.9 * LENGTH)
+    assert neck.half == pytest.approx(LENGTH * math.sqrt(0.38), rel=2e-9)
+
+
 @pytest.mark.parametrize("share", [0.98, 0.999, 1.0 - 1e-6])
 def test_a_waist_almost_folded_is_measured(share):
     # bent on its outer side to a hundredth of its width and less
