@@ -235,7 +235,7 @@ def _divided(boxes: Boxes, centre: Array, doubt: Array, kept: NDArray[np.bool_])
 
 
 def _double_normals(pitch: Pitch, ends: Array) -> Array:
-    """Parameters (n, 2) that Newton's method comes to from (n, 2), for the chord to be normal to the curve at both ends.
+    """Parameters (n, 2) that Newton's method comes to from (n, 2), for chords normal to the curve at both ends.
 
     Whether it has come there is for `_measured` to tell: without a double normal nearby it ends anywhere.
     """
