@@ -64,11 +64,6 @@ class Figures:
         """Range of the output."""
         return self.greatest.value - self.least.value
 
-    @property
-    def frame_swing(self) -> float:
-        """Range of theta_3."""
-        return self.frame_greatest.value - self.frame_least.value
-
 
 class Rows(NamedTuple):
     """What figures are made of, at relative angles (n,), each (n,): sines and cosines as `kin.forces` has them."""

@@ -44,13 +44,12 @@ class IntentError(ValueError):
 class Peaks:
     """Largest velocity, acceleration and jerk of a law for unit stroke over unit interval, from rest to rest.
 
-    `jerk` is infinite where the acceleration steps, at the ends too; `jerk_inside` leaves the steps out.
+    `jerk` is infinite where the acceleration steps, at the ends too.
     """
 
     velocity: float
     acceleration: float
     jerk: float
-    jerk_inside: float
 
 
 @dataclass(frozen=True)
@@ -158,20 +157,20 @@ def _standard_laws() -> dict[str, Law]:
     pi = math.pi
     trapezoid, sine, constant = 8 * pi / (pi + 2), 4 * pi**2 / (pi + 4), 16 * pi**2 / (5 * pi + 4)
     laws = [
-        _law("parabolic", (0, 0.5), [(4.0, 0.0, "flat")], Peaks(2.0, 4.0, math.inf, 0.0), centre=False),
-        _law("harmonic", (0, 1), [(pi**2 / 2, pi, "cos")], Peaks(pi / 2, pi**2 / 2, math.inf, pi**3 / 2)),
-        _law("cycloidal", (0, 1), [(2 * pi, 2 * pi, "sin")], Peaks(2.0, 2 * pi, 4 * pi**2, 4 * pi**2)),
+        _law("parabolic", (0, 0.5), [(4.0, 0.0, "flat")], Peaks(2.0, 4.0, math.inf), centre=False),
+        _law("harmonic", (0, 1), [(pi**2 / 2, pi, "cos")], Peaks(pi / 2, pi**2 / 2, math.inf)),
+        _law("cycloidal", (0, 1), [(2 * pi, 2 * pi, "sin")], Peaks(2.0, 2 * pi, 4 * pi**2)),
         _law(
             "modified-trapezoid",
             (0, 1 / 8, 3 / 8, 5 / 8),
             [(trapezoid, 4 * pi, "sin"), (trapezoid, 0.0, "flat"), (trapezoid, 4 * pi, "cos")],
-            Peaks(2.0, trapezoid, 4 * pi * trapezoid, 4 * pi * trapezoid),
+            Peaks(2.0, trapezoid, 4 * pi * trapezoid),
         ),
         _law(
             "modified-sine",
             (0, 1 / 8, 7 / 8),
             [(sine, 4 * pi, "sin"), (sine, 4 * pi / 3, "cos")],
-            Peaks(sine / pi, sine, 4 * pi * sine, 4 * pi * sine),
+            Peaks(sine / pi, sine, 4 * pi * sine),
         ),
         # Ramp of 1/16 + 3/16: velocity a/8pi + 3a/8pi = a/2pi, path (a/8pi)(1/4 + 1/pi); twice that path and half a
         # unit at a/2pi make 1, so a = 16 pi^2/(5 pi + 4).
@@ -179,15 +178,15 @@ def _standard_laws() -> dict[str, Law]:
             "modified-constant-velocity",
             (0, 1 / 16, 1 / 4, 3 / 4),
             [(constant, 8 * pi, "sin"), (constant, 8 * pi / 3, "cos"), (0.0, 0.0, "flat")],
-            Peaks(constant / (2 * pi), constant, 8 * pi * constant, 8 * pi * constant),
+            Peaks(constant / (2 * pi), constant, 8 * pi * constant),
         ),
         # 10 u^3 - 15 u^4 + 6 u^5 and 35 u^4 - 84 u^5 + 70 u^6 - 20 u^7, about the middle: no cancellation at u = 1.
-        _smooth("polynomial-345", (0.5, 15 / 8, 0, -5, 0, 6), 0.5, Peaks(15 / 8, 10 / math.sqrt(3), 60.0, 60.0)),
+        _smooth("polynomial-345", (0.5, 15 / 8, 0, -5, 0, 6), 0.5, Peaks(15 / 8, 10 / math.sqrt(3), 60.0)),
         _smooth(
             "polynomial-4567",
             (0.5, 35 / 16, 0, -35 / 4, 0, 21, 0, -20),
             0.5,
-            Peaks(35 / 16, 84 / math.sqrt(125), 52.5, 52.5),
+            Peaks(35 / 16, 84 / math.sqrt(125), 52.5),
         ),
     ]
     return {law.name: law for law in laws}
@@ -228,12 +227,7 @@ def _polynomial_peaks(coefficients: tuple[float, ...]) -> Peaks:
     ends = np.array([[abs(s.deriv(k)(u)) for u in (0.0, 1.0)] for k in (1, 2)]).max(axis=1)
     moving, pushed = ends > _END_TOLERANCE * np.array(tops[:2]).clip(min=1)
     velocity, acceleration, jerk = tops
-    return Peaks(
-        velocity,
-        math.inf if moving else acceleration,
-        math.inf if moving or pushed else jerk,
-        jerk,
-    )
+    return Peaks(velocity, math.inf if moving else acceleration, math.inf if moving or pushed else jerk)
 
 
 LAWS: Mapping[str, Law] = _standard_laws()
@@ -262,10 +256,9 @@ class Segment:
 
 @dataclass(frozen=True)
 class Programme:
-    """Displacement over [0, total] rad, from 0, as its segments say; no period."""
+    """Displacement over [0, total] rad, from 0; no period."""
 
     motion: Piecewise
-    segments: tuple[Segment, ...]
 
     @property
     def total(self) -> float:
@@ -314,7 +307,7 @@ def programme(segments: Sequence[Segment], total: float, field: str = "motion") 
             functions += [Affine.of(f, **place) for f in motion.functions]
             knots += [begin + u * (end - begin) for u in motion.knots[1:-1].tolist()]
         knots.append(end)
-    return Programme(Piecewise(np.array(knots), tuple(functions)), tuple(segments))
+    return Programme(Piecewise(np.array(knots), tuple(functions)))
 
 
 def _check(segment: Segment, field: str) -> None:

@@ -195,21 +195,6 @@ class Mechanism:
 
         return zeros(over, low, high, x, _SETTLED) + turns * TURN
 
-    def sensitivity(self, theta: float | Array) -> Array:
-        """Change of the output per change of S and of S1 (2, n), rad/mm or 1, at relative angles, the shaft held."""
-        theta = np.atleast_1d(np.asarray(theta, dtype=float))
-        at = self.at(theta, 1)
-        found = []
-        for own, other in ((1.0, 0.0), (0.0, 1.0)):
-            s, s1 = (
-                Jet(np.stack([lift, np.full_like(lift, rate)]))
-                for lift, rate in zip(at.faces[:, 0], (own, other), strict=True)
-            )
-            frame, output = self.driven(s, s1)
-            # the cam turns on in the frame by what the frame has turned
-            found.append(output.c[1] + at.output[1] * frame.c[1] / at.shaft[1])
-        return np.stack(found)
-
     @cached_property
     def _mobility(self) -> Mobility:
         return mobility(

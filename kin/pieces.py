@@ -100,13 +100,8 @@ class Pieces:
         )
 
     @staticmethod
-    def from_beziers(beziers: Beziers) -> Pieces:
-        """Bezier pieces, cut where needed so that each turns one way by less than pi."""
-        return Pieces.from_unrolled(beziers.unrolled().pieces)
-
-    @staticmethod
     def from_unrolled(pieces: Beziers) -> Pieces:
-        """Bezier pieces that each turn one way by less than pi already."""
+        """Bezier pieces that each turn one way by less than pi, as `Beziers.unrolled` leaves them."""
         n = pieces.count
         return Pieces(
             kind=np.full(n, BEZIER, dtype=np.uint8),

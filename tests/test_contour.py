@@ -27,6 +27,10 @@ if TYPE_CHECKING:
 ANGLES = np.linspace(-1.0, 12.0, 2003)
 
 
+def turning(beziers: Beziers) -> Pieces:
+    return Pieces.from_unrolled(beziers.unrolled().pieces)
+
+
 @dataclass(frozen=True)
 class Known:
     """A contour whose support function, area and perimeter are known."""
@@ -87,7 +91,7 @@ def ellipse(a: float = 30.0, b: float = 12.0, turn: float = 0.4) -> Known:
         centre, a * unit(np.array(turn)), b * unit(np.array(turn + np.pi / 2.0)), 0.0, 2.0 * np.pi
     )
     return Known(
-        Contour.from_pieces(Pieces.from_beziers(pieces)),
+        Contour.from_pieces(turning(pieces)),
         lambda t: unit(t) @ centre + np.hypot(a * np.cos(t - turn), b * np.sin(t - turn)),
         np.pi * a * b,
         float(4 * a * mpmath.ellipe(1.0 - (b / a) ** 2)),
@@ -96,9 +100,7 @@ def ellipse(a: float = 30.0, b: float = 12.0, turn: float = 0.4) -> Known:
 
 def mixed() -> Known:
     """A D: a straight back, half an ellipse in front."""
-    bow = Pieces.from_beziers(
-        Beziers.from_ellipse(np.zeros(2), np.array([0.0, -10.0]), np.array([20.0, 0.0]), 0.0, np.pi)
-    )
+    bow = turning(Beziers.from_ellipse(np.zeros(2), np.array([0.0, -10.0]), np.array([20.0, 0.0]), 0.0, np.pi))
     back = Pieces.from_chords(np.array([[0.0, 10.0]]), np.array([[0.0, -10.0]]), np.zeros(1))
     return Known(
         Contour.from_pieces(Pieces.joined([bow, back])),
@@ -374,7 +376,7 @@ def test_rational_spline_circle() -> None:
     )
     weight = np.array([1, h, 1, h, 1, h, 1, h, 1])
     knots = np.array([0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], dtype=float)
-    contour = Contour.from_pieces(Pieces.from_beziers(Beziers.from_spline(2, knots, control, weight)))
+    contour = Contour.from_pieces(turning(Beziers.from_spline(2, knots, control, weight)))
     assert len(contour) == 4
     np.testing.assert_allclose(contour.support(ANGLES).q, 25.0, atol=2e-14)
     assert contour.area == pytest.approx(625.0 * np.pi, rel=1e-14)
@@ -414,9 +416,7 @@ def test_unrolled_pieces_turn_one_way_and_their_support_is_that_of_the_curve(
     assert pieces.control[-1, -1].tolist() == list(control[-1])
     assert np.array_equal(pieces.control[1:, 0], pieces.control[:-1, -1])
     there_and_back = Contour.from_pieces(
-        Pieces.joined(
-            [Pieces.from_beziers(whole), Pieces.from_beziers(whole).take(np.arange(pieces.count)[::-1]).turned_round()]
-        )
+        Pieces.joined([turning(whole), turning(whole).take(np.arange(pieces.count)[::-1]).turned_round()])
     )
     t = np.linspace(0.0, 1.0, 4001)
     points = whole.point(np.zeros(t.size, dtype=np.intp), t)
@@ -433,7 +433,7 @@ def test_a_cut_into_halves_keeps_area_and_length() -> None:
     rows = np.repeat(np.arange(beziers.count), 2)
     low = np.tile([0.0, 0.4], beziers.count)
     high = np.tile([0.4, 1.0], beziers.count)
-    cut = Contour.from_pieces(Pieces.from_beziers(beziers.take(rows).part(low, high)))
+    cut = Contour.from_pieces(turning(beziers.take(rows).part(low, high)))
     assert cut.area == pytest.approx(known.area, rel=1e-13)
     assert cut.length == pytest.approx(known.length, rel=1e-13)
 
@@ -453,7 +453,7 @@ def rose(size: float = 1.0) -> Contour:
     spline = make_interp_spline(t, points, k=5, bc_type="periodic")
     beziers = Beziers.from_spline(5, spline.t, spline.c, np.ones(len(spline.c)))
     beziers.control[-1, -1] = beziers.control[0, 0]
-    return Contour.from_pieces(Pieces.from_beziers(beziers))
+    return Contour.from_pieces(turning(beziers))
 
 
 @pytest.mark.parametrize("contour", [rose(), ellipse().contour], ids=["spline", "ellipse"])

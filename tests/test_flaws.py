@@ -80,7 +80,7 @@ def test_dents_of_splines_within_the_tolerance() -> None:
     bow = Beziers(np.array([[[20.0, -10.0], [16.0, -5.0], [16.0, 5.0], [20.0, 10.0]]]), np.ones((1, 4)))
     sides = np.array([[20.0, 10.0], [-20.0, 10.0], [-20.0, -10.0]])
     ends = np.array([[-20.0, 10.0], [-20.0, -10.0], [20.0, -10.0]])
-    pieces = Pieces.joined([Pieces.from_beziers(bow), Pieces.from_chords(sides, ends, np.zeros(3))])
+    pieces = Pieces.joined([Pieces.from_unrolled(bow.unrolled().pieces), Pieces.from_chords(sides, ends, np.zeros(3))])
     for tolerance in (1e-3, 1e-6):
         found = dents(Contour.from_pieces(pieces), tolerance)
         assert len(found.depth) == 1

@@ -96,8 +96,10 @@ def test_peaks_are_what_the_law_reaches(name):
     peaks = LAWS[name].peaks
     u = np.concatenate([np.linspace(a, b, 40001) for a, b in pairwise(motion.knots)])
     reached = np.abs(motion.derivatives(u, 3)).max(axis=1)
-    assert reached[1:] == pytest.approx([peaks.velocity, peaks.acceleration, peaks.jerk_inside], rel=1e-8)
-    assert (reached[1:] <= np.array([peaks.velocity, peaks.acceleration, peaks.jerk_inside]) * (1 + 1e-14)).all()
+    told = np.array([peaks.velocity, peaks.acceleration, peaks.jerk])
+    finite = np.isfinite(told)
+    assert reached[1:][finite] == pytest.approx(told[finite], rel=1e-8)
+    assert (reached[1:] <= told * (1 + 1e-14)).all()
     steps = max(
         np.abs(motion.jumps(2)[1][2]).max(initial=0.0),
         abs(motion.derivatives(0.0, 2)[2, 0]),
@@ -177,9 +179,9 @@ def test_a_polynomial_law_is_the_one_of_its_coefficients():
 
 def test_a_polynomial_law_that_starts_or_stops_short_of_rest_has_infinite_peaks():
     ramp = polynomial_law([0, 1]).peaks
-    assert (ramp.velocity, ramp.acceleration, ramp.jerk, ramp.jerk_inside) == (1, math.inf, math.inf, 0)
+    assert (ramp.velocity, ramp.acceleration, ramp.jerk) == (1, math.inf, math.inf)
     cubic = polynomial_law([0, 0, 3, -2]).peaks  # rest, but the acceleration steps to 6
-    assert (cubic.velocity, cubic.acceleration, cubic.jerk, cubic.jerk_inside) == (1.5, 6, math.inf, 12)
+    assert (cubic.velocity, cubic.acceleration, cubic.jerk) == (1.5, 6, math.inf)
 
 
 @pytest.mark.parametrize(
