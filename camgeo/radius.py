@@ -244,7 +244,7 @@ class _Intervals:
         for i, (low, high) in enumerate(zip(self.low.tolist(), self.high.tolist(), strict=True)):
             inside = minima[(minima >= low) & (minima <= high)]
             knots = np.linspace(low, high, SPLITS + 1)
-            if inside.size:
+            if inside.size and high - low > 2.0 * grade:  # one that is fine already would come back as it is
                 middle = float(inside[0])
                 count = max(1, math.ceil(math.log(max((high - low) / grade, 2.0)) / math.log(GROWTH)))
                 away = grade * GROWTH ** np.arange(count)

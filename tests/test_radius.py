@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from shapes import booth
 
 from camgeo.curve import Curve
+from camgeo.manufacture.cutter import Backwards
 from camgeo.offset import Parallel
 from camgeo.profile.support import SupportShape
 from camgeo.profile.wunderlich import PitchShape
@@ -86,6 +87,15 @@ def test_concave_stretches_do_not_count():
     # at the waist the curve is hollow with the radius -r^3/(4 m^2 - r^2), far below 0
     value, _ = least_radius(Curve.whole(booth(60.0, math.sqrt(2880.0))))
     assert value > 59.0
+
+
+@pytest.mark.parametrize("share", [1e-4, 0.01, 0.3])
+def test_a_hollow_run_through_the_other_way_is_proved_however_little_it_turns(share):
+    # as the cutter sees it; the turn is far below 1 where the hollow is shallow, and the proof wants finer intervals
+    m2 = 1200.0 * (1.0 + share)
+    r2 = 2.0 * (3600.0 - m2)
+    value, _ = least_radius(Curve.whole(Backwards(booth(60.0, math.sqrt(m2)))))
+    assert value == pytest.approx(r2**1.5 / (4.0 * m2 - r2), rel=1e-10)
 
 
 def test_one_sided_limits_at_a_jump_count():
