@@ -132,19 +132,14 @@ def drawing_of(
     scale = 1.0 if unit is None else unit
     pieces, run = gathered(found.shapes)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
-    size = extent(pieces)
-    same = max(min(SAME_POINT, SAME_SHARE * size), ROUNDING * float(np.abs(pieces.start).max()))
-    usual = max(min(GAP, GAP_SHARE * size), same)
+    same, usual = closeness(pieces)
     gap = usual if gap is None else gap
     scratched: tuple[Contour, ...] = ()
     if marks is not None and marks.shapes:
         lines, owner = gathered(marks.shapes)
         lines = lines.enlarged(scale) if scale != 1.0 else lines
         scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, gap, same, path))
-    heights = np.concatenate([s.heights for s in found.shapes]) * scale
-    if np.ptp(heights) > usual:
-        message = f"the entities do not lie in one plane: heights from {heights.min():g} to {heights.max():g}"
-        raise ReadError("unsupported", message, path)
+    demand_one_plane(np.concatenate([s.heights for s in found.shapes]) * scale, usual, path)
     keep, faults = without_faults(pieces, run, found, same)
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
@@ -192,6 +187,20 @@ def gathered(shapes: list[Shape]) -> tuple[Pieces, Indices]:
     pieces = Pieces.joined([p for p in parts if len(p)])
     order = np.argsort(run, kind="stable")
     return (pieces, run) if (np.diff(run) >= 0).all() else (pieces.take(order), run[order])
+
+
+def closeness(pieces: Pieces) -> tuple[float, float]:
+    """How near two points are the same, and two ends joined where no gap is asked for, mm."""
+    size = extent(pieces)
+    same = max(min(SAME_POINT, SAME_SHARE * size), ROUNDING * float(np.abs(pieces.start).max()))
+    return same, max(min(GAP, GAP_SHARE * size), same)
+
+
+def demand_one_plane(heights: Array, most: float, path: Path) -> None:
+    """Raise ReadError where heights (n,) differ by more than `most`."""
+    if np.ptp(heights) > most:
+        message = f"the entities do not lie in one plane: heights from {heights.min():g} to {heights.max():g}"
+        raise ReadError("unsupported", message, path)
 
 
 def extent(pieces: Pieces) -> float:

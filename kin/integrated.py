@@ -58,38 +58,8 @@ def integrated(
     """
     from scipy.integrate import solve_ivp
 
-    running = train.at(rpm)
-    k, c, kappa = train.stiffness / running.inertia, train.damping / (train.mass * running.speed), running.forcing.kappa
-    constant = running.forcing.constant
-    lower, upper = faces
-    count = 0
-    ends = [0.0, 0.0]
-
-    def rows(motion: Motion, phi: float) -> Array:
-        room = _INSIDE * (ends[1] - ends[0])
-        at = min(max(phi, ends[0] + room), ends[1] - room)
-        return motion.rows(np.array([math.fmod(at, TURN)]))[:, 0]
-
-    def push(phi: float, z: float, v: float, s: Array) -> float:
-        found = -(k * z + c * v)
-        if bonded:
-            return found
-        found = max(found, 0.0) if z < 0.0 else 0.0
-        if upper is not None:
-            above = rows(upper, phi)
-            d, rate = z - (above[0] - s[0]), v - (above[1] - s[1])
-            found -= max(k * d + c * rate, 0.0) if d > 0.0 else 0.0
-        return found
-
-    def slope(phi: float, y: Array) -> Array:
-        nonlocal count
-        count += 1
-        if most is not None and count > most:
-            raise DynamicsError(f"more than {most} evaluations")
-        s = rows(lower, phi)
-        z, v = float(y[0]), float(y[1])
-        return np.array([v, push(phi, z, v, s) - kappa * (z + s[0]) - s[2] - constant])
-
+    law = _Law(train, faces, rpm, most, bonded)
+    running = law.running
     size = np.array([(train.preload / train.stiffness) or 1e-12, 0.0])
     size[0] = max(size[0], abs(start[0]), running.inertia / train.stiffness * 1e-3)
     size[1] = max(size[0] * running.bound.natural, 1e-300)
@@ -97,28 +67,77 @@ def integrated(
     found = np.empty((2, len(places)))
     steps = 0
     knots = _knots(faces, float(places[-1]))
+    implicit = {"jac": law.jacobian} if bonded and method in ("Radau", "BDF") else {}
     for low, high in pairwise(knots.tolist()):
-        ends[:] = [low, high]
-        y[1] -= _leap(lower, low)
+        law.stretch = low, high
+        y[1] -= _leap(faces[0], low)
         inside = np.flatnonzero((places >= low) & (places <= high))
-        implicit = {"jac": _jacobian(k, c, kappa)} if bonded and method in ("Radau", "BDF") else {}
         wanted = np.append(places[inside][places[inside] < high], high)
-        run = solve_ivp(slope, (low, high), y, method=method, t_eval=wanted, rtol=rtol, atol=rtol * size, **implicit)
+        run = solve_ivp(
+            law.slope, (low, high), y, method=method, t_eval=wanted, rtol=rtol, atol=rtol * size, **implicit
+        )
         if run.status != 0:
             raise DynamicsError(f"{method}: {run.message}")
         found[:, inside] = run.y[:, : len(inside)]
         y = run.y[:, -1]
         steps += run.nfev
     force = []
-    for place, state in zip(places, found.T, strict=True):
+    for place, state in zip(places.tolist(), found.T, strict=True):
         i = min(int(np.searchsorted(knots, place, side="right")) - 1, len(knots) - 2)
-        ends[:] = [knots[i], knots[i + 1]]
-        force.append(running.inertia * push(float(place), float(state[0]), float(state[1]), rows(lower, float(place))))
-    return Integrated(found, np.array(force), count, steps)
+        law.stretch = float(knots[i]), float(knots[i + 1])
+        force.append(running.inertia * law.push(place, float(state[0]), float(state[1]), law.rows(faces[0], place)))
+    return Integrated(found, np.array(force), law.count, steps)
 
 
-def _jacobian(k: float, c: float, kappa: float) -> Array:
-    return np.array([[0.0, 1.0], [-k - kappa, -c]])
+class _Law:
+    """The law of motion z'' = push - kappa (z + s) - s'' - constant, over one stretch of the faces at a time.
+
+    `count` is how often it was evaluated, which `most` bounds.
+    """
+
+    def __init__(
+        self, train: Train, faces: tuple[Motion, Motion | None], rpm: float, most: int | None, bonded: bool
+    ) -> None:
+        self.running = train.at(rpm)
+        self.k, self.c = train.stiffness / self.running.inertia, train.damping / (train.mass * self.running.speed)
+        self.lower, self.upper = faces
+        self.most, self.bonded = most, bonded
+        self.stretch = 0.0, 0.0
+        self.count = 0
+
+    @property
+    def jacobian(self) -> Array:
+        """Derivatives of the slope by the state where the contact pulls as well."""
+        return np.array([[0.0, 1.0], [-self.k - self.running.forcing.kappa, -self.c]])
+
+    def rows(self, motion: Motion, phi: float) -> Array:
+        """A face's displacement and two derivatives (3,), on this stretch's side of its ends."""
+        low, high = self.stretch
+        room = _INSIDE * (high - low)
+        at = min(max(phi, low + room), high - room)
+        return motion.rows(np.array([math.fmod(at, TURN)]))[:, 0]
+
+    def push(self, phi: float, z: float, v: float, s: Array) -> float:
+        """Force of contact over the inertia; `s` (3,) are the lower face's rows."""
+        found = -(self.k * z + self.c * v)
+        if self.bonded:
+            return found
+        found = max(found, 0.0) if z < 0.0 else 0.0
+        if self.upper is not None:
+            above = self.rows(self.upper, phi)
+            d, rate = z - (above[0] - s[0]), v - (above[1] - s[1])
+            found -= max(self.k * d + self.c * rate, 0.0) if d > 0.0 else 0.0
+        return found
+
+    def slope(self, phi: float, y: Array) -> Array:
+        """Derivatives of the state (2,)."""
+        self.count += 1
+        if self.most is not None and self.count > self.most:
+            raise DynamicsError(f"more than {self.most} evaluations")
+        s = self.rows(self.lower, phi)
+        z, v = float(y[0]), float(y[1])
+        forcing = self.running.forcing
+        return np.array([v, self.push(phi, z, v, s) - forcing.kappa * (z + s[0]) - s[2] - forcing.constant])
 
 
 def _knots(faces: Sequence[Motion | None], end: float) -> Array:

@@ -121,25 +121,7 @@ def write_dxf(
     drawing = Drawing.new(VERSIONS[version])
     _set_layers(drawing, mm, {cutout.layer for cutout in cutouts})
     space = drawing.modelspace()
-    boxes = [_draw_outline(space, outline, mm, _CUT)[1]]
-    if bore is not None:
-        boxes.append(_draw_circle(space, Circle("bore", (0.0, 0.0), 0.5 * bore), mm, _BORE)[1])
-    for cutout in cutouts:
-        if isinstance(cutout.shape, Circle):
-            boxes.append(_draw_circle(space, cutout.shape, mm, cutout.layer)[1])
-        else:
-            boxes.append(_draw_outline(space, cutout.shape, mm, cutout.layer)[1])
-    for item, names in _distinct(reference):
-        if isinstance(item, Circle):
-            entity, box = _draw_circle(space, item, mm, _REFERENCE)
-        elif isinstance(item, Point):
-            x, y = item.at[0] / mm, item.at[1] / mm
-            entity, box = space.add_point((x, y), {"layer": _REFERENCE}), (x, y, x, y)
-        else:
-            entity, box = _draw_outline(space, item.outline, mm, _REFERENCE)
-        entity.set_xdata(APPLICATION, [(1000, _comment(label)) for label in names])
-        boxes.append(box)
-
+    boxes = _draw_cuts(space, outline, bore, cutouts, mm) + _draw_reference(space, reference, mm)
     corners = np.array(boxes)
     low, high = corners[:, :2].min(axis=0).tolist(), corners[:, 2:].max(axis=0).tolist()
     drawing.set_modelspace_vport(
@@ -158,6 +140,37 @@ def write_dxf(
         }  # fmt: skip
     comments = [f"camgeo units: {unit}", *(_comment(text) for text in (name, about, *remarks) if text)]
     _save(path, drawing, header, comments)
+
+
+def _draw_cuts(
+    space: Modelspace, outline: Outline, bore: float | None, cutouts: Sequence[Cutout], mm: float
+) -> list[Box]:
+    """Add all that is cut or engraved; returns the extremes of each in drawing units."""
+    boxes = [_draw_outline(space, outline, mm, _CUT)[1]]
+    if bore is not None:
+        boxes.append(_draw_circle(space, Circle("bore", (0.0, 0.0), 0.5 * bore), mm, _BORE)[1])
+    for cutout in cutouts:
+        if isinstance(cutout.shape, Circle):
+            boxes.append(_draw_circle(space, cutout.shape, mm, cutout.layer)[1])
+        else:
+            boxes.append(_draw_outline(space, cutout.shape, mm, cutout.layer)[1])
+    return boxes
+
+
+def _draw_reference(space: Modelspace, reference: Sequence[Reference], mm: float) -> list[Box]:
+    """Add what is drawn to look at, each shape with its names; returns the extremes of each in drawing units."""
+    boxes = []
+    for item, names in _distinct(reference):
+        if isinstance(item, Circle):
+            entity, box = _draw_circle(space, item, mm, _REFERENCE)
+        elif isinstance(item, Point):
+            x, y = item.at[0] / mm, item.at[1] / mm
+            entity, box = space.add_point((x, y), {"layer": _REFERENCE}), (x, y, x, y)
+        else:
+            entity, box = _draw_outline(space, item.outline, mm, _REFERENCE)
+        entity.set_xdata(APPLICATION, [(1000, _comment(label)) for label in names])
+        boxes.append(box)
+    return boxes
 
 
 def _save(path: Path, drawing: Drawing, header: dict[str, object], comments: list[str]) -> None:

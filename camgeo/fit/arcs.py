@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit import free_arcs
-from camgeo.fit.deviation import Chain, chain_deviation, foot, seen_deviation
+from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, seen_deviation
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.parts import CONSTANT as FREE
 from camgeo.fit.parts import Part
@@ -196,19 +196,12 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
         )
     tolerance = min(aim, limit)
     done: dict[int, _Fit] = {}
-    nodes: dict[int, Array] = {}
     best: dict[int, float] = {}
     for i, stretch in enumerate(stretches):
         radius = curve.radius(stretch)
         if radius is not None:
             done[i] = _circular(curve, stretch, radius)
-    bent = [i for i in range(len(stretches)) if i not in done]
-    densities = Density.of(curve, np.array([stretches[i] for i in bent]).reshape(-1, 2), arc_density)
-    check_count(sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
-    for i, density in zip(bent, densities, strict=True):
-        nodes[i] = density.nodes(
-            max(1, math.ceil(0.5 * density.total / math.cbrt(tolerance) - 1e-6), math.ceil(density.turning / WIDEST))
-        )
+    nodes = _first_nodes(curve, {i: stretch for i, stretch in enumerate(stretches) if i not in done}, tolerance)
     settled = dict.fromkeys(nodes, 0)
     for _ in range(TRIES):
         todo = [i for i in nodes if i not in done]
@@ -217,25 +210,15 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
         low = np.concatenate([nodes[i][:-1] for i in todo])
         high = np.concatenate([nodes[i][1:] for i in todo])
         biarcs = _biarcs(curve, low, high, slip)
-        worst = seen_deviation(curve, biarcs.chain, LOOKS).reshape(-1, 2).max(axis=1)
-        if float(worst.max()) <= tolerance:
-            deviation = chain_deviation(curve, biarcs.chain, tolerance, 2 * LOOKS)
-            worst = deviation.worst.reshape(-1, 2).max(axis=1)
-        else:
-            deviation = None
+        worst, deviation = _strayed(curve, biarcs.chain, tolerance)
         first = 0
         for i in todo:
-            count = nodes[i].size - 1
-            mine = slice(first, first + count)
-            both = slice(2 * first, 2 * (first + count))
-            first += count
+            mine = slice(first, first + nodes[i].size - 1)
+            first = mine.stop
             reached = float(worst[mine].max())
             best[i] = min(best.get(i, math.inf), reached)
             if deviation is not None and reached <= limit:
-                # f is the curve's distance outside the arc: where it is positive the file lies inward
-                inward = max(float(deviation.outside[both].max()), 0.0) + 2.0 * slip
-                outward = max(-float(deviation.inside[both].min()), 0.0) + 2.0 * slip
-                done[i] = (biarcs.points[both], biarcs.bulges[both], outward, inward)
+                done[i] = _fitted(biarcs, deviation, slice(2 * mine.start, 2 * mine.stop), slip)
             elif deviation is not None or reached > tolerance:
                 nodes[i], settled[i] = _denser(nodes[i], worst[mine], tolerance, settled[i])
     left = cover + max(best[i] for i in nodes if i not in done)
@@ -244,6 +227,35 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
         f"rounding takes {cover:.2g} mm",
         left,
     )
+
+
+def _first_nodes(curve: Curve, bent: dict[int, tuple[float, float]], tolerance: float) -> dict[int, Array]:
+    """Nodes of each stretch that is no circular arc, as many as the theory has it."""
+    densities = Density.of(curve, np.array(list(bent.values())).reshape(-1, 2), arc_density)
+    check_count(sum(density.total for density in densities) / math.cbrt(tolerance), "arcs", tolerance, 3.0)
+    return {
+        i: density.nodes(
+            max(1, math.ceil(0.5 * density.total / math.cbrt(tolerance) - 1e-6), math.ceil(density.turning / WIDEST))
+        )
+        for i, density in zip(bent, densities, strict=True)
+    }
+
+
+def _strayed(curve: Curve, chain: Chain, tolerance: float) -> tuple[Array, Deviation | None]:
+    """How far each biarc of a chain is from the curve (n,): as seen, or as proved where all are seen within it."""
+    worst = seen_deviation(curve, chain, LOOKS).reshape(-1, 2).max(axis=1)
+    if not float(worst.max()) <= tolerance:
+        return worst, None
+    deviation = chain_deviation(curve, chain, tolerance, 2 * LOOKS)
+    return deviation.worst.reshape(-1, 2).max(axis=1), deviation
+
+
+def _fitted(biarcs: _Biarcs, deviation: Deviation, rows: slice, slip: float) -> _Fit:
+    """Some of the arcs, their outward and inward bound widened by what feet were off along the curve."""
+    # f is the curve's distance outside the arc: where it is positive the file lies inward
+    inward = max(float(deviation.outside[rows].max()), 0.0) + 2.0 * slip
+    outward = max(-float(deviation.inside[rows].min()), 0.0) + 2.0 * slip
+    return biarcs.points[rows], biarcs.bulges[rows], outward, inward
 
 
 def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[Array, int]:

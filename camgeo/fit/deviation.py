@@ -22,12 +22,16 @@ The curve is taken to run forward, sigma > 0; `camgeo.radius.reversals` proves t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array, Curve
+    from numpy.typing import NDArray
+
+    from camgeo.curve import Array, Bounds, Curve
+
+    Mask = NDArray[np.bool_]
 
 SLACK = 0.004  # nodes are doubled until the proof exceeds what the nodes show by less than this share of the tolerance
 FIRST_NODES = 4
@@ -137,36 +141,57 @@ def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array
     return low, high, seen_low, seen_high
 
 
+class _Seen(NamedTuple):
+    """What nodes on n pieces show: nodes + 1 on each, (n, nodes + 1).
+
+    `distance` is f and `angle` beta; `speed` and `turn` are the curve's. `forward` (n,) tells whether the curve runs
+    forward along the piece at every node.
+    """
+
+    t: Array
+    distance: Array
+    angle: Array
+    speed: Array
+    turn: Array
+    forward: Mask
+
+    @staticmethod
+    def of(curve: Curve, chain: Chain, nodes: int) -> _Seen:
+        """Look at the ends of `nodes` equal steps of each piece."""
+        t = chain.low[:, None] + (chain.high - chain.low)[:, None] * np.linspace(0.0, 1.0, nodes + 1)
+        t[:, -1] = chain.high
+        side = np.ones(t.shape, dtype=np.intp)
+        side[:, -1] = -1
+        at = curve.sample(t.ravel(), side.ravel())
+        points, tangents = at.point.reshape(*t.shape, 2), at.tangent.reshape(*t.shape, 2)
+        f, away = radial(chain.start[:, None], chain.tangent[:, None], chain.curvature[:, None], points)
+        sine = -(tangents[..., 0] * away[..., 0] + tangents[..., 1] * away[..., 1])
+        cosine = tangents[..., 1] * away[..., 0] - tangents[..., 0] * away[..., 1]
+        forward = np.asarray((cosine > 0.0).all(axis=1))
+        return _Seen(t, f, np.arctan2(sine, cosine), at.speed.reshape(t.shape), at.turn.reshape(t.shape), forward)
+
+
 def _ranges_of(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array, Array]:
-    count = chain.low.size
-    share = np.linspace(0.0, 1.0, nodes + 1)
-    t = chain.low[:, None] + (chain.high - chain.low)[:, None] * share
-    t[:, -1] = chain.high
-    left, right = t[:, :-1], t[:, 1:]
-    step = (right - left).ravel()
-    bounds = curve.cells.over(left.ravel(), right.ravel())
-    side = np.ones(t.shape, dtype=np.intp)
-    side[:, -1] = -1
-    at = curve.sample(t.ravel(), side.ravel())
+    seen = _Seen.of(curve, chain, nodes)
+    bounds = curve.cells.over(seen.t[:, :-1].ravel(), seen.t[:, 1:].ravel())
+    low_bend, high_bend, confirmed = _bends(seen, bounds, np.repeat(chain.curvature, nodes))
+    step, (fa, fb) = np.diff(seen.t).ravel(), _ends(seen.distance)
+    top = peak(fa, fb, step, -low_bend)
+    bottom = -peak(-fa, -fb, step, high_bend)
+    shape = chain.low.size, nodes
+    top = np.where(confirmed, top, np.inf).reshape(shape).max(axis=1)
+    bottom = np.where(confirmed, bottom, -np.inf).reshape(shape).min(axis=1)
+    top[~seen.forward], bottom[~seen.forward] = np.inf, -np.inf
+    return bottom, top, seen.distance.min(axis=1), seen.distance.max(axis=1)
 
-    def ends(values: Array) -> tuple[Array, Array]:
-        """Values at the left and right node of every step (n * nodes,)."""
-        both = values.reshape(count, nodes + 1)
-        return both[:, :-1].ravel(), both[:, 1:].ravel()
 
-    points = at.point.reshape(count, nodes + 1, 2)
-    tangents = at.tangent.reshape(count, nodes + 1, 2)
-    k = np.repeat(chain.curvature, nodes)
-    f, away = radial(chain.start[:, None], chain.tangent[:, None], chain.curvature[:, None], points)
-    sine = -(tangents[..., 0] * away[..., 0] + tangents[..., 1] * away[..., 1])
-    cosine = tangents[..., 1] * away[..., 0] - tangents[..., 0] * away[..., 1]
-    backwards = ~(cosine > 0.0).all(axis=1)
-    beta = np.arctan2(sine, cosine)
-    fa, fb = f[:, :-1].ravel(), f[:, 1:].ravel()
-    angle = np.maximum(np.abs(beta[:, :-1]), np.abs(beta[:, 1:])).ravel()
-
-    speed_a, speed_b = ends(at.speed)
-    turn_a, turn_b = ends(at.turn)
+def _bends(seen: _Seen, bounds: Bounds, k: Array) -> tuple[Array, Array, Mask]:
+    """Bounds of f'' over each step (n * nodes,), and where they are proved; `k` is the curvature of its piece."""
+    step = np.diff(seen.t).ravel()
+    fa, fb = _ends(seen.distance)
+    angle = np.maximum(*_ends(np.abs(seen.angle)))
+    speed_a, speed_b = _ends(seen.speed)
+    turn_a, turn_b = _ends(seen.turn)
     square = step**2 / 8.0
     speed = np.maximum(np.abs(speed_a), np.abs(speed_b)) + square * bounds.speed_bend
     speed = np.minimum(speed, np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)))
@@ -190,12 +215,12 @@ def _ranges_of(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Ar
     correction = bounds.speed_slope * beta_room + speed * (extra + 0.5 * m * beta_room**2) + square * product_bend
     high_bend = np.maximum(-speed_a * ma, -speed_b * mb) + correction
     low_bend = np.minimum(-speed_a * ma, -speed_b * mb) - correction
-    top = peak(fa, fb, step, -low_bend)
-    bottom = -peak(-fa, -fb, step, high_bend)
-    top = np.where(confirmed, top, np.inf).reshape(count, nodes).max(axis=1)
-    bottom = np.where(confirmed, bottom, -np.inf).reshape(count, nodes).min(axis=1)
-    top[backwards], bottom[backwards] = np.inf, -np.inf
-    return bottom, top, f.min(axis=1), f.max(axis=1)
+    return low_bend, high_bend, confirmed
+
+
+def _ends(values: Array) -> tuple[Array, Array]:
+    """Values (n, nodes + 1) at the left and right node of every step (n * nodes,)."""
+    return values[:, :-1].ravel(), values[:, 1:].ravel()
 
 
 def peak(fa: Array, fb: Array, step: Array, bend: Array) -> Array:

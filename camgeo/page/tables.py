@@ -10,6 +10,8 @@ from camgeo.report.document import pieces_word
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    _Row = tuple[str, float | None, str, float | None]
+
 # With a linkage these concern the cam in its frame alone, and their place is the relative angle (docs/report.md).
 OVER_RELATIVE = frozenset({"contour", "motion", "constant-breadth", "breadth-max"})
 NONE = "–"
@@ -91,44 +93,10 @@ def linkage(report: dict[str, Any]) -> str:
     section = report.get("linkage")
     if section is None:
         return ""
-    margin, rate = section["margin"], section["shaft_rate"]
-    rows = [
-        ("margin from binding", margin["value"], margin["unit"], None),
-        ("least rate of the shaft", rate["min"], "", None),
-    ]
-    output = section.get("output")
-    if output is not None:
-        peaks, unit = section["peaks"]["shaft"], output["unit"]
-        rows += [
-            ("least output", output["min"], unit, output["min_at"]["shaft_deg"]),
-            ("greatest output", output["max"], unit, output["max_at"]["shaft_deg"]),
-            ("swing", section["swing"], unit, None),
-            (
-                "least transmission angle",
-                section["transmission_angle"]["min"],
-                "deg",
-                section["transmission_angle"]["min_at_deg"],
-            ),
-            ("least force angle", section["force_angle"]["min"], "deg", section["force_angle"]["min_at_deg"]),
-            ("greatest velocity", peaks["velocity"]["value"], f"{unit}/rad", peaks["velocity"]["shaft_deg"]),
-            (
-                "greatest acceleration",
-                peaks["acceleration"]["value"],
-                f"{unit}/rad²",
-                peaks["acceleration"]["shaft_deg"],
-            ),
-        ]
-    for dwell in section["dwells"]:
-        if dwell["over"] == "shaft":
-            name = f"dwell within {number(dwell['band'])}, {dwell['from']}"
-            rows.append((escape(name), dwell["length_deg"], "deg", dwell["start_deg"]))
-    error = section.get("error")
-    if error is not None:
-        rows.append(("error of the output, worst file", error["max"], error["unit"], error["at_deg"]))
     text = [
         f'<tr><th scope="row">{name}</th><td class="number">{number(value)}</td><td>{_unit(unit)}</td>'
         f"<td>{_place(at, 'shaft')}</td></tr>"
-        for name, value, unit, at in rows
+        for name, value, unit, at in _linkage_rows(section)
     ]
     spans = [("binds", section["binds_at_deg"]), ("would turn the shaft back", section["reverses_at_deg"])]
     told = "".join(
@@ -138,6 +106,37 @@ def linkage(report: dict[str, Any]) -> str:
     )
     head = _table(f"Linkage: {section['kind']}", ("figure", "value", "unit", "at"), text)
     return f'<section aria-labelledby="linkage-head"><h2 id="linkage-head">Linkage</h2>{told}{head}</section>'
+
+
+def _linkage_rows(section: dict[str, Any]) -> list[_Row]:
+    """Figures of a linkage: name, value, unit and shaft angle in degrees."""
+    margin, rate = section["margin"], section["shaft_rate"]
+    rows: list[_Row] = [
+        ("margin from binding", margin["value"], margin["unit"], None),
+        ("least rate of the shaft", rate["min"], "", None),
+    ]
+    output = section.get("output")
+    if output is not None:
+        peaks, unit = section["peaks"]["shaft"], output["unit"]
+        velocity, acceleration = peaks["velocity"], peaks["acceleration"]
+        transmission, force = section["transmission_angle"], section["force_angle"]
+        rows += [
+            ("least output", output["min"], unit, output["min_at"]["shaft_deg"]),
+            ("greatest output", output["max"], unit, output["max_at"]["shaft_deg"]),
+            ("swing", section["swing"], unit, None),
+            ("least transmission angle", transmission["min"], "deg", transmission["min_at_deg"]),
+            ("least force angle", force["min"], "deg", force["min_at_deg"]),
+            ("greatest velocity", velocity["value"], f"{unit}/rad", velocity["shaft_deg"]),
+            ("greatest acceleration", acceleration["value"], f"{unit}/rad²", acceleration["shaft_deg"]),
+        ]
+    for dwell in section["dwells"]:
+        if dwell["over"] == "shaft":
+            name = f"dwell within {number(dwell['band'])}, {dwell['from']}"
+            rows.append((escape(name), dwell["length_deg"], "deg", dwell["start_deg"]))
+    error = section.get("error")
+    if error is not None:
+        rows.append(("error of the output, worst file", error["max"], error["unit"], error["at_deg"]))
+    return rows
 
 
 def dynamics(report: dict[str, Any]) -> str:

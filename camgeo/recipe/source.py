@@ -253,61 +253,82 @@ def _syntax_remedy(problem: str) -> str:
     return "look at indentation, quotes, brackets and colons here and in the line above"
 
 
+_OfTree = yaml.ScalarEvent | yaml.AliasEvent | yaml.CollectionStartEvent | yaml.CollectionEndEvent
+
+
 def _build(events: Iterator[yaml.Event], lines: tuple[str, ...], file: str) -> Node:
     """Build the tree of one document; unlike PyYAML's composer it neither recurses nor goes on behind a bound."""
-    frames: list[_Frame] = []
-    anchors: dict[str, Node] = {}
-    aliases = documents = nodes = 0
-    root: Node | None = None
+    tree, documents = _Tree(lines, file), 0
     for event in events:
-        mark = _mark(event.start_mark)
-        if isinstance(event, yaml.CollectionStartEvent):
-            if len(frames) == MAX_DEPTH:
-                raise _fault(file, mark, f"nested more than {MAX_DEPTH} deep", remedy="a recipe needs five levels")
-            frames.append(_Frame(event, mark, nodes, mark))
-            nodes += 1
-            continue
-        node: Node
-        anchor: str | None = None
-        end = _mark(event.end_mark)
-        if isinstance(event, yaml.ScalarEvent):
-            if not event.value and not event.style:
-                mark = _behind(mark, lines)
-            node = Scalar(event.value, not event.style, mark, end, event.tag)
-            anchor = event.anchor
-            nodes += 1
-        elif isinstance(event, yaml.CollectionEndEvent):
-            frame = frames.pop()
-            node = frame.close(nodes, end)
-            end = node.end
-            anchor = frame.event.anchor
-        elif isinstance(event, yaml.AliasEvent):
-            aliases += 1
-            if aliases > MAX_ALIASES:
-                raise _fault(file, mark, f"more than {MAX_ALIASES} aliases", remedy="write the values out")
-            if event.anchor not in anchors:
-                value = shown(f"*{event.anchor}")
-                raise _fault(file, mark, "an alias without its anchor", value, _syntax_remedy("alias"))
-            node = anchors[event.anchor]
-            nodes += node.size
+        if isinstance(event, _OfTree):
+            tree.take(event)
         else:
             documents += isinstance(event, yaml.DocumentStartEvent)
             if documents > 1:
-                raise _fault(file, mark, "a second YAML document", remedy="one recipe a file; leave out the line ---")
-            continue
-        if nodes > MAX_NODES:
-            problem = f"more than {MAX_NODES} entries, aliases expanded"
-            raise _fault(file, mark, problem, remedy="a recipe takes a few dozen")
-        if anchor is not None:
-            anchors[anchor] = node
-        if frames:
-            frames[-1].children.append(node)
-            frames[-1].last = end
-        else:
-            root = node
-    if root is None:
+                remedy = "one recipe a file; leave out the line ---"
+                raise _fault(file, _mark(event.start_mark), "a second YAML document", remedy=remedy)
+    if tree.root is None:
         raise _fault(file, (1, 1), "the recipe is empty", remedy="`camgeo new` writes one to start from")
-    return root
+    return tree.root
+
+
+class _Tree:
+    """A document's tree while it is put together."""
+
+    def __init__(self, lines: tuple[str, ...], file: str) -> None:
+        self.lines, self.file = lines, file
+        self.root: Node | None = None
+        self.frames: list[_Frame] = []
+        self.anchors: dict[str, Node] = {}
+        self.aliases = self.nodes = 0
+
+    def take(self, event: _OfTree) -> None:
+        """Take the next event, which begins or ends a list or mapping, or is a node by itself."""
+        mark, end = _mark(event.start_mark), _mark(event.end_mark)
+        if isinstance(event, yaml.CollectionStartEvent):
+            self._open(event, mark)
+        elif isinstance(event, yaml.CollectionEndEvent):
+            frame = self.frames.pop()
+            node = frame.close(self.nodes, end)
+            self._add(node, mark, node.end, frame.event.anchor)
+        elif isinstance(event, yaml.AliasEvent):
+            self._add(self._meant(event, mark), mark, end, None)
+        else:
+            if not event.value and not event.style:
+                mark = _behind(mark, self.lines)
+            self.nodes += 1
+            self._add(Scalar(event.value, not event.style, mark, end, event.tag), mark, end, event.anchor)
+
+    def _open(self, event: yaml.CollectionStartEvent, mark: Mark) -> None:
+        if len(self.frames) == MAX_DEPTH:
+            raise _fault(self.file, mark, f"nested more than {MAX_DEPTH} deep", remedy="a recipe needs five levels")
+        self.frames.append(_Frame(event, mark, self.nodes, mark))
+        self.nodes += 1
+
+    def _meant(self, event: yaml.AliasEvent, mark: Mark) -> Node:
+        """Give the node that an alias stands for."""
+        self.aliases += 1
+        if self.aliases > MAX_ALIASES:
+            raise _fault(self.file, mark, f"more than {MAX_ALIASES} aliases", remedy="write the values out")
+        if event.anchor not in self.anchors:
+            value = shown(f"*{event.anchor}")
+            raise _fault(self.file, mark, "an alias without its anchor", value, _syntax_remedy("alias"))
+        node = self.anchors[event.anchor]
+        self.nodes += node.size
+        return node
+
+    def _add(self, node: Node, mark: Mark, end: Mark, anchor: str | None) -> None:
+        """Put a node where it belongs."""
+        if self.nodes > MAX_NODES:
+            problem = f"more than {MAX_NODES} entries, aliases expanded"
+            raise _fault(self.file, mark, problem, remedy="a recipe takes a few dozen")
+        if anchor is not None:
+            self.anchors[anchor] = node
+        if self.frames:
+            self.frames[-1].children.append(node)
+            self.frames[-1].last = end
+        else:
+            self.root = node
 
 
 def _fault(file: str, mark: Mark, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
