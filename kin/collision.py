@@ -47,7 +47,8 @@ TURN = 2.0 * math.pi
 CELLS = 64  # intervals of a turn to begin with
 FIRST = 4  # of them are looked at before the rest
 AT_ONCE = 256  # intervals that are worked on together
-FINEST = 2  # times that pieces are halved along with the intervals
+FINEST = 4  # times that pieces are halved along with the intervals
+FEW = 16  # pairs in play for each interval, below which halves of their pieces cost less than they tell
 MOST = 60_000  # intervals that a pair of bodies may take
 TOUCHING = 1e-9  # mm, by which heights may overlap by rounding
 
@@ -201,7 +202,7 @@ class _Cells(NamedTuple):
         """Both halves of each interval: all first halves, then all second ones."""
         quarter, pairs, regions, level = 0.5 * self.half, self.pairs, self.regions, self.level
         if pairs is not None:
-            if level < FINEST and len(self.phi):
+            if level < FINEST and len(pairs.cell) < FEW * len(self.phi):
                 first, second = regions
                 pairs, regions, level = pairs.finer(first, second), (first.finer, second.finer), level + 1
             after = pairs._replace(cell=pairs.cell + len(self.phi))

@@ -12,6 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely import affinity
 
+import kin.collision
+import kin.region
 from kin import jet
 from kin.arcs import turned
 from kin.collision import Allowed, Mover, Slab, clearances
@@ -292,6 +294,28 @@ def test_against_brute_force(seed):
     assert found.least - found.proved <= accuracy + 1e-9
     if found.least > 0.0:
         assert gap[-1] == pytest.approx(found.least, abs=chords)
+
+
+@pytest.mark.parametrize(("parts", "finest", "few"), [(24, 2, math.inf), (4, 0, 0), (8, 6, math.inf)])
+def test_how_finely_outlines_are_cut_decides_nothing_but_the_time(monkeypatch, parts, finest, few):
+    def found():
+        return [
+            only(
+                mover("one", star(np.random.default_rng(seed), 6, 4, 12), Turning(1.0)),
+                mover("other", star(np.random.default_rng(seed + 1), 5, 3, 9, (x, 3)), Turning(-2.0, x=4.0)),
+            )
+            for seed, x in ((2, 19.0), (5, 12.0))
+        ]
+
+    usual = found()
+    monkeypatch.setattr(kin.region, "PARTS", parts)
+    monkeypatch.setattr(kin.collision, "FINEST", finest)
+    monkeypatch.setattr(kin.collision, "FEW", few)
+    for one, other in zip(usual, found(), strict=True):
+        accuracy = max(1e-3, -0.05 * one.least)
+        assert other.least == pytest.approx(one.least, abs=accuracy)
+        assert one.proved <= other.least
+        assert other.proved <= one.least
 
 
 def test_rate_bounds_the_change_of_the_distance():
