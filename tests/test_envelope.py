@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 from camfiles import circle_points, pitch_polar, roller_points, support_points
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
@@ -237,6 +237,7 @@ def test_contours_that_go_round_twice_or_turn_back_are_told():
 
 
 @given(st.integers(0, 2**32 - 1))
+@example(10750996)  # a dent about as deep as the edges hang anyway
 @settings(max_examples=30, deadline=None)
 def test_one_dent_or_bump_anywhere_is_measured(seed):
     rng = np.random.default_rng(seed)
@@ -249,4 +250,7 @@ def test_one_dent_or_bump_anywhere_is_measured(seed):
     plain = 41.0 * (np.pi / 400) ** 2 / 2 * 1.001  # sagitta of the edges where rho = 41
     assert max(depth, 0.0) <= found.outside + 1e-12 <= max(depth, 0.0) + 1e-9
     assert max(-depth, 0.0) <= found.inside + 1e-12
-    assert found.inside <= max(-depth, plain) + 1e-9
+    # an edge from a sound vertex to one of a dent d hangs d s + 4 plain s (1 - s) inside: most at its end, or before it
+    dent = max(-depth, 0.0)
+    hanging = dent if dent > 4.0 * plain else (dent + 4.0 * plain) ** 2 / (16.0 * plain)
+    assert found.inside <= hanging + 1e-9
