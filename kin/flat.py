@@ -17,7 +17,7 @@ from kin.check import UnsettledError, degrees
 from kin.distinct import distinct
 from kin.envelope import FlatEnvelope, Outset, PairSupport
 from kin.extremes import Extremes, extremes, resolution
-from kin.foot import FINE_STEP, grid
+from kin.foot import FINE_STEP, across, grid
 from kin.motion import TURN, ContactError, Judged, MotionError, Play, Unit, motion_error, with_steps
 from kin.newton import zeros
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 RESOLUTION_ANGLE = 1e-13  # rad
 MOST_STEPS = 60
-SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in rounding
+SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in rounding, also where f'' jumps
 
 
 @dataclass(frozen=True, eq=False)
@@ -316,7 +316,9 @@ class FlatPair:
             for _ in range(MOST_STEPS):
                 first = (value[todo] - there[0, todo]) / there[1, todo]
                 step[todo] = first - 0.5 * there[2, todo] / there[1, todo] * first * first
-                todo = todo[np.abs(step[todo]) > FINE_STEP]
+                size = np.abs(step[todo])
+                beyond = (size > SETTLED) & across(self.support.breaks, t[todo], step[todo])
+                todo = todo[(size > FINE_STEP) | beyond]
                 if not len(todo):
                     break
                 t[todo] += np.clip(step[todo], -0.2, 0.2)

@@ -66,7 +66,7 @@ def climb(
 
     def far(at: Array, by: Array) -> NDArray[np.bool_]:
         large: NDArray[np.bool_] = np.abs(by) > FINE_STEP
-        return large | ((by != 0.0) & _across(breaks, at, by)) if len(breaks) else large
+        return large | ((by != 0.0) & across(breaks, at, by)) if len(breaks) else large
 
     todo = np.flatnonzero(far(x, step))
     low, high = np.full(len(x), -np.inf), np.full(len(x), np.inf)
@@ -91,12 +91,15 @@ def climb(
     return x, step, f, slope, bend
 
 
-def _across(breaks: Array, x: Array, step: Array) -> NDArray[np.bool_]:
-    """Whether a break lies between x and x + step, (n,) each; a step of less than half a turn."""
+def across(breaks: Array, x: Array, step: Array) -> NDArray[np.bool_]:
+    """Whether a break in [0, 2 pi) lies between x and x + step, (n,) each; a step of less than half a turn.
+
+    Derivatives at a break are those behind it, so that a step back from one leads across it.
+    """
     low, high = np.minimum(x, x + step), np.maximum(x, x + step)
     turns = TURN * np.floor(low / TURN)
     ring = np.concatenate([breaks, breaks + TURN])
-    return np.searchsorted(ring, low - turns, side="right") < np.searchsorted(ring, high - turns, side="left")
+    return np.searchsorted(ring, low - turns, side="right") < np.searchsorted(ring, high - turns, side="right")
 
 
 def _newton(slope: Array, bend: Array) -> Array:

@@ -241,6 +241,21 @@ def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
     assert there[0, 1] - there[1, 1] == pytest.approx(judged.play.most, rel=1e-6)
 
 
+@pytest.mark.parametrize("count", [600, 1600])
+@pytest.mark.parametrize("out", [1e-4, -1e-4])
+def test_errors_of_a_pair_are_settled_where_the_curvature_jumps(count, out):
+    """The worst error, some 1e-6 rad, is at a break: the normal that is meant lies near, but on its other side."""
+    transmission = from_arc(2, 1, 30.0, 47.0)
+    pair = FlatPair(transmission)
+    t = np.arange(count) * 2 * np.pi / count
+    points = pair.envelope.points(t) + out * unit(t)
+    judged = pair.judge(polygon(points), PHI)
+    phi = np.radians(judged.motion.at_deg + np.append(0.0, np.arange(0.0, 360.0, 0.05)))
+    error = np.degrees(np.abs(swings_by_hand(points, transmission, phi) - pair.intended(phi)).max(axis=0))
+    assert error[0] == pytest.approx(judged.motion.max, abs=1e-11)
+    assert error.max() <= judged.motion.max + 1e-11
+
+
 def test_an_ellipse_works_a_right_angled_pair():
     """Semi-axes a, b with a^2 + b^2 = (2 l)^2: its orthoptic circle is the pivot's; r^2 = 2 (l^2 + m^2 cos 2t)."""
     transmission = PAIRS["ellipse"]
