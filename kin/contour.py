@@ -6,7 +6,7 @@ the contour, also of a dented or spoilt one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -66,8 +66,10 @@ class Contour(Pieces):
     """Pieces end to end, closed: end[i] is start[i+1], the last end the first start, within the reader's gap.
 
     Counter-clockwise when it comes from a reader; every measure here takes either sense, only `area`, `turning` and
-    `is_convex` tell them apart.
+    `is_convex` tell them apart. `arcs_within`, mm, is how closely arcs stand in for its splines by default.
     """
+
+    arcs_within: float | None = None
 
     @staticmethod
     def from_pieces(pieces: Pieces) -> Contour:
@@ -276,8 +278,14 @@ class Contour(Pieces):
         alike = tolerance is None or fine <= tolerance <= ALIKE * fine
         return self._fine_arcs if tolerance is None or alike else self._arcs_within(tolerance)
 
+    def finer(self, tolerance: float) -> Contour:
+        """Return the contour for whose splines arcs within `tolerance` mm, or finer ones, stand by default."""
+        return replace(self, arcs_within=tolerance) if self.beziers.count and tolerance < self._fine else self
+
     @property
     def _fine(self) -> float:
+        if self.arcs_within is not None:
+            return self.arcs_within
         extent = float(np.abs(self.vertices).max())
         return max(ARC_SHARE * extent, min(ARC_TOLERANCE, MOST_SHARE * extent))
 

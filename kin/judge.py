@@ -117,6 +117,7 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits, 
     if contour.beziers.count:
         fine = ARC_SHARE * float(np.abs(contour.vertices).max())  # on a part of many metres rounding is coarser
         spline = max(min(SPLINE_ERROR, SPLINE_SHARE * limits.tolerance), fine)
+        contour = contour.finer(spline)  # for rollers too
     slack = spline + ROUNDING * float(np.abs(contour.vertices).max())
     judged, checks = None, []
     try:

@@ -67,6 +67,16 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
         assert 0.0 <= motion["at_deg"] < 360.0
 
 
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-10])
+def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> None:
+    text = "{kind: double-roller, ratio: 2, arm: 55, roller_radius: 7, delta: {cos: {1: 130}, sin: {1: 60, 3: -14}}}"
+    files = f"{{tolerance: {tolerance}, files: [{{dxf: {{as: spline}}}}]}}"
+    outcome = pipeline.check(read(f"cam: {text}\nexport: {files}\nverify: {{angles: 360}}\n".encode(), "fine.yaml"))
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    motion = next(check for check in outcome.report["checks"] if check["name"] == "motion")
+    assert motion["value"] <= 2.0 * motion["limit"]
+
+
 @pytest.mark.parametrize("name", ["as-figure-2a", "w-booth", "reuleaux-nine"])
 def test_the_same_recipe_gives_the_same_bytes(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES[0].with_name(f"{name}.yaml"))
