@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["judge_body"]
 
 ROUNDING = 1e-9  # mm
-THIN = 1e-6  # mm: levels nearer than this are one
+INSIDE = 1.5  # times the tolerance: a section is looked at so far within two levels, which may be off by one themselves
 
 
 def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: float, path: Path) -> list[Check]:
@@ -32,9 +32,9 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
 
     watertight  every edge has two triangles, facing outward, none without area
     thickness   it reaches from the lowest slab's lower face to the highest one's upper face
-    outline     midway between any two levels farther apart than twice the tolerance the corners of its section lie on
-                the edge of the union of the slabs there, and the slabs' corners on that of the section; where there is
-                one slab alone the area is its own
+    outline     just within any two levels farther apart than three times the tolerance the corners of its section, and
+                the middles of its edges, lie on the edge of the union of the slabs there, and the slabs' corners on
+                that of the section
     """
     mesh = welded(corners)
     faults = [*mesh.edge_faults, mesh.degenerate, mesh.duplicate, int(mesh.volume <= 0.0)]
@@ -52,20 +52,21 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
 
 
 def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, path: Path) -> Check:
-    """Hold a section between any two levels against the slabs that pass there."""
+    """Hold sections between any two levels against the slabs that pass there, of which there is one at least."""
     levels = distinct(np.array([level for slab in slabs for level in (slab.low, slab.high)]))
-    worst, where = 0.0, ""
+    worst, where, room = 0.0, "", INSIDE * tolerance
     for below, above in zip(levels[:-1].tolist(), levels[1:].tolist(), strict=True):
-        there = [slab for slab in slabs if slab.low <= below and slab.high >= above]
-        if above - below <= max(THIN, 2.0 * tolerance) or not there:
+        if above - below <= 2.0 * room:
             continue
-        height = 0.5 * (below + above)
-        try:
-            off = _off(mesh, height, there, path)
-        except ReadError as error:
-            return Check("outline", ok=False, value=None, limit=tolerance, unit="mm", detail=f"{name}: {error.message}")
-        if off > worst:
-            worst, where = off, f" at z = {height:.6g} mm"
+        there = [slab for slab in slabs if slab.low <= below and slab.high >= above]
+        for height in (below + room, above - room):
+            try:
+                off = _off(mesh, height, there, path)
+            except ReadError as error:
+                told = f"{name}: {error.message}"
+                return Check("outline", ok=False, value=None, limit=tolerance, unit="mm", detail=told)
+            if off > worst:
+                worst, where = off, f" at z = {height:.6g} mm"
     return at_most("outline", worst, tolerance, "mm", detail=f"{name}{where}", slack=ROUNDING)
 
 
@@ -73,9 +74,10 @@ def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
     """How far the section at a height is from the union of the slabs there."""
     _, outline = section(mesh, height)
     loops = [outline.points[ring] for ring in rings(outline, path)]
-    if not loops:
+    if not loops or not slabs:
         return np.inf
-    off = float(np.abs(_signed(slabs, np.concatenate(loops))).max())
+    middles = [0.5 * (loop + np.roll(loop, -1, axis=0)) for loop in loops]
+    off = float(np.abs(_signed(slabs, np.concatenate(loops + middles))).max())
     drawn = [Contour.from_vertices(loop) for loop in loops]
     for slab in slabs:
         points = np.concatenate([edge.vertices for edge in (slab.outer, *slab.holes)])
@@ -84,10 +86,6 @@ def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
             points = points[_signed(others, points) > ROUNDING]
         if len(points):
             off = max(off, float(np.min([contour.distance(points) for contour in drawn], axis=0).max()))
-    if len(slabs) == 1:
-        edges = (slabs[0].outer, *slabs[0].holes)
-        meant = abs(slabs[0].outer.area) - sum(abs(hole.area) for hole in slabs[0].holes)
-        off = max(off, abs(sum(contour.area for contour in drawn) - meant) / sum(edge.length for edge in edges))
     return off
 
 

@@ -273,6 +273,7 @@ def spoilt(mesh, change):
     return change(corners)
 
 
+LEAF = np.array([[30.0, 10.0, 2.0], [31.0, 10.0, 2.0], [30.0, 11.0, 2.0]])
 FAULTS = {
     "a triangle less": (lambda c: c[1:], "watertight"),
     "a triangle flipped": (lambda c: np.concatenate([c[:1, ::-1], c[1:]]), "watertight"),
@@ -283,6 +284,9 @@ FAULTS = {
     "shifted": (lambda c: c + np.array([0.02, 0.0, 0.0]), "outline"),
     "wider": (lambda c: c * [1.001, 1.0, 1.0], "outline"),
     "mirrored": (lambda c: (c * [1.0, -1.0, 1.0])[:, ::-1], "outline"),
+    "a foot longer": (lambda c: np.where(c == [[[-1.0, -1.0, 0.0]]], -0.02, c), "thickness"),
+    "leaning": (lambda c: c + 0.005 * (c[..., 2:] - 6.65) * np.array([1.0, 0.0, 0.0]), "outline"),
+    "a leaf inside": (lambda c: np.concatenate([c, [LEAF, LEAF[::-1]]]), "watertight"),
     "upper storey turned": (lambda c: np.where(c[..., 2:] > 12.5, c * [1.01, 1.01, 1.0], c), "outline"),
 }
 
@@ -326,3 +330,76 @@ def test_a_plate_left_out_is_seen_where_plates_overlap():
         body([Plate(BAR, (disc(10.0, 10.0, 3.0),), 0.0, 4.0), plates[1]]), tolerance=E, precision=DECIMALS
     )
     assert failing(holed, whole) == {"outline"}
+
+
+def column(corners, low=0.0, high=8.0):
+    """Triangles of a prism over a convex polygon (n, 2)."""
+    n = len(corners)
+    floor, roof = (np.column_stack([corners, np.full(n, z)]) for z in (low, high))
+    after = np.roll(np.arange(n), -1)
+    sides = [[floor, floor[after], roof[after]], [floor, roof[after], roof]]
+    ends = [[[e[0], e[i], e[i + 1]][::way] for i in range(1, n - 1)] for e, way in ((roof, 1), (floor, -1))]
+    return np.concatenate([*(np.stack(side, axis=1) for side in sides), *map(np.array, ends)])
+
+
+SQUARE = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]])
+BLOCK = body([Plate(box(0.0, 0.0, 20.0, 20.0), (), 0.0, 8.0)])
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize(("share", "caught"), [(0.9999, set()), (1.0001, {"thickness"})])
+def test_heights_are_held_to_the_tolerance_at_either_end(sense, share, caught):
+    off = sense * share * E
+    assert failing(column(SQUARE), BLOCK) == set()
+    assert failing(column(SQUARE, low=off), BLOCK) == caught
+    assert failing(column(SQUARE, high=8.0 + off), BLOCK) == caught
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize(("share", "caught"), [(0.9999, set()), (1.0001, {"outline"})])
+def test_outlines_are_held_to_the_tolerance(sense, share, caught):
+    assert failing(column(SQUARE + np.array([sense * share * E, 0.0])), BLOCK) == caught
+
+
+@pytest.mark.parametrize("others", [[], [Plate(box(-3.0, -3.0, 3.0, 3.0), (), 0.0, 8.0)]], ids=["alone", "in a union"])
+def test_a_polygon_for_a_disc_is_seen_in_the_middle_of_its_edges(others):
+    """All corners lie on the circle, and those of the circle on the polygon."""
+    meant = body([Plate(disc(0.0, 0.0, 10.0), (), 0.0, 8.0), *others])
+    for count, caught in ((6, {"outline"}), (68, {"outline"}), (72, set())):  # sagitta 10 (1 - cos(pi/n))
+        angle = 2.0 * np.pi * np.arange(count) / count
+        assert failing(column(10.0 * np.column_stack([np.cos(angle), np.sin(angle)])), meant) == caught
+
+
+def test_walls_that_lean_by_more_than_the_tolerance_are_seen_though_they_are_right_midway():
+    corners = column(SQUARE)
+    for share, caught in ((0.99, set()), (1.02, {"outline"})):
+        lean = share * E / (4.0 - 1.5 * E) * (corners[..., 2:] - 4.0)
+        assert failing(corners + lean * [1.0, 0.0, 0.0], BLOCK) == caught
+
+
+def test_what_lies_between_levels_nearer_than_they_are_told_is_not_looked_at():
+    plates = [Plate(box(0.0, 0.0, 20.0, 20.0), (), 0.0, 8.0)]
+    for thick, caught in ((2.9 * E, set()), (3.1 * E, {"outline"})):
+        step = Plate(box(0.0, 0.0, 30.0, 20.0), (), 4.0, 4.0 + thick)
+        assert failing(column(SQUARE), body([*plates, step])) == caught
+
+
+def test_corners_of_a_slab_that_lies_a_little_within_another_are_no_corners_of_the_body():
+    meant = body([Plate(box(0.0, 0.0, 12.0, 20.0), (), 0.0, 8.0), Plate(box(11.5, 5.0, 20.0, 15.0), (), 0.0, 8.0)])
+    mesh, _ = body_mesh(meant, tolerance=E, precision=DECIMALS)
+    assert failing(mesh, meant) == set()
+
+
+@pytest.mark.parametrize("filled", [False, True])
+def test_no_body_is_meant_in_two_parts_above_each_other(filled):
+    parts = [Plate(box(0.0, 0.0, 20.0, 20.0), (), low, low + 3.0) for low in (0.0, 5.0)]
+    corners = column(SQUARE) if filled else np.concatenate([column(SQUARE, p.low, p.high) for p in parts])
+    assert failing(corners, body(parts)) == {"outline"}
+
+
+def test_a_triangle_without_area_is_a_fault_where_its_edges_are_none():
+    corners = column(SQUARE)
+    first = corners[0]  # split at the middle of its first edge, and the gap that this leaves closed by a straight line
+    middle = 0.5 * (first[0] + first[1])
+    split = [[first[0], middle, first[2]], [middle, first[1], first[2]], [first[1], middle, first[0]]]
+    assert failing(np.concatenate([split, corners[1:]]), BLOCK) == {"watertight"}
