@@ -132,6 +132,15 @@ def check_proof(gap: np.ndarray, shape: Polygon | ArcSpline | BSpline, tolerance
     assert max(-gap.min(), 0.0) >= shape.bound.inward - slack * tolerance - floor
 
 
+@pytest.mark.parametrize(
+    ("name", "tolerance", "close"), [("circle", 0.5, 2e-4), ("nearly a cusp", 0.1, 2e-5), ("nearly a cusp", 3e-3, 6e-4)]
+)
+def test_a_polygon_uses_both_sides_alike(name: str, tolerance: float, close: float) -> None:
+    """Whichever side a first proof shows to be used more: of the first it is the outer, of the others the inner one."""
+    bound = fit_polygon(Curve.whole(SupportShape(LIFTS[name])), tolerance).bound
+    assert bound.outward == pytest.approx(bound.inward, abs=close * tolerance)
+
+
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_polygon_is_proved_full_and_small(lift: Lift, tolerance: float) -> None:
     curve = Curve.whole(SupportShape(lift))
