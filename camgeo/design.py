@@ -241,7 +241,8 @@ def _part(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> tuple[
 
         wall, at = least_wall(contour, part.bore)
         ok = wall > 0.0 if part.wall is None else wall >= part.wall
-        return None, [Check("wall", ok, wall, part.wall or 0.0, "mm", shaft_deg(intent, at), "at_least")]
+        told = "" if ok else "bore and contour" if wall > -0.5 * part.bore else "the shaft lies outside the contour"
+        return None, [Check("wall", ok, wall, part.wall or 0.0, "mm", shaft_deg(intent, at), "at_least", detail=told)]
     from camgeo.part.body import body_of
     from camgeo.part.check import part_checks
 

@@ -140,3 +140,11 @@ def test_a_spline_of_many_metres_is_judged_as_finely_as_rounding_allows(tmp_path
         encoding="utf-8",
     )
     assert main(["export", str(path), "--out", str(tmp_path / "out")]) == 0
+
+
+@pytest.mark.parametrize("formula", ["1e308 + cos(3*t)", "1e100 + cos(3*t)", "2000001 + cos(3*t)"])
+def test_a_formula_beyond_any_cam_is_refused_with_its_figure(tmp_path, capsys, formula):
+    path = tmp_path / "big.yaml"
+    path.write_text(f"cam: {{kind: support, p: {formula}}}\npart: {{bore: 10}}\n", encoding="utf-8")
+    assert main(["check", str(path)]) == 2
+    assert "big.yaml:1:25: cam.p: p reaches " in capsys.readouterr().err

@@ -36,7 +36,6 @@ def told(name: str, value: float | None, limit: float | None, cam: str, more: st
         ("", "radius-of-curvature", -1.0, 0.0, "pair"),
         ("a chamfer below 0.4 mm", "chamfer", 0.4, 0.5, "support"),
         ("no chamfer, or a contour without corners", "chamfer", 0.0, 0.5, "support"),
-        ("a bore smaller by more than 3 mm", "wall", -0.5, 1.0, "support"),
         ("", "motion", 0.002, 0.001, "support"),
         ("", "volume", 2.0, 1.0, "support"),
         ("", "wall", None, 1.0, "support"),
@@ -54,6 +53,13 @@ def test_a_motion_limit_of_ones_own() -> None:
     assert told("motion", 0.002, 0.001, "roller", LIMITED, file="sent.dxf") == "verify.motion_error above 0.002"
 
 
+def test_a_smaller_bore_where_one_would_do() -> None:
+    bored = "\npart: {bore: 10}"
+    assert told("wall", -0.5, 1.0, "support", bored) == "a bore smaller by more than 3 mm"
+    assert told("wall", -4.5, 1.0, "support", bored) == ""
+
+
 def test_what_the_check_tells_itself_is_not_told_again() -> None:
-    assert told("wall", -0.5, 0.0, "support", detail="bore and bolt hole 3") == ""
+    bolted = "\npart: {bore: 10, bolts: {count: 4, circle: 20, hole: 9}}"
+    assert told("wall", -0.5, 0.0, "support", bolted, detail="bore and bolt hole 3") == ""
     assert told("chamfer", 0.4, 0.5, "support", file="cam.stl") == ""

@@ -217,6 +217,14 @@ def test_a_bore_through_the_contour_is_a_failed_check_and_no_file(tmp_path: Path
     outcome = pipeline.export(recipe, tmp_path)
     assert failed(outcome.report) == {"wall"}
     assert outcome.report["files"] == []
+    assert outcome.report["checks"][-1]["detail"] == "bore and contour"
+
+
+def test_a_shaft_beside_the_contour_is_told_as_that(tmp_path: Path) -> None:
+    text = b"cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [100, 0]}\npart: {bore: 10}\n"
+    outcome = pipeline.export(read(text, "beside.yaml"), tmp_path)
+    assert failed(outcome.report) == {"wall"}
+    assert outcome.report["checks"][-1]["detail"] == "the shaft lies outside the contour"
 
 
 def test_a_file_is_verified_to_its_own_tolerance(tmp_path: Path) -> None:

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
 from camgeo.curve import Curve
 from camgeo.offset import Parallel
 from camgeo.recipe.model import (
@@ -20,6 +22,7 @@ from camgeo.recipe.model import (
     ReuleauxShape,
     SupportCam,
 )
+from camgeo.recipe.spec import MOST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,6 +31,8 @@ if TYPE_CHECKING:
     from kin.law import Programme
     from kin.lift import Lift
     from kin.transmission import Transmission
+
+LOOKS = 72  # places at which the size of a formula's values is looked at
 
 
 @dataclass(frozen=True)
@@ -87,15 +92,27 @@ def _support(cam: SupportCam) -> Lift:
 
     shape = cam.shape
     if isinstance(shape, FormulaShape):
-        from kin.formula import Formula
-        from kin.lift_formula import lift_from_formula
-
-        return lift_from_formula(Formula(shape.text), cam.pivot, shape.scale)
+        return _formula(shape, cam.pivot)
     if isinstance(shape, FourierShape):
         return lift.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), cam.pivot)
     if isinstance(shape, ReuleauxShape):
         return lift.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, cam.pivot)
     return lift.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, cam.pivot)
+
+
+def _formula(shape: FormulaShape, pivot: tuple[float, float]) -> Lift:
+    from kin.formula import Formula
+    from kin.law import IntentError
+    from kin.lift_formula import lift_from_formula
+
+    lift = lift_from_formula(Formula(shape.text), pivot, shape.scale)
+    t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
+    size = np.abs(lift.derivatives(t, 0)[0]) / shape.scale
+    largest = int(np.argmax(size))
+    if size[largest] > MOST:  # other lengths are bounded as they are read
+        at = math.degrees(t[largest])
+        raise IntentError(f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}", "p", at)
+    return lift
 
 
 def _transmission(cam: DoubleRollerCam | FlatPairCam) -> Transmission:

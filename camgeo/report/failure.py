@@ -68,14 +68,13 @@ def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str
         return ""
     if name == "radius-of-curvature":
         return _rounder(recipe, value, limit, unit)
-    if name == "wall" and check.get("detail"):
-        return ""  # the check names the edges
     if name == "chamfer" and "file" not in check:
         return (
             f"a chamfer below {downward(value)} {unit}" if value > 0.0 else "no chamfer, or a contour without corners"
         )
-    if name == "wall":
-        return f"a bore smaller by more than {upward(2.0 * (limit - value))} {unit}"
+    if name == "wall" and recipe.part.plain and recipe.part.bore is not None:  # else the check names the edges
+        less = 2.0 * (limit - value)
+        return f"a bore smaller by more than {upward(less)} {unit}" if less * recipe.mm < recipe.part.bore else ""
     if name == "motion" and recipe.verify.motion_error is not None and value > 0.0:
         return _nearer(check, report, recipe)
     return ""
