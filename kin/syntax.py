@@ -248,7 +248,8 @@ class _Parser:
         variables = self._builder.variables
         allowed = [*variables, *CONSTANTS, *FUNCTIONS]
         lower = name.lower()
-        near = get_close_matches(lower, allowed, n=1)
+        near = [known for known in FUNCTIONS if len(known) > 2 and lower.startswith(known)]  # cosine, arctangent
+        near = near[-1:] or get_close_matches(lower, allowed, n=1)
         if lower in _OTHER_NAMES:
             hint = f"; write {_OTHER_NAMES[lower]}"
         elif near:

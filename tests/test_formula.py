@@ -180,6 +180,11 @@ def attempt(call):
         ("(-8)**(1/3)", "fractional power of a negative number", 4),
         ("exp(1000)", "overflow in exp", 0),
         ("1+sn(t)", f"unknown name 'sn'; did you mean sin? (variable: t; constants: pi, e; functions: {FUNCTIONS})", 2),
+        (
+            "cosine(t)",
+            f"unknown name 'cosine'; did you mean cos? (variable: t; constants: pi, e; functions: {FUNCTIONS})",
+            0,
+        ),
         ("ln(t)", f"unknown name 'ln'; write log (variable: t; constants: pi, e; functions: {FUNCTIONS})", 0),
         ("x", f"unknown name 'x' (variable: t; constants: pi, e; functions: {FUNCTIONS})", 0),
         ("t + " * 300, "the formula has 1200 characters; 1000 are allowed", 1000),
