@@ -192,6 +192,67 @@ def test_digits_follow_the_tolerance():
     assert depths(6.0, 8.0) == [-6.0]
 
 
+def test_digits_follow_what_lies_close_together():
+    assert places(0.1, 1.0) == places(0.1, 1.0, [5.0, 0.6]) == 3
+    assert places(0.1, 1.0, [5.0, 0.1]) == 4
+    assert places(0.001, 1.0, [0.1]) == places(0.001, 1.0)
+    assert places(0.1, 25.4, [1e-6 * 25.4]) == 9
+
+
+SLIGHT = {
+    "feed: 400": ("feed: 0.0015", r"F0\.0015"),
+    "plunge: 100": ("plunge: 0.001234567", r"F0\.00123457"),
+    "spindle: 12000": ("spindle: 0.0012", r"S0\.0012 "),
+    "cutter: 6": ("cutter: 0.00001", r"diameter 0\.00001\)"),
+    "depth_of_cut: 2.5": ("depth_of_cut: 0.0301", r"Z-0\.0300"),
+    "safe_height: 5": ("safe_height: 0.00001", r"Z0\.00001"),
+    "safe_height: 5}": ("safe_height: 5, lead_in: 0.00002, allowance: 0.0001, holes: true}", r"X27\.00012"),
+}
+
+
+@pytest.mark.parametrize("usual", SLIGHT)
+@pytest.mark.parametrize("tolerance", [0.001, 0.1])
+def test_slight_figures_do_not_round_away(tmp_path, usual, tolerance):
+    slight, written = SLIGHT[usual]
+    milling = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 12000, depth_of_cut: 2.5, safe_height: 5}\n"
+    assert usual in milling
+    body = f"name: c\n{SUPPORT}part: {PLAIN}\nexport: {{tolerance: {tolerance}, files: [gcode]}}\n"
+    recipe = read(f"{body}{milling.replace(usual, slight)}".encode(), Path("c.yaml"))
+    outcome = pipeline.export(recipe, tmp_path)
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    text = (outcome.folder / "c.ngc").read_text()
+    assert re.search(written, text)
+    program = read_gcode(outcome.folder / "c.ngc")
+    asked = recipe.manufacture
+    assert {round(move.feed, 8) for move in program.moves if not move.rapid} == {asked.feed, round(asked.plunge, 8)}
+    assert max(move.end[2] for move in program.moves) == asked.safe_height
+    heights = sorted({move.end[2] for move in program.moves if not move.rapid}, reverse=True)
+    assert heights == pytest.approx(depths(6.0, asked.depth_of_cut), abs=0.0021 * asked.depth_of_cut)
+    if asked.allowance is not None:
+        ends = {move.end[:2] for move in program.moves if move.end[2] == -6.0}
+        assert len(ends) > 20, "a rough path beside the fine one"
+
+
+@pytest.mark.parametrize("tiny", ["feed: 0.0004", "plunge: 1e-9", "spindle: 0.0001", "safe_height: 1e-9"])
+def test_figures_that_no_program_tells_are_refused(tiny):
+    key = tiny.partition(":")[0]
+    milling = {"cutter": 6, "feed": 400, "plunge": 100, "spindle": 12000, "depth_of_cut": 2.5, "safe_height": 5}
+    given = ", ".join(f"{name}: {value}" for name, value in milling.items() if name != key)
+    body = f"{SUPPORT}part: {PLAIN}\nexport: {{files: [gcode]}}\nmanufacture: {{{given}, {tiny}}}\n"
+    with pytest.raises(
+        RecipeErrors, match=rf"manufacture\.{key}: too little for a program, given .*; give at least"
+    ) as caught:
+        read(body.encode(), Path("c.yaml"))
+    assert len(caught.value.errors) == 1
+
+
+def test_a_part_that_is_too_thin_for_a_program_is_refused():
+    with pytest.raises(
+        RecipeErrors, match=r"part.thickness: too little for a program, given 1e-09 mm; give at least 1e-06"
+    ):
+        recipe_of(part="{thickness: 1e-9, bore: 10}")
+
+
 def test_metal_that_no_cutter_reaches(tmp_path):
     outcome = pipeline.check(recipe_of(cam=DEEP, cutter=20))
     assert not outcome.ok

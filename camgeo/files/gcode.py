@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from camgeo.manufacture.toolpath import Pass
 
 SHARE = 0.05  # of the tolerance that is left to the rounding of numbers
+KEPT = 2e-3  # of a length that a place is told by: the last place is no more
+FIGURES = 6  # significant ones, at least, of a feed
 LEAST_PLACES = 3
 STRAIGHT = 0.25  # of the last place: an arc no higher than this over its chord is written as a line
 _COMMENT = 200  # characters
@@ -35,13 +37,15 @@ class Cutting:
     safe_height: float
 
 
-def places(tolerance: float, mm: float) -> int:
+def places(tolerance: float, mm: float, lengths: Sequence[float] = ()) -> int:
     """Decimal places that keep the rounding of ends and centres within `SHARE` of a tolerance in mm.
 
     An end, a centre and so a radius are each off by up to 0.71, 0.71 and 1.42 of the last place's half, in a machine
-    that takes the arc from any of them: together less than 2.5 times the last place.
+    that takes the arc from any of them: together less than 2.5 times the last place. Nor do `lengths`, mm, by which
+    places lie apart (a pass above another, a rough path beside a fine one) lose more than `KEPT` of themselves.
     """
-    return max(math.ceil(-math.log10(SHARE * tolerance / (2.5 * mm))), LEAST_PLACES)
+    last = min([SHARE * tolerance / 2.5, *(KEPT * one for one in lengths)])
+    return max(math.ceil(-math.log10(last / mm)), LEAST_PLACES)
 
 
 def rounding(count: int, mm: float) -> float:
@@ -69,7 +73,7 @@ def write_gcode(
         "G17 G90 G94",
         "G40 G49 G80",
         f"G0 Z{number(cutting.safe_height)}",
-        f"S{cutting.spindle:.9g} M3",
+        f"S{plain(cutting.spindle)} M3",
     ]
     for name, steps in features:
         for k, step in enumerate(steps, start=1):
@@ -99,8 +103,8 @@ def _pass(step: Pass, cutting: Cutting, number: _Numbers) -> Iterator[str]:
     points = number.rounded(step.loop.points)
     places = [(_plain(x, number.count), _plain(y, number.count)) for x, y in points.tolist()]
     yield f"G0 X{places[0][0]} Y{places[0][1]}"
-    yield f"G1 Z{number(step.z)} F{_plain(cutting.plunge / number.mm, 3)}"
-    feed = f" F{_plain(cutting.feed / number.mm, 3)}"
+    yield f"G1 Z{number(step.z)} F{_feed(cutting.plunge / number.mm)}"
+    feed = f" F{_feed(cutting.feed / number.mm)}"
     for i, bulge in enumerate(step.loop.bulges.tolist()):
         if places[i + 1] == places[i]:
             continue
@@ -119,6 +123,16 @@ def _cut(start: Array, end: Array, bulge: float, place: tuple[str, str], count: 
     aside = (1.0 - bulge * bulge) / (4.0 * bulge)
     i, j = 0.5 * chord[0] - aside * chord[1], 0.5 * chord[1] + aside * chord[0]
     return f"G{3 if bulge > 0.0 else 2} X{x} Y{y} I{_plain(float(i), count)} J{_plain(float(j), count)}"
+
+
+def plain(value: float) -> str:
+    """Write a number in nine figures without an exponent, which no controller reads."""
+    return np.format_float_positional(value, precision=9, fractional=False, trim="-")
+
+
+def _feed(value: float) -> str:
+    """Write a feed in three decimals, or as many as make up `FIGURES`."""
+    return _plain(value, max(LEAST_PLACES, FIGURES - 1 - math.floor(math.log10(value))))
 
 
 def _plain(value: float, count: int) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
-from camgeo.files.gcode import Cutting, places, rounding, write_gcode
+from camgeo.files.gcode import Cutting, places, plain, rounding, write_gcode
 from camgeo.fit.pieces import ArcSpline
 from camgeo.making.job import Made
 from camgeo.manufacture.milling import clear_of_hub, few_passes, milled_holes, path_of, reach_check, unmilled
-from camgeo.manufacture.toolpath import begun_at, circle, led, passes
+from camgeo.manufacture.toolpath import begun_at, circle, depths, led, passes
 from camgeo.outlines import Outlines
 from kin.check import about
 
@@ -39,7 +40,7 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     check = about(check, path.name)
     if not check.ok:
         return Made((), (check,))
-    count = places(job.tolerance(request), recipe.mm)
+    count = places(job.tolerance(request), recipe.mm, _told_apart(job, asked))
     with job.refusals(request):
         fine = _outline(job, path_of(recipe, job.design), job.tolerance(request) - rounding(count, recipe.mm))
         rough = None
@@ -51,6 +52,14 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     bound = fine.bound.widened(rounding(count, recipe.mm))
     made = job.judged(request, path, bound, fine.count)
     return Made(made.files, (check, *made.checks))
+
+
+def _told_apart(job: Job, asked: Manufacture) -> list[float]:
+    """Lengths by which places of the program lie apart, mm."""
+    step = -depths(job.recipe.part.thickness or 0.0, asked.depth_of_cut or math.inf)[0]
+    found, _ = milled_holes(job.recipe, job.design)
+    lead = min([asked.lead, *(0.5 * (hole.radius - asked.radius) for hole in found)])
+    return [length for length in (step, asked.safe_height, asked.allowance, lead) if length]
 
 
 def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
@@ -108,9 +117,9 @@ def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str,
         recipe.name,
         recipe.about,
         f"units: {'inch' if recipe.units == 'inch' else 'mm'}",
-        f"cutter: diameter {asked.cutter / mm:.9g}",
-        f"tolerance: {job.tolerance(request) / mm:.9g}",
-        f"zero: the shaft, {top}; thickness {(recipe.part.thickness or 0.0) / mm:.9g}",
+        f"cutter: diameter {plain(asked.cutter / mm)}",
+        f"tolerance: {plain(job.tolerance(request) / mm)}",
+        f"zero: the shaft, {top}; thickness {plain((recipe.part.thickness or 0.0) / mm)}",
         f"{asked.direction} milling, spindle clockwise",
         *(f"not milled: {name}, {why}" for name, why in unmilled(recipe, job.design)),
     ]

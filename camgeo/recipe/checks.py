@@ -15,7 +15,7 @@ from camgeo.recipe.check_sweep import check_sweep
 from camgeo.recipe.model import SOLIDS
 from camgeo.recipe.spec import either
 from camgeo.recipe.table_cam import SWINGING
-from camgeo.recipe.table_manufacture import NEEDED
+from camgeo.recipe.table_manufacture import LEAST_TOLD, NEEDED, SHORTEST
 from camgeo.rounded import downward
 
 if TYPE_CHECKING:
@@ -106,6 +106,17 @@ def _milling(path: str, reader: Reader) -> None:
         reader.fault_at(path, "gcode needs a thickness", None, "give part.thickness, or leave gcode out")
 
 
+def _slight(values: Values, reader: Reader) -> None:
+    """Note figures so slight that a program would need its digits for them alone."""
+    for table, least_told in (("manufacture", LEAST_TOLD), ("part", {"thickness": SHORTEST})):
+        for name, least in least_told.items():
+            unit, mm = ("turns a minute", 1.0) if name == "spindle" else (reader.units, reader.mm)
+            value = values.get(table, {}).get(name)
+            if value is not None and value < least * mm:
+                remedy = f"give at least {least:.6g} {unit}"
+                reader.fault_at(f"{table}.{name}", "too little for a program", f"{value / mm:.6g} {unit}", remedy)
+
+
 def _train(train: Values, reader: Reader) -> None:
     if "play" in train and "rate" in train:
         reader.fault_at(
@@ -126,6 +137,8 @@ def _files(values: Values, reader: Reader) -> None:
     files: list[Values] = values.get("export", {}).get("files", [])
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
+    if any(request.kind == "gcode" for request in listed):
+        _slight(values, reader)
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
         path = file["path"]
         if request.kind in SOLIDS and "part.thickness" not in reader.marks:

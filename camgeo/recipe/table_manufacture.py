@@ -45,6 +45,11 @@ MANUFACTURE = Table(
 NEEDED = ("feed", "plunge", "spindle", "depth_of_cut", "safe_height")
 """Keys that a program for a machine cannot do without."""
 
+SLOWEST, SHORTEST = 0.001, 1e-6
+LEAST_TOLD = dict.fromkeys(("feed", "plunge", "spindle"), SLOWEST)
+LEAST_TOLD |= dict.fromkeys(("cutter", "depth_of_cut", "safe_height", "lead_in", "allowance"), SHORTEST)
+"""Least figures of a program, in the recipe's unit: bounds against slips, far below what any machine keeps to."""
+
 COMPENSATION = (
     length("kerf", "width of the cut: the metal is drawn larger by half of it, openings smaller", default="0"),
     length("clearance", "what the metal stands back all round; openings become larger", default="0"),
