@@ -319,6 +319,30 @@ def test_extremes_are_those_of_a_dense_sampling(r, zeta):
     assert found.force.greatest - force.max() < 1e-3 * spread
 
 
+@pytest.mark.parametrize("zeta", [0.0, 0.02, 0.4])
+@pytest.mark.parametrize("r", [5.3, 60.3, 2e4])
+def test_samples_are_in_order_and_as_close_as_what_rings_asks_for(r, zeta):
+    (drive,) = drives([Cycloid(1.2, 1e-2)])
+    found = response(oscillator(r, zeta), drive, Forcing())
+    starts = found.starts(np.array([1e-3, 0.0]), 0, len(found))
+    every = np.arange(len(found))
+    lasting, _ = found.swings(starts, every)
+    at = found.samples(starts, every)
+    assert (np.diff(at.stretch) >= 0).all()
+    assert (lasting > 0.0).any() or r < 1e4
+    assert found.step * r <= 0.25  # 25 in a swing: a parabola through three is right to a part in a thousand
+    for i in every.tolist():
+        width, time = 2.0 * found.half[i], at.time[at.stretch == i]
+        assert (time[0], time[-1]) == (0.0, pytest.approx(width, rel=1e-15))
+        assert (np.diff(time) >= 0.0).all()
+        assert np.diff(time).max() <= width / 32 * (1.0 + 1e-12)
+        if lasting[i]:
+            rings = np.append(time[time <= lasting[i]], lasting[i])
+            assert np.diff(rings).max() <= found.step
+            left = abs(found.rung(starts, Samples(np.array([i]), lasting[i : i + 1]))[0, 0])
+            assert lasting[i] == width or left <= 2e-11 * (1e-3 + np.abs(found.p).sum(axis=1).max())
+
+
 def test_residual_vibration_of_an_undamped_train_is_its_free_amplitude():
     motion, r = Cycloid(math.radians(100.0), 1e-2), 20.3
     (drive,) = drives([motion])

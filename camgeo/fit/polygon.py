@@ -114,7 +114,7 @@ def _balanced(curve: Curve, run: Run, parts: list[_Part], shift: float, toleranc
     outward, inward = edges.extremes
     level = run.closed and bool((sides == sides[0]).all())
     if level and math.isfinite(outward + inward) and abs(outward - inward) > BALANCED * tolerance:
-        shift = min(0.5 * (outward + inward), tolerance)
+        shift = 0.5 * (outward + inward)
         moved = proved(curve, placed(at, run, nodes, shift * sides), tolerance)
         if max(moved.extremes) < max(outward, inward):
             return moved
