@@ -98,7 +98,7 @@ class Resting:
 
     @cached_property
     def least_rate(self) -> tuple[float, float]:
-        """Least rate of the shaft over the relative angle, 1 - theta_3', and where: of the cubics between the nodes."""
+        """Least rate of the shaft over the relative angle, 1 - theta_3', and where, rad; of cubics between nodes."""
         h = np.diff(self.nodes)
         first, last = self.low[0, 1], self.high[0, 1]
         mean = (self.high[0, 0] - self.low[0, 0]) / h
@@ -113,7 +113,10 @@ class Resting:
         return float(rate[k, i]), float(self.nodes[i] + (0.0, 1.0, s[i])[k] * h[i])
 
     def relative(self, shaft: Array, side: int = 1) -> tuple[Array, Indices]:
-        """Relative angles, in [0, 2 pi], at any shaft angles (n,), and their intervals; at a node those on a side."""
+        """Relative angles, in [0, 2 pi], at any shaft angles (n,), and their intervals (n,), to rounding.
+
+        At a node the interval is that which begins there (side 1) or ends there (side -1).
+        """
         interval, reduced = _place(self.shaft, shaft, side)
         low, high = self.nodes[interval], self.nodes[interval + 1]
         share = (reduced - self.shaft[interval]) / (self.shaft[interval + 1] - self.shaft[interval])
@@ -126,7 +129,7 @@ class Resting:
         return zeros(over, low, high, theta, SETTLED), interval
 
     def shaft_at(self, theta: float) -> float:
-        """Shaft angle at any relative angle, to whole turns."""
+        """Shaft angle at any relative angle, rad, to whole turns."""
         return float(self.rows(*self.place(np.array([theta])))[0, 0, 0])
 
     def place(self, theta: Array, side: int = 1) -> tuple[Array, Indices]:
@@ -135,7 +138,10 @@ class Resting:
         return reduced, interval
 
     def over_shaft(self, shaft: Array, order: int, side: int = 1) -> Array:
-        """Output at shaft angles (n,) and up to two derivatives by them, (order + 1, n); at a node as `relative`."""
+        """Output, rad or mm, at shaft angles (n,) and up to two derivatives by them, (order + 1, n).
+
+        At a node as `relative` has it.
+        """
         phi, output = self.rows(*self.relative(shaft, side))
         rows = [output[0]]
         if order > 0:

@@ -32,7 +32,11 @@ SPLINES = ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE")
 
 
 class Space(NamedTuple):
-    """A file, with the length of its unit in mm, its unit of angle in rad if stated, and its own accuracy in mm."""
+    """A file, with the length of its unit in mm, its unit of angle in rad if stated, and its own accuracy in mm.
+
+    Entities are read from a value that refers to them, in the entity numbered `by`; ReadError for what is not one of
+    the kind, or out of bounds.
+    """
 
     file: Exchange
     mm: float
@@ -47,7 +51,7 @@ class Space(NamedTuple):
         return place
 
     def triple(self, value: Value, by: int, kind: str) -> Array:
-        """Three numbers (3,) of a point or a direction."""
+        """Three numbers (3,) of an entity of a kind, a point in the file's unit or a direction of any length."""
         number = self.file.reference(value, by)
         numbers = self.file.several(self.file.values(number, kind, 2)[1], number)
         if len(numbers) != 3:
@@ -62,7 +66,7 @@ class Space(NamedTuple):
         return found
 
     def frame(self, value: Value, by: int) -> Frame:
-        """Axes of an AXIS2_PLACEMENT_3D."""
+        """Axes of an AXIS2_PLACEMENT_3D, those left out as ISO 10303-42 has them."""
         number = self.file.reference(value, by)
         _, place, axis, first, *_ = (*self.file.values(number, "AXIS2_PLACEMENT_3D", 2), None, None)
         z = np.array([0.0, 0.0, 1.0]) if axis is None else self.triple(axis, number, "DIRECTION")
@@ -106,7 +110,7 @@ class Conic(NamedTuple):
     sweep: float
 
     def at(self, share: Array) -> Array:
-        """Points (k, 3)."""
+        """Points (k, 3) at shares (k,) of the angle."""
         t = self.first + self.sweep * share
         points: Array = self.centre + np.outer(np.cos(t), self.u) + np.outer(np.sin(t), self.v)
         return points
@@ -130,7 +134,7 @@ class Spline(NamedTuple):
         return (last, first) if self.back else (first, last)
 
     def at(self, row: Indices, share: Array) -> Array:
-        """Points (k, 3) of spans (k,)."""
+        """Points (k, 3) of spans (k,) at shares (k,) of their parameter."""
         plan, rise = (part.point(row, share) for part in (self.plan, self.rise))
         return np.column_stack([plan, rise[:, 0]])
 
@@ -168,7 +172,7 @@ class Edge:
         return float(max(np.linalg.norm(first - self.start), np.linalg.norm(last - self.end)))
 
     def crossings(self, z: float) -> list[tuple[Array, bool]]:
-        """Where the edge passes a height, in its own sense: places (3,), and whether it rises there."""
+        """Where the edge passes the height z, mm, in its own sense: places (3,), and whether it rises there."""
         curve = self.curve
         if isinstance(curve, Straight):
             low, high = float(self.start[2]), float(self.end[2])

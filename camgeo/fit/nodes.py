@@ -76,6 +76,7 @@ class Density:
     def of(curve: Curve, stretches: Array, density: Callable[[Frame], Array]) -> list[Density]:
         """Integrate over stretches (m, 2), none of which spans a break, on a grid that follows the curve's cells.
 
+        `density(frame)` gives it at k places by the parameter (k,). One is returned for each stretch, in order.
         Raises CurveError where the curve runs backwards.
         """
         if not len(stretches):
@@ -114,7 +115,7 @@ class Density:
 
     @staticmethod
     def joined(parts: Sequence[Density]) -> Density:
-        """One density over consecutive stretches."""
+        """One density over consecutive stretches, one at least."""
         t = np.concatenate([parts[0].t, *(part.t[1:] for part in parts[1:])])
         base = np.cumsum([0.0, *(part.total for part in parts[:-1])])
         total = np.concatenate([parts[0].sum, *(p.sum[1:] + b for p, b in zip(parts[1:], base[1:], strict=True))])
@@ -126,14 +127,14 @@ class Density:
         return float(self.sum[-1])
 
     def at(self, share: Array) -> Array:
-        """Parameters at which the running integral reaches `share` (n,)."""
+        """Parameters (n,) at which the running integral reaches `share` (n,); even ones where it is 0 all along."""
         if self.total <= 0.0:
             return np.linspace(self.t[0], self.t[-1], share.size)
         nodes: Array = np.interp(share, self.sum, self.t)
         return nodes
 
     def share(self, t: float) -> float:
-        """Integrate up to a parameter."""
+        """Give the running integral at a parameter."""
         return float(np.interp(t, self.t, self.sum))
 
     def nodes(self, count: int) -> Array:
@@ -146,7 +147,9 @@ class Density:
 def reshared(nodes: Array, load: Array, order: float, count: int | None = None) -> Array:
     """Nodes moved so that pieces with more error become shorter: error grows as the length to the power `order`.
 
-    `load` (n,) is the error of each piece between nodes (n + 1,); `count` pieces are made of them, by default as many.
+    `load` (n,) is the error of each piece between nodes (n + 1,); `count` pieces are made of them, by default as many:
+    (count + 1,), the ends kept. Equidistribution, as de Boor has it (Good approximation by splines with variable knots
+    II, 1974). Where a load is infinite, or all are 0, shares are even.
     """
     top = float(load.max(initial=0.0))
     weight = np.ones_like(load)

@@ -166,12 +166,12 @@ class Table:
         return tuple(item.name for item in self.fields)
 
     def field(self, name: str) -> Field:
-        """Find a field by its key, which must be one."""
+        """Find a field by its key, which must be one of the table's."""
         return next(item for item in self.fields if item.name == name)
 
 
 def length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
-    """Make the field of a length above 0."""
+    """Make the field of a length above 0, in the recipe's unit."""
     return Field(name, Kind.LENGTH, about, required, default, above=0, at_most=MOST)
 
 

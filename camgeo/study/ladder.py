@@ -93,7 +93,11 @@ def climb(
     patience: float,
     told: Callable[[str], None] | None = None,
 ) -> Iterator[Rung | Ended]:
-    """Rungs of one form from a tenth of the recipe's unit downward, and last where and why the ladder ended."""
+    """Rungs of one form from a tenth of the recipe's unit downward, and last where and why the ladder ended.
+
+    Files are written into `folder`, one over the other; `patience` is the longest run in seconds, and `told` hears of
+    every rung before it begins. ValueError for a form there is not.
+    """
     exact = form == "exact"
     first, last = (EXACT_EXPONENT, EXACT_EXPONENT) if exact else (FIRST_EXPONENT, LAST_EXPONENT)
     for exponent in range(first, last - 1, -1):
@@ -115,7 +119,7 @@ def climb(
 
 
 def request_of(form: str, tolerance: float) -> FileRequest:
-    """The file that stands for a form."""
+    """The file that stands for a form, within a tolerance in mm; ValueError for a form there is not."""
     if form == "stl":
         return FileRequest("stl", tolerance=tolerance)
     if form in {"polyline", "arcs", "spline", "exact"}:

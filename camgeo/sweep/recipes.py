@@ -92,7 +92,11 @@ def _opened(text: str, entries: collections.abc.Mapping[str, str]) -> str:
 
 
 def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
-    """Output of a recipe's linkage over the shaft angle, or its cam's lift or swing where there is none; its name."""
+    """Output of a recipe's linkage over the shaft angle, or its cam's lift or swing where there is none; its name.
+
+    In degrees or the recipe's units. Raises PlaceError for a linkage that does not turn, TypeError for one on a cam
+    without a lift, which no recipe has, and IntentError as the intent does.
+    """
     from camgeo.profile.build import intent_of
 
     intent = intent_of(recipe.cam)
