@@ -68,7 +68,9 @@ def less_sure(check: Check, by: float) -> Check:
     if not by or check.value is None or check.limit is None:
         return check
     value = check.value + by
-    return replace(check, ok=check.ok and value <= check.limit, value=value)
+    told = f"heights differ by up to {by:.3g} {check.unit} through rounding"
+    detail = f"{check.detail}; {told}" if check.detail else told
+    return replace(check, ok=check.ok and value <= check.limit, value=value, detail=detail)
 
 
 def degrees(angle: float) -> float:

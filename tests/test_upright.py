@@ -115,6 +115,24 @@ def test_tilted_in_single_precision_and_back(tmp_path, name):
     assert not failures(path, INTENTS[name])
 
 
+@pytest.mark.parametrize("middle", [3.0, THICK / 2.0])
+def test_walls_with_corners_halfway_up(tmp_path, middle):
+    """As remeshing leaves them, also where the part is cut to see its section."""
+    points, bore = POINTS["yoke"], 5.0 * circle_points(EDGES)
+    low, high = (solid_triangles(points, bore, *z) for z in ((0.0, middle), (middle, THICK)))
+    walls = np.concatenate([low[: 4 * EDGES], high[: 4 * EDGES]])
+    whole = np.concatenate([walls, solid_triangles(points, bore, 0.0, THICK)[4 * EDGES :]])
+    triangles = tilted_and_back(single(whole), single)
+    path = write_stl(tmp_path / "cam.stl", triangles)
+    solid = read_stl(path)
+    assert solid.prism
+    assert 5e-7 < solid.uneven < 2e-5
+    assert solid.oriented
+    assert not failures(path)
+    leaning = triangles + np.where(np.abs(triangles[:, :, 2:] - middle) < 1.0, [1e-3, 0.0, 0.0], 0.0)
+    assert "thickness" in failures(write_stl(path, leaning))
+
+
 @pytest.mark.parametrize("form", ["%.6g", "%.8g", "%.6f", "%.9e", "%.17g"])
 def test_tilted_and_back_as_text_of_few_digits_or_many(tmp_path, form):
     triangles = tilted_and_back(triangles_of(), decimals(form))
@@ -225,6 +243,8 @@ def test_what_was_found_counts_into_every_figure(tmp_path):
     assert verdict.measured_error == pytest.approx(alone.deviation.worst[0] + solid.uneven, rel=1e-9)
     told = {check.name: check.value for check in verdict.checks}
     assert told["thickness"] >= solid.uneven
+    detail = next(check.detail for check in verdict.checks if check.name == "thickness")
+    assert detail.endswith(f"; heights differ by up to {solid.uneven:.3g} mm through rounding")
     assert told["bore"] > solid.uneven
     # a limit just above the figure of the one section does not hold for all of them
     tight = Limits(LIMITS.tolerance, motion=alone.judged.motion.max + 0.5 * solid.uneven)
