@@ -35,7 +35,7 @@ class Turning:
 
     @staticmethod
     def of(curve: Curve) -> Turning:
-        """Make the table of a whole curve."""
+        """Make the table of a whole closed curve, from its cells' proved bounds of the turn."""
         cells = curve.cells
         width = cells.high - cells.low
         steep = np.maximum(np.abs(cells.rows[2]), np.abs(cells.rows[3]))

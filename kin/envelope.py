@@ -33,10 +33,10 @@ class Envelope(Protocol):
         """Whether the contour is free of undercut, so that each point near it has one foot."""
 
     def feet(self, points: Array) -> Feet:
-        """Feet of points (n, 2)."""
+        """Feet of points (n, 2), mm. Raises UnsettledError where one is not found."""
 
     def points(self, parameter: Array) -> Array:
-        """Points (n, 2) of the contour; of an undercut one also of the parts that are cut off."""
+        """Points (n, 2) of the contour, mm, at parameters (n,); of an undercut one also of what is cut off."""
 
     def radii(self) -> tuple[Array, Array]:
         """Parameters (m,) closely round the turn, and radii of curvature there (m,), mm, negative where hollow."""
@@ -53,7 +53,7 @@ class SupportLaw(Protocol):
         """Angles in [0, 2 pi) where the second derivative may jump."""
 
     def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """Return p and its derivatives, (order + 1, n)."""
+        """Return p, mm, and its derivatives by theta (n,), (order + 1, n); at a break from the right, or left (-1)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +75,7 @@ class PairSupport:
         return Inverse(lambda tau: self.transmission.pitch(tau, 2)[1], self.transmission.breaks)
 
     def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """Return r and its derivatives by t, (order + 1, n), order at most 2."""
+        """Return r, mm, and its derivatives by t, (order + 1, n), order at most 2."""
         tau, step = self._parameter(np.asarray(theta, dtype=float))
         tau = np.where(np.abs(step) < 1e-14, tau, tau + step)  # a break stays a break
         r, t = self.transmission.pitch(tau, 2, side)
@@ -178,7 +178,7 @@ class FlatEnvelope:
         return Feet(theta + step, excess, unit(theta + step), np.where(curved, 1.0 / radius, 0.0))
 
     def area_and_perimeter(self) -> tuple[float, float]:
-        """1/2 integral of (p^2 - p'^2), and integral of p (Cauchy)."""
+        """1/2 integral of (p^2 - p'^2), mm^2, and integral of p, mm (Cauchy)."""
         theta, weight = gauss(self.support.breaks)
         p, slope = self.support.derivatives(theta, 1)
         return float(0.5 * weight @ (p * p - slope * slope)), float(weight @ p)

@@ -40,7 +40,7 @@ def convex_hull(points: Array) -> Indices:
 
 
 def chain(points: Array, order: Indices) -> Indices:
-    """Reduce a sorted chain of indices until it turns left at each one."""
+    """Reduce a chain of points (n, 2) in a sorted order (m,) until it turns left at each: what is left of the order."""
     rest: Indices = order
     while rest.size > 2:
         p = points[rest]
@@ -57,7 +57,7 @@ def chain(points: Array, order: Indices) -> Indices:
 
 
 def repaired(points: Array, order: Indices) -> Indices:
-    """Finish what `chain` began: go from one right turn to the next, stepping back where a corner was removed."""
+    """Finish what `chain` began, on its order (m,): from one right turn to the next, stepping back at each."""
     p = points[order]
     edge = np.diff(p, axis=0)
     wrong = np.flatnonzero(cross(edge[:-1], edge[1:]) <= 0.0) + 1
