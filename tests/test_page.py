@@ -592,3 +592,17 @@ def test_hub_and_timing_mark_are_drawn_on_the_cam(tmp_path: Path) -> None:
     assert low[0] > 8.0
     assert high[0] < 27.0
     assert (low[1], high[1]) == pytest.approx((-0.25, 0.25))
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"), [("four-bar", "a four-bar"), ("inverted-slider-crank", "an inverted slider-crank")]
+)
+def test_the_line_under_the_title_names_the_linkage_as_the_pages_do(kind: str, said: str) -> None:
+    report = {
+        "rotation": "ccw",
+        "units": "inch",
+        "follower": "square frame",
+        "tolerance": 4e-5,
+        "linkage": {"kind": kind},
+    }
+    assert tables.facts(report) == f"square frame in {said} · the shaft turns counter-clockwise · tolerance 4e-05 in"

@@ -390,7 +390,7 @@
       band.setAttribute("d", runs(low).map(outline).join(""));
       const name = data.errors[Math.max(chosen.selectedIndex, 0)].file;
       const most = tidy(worst * micro[1], micro[0]);
-      find("error-note").textContent = `${name}, up to ${most} off the exact contour (black), drawn ${tidy(by)} times as large.`;
+      find("error-note").textContent = `${name}, up to ${most} off the exact contour (the thin line), drawn ${tidy(by)} times as large.`;
       svg.setAttribute("aria-label", find("error-note").textContent);
     };
     chosen.addEventListener("change", redraw);

@@ -181,8 +181,8 @@ def facts(report: dict[str, Any]) -> str:
     unit = "in" if report["units"] == "inch" else "mm"
     kind = report["follower"]
     if "linkage" in report:
-        linkage_kind = str(report["linkage"]["kind"]).replace("-", " ")
-        kind += f" in {'an' if linkage_kind[0] in 'aeiou' else 'a'} {linkage_kind}"
+        linkage_kind = {"inverted-slider-crank": "an inverted slider-crank"}.get(report["linkage"]["kind"])
+        kind += f" in {linkage_kind or 'a ' + report['linkage']['kind']}"
     return escape(f"{kind} · the shaft turns {sense} · tolerance {report['tolerance']:.6g} {unit}")
 
 
