@@ -38,7 +38,7 @@ _ROOM = 0.25  # times the degree squared: half a stretch's radians from which th
 _LEAST_SLOW = 8.0
 _NOISE = 2e-16  # coefficients below this share of the greatest are rounding
 _MOST_PARTS = 100_000
-_PASSES = 3
+_PASSES = 2
 _STEP = 0.25  # radians of free motion between samples
 _SAMPLES = 33  # of a stretch, at least
 _SILENT = 1e-11  # a free motion below this share of all else is not sampled for
@@ -146,8 +146,8 @@ class Response:
     def periodic(self) -> Array:
         """State (2,) at the end of the turn that a turn brings back to itself; ValueError at exact resonance.
 
-        The second and third pass start where free motion is small already, so that its phase, good to r eps, is not
-        what limits the result.
+        The second pass starts where free motion is small already, so that its phase, good to r eps, is not what limits
+        the result.
         """
         state = np.zeros(2)
         for _ in range(_PASSES):
