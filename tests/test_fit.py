@@ -142,7 +142,7 @@ def test_a_polygon_uses_both_sides_alike(name: str, tolerance: float, close: flo
 
 
 def test_edges_that_would_be_the_worse_for_it_are_not_moved() -> None:
-    """Moved to use both sides alike, some edges at a place all but a cusp would pass the tolerance: five more in all."""
+    """Moved to use both sides alike, some edges at a place almost a cusp would pass the tolerance: five more edges."""
     curve = Curve.whole(SupportShape(LIFTS["nearly a cusp"]))
     assert fit_polygon(curve, 1e-5).vertices.shape[0] <= 1.004 * least_vertices(curve, 1e-5)
 

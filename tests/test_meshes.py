@@ -377,6 +377,13 @@ def test_walls_that_lean_by_more_than_the_tolerance_are_seen_though_they_are_rig
         assert failing(corners + lean * [1.0, 0.0, 0.0], BLOCK) == caught
 
 
+@pytest.mark.parametrize("end", [0.0, 8.0])
+def test_walls_that_lean_towards_either_end_are_seen(end):
+    corners = column(SQUARE)
+    leaning = corners + 1.2 * E * (corners[..., 2:] == end) * [1.0, 0.0, 0.0]
+    assert failing(leaning, BLOCK) == {"outline"}
+
+
 def test_what_lies_between_levels_nearer_than_they_are_told_is_not_looked_at():
     plates = [Plate(box(0.0, 0.0, 20.0, 20.0), (), 0.0, 8.0)]
     for thick, caught in ((2.9 * E, set()), (3.1 * E, {"outline"})):
