@@ -3,7 +3,8 @@
 A function of period n samples is known by its nodes and by its greatest and least value over each cell, cell i lying
 between nodes i and i + 1. A window (start i, c cells) is a run of whole cells within the band that no further cell on
 either side fits into. Of all windows the one is taken that reaches farthest along the abscissa, its ends drawn out
-into the cells beside it as if the function ran straight there.
+into the cells beside it as if the function ran straight there. A straight line and a bent one that begins level leave
+a cell at most a fourth of it apart: of windows whose lengths differ by less than half a cell either may be taken.
 
 The engines are numpy, and the plain function `_scan` compiled by numba. Both only compare, and do the same arithmetic
 on the same numbers in the same order, so they find the same windows bit for bit.
