@@ -87,7 +87,10 @@ def _compiled() -> Callable[..., None]:
 
 
 def _scan(samples: Samples, band: float, queue: Indices, start: Indices, cells: Indices) -> None:
-    """Run two pointers round each function, the window's extremes at the heads of two monotone queues."""
+    """Run two pointers round each function, the window's extremes at the heads of two monotone queues.
+
+    All in one: it is compiled, and runs the same where it is not.
+    """
     value, low, high, abscissae = samples
     count, m, n = abscissae.shape
     best = np.empty(count)
