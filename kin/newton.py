@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 FREE = 16
 # Enough for a part in 10^18 of a bracket, which is more than its ends can tell unless they are close to zero.
 HALVINGS = 60
+ROUNDING = 1e-15  # of a place, or of 1 where that is more: a step that is none
 
 
 def zeros(
@@ -27,10 +28,10 @@ def zeros(
 
     `function(x)` gives values and slopes at x, (n,) each. A step that leaves what remains of its bracket ends at its
     end or, every other time, in its middle; after the first `FREE` steps brackets are halved alone. A zero has settled,
-    and stays, after a step of at most `close` (or (n,)). Without one in its bracket, the end nearer to zero is found.
+    and stays, after a step of Newton's own of at most `close` (or (n,)), the next of which would be about its square;
+    after one of another kind only where that was rounding. Without one in its bracket, the end nearer to zero is found.
 
-    Raises UnsettledError where a function is not a number, or where a bracket halved `HALVINGS` times is still wider
-    than `close`.
+    Raises UnsettledError where a function is not a number, or where a bracket halved `HALVINGS` times is still wide.
     """
     x, open_ = start, np.ones(start.shape, dtype=np.bool_)
     for step in range(FREE + HALVINGS):
@@ -38,14 +39,15 @@ def zeros(
         low, high = np.where(value <= 0.0, x, low), np.where(value >= 0.0, x, high)
         usable = (slope > 0.0) & (slope < np.inf) & (step < FREE)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            following = x - value / slope
-        if step % 2 == 0:
-            following = np.clip(following, low, high)
+            newton = x - value / slope
+        following = np.clip(newton, low, high) if step % 2 == 0 else newton
         inside = usable & (following >= low) & (following <= high)
         following = np.where(inside, following, 0.5 * (low + high))
         moved = np.abs(following - x)
         x = np.where(open_, following, x)
-        open_ &= ~(moved <= close) | np.isnan(value)
+        none = np.minimum(close, ROUNDING * np.maximum(np.abs(x), 1.0))
+        enough = np.where(inside & (newton == following), close, none)
+        open_ &= ~(moved <= enough) | np.isnan(value)
         if not open_.any():
             return x
     count, first = int(np.count_nonzero(open_)), int(np.argmax(open_))
