@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DEPTH_SHARE", "Encounter", "Pairs", "Relative", "Seen", "distances", "fastest", "rates", "see"]
 
-ROUNDS = 40  # halvings of a piece that is searched for its deepest point
+ROUNDS = 40  # halvings of a piece searched for its deepest point: its bound is then a 2^41st of it below its middle
 DEPTH_SHARE = 0.02  # precision of a depth, as a part of it
 
 
