@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 RESOLUTION_ANGLE = 1e-13  # rad
 MOST_STEPS = 60
+BESIDE = 1e-12  # rad: so near to a break the derivatives may be those of its other side, by rounding
 SETTLED = 1e-8  # rad: after a Newton step below this the next is lost in rounding, also where f'' jumps
 
 
@@ -317,7 +318,8 @@ class FlatPair:
                 first = (value[todo] - there[0, todo]) / there[1, todo]
                 step[todo] = first - 0.5 * there[2, todo] / there[1, todo] * first * first
                 size = np.abs(step[todo])
-                beyond = (size > SETTLED) & across(self.support.breaks, t[todo], step[todo])
+                beside = np.copysign(BESIDE, step[todo])
+                beyond = across(self.support.breaks, t[todo] - beside, step[todo] + 2.0 * beside) & (size > SETTLED)
                 todo = todo[(size > FINE_STEP) | beyond]
                 if not len(todo):
                     break

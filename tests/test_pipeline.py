@@ -77,6 +77,17 @@ def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> Non
     assert motion["value"] <= 2.0 * motion["limit"]
 
 
+@pytest.mark.parametrize(
+    ("arc", "tolerance"),
+    [("3, arm: 29.5775, arc: {radius: 54.9153}", 2.172e-4), ("7/5, arm: 34.7435, arc: {radius: 55.2848}", 5.166e-4)],
+)
+def test_a_pair_whose_breaks_are_off_by_rounding_is_judged(arc: str, tolerance: float) -> None:
+    export = f"{{tolerance: {tolerance}, files: [{{dxf: {{as: spline}}}}]}}"
+    text = f"cam: {{kind: flat-pair, ratio: {arc}}}\nexport: {export}\n"
+    outcome = pipeline.check(read(text.encode(), "pair.yaml"))
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+
+
 @pytest.mark.parametrize("name", ["as-figure-2a", "w-booth", "reuleaux-nine"])
 def test_the_same_recipe_gives_the_same_bytes(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES[0].with_name(f"{name}.yaml"))
