@@ -126,6 +126,18 @@ def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> No
     assert np.mean(ratios) <= 1.16
 
 
+@pytest.mark.parametrize("tolerance", [5e-4, 1.6e-4, 1e-5, 2e-6, 1e-6])
+def test_where_sharing_does_not_settle_what_came_nearest_is_halved(tolerance: float) -> None:
+    """A double roller in whose contour many places have no nearest cubic, and these move about as nodes are shared."""
+    delta = "{cos: {1: 130}, sin: {1: 60, 3: -14}}"
+    body = f"cam: {{kind: double-roller, ratio: 5/3, arm: 55, roller_radius: 7, delta: {delta}}}\n"
+    contour = designed(load_text(body, "a.yaml")).contour
+    assert contour is not None
+    found = fit_spline(contour, tolerance)
+    assert found.bound.worst <= tolerance
+    assert found.count <= 1.25 * least_spline(contour, tolerance)
+
+
 def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
     for name in ("reuleaux", "reuleaux-nine", "w-ellipse"):
         contour = designed(load(RECIPES / f"{name}.yaml")).contour

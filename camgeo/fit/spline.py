@@ -23,6 +23,8 @@ from camgeo.fit.pieces import Bound, BSpline
 from camgeo.fit.spans import plane, spans_deviation
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from camgeo.curve import Array, Curve
 
 FLOOR = 4.0  # times the least tolerance of points and distances: below it a spline's handles are lost in rounding
@@ -30,7 +32,7 @@ USABLE = 0.985  # of the limit, that errors seen may use; the rest is left to th
 OFFSET = 0.92  # of the aim, how far joints may lie off the curve: room for middles that do not quite touch
 NEAR_CENTRE = 0.25  # of the least radius of curvature, beyond which they lie on the curve instead
 ON_CURVE = 604.39  # a span of length h with its ends on the curve errs by c h^6/604.4 (docs/theory.md 3)
-GROWN = 3  # times there were more nodes, after which spans that fail are halved: sharing does not settle
+GROWN = 4  # times there were more nodes, after which spans that fail are halved: sharing does not settle
 SETTLING = 2  # sharings after which few spans that fail are halved: so many
 HALVED = 0.02  # times the others, or what there would be more of them
 LESS = 0.95  # a greatest load that has not fallen to this
@@ -236,13 +238,14 @@ class _State:
     """How a stretch's nodes have fared since there were more of them, and how often there were more.
 
     `shared` counts how often they were shared; `least` is the least of the greatest loads, `stalled` how often in turn
-    that did not fall.
+    that did not fall. `best` are, of all tries, the nodes that fewest spans follow from if those that fail are halved.
     """
 
     shared: int = 0
     grown: int = 0
     least: float = math.inf
     stalled: int = 0
+    best: Array | None = None
 
 
 def _denser(nodes: Array, load: Array, tolerance: float, state: _State, *, last: bool) -> tuple[Array, _State]:
@@ -252,14 +255,25 @@ def _denser(nodes: Array, load: Array, tolerance: float, state: _State, *, last:
     """
     count = nodes.size - 1
     failing = ~(load <= tolerance)
+    if not math.isfinite(float(load.max())):
+        return _halved(nodes, ~np.isfinite(load)), _State(grown=state.grown, best=state.best)
+    halved = _halved(nodes, failing)
+    best = halved if state.best is None or halved.size < state.best.size else state.best
     growth = GROWTH * FASTER**state.grown
     few = state.shared >= SETTLING and np.count_nonzero(failing) <= max(growth, HALVED) * count
-    if not math.isfinite(float(load.max())):
-        failing = ~np.isfinite(load)
-    elif not (few or last or state.grown >= GROWN):
-        return _shared(nodes, load, tolerance, state)
+    if few or last or state.grown >= GROWN:
+        return halved, _State(grown=state.grown, best=best)
+    moved, after = _shared(nodes, load, tolerance, state)
+    if moved.size > nodes.size and state.shared and (state.grown + 1 >= GROWN or best.size <= moved.size):
+        # places where the nearest cubic ceases to exist move about as nodes are shared: what came nearest is halved
+        return best, _State(grown=state.grown + 1)
+    return moved, replace(after, best=best)
+
+
+def _halved(nodes: Array, failing: NDArray[np.bool_]) -> Array:
+    """Nodes (n + 1,) with one more in the middle of each span of a mask (n,)."""
     middle = 0.5 * (nodes[:-1] + nodes[1:])
-    return np.sort(np.append(nodes, middle[failing])), _State(grown=state.grown)
+    return np.sort(np.append(nodes, middle[failing]))
 
 
 def _shared(nodes: Array, load: Array, tolerance: float, state: _State) -> tuple[Array, _State]:
