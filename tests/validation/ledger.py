@@ -147,9 +147,9 @@ class Workshop:
         return Made(recipe, outcome.report, outcome.folder)
 
 
-def topics(workshop):
-    """Rows of each topic by the name of its module."""
-    return {topic: import_module(topic).rows(workshop) for topic in TOPICS}
+def measured(topic, workshop):
+    """Rows of a topic, by the name of its module."""
+    return import_module(topic).rows(workshop)
 
 
 def misprints(workshop):
@@ -160,7 +160,7 @@ def main():
     sys.path.append(str(ROOT / "tests"))  # as pytest has it
     with TemporaryDirectory() as folder:
         workshop = Workshop(folder)
-        found = topics(workshop)
+        found = {topic: measured(topic, workshop) for topic in TOPICS}
         wrong = [MISPRINT_HEAD, *(one.line() for one in misprints(workshop))]
     for row in (row for rows in found.values() for row in rows if not row.holds):
         print(f"{row.line()}  allowed {row.within}")

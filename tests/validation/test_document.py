@@ -6,23 +6,14 @@ import ledger
 import pytest
 
 
-@pytest.fixture(scope="module")
-def measured(workshop):
-    return ledger.topics(workshop)
-
-
 @pytest.mark.parametrize("topic", ledger.TOPICS)
-def test_published_values_hold(measured, topic):
-    assert len(measured[topic]) >= 4
-    assert [row.line() for row in measured[topic] if not row.holds] == []
-
-
-@pytest.mark.parametrize("topic", ledger.TOPICS)
-def test_the_page_shows_what_is_measured(measured, topic):
+def test_published_values_hold_and_the_page_shows_them(workshop, topic):
     """The same lines in the same order, our figures within what each may differ by or half its last digit."""
-    lines = ledger.shown(topic)
-    assert [tuple(line[:3]) for line in lines] == [row.key for row in measured[topic]]
-    for line, row in zip(lines, measured[topic], strict=True):
+    measured, lines = ledger.measured(topic, workshop), ledger.shown(topic)
+    assert len(measured) >= 4
+    assert [row.line() for row in measured if not row.holds] == []
+    assert [tuple(line[:3]) for line in lines] == [row.key for row in measured]
+    for line, row in zip(lines, measured, strict=True):
         digit = abs(float(f"{row.ours:{row.form}}") - row.ours) + 1e-9 * abs(row.ours)
         assert float(line[3]) == pytest.approx(row.ours, abs=row.within + digit), line
         assert float(line[4].lstrip("< ")) <= max(row.within, 2e-9 * max(1.0, abs(row.value))), line
@@ -42,8 +33,8 @@ def test_the_page_has_no_table_besides():
     assert len(re.findall(r"^\| ---", text, re.MULTILINE)) == len(marks)
 
 
-def test_a_wrong_figure_is_caught(measured):
-    row = measured["test_rabinowitz"][2]
+def test_a_wrong_figure_is_caught(workshop):
+    row = ledger.measured("test_rabinowitz", workshop)[2]
     spoilt = ledger.Row(row.quantity, row.source, row.published, row.value, row.ours + 2 * row.within, row.within)
     assert row.holds
     assert not spoilt.holds
