@@ -13,7 +13,8 @@ from kin.jet import BallJet, Jet
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from kin.piecewise import Piecewise, Stretch
+    from kin.piecewise import Piecewise
+    from kin.stretch import Stretch
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kin.jet import Jet, cos, sin
-from kin.piecewise import Affine, Constant, Piecewise, Series, Stretch
+from kin.piecewise import Piecewise
+from kin.stretch import Affine, Constant, Series, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

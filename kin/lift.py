@@ -20,7 +20,8 @@ from kin.distinct import distinct
 from kin.expression import Expression
 from kin.jet import BallJet, cos, sin
 from kin.law import IntentError, Programme, first_harmonic
-from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Round, Series, Side, Stretch
+from kin.piecewise import Piecewise, Side
+from kin.stretch import Affine, Constant, Harmonics, Round, Series, Stretch
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

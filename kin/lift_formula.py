@@ -15,7 +15,7 @@ from kin.lift import Circle, Lift, about, joined
 
 if TYPE_CHECKING:
     from kin.formula import Formula
-    from kin.piecewise import Stretch
+    from kin.stretch import Stretch
 
 Array = NDArray[np.float64]
 

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from kin.bounding import highest, undecided
 from kin.jet import DomainError
 from kin.law import IntentError
-from kin.piecewise import Constant
+from kin.stretch import Constant
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.piecewise import Stretch
+    from kin.stretch import Stretch
     from kin.transmission_law import Transmission
 
 Array = NDArray[np.float64]

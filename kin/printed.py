@@ -32,9 +32,9 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
 
     watertight  every edge has two triangles, facing outward, none without area
     thickness   it reaches from the lowest slab's lower face to the highest one's upper face
-    outline     just within any two levels farther apart than three times the tolerance the corners of its section, and
+    outline     just within any two levels farther apart than twice the tolerance the corners of its section, and
                 the middles of its edges, lie on the edge of the union of the slabs there, and the slabs' corners on
-                that of the section
+                that of the section; where there is one slab alone the area is its own
     """
     mesh = welded(corners)
     faults = [*mesh.edge_faults, mesh.degenerate, mesh.duplicate, int(mesh.volume <= 0.0)]
@@ -54,11 +54,12 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
 def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, path: Path) -> Check:
     """Hold sections between any two levels against the slabs that pass there, of which there is one at least."""
     levels = distinct(np.array([level for slab in slabs for level in (slab.low, slab.high)]))
-    worst, where, room = 0.0, "", INSIDE * tolerance
+    worst, where = 0.0, ""
     for below, above in zip(levels[:-1].tolist(), levels[1:].tolist(), strict=True):
-        if above - below <= 2.0 * room:
+        if above - below <= 2.0 * tolerance:
             continue
         there = [slab for slab in slabs if slab.low <= below and slab.high >= above]
+        room = min(INSIDE * tolerance, 0.5 * (above - below))
         for height in (below + room, above - room):
             try:
                 off = _off(mesh, height, there, path)
@@ -86,6 +87,10 @@ def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
             points = points[_signed(others, points) > ROUNDING]
         if len(points):
             off = max(off, float(np.min([contour.distance(points) for contour in drawn], axis=0).max()))
+    if len(slabs) == 1:
+        edges = (slabs[0].outer, *slabs[0].holes)
+        meant = abs(slabs[0].outer.area) - sum(abs(hole.area) for hole in slabs[0].holes)
+        off = max(off, abs(sum(contour.area for contour in drawn) - meant) / sum(edge.length for edge in edges))
     return off
 
 

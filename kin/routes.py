@@ -10,7 +10,7 @@ import numpy as np
 
 from kin import ball
 from kin.jet import BallJet, Jet, acos, asin, cos, sin, sqrt
-from kin.piecewise import Harmonics, Series
+from kin.stretch import Harmonics, Series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

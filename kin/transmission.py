@@ -13,9 +13,10 @@ import numpy as np
 from kin.bounding import highest, undecided
 from kin.expression import FormulaError
 from kin.law import IntentError, Programme
-from kin.piecewise import Affine, Constant, Harmonics, Piecewise, Stretch
+from kin.piecewise import Piecewise
 from kin.possible import JOIN, checked, demand_leaf, demand_ratio, too_steep, too_wide
 from kin.routes import FromArc, FromDelta, FromLeaf, steepness
+from kin.stretch import Affine, Constant, Harmonics, Stretch
 from kin.transmission_law import Transmission
 
 if TYPE_CHECKING:

@@ -22,8 +22,9 @@ from numpy.typing import NDArray
 
 from kin.jet import Ball, BallJet, Jet, cos
 from kin.newton import zeros
-from kin.piecewise import Affine, Constant, Piecewise, Places, Series, Side
+from kin.piecewise import Piecewise, Places, Side
 from kin.routes import DeltaDistance, FromDelta, FromLeaf
+from kin.stretch import Affine, Constant, Series
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,8 @@ import pytest
 
 from kin.bounding import highest, unbounded, undecided
 from kin.jet import sin
-from kin.piecewise import Affine, Constant, Piecewise
+from kin.piecewise import Piecewise
+from kin.stretch import Affine, Constant
 
 
 class Counted:

@@ -28,6 +28,7 @@ FLOORS = {
         floating
         bearing bouncing bounding flaws holding integrated law linkage nesting parallel roots routes step_face syntax
         contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
+        stretch
         biarc dwell figures jet mobility peaks pieces shape
         bezier flight monotone motion response series turn upright
         bernstein chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles

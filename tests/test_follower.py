@@ -11,7 +11,8 @@ from kin.contour import Contour
 from kin.follower import ContactError, DoubleRoller, FlatFace, FlatPair, Roller, Yoke
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
-from kin.piecewise import Constant, Piecewise
+from kin.piecewise import Piecewise
+from kin.stretch import Constant
 from kin.transmission import from_arc, from_delta, from_law
 
 PHI = np.arange(360) * 2 * np.pi / 360
@@ -320,7 +321,7 @@ def test_roller_on_its_own_envelope():
 
 
 def raised(function, offset):
-    from kin.piecewise import Affine
+    from kin.stretch import Affine
 
     return Affine(function, offset)
 

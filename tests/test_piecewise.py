@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kin.jet import BallJet, DomainError, Jet, log, sin
-from kin.piecewise import Affine, Constant, Harmonics, Piecewise
+from kin.piecewise import Piecewise
+from kin.stretch import Affine, Constant, Harmonics
 
 TURN = 2 * math.pi
 SLACK = 8e-15  # a ball's ends are rounded outwards

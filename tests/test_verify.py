@@ -15,7 +15,8 @@ from kin.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower import DoubleRoller, FlatFace, FlatPair, Roller, Yoke
 from kin.judge import judge_contour, volume_check
 from kin.lift import lift_from_fourier, lift_hypocycloid, lift_reuleaux
-from kin.piecewise import Constant, Piecewise
+from kin.piecewise import Piecewise
+from kin.stretch import Constant
 from kin.transmission import from_delta
 from kin.verify import Intent, Limits, verify
 

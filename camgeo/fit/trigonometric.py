@@ -18,14 +18,14 @@ import numpy as np
 from camgeo.fit.bound import FormError
 from camgeo.profile.support import SupportShape
 from kin.expression import Expression
-from kin.piecewise import Harmonics, Round
+from kin.stretch import Harmonics, Round
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from camgeo.curve import Curve
     from kin.expression import Instruction
-    from kin.piecewise import Stretch
+    from kin.stretch import Stretch
 
     Array = NDArray[np.float64]
 
