@@ -24,9 +24,9 @@ FACES = ["face-formula", "face-fourier", "face-bent"]
 YOKES = ["yoke-formula", "yoke-fourier", "reuleaux", "hypocycloid", "constant-breadth"]
 PAIRS = [f"{kind}-{route}" for kind in ("double-roller", "flat-pair") for route in ("delta", "law", "arc", "rosette")]
 FAMILIES = [*FACES, *YOKES, *PAIRS]
-LINKAGES = ["four-bar", "inverted-slider-crank", "slider-crank", "rrr", "rrp", "rpr"]
-TOPICS = ["part", "milling", "set", "dynamics", "compensation", "inspection", "page", "trim", "limits", "linkage-set"]
-TOPICS += [*LINKAGES, "solids", "fault"]
+LINKED = ["four-bar", "inverted-slider-crank", "slider-crank", "rrr", "rrp", "rpr", "linkage-set"]
+TOPICS = ["part", "milling", "set", "dynamics", "compensation", "inspection", "page", "trim", "limits"]
+TOPICS += [*LINKED, "solids", "fault"]
 STEP = importlib.util.find_spec("OCP") is not None
 
 
@@ -42,16 +42,18 @@ class Made:
 
 def made(seed: int, slot: int, attempt: int = 0) -> Made:
     """Give the recipe of a slot; a later attempt has the same family and topic, and other numbers."""
-    family = FAMILIES[slot % len(FAMILIES)]
-    topic = TOPICS[(slot + slot // len(FAMILIES)) % len(TOPICS)]
+    rounds, place = divmod(slot, len(TOPICS))
+    topic = TOPICS[place]
+    linked = topic in LINKED
+    alike = [each for each in TOPICS if (each in LINKED) == linked]
+    families = YOKES[:-1] if linked else FAMILIES
+    family = families[(rounds * len(alike) + alike.index(topic)) % len(families)]
     draw = Draw(Random(f"{seed} {slot} {attempt}"), 1.0)
-    if topic in LINKAGES or topic == "linkage-set":
-        family = draw.rng.choice(YOKES[:-1])
     name = f"r{slot:03}-{attempt}-{family}-{topic}"
     units = draw.rng.choice(["mm", "mm", "inch"])
     draw.unit = INCH if units == "inch" else 1.0
     recipe: Fields = {"units": units, "rotation": draw.rng.choice(["cw", "ccw"])}
-    recipe["cam"], room = draw.cam(family, linked=topic in LINKAGES or topic == "linkage-set")
+    recipe["cam"], room = draw.cam(family, linked=linked)
     if topic == "trim":
         draw.deepen(recipe["cam"], family)
     recipe |= draw.rest(topic, family, room)
@@ -198,7 +200,7 @@ class Draw:
         given: Fields = {"part": part}
         tolerance = self.fixed(self.rng.choice([0.001, 0.002, 0.005, 0.01]))
         files = self.files()
-        if topic in LINKAGES or topic == "linkage-set":
+        if topic in LINKED:
             given |= self.linkage("four-bar" if topic == "linkage-set" else topic)
         if topic in {"set", "linkage-set"}:
             tolerance, files = self.fixed(0.01), [{kind: {"parts": "all"}} for kind in ("3mf", "stl", "glb")]
