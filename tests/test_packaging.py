@@ -1,0 +1,63 @@
+"""What the project says of itself: one version, packages that are found, a citation that can be read."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+from setuptools import find_packages
+
+import camgeo
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def test_the_version_stands_in_one_place():
+    assert "version" not in PROJECT["project"]
+    assert PROJECT["project"]["dynamic"] == ["version"]
+    assert PROJECT["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "camgeo.__version__"}
+    # a plain text: setuptools then reads it without importing the package
+    text = (ROOT / "camgeo" / "__init__.py").read_text(encoding="utf-8")
+    assert re.findall(r'^__version__ = "(.*)"$', text, re.MULTILINE) == [camgeo.__version__]
+
+
+def test_every_folder_of_code_is_packed():
+    found = set(find_packages(ROOT, include=PROJECT["tool"]["setuptools"]["packages"]["find"]["include"]))
+    modules = [path for name in ("camgeo", "kin") for path in (ROOT / name).rglob("*.py")]
+    assert {".".join(path.parent.relative_to(ROOT).parts) for path in modules} == found
+    data = PROJECT["tool"]["setuptools"]["package-data"]["*"]
+    others = [path for name in found for path in ROOT.joinpath(*name.split(".")).iterdir() if path.is_file()]
+    others = [path for path in others if path.suffix not in {".py", ".pyc"}]
+    assert {"py.typed", "page.html"} <= {path.name for path in others}
+    assert [path.name for path in others if not any(path.match(pattern) for pattern in data)] == []
+    assert all((ROOT / name / "py.typed").is_file() for name in ("camgeo", "kin"))
+
+
+def test_the_citation_is_of_this_version():
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert {"cff-version", "message", "title", "authors"} <= citation.keys()
+    assert citation["version"] == camgeo.__version__
+    assert citation["title"] == PROJECT["project"]["name"]
+    assert citation["license"] == PROJECT["project"]["license"]
+    assert citation["authors"] == [{"name": "The camgeo maintainers"}]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "shown"),
+    [
+        (["recipes/shu-wu.yaml"], 0, {"shu-wu.yaml"}),
+        # a call that names nothing takes the tests, here of a folder without any
+        (["-o", "testpaths=benchmarks"], 5, set()),
+    ],
+)
+def test_the_repositorys_own_recipes_are_test_items(arguments, status, shown):
+    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", *arguments]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == status, done.stdout + done.stderr
+    assert set(re.findall(r"^recipes/(.*?)::", done.stdout, re.MULTILINE)) == shown
