@@ -52,7 +52,9 @@ document.saveas("PATH")
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", default=sys.executable, help="interpreter that has the packages")
-    python = parser.parse_args().python
+    parser.add_argument("--small", action="store_true", help="fewer shaft angles, to see that it works")
+    arguments = parser.parse_args()
+    python, angles = arguments.python, 90 if arguments.small else 720
     recipe = read(RECIPE, Path("law.yaml"))
     design = designed(recipe)
     print("| package | contour off by, mm | lift off by, mm | breadth from, to, mm |")
@@ -68,7 +70,7 @@ def main() -> None:
                 print(f"| {name} | {(ran.stderr.strip().splitlines() or ['failed'])[-1]} | | |")
                 del paths[name]
         for name, path in paths.items():
-            found = verify(path, intended(recipe, design), 720, Limits(1.0))
+            found = verify(path, intended(recipe, design), angles, Limits(1.0))
             motion, play = found.motion, found.play
             lift = "no contact" if motion is None else f"{motion.max:.4g}"
             breadth = "" if play is None else f"{100 - play.most:.5f} to {100 - play.least:.5f}"

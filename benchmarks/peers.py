@@ -30,9 +30,10 @@ from kin.verify import Limits, verify
 
 ROOT = Path(__file__).parents[1]
 CAMS = {"yoke": "as-figure-2a", "roller": "w-figure-9"}
-COUNTS = [round(32 * 2 ** (k / 2)) for k in range(25)]
+COUNTS = [round(32 * 2 ** (k / 2)) for k in range(25)]  # of which a small run takes the first
 PATIENCE = 3.0  # seconds for one file
-REPEATS = 3  # of whole processes
+SMALL = "--small" in sys.argv
+REPEATS = 1 if SMALL else 3  # of whole processes
 FINE = 1e-6  # mm: no peer is taken farther
 LEVELS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 OURS = {"arcs": "camgeo arcs", "spline": "camgeo spline", "polyline": "camgeo polyline", "stl": "camgeo STL"}
@@ -59,7 +60,7 @@ def of_peer(name: str, cam: str, python: str, folder: Path) -> list[Point]:
     suffix = PEERS[name][1]
     path = folder / f"peer{suffix}"
     found: list[Point] = []
-    for count in COUNTS:
+    for count in COUNTS[:1] if SMALL else COUNTS:
         command = [python, str(ROOT / "benchmarks" / "peer.py"), name, cam, str(count), str(path), "5"]
         path.unlink(missing_ok=True)
         ran = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -111,6 +112,8 @@ def of_ours(cam: str, folder: Path) -> list[Point]:
             cold = timed([sys.executable, "-m", "camgeo", "export", str(own), "--out", str(folder / "out")])
             size = (folder / "out" / "own" / f"own.{kind}").stat().st_size
             found.append(Point(tool, f".{kind}", rung.geometry_error, warm, cold, rung.pieces or 0, size))
+            if SMALL:
+                break
     return found
 
 
@@ -208,6 +211,9 @@ def main() -> None:
     parser.add_argument("--python", default=sys.executable, help="interpreter that runs the peers")
     parser.add_argument("--picture", type=Path, default=ROOT / "docs" / "pictures" / "peers.png")
     parser.add_argument("--cam", action="append", choices=tuple(CAMS))
+    parser.add_argument(
+        "--small", action="store_true", help="one file of each kind and no picture, to see that it works"
+    )
     arguments = parser.parse_args()
     print(f"{platform.machine()}, Python {platform.python_version()}, numpy {np.__version__}")
     found = {}
@@ -222,7 +228,7 @@ def main() -> None:
                 points += of_peer(peer, cam, arguments.python, folder)
             found[cam] = points
             print(tables(cam, points), flush=True)
-    picture(found, arguments.picture)
+        picture(found, folder / "peers.png" if SMALL else arguments.picture)
 
 
 if __name__ == "__main__":

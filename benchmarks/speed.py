@@ -1,8 +1,8 @@
-"""Speed as ratios in one run on one machine: `python benchmarks/speed.py [fit] [stl] [judge] [cold]`.
+"""Speed as ratios in one run on one machine: `python benchmarks/speed.py [fit] [stl] [judge] [cold] [--small]`.
 
 Each figure is the least of several repeats, taken in turn with what it is compared with, so that a machine whose speed
 drifts changes both alike; fits are told in processor time. The targets stand beside the figures; nothing here passes or
-fails.
+fails. `--small` takes little of everything, to see that it works: its ratios say nothing.
 """
 
 from __future__ import annotations
@@ -41,12 +41,13 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).parents[1]
 MICROMETRE = 1e-3
+SMALL = "--small" in sys.argv
 
 
 def least(*functions: Callable[[], object], repeats: int = 7) -> list[float]:
     """Least seconds of each function, the functions taken in turn."""
     best = [float("inf")] * len(functions)
-    for _ in range(repeats):
+    for _ in range(1 if SMALL else repeats):
         for i, function in enumerate(functions):
             start = time.perf_counter()
             function()
@@ -57,7 +58,7 @@ def least(*functions: Callable[[], object], repeats: int = 7) -> list[float]:
 def median(function: Callable[[], object], repeats: int = 5) -> float:
     """Median processor seconds of a function: what others do on the machine counts for less than in wall time."""
     spent = []
-    for _ in range(repeats):
+    for _ in range(1 if SMALL else repeats):
         start = time.process_time()
         function()
         spent.append(time.process_time() - start)
@@ -68,7 +69,7 @@ def fits() -> None:
     """Recipe object to fitted pieces at 1 micrometre, against sin and cos at as many points."""
     print("\nrecipe object to pieces at 1 um; target: 50 times sin and cos at as many points, or 5 ms if that is more")
     print(f"{'recipe':16} {'form':8} {'pieces':>6} {'ms':>7} {'target ms':>9} {'ratio':>6}")
-    for path in sorted((ROOT / "recipes").glob("*.yaml")):
+    for path in sorted((ROOT / "recipes").glob("*.yaml"))[:: 12 if SMALL else 1]:
         cam = load(path).cam
         for name, fit in (("arcs", fit_arcs), ("polygon", fit_polygon), ("spline", fit_spline)):
 
@@ -87,7 +88,7 @@ def stl() -> None:
     """A ring's STL against numpy writing the same bytes."""
     print("\nSTL of a contour with a bore against numpy writing the same triangles; target: 5 times at 1e4, 10 at 1e5")
     with tempfile.TemporaryDirectory() as folder:
-        for count in (1_000, 10_000, 100_000):
+        for count in (1_000,) if SMALL else (1_000, 10_000, 100_000):
             t = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
             r = 25.0 + 2.0 * np.cos(3 * t)
             polygon = Polygon(np.column_stack([r * np.cos(t), r * np.sin(t)]), Bound(0.0, 0.0))
@@ -124,7 +125,7 @@ def judge() -> None:
     """Judging 1e5 pieces at 3600 shaft angles; the contour has been read already."""
     print("\njudging 1e5 pieces at 3600 shaft angles; target: 50 ms for flat faces, 500 ms for double rollers")
     phi = np.linspace(0.0, 2.0 * np.pi, 3600, endpoint=False)
-    t = np.linspace(0.0, 2.0 * np.pi, 100_000, endpoint=False)
+    t = np.linspace(0.0, 2.0 * np.pi, 1_000 if SMALL else 100_000, endpoint=False)
     lift = lift_from_fourier(25.0, {3: 2.0}, {}, (10.0, 5.0))
     p = lift.derivatives(t, 1)
     flat = np.column_stack([p[0] * np.cos(t) - p[1] * np.sin(t), p[0] * np.sin(t) + p[1] * np.cos(t)])
@@ -169,7 +170,7 @@ def cold() -> None:
             recipe.write_text(text.format(files=files), encoding="utf-8")
             command = ["-m", "camgeo.cli", "export", str(recipe), "--out", str(Path(folder) / "out")]
             best = [(math.inf, 0.0)] * 2
-            for _ in range(10):  # the first of them compiles
+            for _ in range(2 if SMALL else 10):  # the first of them compiles
                 for i, arguments in enumerate((command, ["-c", f"import {imports}"])):
                     best[i] = min(best[i], spent([sys.executable, *arguments], environment))
             (seconds, memory), (base, _) = best
@@ -188,7 +189,7 @@ def spent(command: list[str], environment: dict[str, str]) -> tuple[float, float
 
 
 if __name__ == "__main__":
-    chosen = sys.argv[1:] or ["cold", "fit", "stl", "judge"]
+    chosen = [name for name in sys.argv[1:] if name != "--small"] or ["cold", "fit", "stl", "judge"]
     for name, part in (("fit", fits), ("stl", stl), ("judge", judge), ("cold", cold)):
         if name in chosen:
             part()

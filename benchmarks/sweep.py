@@ -1,5 +1,7 @@
 """Designs a second on one core, what the samples are worth: `python benchmarks/sweep.py [command] [speed] [accuracy]`.
 
+`--small` takes few designs, to see that it works.
+
 Speed is processor time, the least of several repeats, as a ratio too: to bare kinematics, the plain numpy expressions
 for the angles and positions of the same four-bars at as many samples, with nothing found from them. Take one core:
 OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself, in a process of its own.
@@ -31,7 +33,9 @@ from camgeo.sweep.rebuilt import recipe_with
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-DESIGNS, ANGLES, REPEATS = 4096, 360, 7
+SMALL = "--small" in sys.argv
+DESIGNS, ANGLES, REPEATS = (64, 360, 1) if SMALL else (4096, 360, 7)
+SOUGHT = 2_000 if SMALL else 100_000
 TEXT = """
 cam:
   kind: support
@@ -112,7 +116,7 @@ SEARCH = """
 sweep:
   vary: {VARY}
   method: random
-  count: 100000
+  count: COUNT
   limits: {LIMITS}
   rank: dwell
   keep: 5
@@ -137,32 +141,33 @@ print(status, spent[0], time.process_time(), file=sys.stderr)
 
 def command() -> None:
     print(
-        "\n`camgeo sweep --jobs 1`, 100,000 four-bars at 360 angles, designs a second of processor time; target 20,000"
+        f"\n`camgeo sweep --jobs 1`, {SOUGHT:,} four-bars, 360 angles, designs a second of processor time; target 20,000"
     )
     vary = ", ".join(f"'{path}': {{from: {low}, to: {high}}}" for path, (low, high) in PLACES.items())
     print(f"{'':42}{'computing':>10} {'whole process':>14}")
     for limits in ("transmission-angle: {at_least: 34}, size: {at_most: 44}", "peak-velocity: {at_most: 22}"):
         text = CAM_2A.text[: CAM_2A.text.index("sweep:")] + SEARCH.replace("VARY", vary).replace("LIMITS", limits)
+        text = text.replace("COUNT", str(SOUGHT))
         for engine in ("numpy", "numba"):
             if engine == "numba" and not find_spec("numba"):
                 continue
             best = [math.inf, math.inf]
             with tempfile.TemporaryDirectory() as folder:
                 (Path(folder) / "speed.yaml").write_text(text)
-                for repeat in range(3):
+                for repeat in range(1 if SMALL else 3):
                     call = [sys.executable, "-c", RUN, engine, f"{folder}/speed.yaml", f"{folder}/out-{repeat}"]
                     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
                     told = subprocess.run(call, env=environment, capture_output=True, text=True, check=True).stderr
                     best = [min(a, float(b)) for a, b in zip(best, told.split()[-2:], strict=True)]
-            print(f"{engine:6} limits on {limits.split(':')[0]:24} {100_000 / best[0]:10.0f} {100_000 / best[1]:14.0f}")
+            print(f"{engine:6} limits on {limits.split(':')[0]:24} {SOUGHT / best[0]:10.0f} {SOUGHT / best[1]:14.0f}")
 
 
 SOME = ("dwell", "margin", "shaft-rate", "transmission-angle", "swing")
 
 
 def accuracy() -> None:
-    print("\ndwell over the shaft and other figures of 60 four-bars against kin.dwell and kin.mechanism")
-    values = drawn(PLACES, 60)
+    print("\ndwell over the shaft and other figures of some four-bars against kin.dwell and kin.mechanism")
+    values = drawn(PLACES, 4 if SMALL else 60)
     wanted: dict[str, list[float]] = {}
     for row in values:
         made = recipe_with(CAM_2A, tuple(PLACES), row)
@@ -190,7 +195,7 @@ def accuracy() -> None:
 COUNTS = (120, 180, 360, 720, 1440)
 
 if __name__ == "__main__":
-    chosen = sys.argv[1:] or ["command", "speed", "accuracy"]
+    chosen = [name for name in sys.argv[1:] if name != "--small"] or ["command", "speed", "accuracy"]
     for name, part in (("command", command), ("speed", speed), ("accuracy", accuracy)):
         if name in chosen:
             part()
