@@ -140,9 +140,7 @@ print(status, spent[0], time.process_time(), file=sys.stderr)
 
 
 def command() -> None:
-    print(
-        f"\n`camgeo sweep --jobs 1`, {SOUGHT:,} four-bars, 360 angles, designs a second of processor time; target 20,000"
-    )
+    print(f"\n`camgeo sweep --jobs 1`, {SOUGHT:,} four-bars, 360 angles, designs a second of processor; target 20,000")
     vary = ", ".join(f"'{path}': {{from: {low}, to: {high}}}" for path, (low, high) in PLACES.items())
     print(f"{'':42}{'computing':>10} {'whole process':>14}")
     for limits in ("transmission-angle: {at_least: 34}, size: {at_most: 44}", "peak-velocity: {at_most: 22}"):
