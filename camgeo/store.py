@@ -38,6 +38,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+from camgeo.terminal import escaped
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from types import TracebackType
@@ -57,7 +59,7 @@ class SurroundingsError(Exception):
     """What is needed around a run is missing or refuses: the disk, a permission, a lock; `path` is where."""
 
     def __init__(self, message: str, path: Path) -> None:
-        super().__init__(f"{path}: {message}")
+        super().__init__(f"{escaped(str(path))}: {message}")
         self.path = path
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.progress import Progress
 from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     import argparse
@@ -61,26 +61,26 @@ def run(arguments: argparse.Namespace) -> int:
         report = _written(recipe, files, Path(arguments.out), ok=outcome.ok)
     except RecipeErrors as errors:
         progress.clear()
-        print(errors, file=sys.stderr)
+        complain(str(errors))
         return WRONG
     except ModuleNotFoundError as error:
         progress.clear()
-        print(f'camgeo: the package {error.name} is missing: pip install "camgeo[picture]"', file=sys.stderr)
+        complain(f'camgeo: the package {error.name} is missing: pip install "camgeo[picture]"')
         return SURROUNDINGS
     except (SurroundingsError, OSError) as error:
         progress.clear()
-        print(f"camgeo: {error}", file=sys.stderr)
+        complain(f"camgeo: {error}")
         return SURROUNDINGS
     progress.clear()
     if arguments.json:
         from camgeo.report.document import encoded
 
-        print(encoded(report), end="")
+        say_json(encoded(report))
     else:
         folder = Path(arguments.out) / recipe.name
         verdict = "ok" if outcome.ok else "FAILED"
         told = ", ".join(f"{folder / file['path']} {file['bytes'] / 1000:.0f} kB" for file in report["files"])
-        print(f"{recipe.name}: {verdict}  {told}")
+        say(f"{recipe.name}: {verdict}  {told}")
     return OK if outcome.ok else FAILED
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.progress import Progress
 from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.study import FORMS
+from camgeo.terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     import argparse
@@ -68,17 +68,17 @@ def run(arguments: argparse.Namespace) -> int:
         ok = not failed and all(row["ok"] for row in study["rows"])
         _write(recipe, study, Path(arguments.out), ok=ok)
     except RecipeErrors as errors:
-        print(errors, file=sys.stderr)
+        complain(str(errors))
         return WRONG
     except (SurroundingsError, OSError) as error:
-        print(f"camgeo: {error}", file=sys.stderr)
+        complain(f"camgeo: {error}")
         return SURROUNDINGS
     if arguments.json:
         from camgeo.report.document import encoded
 
-        print(encoded(study), end="")
+        say_json(encoded(study))
     else:
-        print(f"{recipe.name}\n{table(study)}")
+        say(f"{recipe.name}\n{table(study)}")
     return OK if ok else FAILED
 
 
