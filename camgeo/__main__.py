@@ -28,7 +28,8 @@ class _Interrupts:
 
     def __init__(self) -> None:
         self.first: float | None = None
-        self.quiet = False
+        self.quiet = False  # at the end, where there is nothing left to interrupt
+        self._again = False  # the first was swallowed
 
     def listen(self) -> None:
         """Take over from Python, unless interrupts are ignored (`nohup`, a shell's background)."""
@@ -38,8 +39,8 @@ class _Interrupts:
 
     def _came(self, _number: int, _frame: FrameType | None) -> None:
         now = time.monotonic()
-        if self.first is None:
-            self.first = now
+        if self.first is None or self._again:
+            self.first, self._again = now, False
             if not self.quiet:
                 raise KeyboardInterrupt
         elif now - self.first > _IMPATIENT:
@@ -53,7 +54,7 @@ class _Interrupts:
             import threading
             from _thread import interrupt_main
 
-            self.first = None
+            self._again = True
             again = threading.Timer(0.01, interrupt_main)  # not here: it would fall into this same callback
             again.daemon = True
             again.start()

@@ -8,7 +8,7 @@ import sys
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 from camgeo.batch import Task, result, results
 from camgeo.page import command as page_command
@@ -20,6 +20,8 @@ from camgeo.terminal import complain, escaped, open_streams, say, say_json, sile
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+
+    from _typeshed import SupportsWrite
 
     from camgeo.recipe.model import Recipe
 
@@ -63,12 +65,13 @@ def _rare_collections() -> Iterator[None]:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose complaints go the way of all others."""
+    """A parser whose help and complaints go the way of all others."""
 
-    def error(self, message: str) -> NoReturn:
-        """Say what is wrong with the call, and leave."""
-        complain(f"{self.format_usage()}{self.prog}: error: {message}")
-        raise SystemExit(WRONG)
+    def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
+        if file is sys.stderr:
+            complain(message.removesuffix("\n"))
+        else:
+            say(message.removesuffix("\n"))
 
 
 def _parser() -> argparse.ArgumentParser:

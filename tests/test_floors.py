@@ -84,8 +84,9 @@ FLOORS = {
         recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.model_sweep recipe.table_part
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism
         recipe.table_sweep
-        curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors
+        curve files files.markup workers files.table files.triangulate fit fit.pieces profile progress recipe.errors
         recipe.spec report rounded status store
+        terminal
         page.followers page.pack page.svg
         page.scene
         bodies files.missing making manufacture page fit.rational part recipe.din6885 recipe.model_part study
