@@ -17,8 +17,16 @@ cam: {kind: support, p: 25 + 2*cos(3*t)}
 part: {thickness: 8, bore: 10}
 export: {tolerance: 0.00001, files: [dxf, stl, 3mf, svg]}
 """
-# says when Python is up: what comes before is not the command's
-UP = "import sys; print('up', flush=True); from camgeo.__main__ import main; sys.exit(main())"
+# says when interrupts are heard: Python's own start, before, is not the command's
+UP = """
+from camgeo import __main__ as entry
+listen = entry._Interrupts.listen
+def up(self):
+    listen(self)
+    print("up", flush=True)
+entry._Interrupts.listen = up
+entry.main()
+"""
 SWEEP = (Path(__file__).parents[1] / "recipes" / "sweep-four-bar.yaml").read_text(encoding="utf-8")
 
 
@@ -30,7 +38,7 @@ def recipes(folder: Path, count: int) -> list[str]:
 
 
 def interrupted(arguments: list[str], delay: float, times: int = 1) -> tuple[int, str]:
-    """Status and standard error of a command whose whole group is interrupted so many seconds after Python is up."""
+    """Status and standard error of a command whose whole group is interrupted so many seconds after the command is up."""
     with subprocess.Popen(
         [sys.executable, "-c", UP, *arguments],
         stdout=subprocess.PIPE,
@@ -105,7 +113,7 @@ def test_an_interrupt_that_python_would_swallow(late: str) -> None:
 
 def test_ignored_interrupts_stay_ignored(tmp_path: Path) -> None:
     """As `nohup` and a shell's background ask."""
-    code = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); " + UP
+    code = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n" + UP
     with subprocess.Popen(
         [sys.executable, "-c", code, "check", *recipes(tmp_path, 1)], stdout=subprocess.PIPE, start_new_session=True
     ) as process:
