@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.batch import Task, result, results
+from camgeo.mixture import mixtures
 from camgeo.page import command as page_command
 from camgeo.recipe.model import KINDS
 from camgeo.status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
@@ -101,6 +102,8 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument("--watch", action="store_true", help="export again at each saving; a page reloads itself")
     check = command("check", _check, "Every check of a recipe; nothing is written.")
     _add_recipes(check)
+    text = "folder of earlier results, whose files are held against their reports (default: out)"
+    check.add_argument("--out", default="out", metavar="DIR", help=text)
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
@@ -249,6 +252,8 @@ def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> i
     for found in results(recipes, task, arguments.jobs):
         status = max(status, found.status)
         if found.report is not None:
+            if task.out is None:
+                _mention(found.report, mixtures(Path(arguments.out) / found.report["recipe"]))
             reports.append(found.report)
             if not arguments.json:
                 _show(found.report, verbose=arguments.verbose)
@@ -259,6 +264,14 @@ def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> i
 
         say_json(encoded(reports))
     return status
+
+
+def _mention(report: dict[str, Any], mixed: Sequence[str]) -> None:
+    """Say where files and reports do not belong together; the verdict is of what was judged, whatever that is."""
+    if mixed:
+        report["mixed"] = [*report.get("mixed", ()), *mixed]
+    for text in mixed:
+        _complain(text)
 
 
 def _show(report: dict[str, Any], *, verbose: bool) -> None:
@@ -293,6 +306,8 @@ def _verify(arguments: argparse.Namespace) -> int:
             return WRONG
         given = arguments.tolerance
         report = pipeline.judged(recipe, paths, tolerance=None if given is None else given * recipe.mm)
+        for folder in dict.fromkeys(path.parent for path in paths):
+            _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except RecipeErrors as errors:
         complain(str(errors))
         return WRONG

@@ -33,6 +33,7 @@ import os
 import re
 import stat
 import sys
+import time
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,7 +42,7 @@ from typing import TYPE_CHECKING, Self
 from camgeo.terminal import escaped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
     from types import TracebackType
 
 if sys.platform == "win32":
@@ -53,6 +54,8 @@ REPORT = "report.json"
 REJECTED = ".rejected"
 _JOURNAL = ".journal.json"  # files of a set do not begin with a dot
 _OLD = ".old"
+_WINDOWS = sys.platform == "win32"
+_PAUSES = (0.01, 0.03, 0.1, 0.3, 1.0)  # seconds before another try where Windows refuses, a virus scanner say
 
 
 class SurroundingsError(Exception):
@@ -172,7 +175,7 @@ class Run:
         folder, swap = self._out / target, self._beside("swap")
         try:
             self._prepare(folder, tuple(names), tuple(keep))
-            self.folder.rename(swap)
+            _patient(lambda: self.folder.rename(swap))
         except OSError as error:
             raise _surroundings(error, folder) from error
         try:
@@ -203,7 +206,7 @@ class Run:
         for name in before:
             _linked(folder / name, self.folder / _OLD / name)
         journal = {"target": folder.name, "come": come, "go": sorted(set(before) - set(come)), "before": before}
-        (self.folder / _JOURNAL).write_text(json.dumps(journal), "utf-8")
+        (self.folder / _JOURNAL).write_text(json.dumps(journal), "utf-8", newline="\n")
 
     def _recover(self) -> None:
         """Finish what was committed, or what was being undone."""
@@ -220,7 +223,7 @@ class Run:
         for name in journal.come[:-1]:
             _move(swap / name, folder / name)
         for name in journal.go:
-            (folder / name).unlink(missing_ok=True)
+            _removed(folder / name)
         _move(swap / journal.come[-1], folder / journal.come[-1])
 
     def _back(self, undo: Path) -> None:
@@ -232,11 +235,11 @@ class Run:
             _move(undo / _OLD / name, folder / name)
         for name in journal.come:
             if name not in journal.before:
-                (folder / name).unlink(missing_ok=True)
+                _removed(folder / name)
 
     def _done(self, swap: Path) -> None:
         """Let go of a swap whose files are all in place: one rename, then what is left of it."""
-        swap.rename(self.folder)
+        _patient(lambda: swap.rename(self.folder))
         self._clear()
 
     def _clear(self) -> None:
@@ -247,7 +250,7 @@ class Run:
     def _give_up(self, folder: Path, error: OSError) -> None:
         """Undo a swap that failed; raises SurroundingsError in any case."""
         try:
-            self._beside("swap").rename(self._beside("undo"))
+            _patient(lambda: self._beside("swap").rename(self._beside("undo")))
             self._back(self._beside("undo"))
             self._done(self._beside("undo"))
         except OSError as second:
@@ -263,15 +266,16 @@ class Run:
         if not os.path.lexists(folder):
             return ()
         _make_own(folder)
-        try:
-            text = (folder / self._report).read_bytes()
-        except FileNotFoundError:
+        report = folder / self._report
+        if not os.path.lexists(report):
             return ()
+        if not report.is_file():  # a pipe, say, whose reader waits
+            raise SurroundingsError("is not a report of camgeo; move it out of the way", report)
+        text = report.read_bytes()
         try:
             entries = [entry["path"] for entry in json.loads(text)["files"]]
         except (ValueError, TypeError, KeyError, RecursionError) as error:
-            where = folder / self._report
-            raise SurroundingsError("is not a report of camgeo; move it out of the way", where) from error
+            raise SurroundingsError("is not a report of camgeo; move it out of the way", report) from error
         names = [name for name in dict.fromkeys(entries) if isinstance(name, str) and self._ours(name)]
         return (*(name for name in names if _is_file(folder / name)), self._report)
 
@@ -290,10 +294,14 @@ class Run:
         return [path for path in sorted(self._out.iterdir()) if pattern.fullmatch(path.name)]
 
     def _unlock(self) -> None:
-        """Remove the lock's file while it is held, then let go of it."""
-        with suppress(OSError):  # a file that stays behind locks nothing
+        """Remove the lock's file while it is held, then let go of it; on Windows the other way round."""
+        # a file that stays behind locks nothing; Windows removes none that is open, and none that another run has open
+        if _WINDOWS:
+            os.close(self._lock)
+        with suppress(OSError):
             self._beside("lock").unlink()
-        os.close(self._lock)
+        if not _WINDOWS:
+            os.close(self._lock)
 
 
 def _plain(name: str) -> bool:
@@ -356,14 +364,31 @@ def _move(source: Path, target: Path) -> None:
         return
     if os.path.lexists(target) and os.path.samestat(source.lstat(), target.lstat()):
         return
-    source.replace(target)
+    _patient(lambda: source.replace(target))
+
+
+def _removed(path: Path) -> None:
+    """Remove a file if it is there."""
+    _patient(lambda: path.unlink(missing_ok=True))
+
+
+def _patient(step: Callable[[], object]) -> None:
+    """Take a step of a swap; on Windows again for a while, as a file that some program holds open is left as it is."""
+    for pause in _PAUSES if _WINDOWS else ():
+        try:
+            step()
+        except PermissionError:
+            time.sleep(pause)
+        else:
+            return
+    step()
 
 
 def _linked(source: Path, target: Path) -> None:
     """Give a file a second name; on file systems without hard links, a copy."""
     try:
         os.link(source, target, follow_symlinks=False)
-    except OSError:
+    except (OSError, NotImplementedError):  # the second where a system knows no link to a link
         import shutil
 
         shutil.copy2(source, target, follow_symlinks=False)
@@ -391,4 +416,7 @@ def _discard(folder: Path) -> None:
 def _surroundings(error: OSError, path: Path) -> SurroundingsError:
     """Name the path that the system named, or else `path`."""
     where = Path(os.fsdecode(error.filename)) if isinstance(error.filename, (str, bytes)) else path
-    return SurroundingsError(error.strerror or str(error), where)
+    text = error.strerror or str(error)
+    if _WINDOWS and isinstance(error, PermissionError):
+        text += "; if another program has it open, close it there and run again"
+    return SurroundingsError(text, where)

@@ -85,7 +85,9 @@ FLOORS = {
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism
         recipe.table_sweep
         curve files files.markup workers files.table files.triangulate fit fit.pieces profile progress recipe.errors
-        recipe.spec report rounded status store
+        recipe.spec report rounded status
+        mixture
+        store
         terminal
         page.followers page.pack page.svg
         page.scene

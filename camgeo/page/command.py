@@ -103,18 +103,15 @@ def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -
 
 def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> dict[str, Any]:
     """Write page and pictures beside the recipe's files, all or none; return the report that names them."""
-    import hashlib
-
+    from camgeo.mixture import listed
     from camgeo.report.document import encoded
     from camgeo.store import Family, Run
 
-    entries = [
-        {"path": name, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()} for name, data in files.items()
-    ]
+    entries = [listed(name, data) for name, data in files.items()]
     report = {"recipe": recipe.name, "ok": ok, "files": entries}
     with Run(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
         for name, data in files.items():
             (run_.folder / name).write_bytes(data)
-        (run_.folder / REPORT).write_text(encoded(report), encoding="utf-8")
+        (run_.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
         run_.commit(list(files))
     return report

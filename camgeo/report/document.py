@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from camgeo import __version__
+from camgeo.mixture import listed
 from camgeo.recipe.model import NO_CONTOUR, NO_PART
 
 if TYPE_CHECKING:
@@ -122,13 +122,8 @@ def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
 
 
 def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
-    data = file.path.read_bytes()
-    entry: dict[str, Any] = {
-        "path": file.path.name,
-        "kind": file.request.kind,
-        "bytes": len(data),
-        "sha256": hashlib.sha256(data).hexdigest(),
-    }
+    told = listed(file.path.name, file.path.read_bytes())
+    entry: dict[str, Any] = {"path": told.pop("path"), "kind": file.request.kind, **told}
     if file.request.kind in NO_CONTOUR:
         return entry
     mm = recipe.mm

@@ -104,23 +104,25 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> Non
     A study in which a check does not hold, of the exact cam or of a file, leaves the last good one and goes to
     `out`/<name>.rejected. That a ladder ends, at a tolerance that is refused or for want of time, is an ordinary end.
     """
+    from camgeo.mixture import listed
     from camgeo.report.document import encoded
     from camgeo.store import Family, Run
 
-    names = []
+    files: dict[str, bytes] = {}
     with Run(out, recipe.name, Family(REPORT, ("study",), "study")) as run:
         try:
             from camgeo.study.picture import picture
 
             if study["rows"]:
-                (run.folder / PICTURE).write_bytes(picture(study))
-                names.append(PICTURE)
+                drawn = picture(study)
+                (run.folder / PICTURE).write_bytes(drawn)
+                files[PICTURE] = drawn
         except ModuleNotFoundError as error:
             why = f'the package {error.name} is missing: pip install "camgeo[study]"'
             study["skipped"].append({"what": PICTURE, "why": why})
-        study["files"] = [{"path": name} for name in names]
-        (run.folder / REPORT).write_text(encoded(study), encoding="utf-8")
+        study["files"] = [listed(name, data) for name, data in files.items()]
+        (run.folder / REPORT).write_text(encoded(study), encoding="utf-8", newline="\n")
         if ok:
-            run.commit(names)
+            run.commit(files)
         else:
             run.reject()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -66,10 +65,7 @@ def outputs(
     if best:
         files.make(PICTURES[2:], lambda: _curves(ask, best, files.made))
     report = _report(ask, found, best, reasons)
-    report["files"] = [
-        {"path": name, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
-        for name, data in files.made.items()
-    ]
+    report["files"] = [listed(name, data) for name, data in files.made.items()]
     report["skipped"] = files.skipped
     report["run"] = run
     files.made[REPORT] = encoded(report).encode()
