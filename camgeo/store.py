@@ -32,30 +32,23 @@ import json
 import os
 import re
 import stat
-import sys
-import time
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+from camgeo import system
+from camgeo.system import locked, patient, unlock
 from camgeo.terminal import escaped
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
     from types import TracebackType
-
-if sys.platform == "win32":
-    import msvcrt
-else:
-    import fcntl
 
 REPORT = "report.json"
 REJECTED = ".rejected"
 _JOURNAL = ".journal.json"  # files of a set do not begin with a dot
 _OLD = ".old"
-_WINDOWS = sys.platform == "win32"
-_PAUSES = (0.01, 0.03, 0.1, 0.3, 1.0)  # seconds before another try where Windows refuses, a virus scanner say
 
 
 class SurroundingsError(Exception):
@@ -122,7 +115,11 @@ class Run:
         """Lock the name, finish or undo a swap that was cut off, clear away what killed runs left, make `folder`."""
         try:
             self._out.mkdir(parents=True, exist_ok=True)
-            self._lock = _locked(self._beside("lock"), self._out / self._name)
+            lock = locked(self._beside("lock"))
+            if lock is None:
+                text = f"another run is at work here (it holds {self._beside('lock').name})"
+                raise BusyError(text, self._out / self._name)
+            self._lock = lock
             try:
                 self._clear()
                 self._recover()
@@ -175,7 +172,7 @@ class Run:
         folder, swap = self._out / target, self._beside("swap")
         try:
             self._prepare(folder, tuple(names), tuple(keep))
-            _patient(lambda: self.folder.rename(swap))
+            patient(lambda: self.folder.rename(swap))
         except OSError as error:
             raise _surroundings(error, folder) from error
         try:
@@ -239,7 +236,7 @@ class Run:
 
     def _done(self, swap: Path) -> None:
         """Let go of a swap whose files are all in place: one rename, then what is left of it."""
-        _patient(lambda: swap.rename(self.folder))
+        patient(lambda: swap.rename(self.folder))
         self._clear()
 
     def _clear(self) -> None:
@@ -250,7 +247,7 @@ class Run:
     def _give_up(self, folder: Path, error: OSError) -> None:
         """Undo a swap that failed; raises SurroundingsError in any case."""
         try:
-            _patient(lambda: self._beside("swap").rename(self._beside("undo")))
+            patient(lambda: self._beside("swap").rename(self._beside("undo")))
             self._back(self._beside("undo"))
             self._done(self._beside("undo"))
         except OSError as second:
@@ -267,7 +264,7 @@ class Run:
             return ()
         _make_own(folder)
         report = folder / self._report
-        if not os.path.lexists(report):
+        if not os.path.exists(report):  # noqa: PTH110 - pathlib raises where it may not look
             return ()
         if not report.is_file():  # a pipe, say, whose reader waits
             raise SurroundingsError("is not a report of camgeo; move it out of the way", report)
@@ -294,60 +291,13 @@ class Run:
         return [path for path in sorted(self._out.iterdir()) if pattern.fullmatch(path.name)]
 
     def _unlock(self) -> None:
-        """Remove the lock's file while it is held, then let go of it; on Windows the other way round."""
-        # a file that stays behind locks nothing; Windows removes none that is open, and none that another run has open
-        if _WINDOWS:
-            os.close(self._lock)
-        with suppress(OSError):
-            self._beside("lock").unlink()
-        if not _WINDOWS:
-            os.close(self._lock)
+        """Let the next run of this name begin."""
+        unlock(self._lock, self._beside("lock"))
 
 
 def _plain(name: str) -> bool:
     """Whether a name is one component of a path, not hidden, that means the same on every system."""
     return bool(name) and not name.startswith(".") and name.isprintable() and not set(name) & set('/\\:*?"<>|')
-
-
-def _locked(path: Path, folder: Path) -> int:
-    """Open and lock a file, and return it; raises SurroundingsError where another process holds it.
-
-    The holder removes the file in the end. So a lock counts only if the path still leads to the file that was locked.
-    """
-    while True:
-        lock = os.open(path, os.O_CREAT | os.O_RDWR | getattr(os, "O_NOFOLLOW", 0), 0o666)
-        try:
-            if _taken(lock):
-                return _checked(lock, path)
-        except FileNotFoundError:
-            os.close(lock)  # removed by its last holder after it was opened here
-            continue
-        except BaseException:
-            os.close(lock)
-            raise
-        os.close(lock)
-        raise BusyError(f"another run is at work here (it holds {path.name})", folder)
-
-
-def _checked(lock: int, path: Path) -> int:
-    if not os.path.samestat(os.fstat(lock), path.stat()):
-        raise FileNotFoundError(path)
-    return lock
-
-
-def _taken(lock: int) -> bool:
-    """Lock an open file until it is closed or the process ends; False where another one has it."""
-    if sys.platform == "win32":
-        try:
-            msvcrt.locking(lock, msvcrt.LK_NBLCK, 1)
-        except PermissionError:
-            return False
-        return True
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True
 
 
 def _make_own(folder: Path) -> None:
@@ -364,24 +314,12 @@ def _move(source: Path, target: Path) -> None:
         return
     if os.path.lexists(target) and os.path.samestat(source.lstat(), target.lstat()):
         return
-    _patient(lambda: source.replace(target))
+    patient(lambda: source.replace(target))
 
 
 def _removed(path: Path) -> None:
     """Remove a file if it is there."""
-    _patient(lambda: path.unlink(missing_ok=True))
-
-
-def _patient(step: Callable[[], object]) -> None:
-    """Take a step of a swap; on Windows again for a while, as a file that some program holds open is left as it is."""
-    for pause in _PAUSES if _WINDOWS else ():
-        try:
-            step()
-        except PermissionError:
-            time.sleep(pause)
-        else:
-            return
-    step()
+    patient(lambda: path.unlink(missing_ok=True))
 
 
 def _linked(source: Path, target: Path) -> None:
@@ -417,6 +355,6 @@ def _surroundings(error: OSError, path: Path) -> SurroundingsError:
     """Name the path that the system named, or else `path`."""
     where = Path(os.fsdecode(error.filename)) if isinstance(error.filename, (str, bytes)) else path
     text = error.strerror or str(error)
-    if _WINDOWS and isinstance(error, PermissionError):
+    if system.WINDOWS and isinstance(error, PermissionError):
         text += "; if another program has it open, close it there and run again"
     return SurroundingsError(text, where)

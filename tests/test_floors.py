@@ -88,7 +88,7 @@ FLOORS = {
         recipe.spec report rounded status
         mixture
         store
-        terminal
+        system terminal
         page.followers page.pack page.svg
         page.scene
         bodies files.missing making manufacture page fit.rational part recipe.din6885 recipe.model_part study

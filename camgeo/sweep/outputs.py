@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo import __version__
+from camgeo.mixture import listed
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.report.document import encoded
 from camgeo.sweep.gather import MOST_ROWS
