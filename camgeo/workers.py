@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar, cast
 
+from kin.home import prepare_home
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator
     from concurrent.futures import Future, ProcessPoolExecutor
@@ -69,6 +71,7 @@ def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
     import multiprocessing
     from concurrent.futures import ProcessPoolExecutor
 
+    prepare_home()  # once, and not by each process
     # not fork in general: this process may have threads, of a linear algebra library or a compiler
     clean = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     method = "fork" if fork and sys.platform == "linux" else clean

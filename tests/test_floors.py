@@ -33,7 +33,7 @@ FLOORS = {
         bezier flight monotone motion response series turn upright
         bernstein chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles
         arcs ball chebyshev distinct newton oscillator read_error
-        check
+        check home
     """,
     "camgeo": """
         __main__

@@ -381,7 +381,7 @@ def test_names_of_devices(name: str) -> None:
 def test_a_name_cannot_be_that_of_a_failed_runs_folder() -> None:
     assert told(f"name: x.Rejected\n{SUPPORT}") == [
         (
-            "c.yaml:1:7: name: ends in .rejected, as the folders of failed runs do, given 'x.Rejected'; "
+            "c.yaml:1:7: name: reserved for the folders of failed runs, which end in .rejected, given 'x.Rejected'; "
             "choose another ending"
         )
     ]

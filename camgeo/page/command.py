@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.files.missing import install
 from camgeo.progress import Progress
 from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.terminal import complain, say, say_json
@@ -65,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         return WRONG
     except ModuleNotFoundError as error:
         progress.clear()
-        complain(f'camgeo: the package {error.name} is missing: pip install "camgeo[picture]"')
+        complain(f"camgeo: the package {error.name} is missing: {install('picture')}")
         return SURROUNDINGS
     except (SurroundingsError, OSError) as error:
         progress.clear()

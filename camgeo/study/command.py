@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.files.missing import install
 from camgeo.progress import Progress
 from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.study import FORMS
@@ -118,7 +119,7 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> Non
                 (run.folder / PICTURE).write_bytes(drawn)
                 files[PICTURE] = drawn
         except ModuleNotFoundError as error:
-            why = f'the package {error.name} is missing: pip install "camgeo[study]"'
+            why = f"the package {error.name} is missing: {install('study')}"
             study["skipped"].append({"what": PICTURE, "why": why})
         study["files"] = [listed(name, data) for name, data in files.items()]
         (run.folder / REPORT).write_text(encoded(study), encoding="utf-8", newline="\n")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.files.missing import install
 from camgeo.progress import Progress
 from camgeo.status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.terminal import complain, say, say_json
@@ -81,7 +82,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
         return None, f"interrupted; {resume}", INTERRUPTED
     except ModuleNotFoundError as error:
         extra = _EXTRAS.get(error.name or "", "sweep")
-        return None, f'the package {error.name} is missing: pip install "camgeo[{extra}]"', SURROUNDINGS
+        return None, f"the package {error.name} is missing: {install(extra)}", SURROUNDINGS
     except (EngineError, VersionsError) as error:
         return None, f"{error}; {resume}", SURROUNDINGS
     except SurroundingsError as error:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo import __version__
+from camgeo.files.missing import install
 from camgeo.mixture import listed
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.report.document import encoded
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 REPORT = "sweep.json"
 TABLES = ("sweep.csv", "sweep.parquet")
 PICTURES = ("sweep-map.png", "sweep-map.svg", "sweep-best.png", "sweep-best.svg")
-EXTRA = 'pip install "camgeo[sweep]"'
+EXTRA = install("sweep")
 _DRAWN = 10  # best designs in the picture of curves
 
 
