@@ -256,6 +256,8 @@ def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> i
                 _mention(found.report, mixtures(Path(arguments.out) / found.report["recipe"]))
             reports.append(found.report)
             if not arguments.json:
+                if arguments.verbose and len(reports) > 1:
+                    say("")
                 _show(found.report, verbose=arguments.verbose)
         if found.message:
             complain(found.message)
@@ -275,11 +277,9 @@ def _mention(report: dict[str, Any], mixed: Sequence[str]) -> None:
 
 
 def _show(report: dict[str, Any], *, verbose: bool) -> None:
-    from camgeo.report.document import summary, table
+    from camgeo.report.document import summary, table, verdict
 
-    print(summary(report))
-    if verbose:
-        print(table(report) + "\n")
+    say(f"{table(report)}\n\n{verdict(report)}" if verbose else summary(report))
 
 
 # --- the other commands -----------------------------------------------------------------------------------------------

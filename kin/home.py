@@ -35,7 +35,12 @@ def prepare_home() -> None:
     except OSError:
         return  # then nothing can be done, and their notices tell why
     owner = os.getpid()
-    atexit.register(lambda: os.getpid() == owner and shutil.rmtree(folder, ignore_errors=True))
+
+    def remove() -> None:
+        if os.getpid() == owner:  # a forked process has this from us
+            shutil.rmtree(folder, ignore_errors=True)
+
+    atexit.register(remove)
     for variable in (*_FOLDERS, "MPLCONFIGDIR"):
         os.environ[variable] = folder
 

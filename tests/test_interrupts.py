@@ -30,6 +30,19 @@ entry.main()
 SWEEP = (Path(__file__).parents[1] / "recipes" / "sweep-four-bar.yaml").read_text(encoding="utf-8")
 
 
+SWALLOWED = """
+import os, signal, weakref
+import camgeo.cli as cli
+def schema(_):
+    class Gone: pass
+    gone = Gone()
+    said = weakref.ref(gone, lambda _: os.kill(os.getpid(), signal.SIGINT))
+    del gone
+    return 0
+cli._schema = schema
+"""
+
+
 def recipes(folder: Path, count: int) -> list[str]:
     paths = [folder / f"cam-{i}.yaml" for i in range(count)]
     for path in paths:
@@ -38,7 +51,7 @@ def recipes(folder: Path, count: int) -> list[str]:
 
 
 def interrupted(arguments: list[str], delay: float, times: int = 1) -> tuple[int, str]:
-    """Status and standard error of a command whose whole group is interrupted so many seconds after the command is up."""
+    """Status and standard error of a command whose whole group is interrupted so many seconds after it is up."""
     with subprocess.Popen(
         [sys.executable, "-c", UP, *arguments],
         stdout=subprocess.PIPE,
@@ -92,15 +105,7 @@ def test_a_sweep(tmp_path: Path, jobs: str) -> None:
     [
         "import atexit, os, signal; atexit.register(lambda: os.kill(os.getpid(), signal.SIGINT))",
         # swallowed by a callback, as those of compiled libraries do; the run would go on to its end
-        "import os, signal, sys, weakref\n"
-        "import camgeo.cli as cli\n"
-        "def schema(_):\n"
-        "    class Gone: pass\n"
-        "    gone = Gone()\n"
-        "    said = weakref.ref(gone, lambda _: os.kill(os.getpid(), signal.SIGINT))\n"
-        "    del gone\n"
-        "    return 0\n"
-        "cli._schema = schema",
+        SWALLOWED,
     ],
 )
 def test_an_interrupt_that_python_would_swallow(late: str) -> None:
