@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 import time
 from pathlib import Path
 
@@ -19,11 +19,11 @@ RECIPES = Path(__file__).parents[1] / "recipes"
 TOLERANCE = 0.001  # mm
 
 
-def main() -> None:
+def main(names: list[str]) -> None:
     """Print a row for each recipe."""
     print("| recipe | follower | bodies | pairs | least, mm | least beyond the fits, mm | s |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
-    for name in sys.argv[1:] or sorted(path.stem for path in RECIPES.glob("*.yaml")):
+    for name in names or sorted(path.stem for path in RECIPES.glob("*.yaml")):
         print(row(name), flush=True)
 
 
@@ -50,4 +50,6 @@ def row(name: str) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("recipes", nargs="*", metavar="RECIPE", help="name of a shipped recipe (default: all)")
+    main(parser.parse_args().recipes)

@@ -7,6 +7,7 @@ fails.
 
 from __future__ import annotations
 
+import argparse
 import math
 import os
 import statistics
@@ -188,7 +189,12 @@ def spent(command: list[str], environment: dict[str, str]) -> tuple[float, float
 
 
 if __name__ == "__main__":
-    chosen = sys.argv[1:] or ["cold", "fit", "stl", "judge"]
-    for name, part in (("fit", fits), ("stl", stl), ("judge", judge), ("cold", cold)):
+    parts = {"fit": fits, "stl": stl, "judge": judge, "cold": cold}
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("part", nargs="*", help=f"of {', '.join(parts)} (default: all)")
+    chosen = parser.parse_args().part or list(parts)
+    if unknown := [name for name in chosen if name not in parts]:
+        parser.error(f"no part is called {', '.join(unknown)}; there are: {', '.join(parts)}")
+    for name, part in parts.items():
         if name in chosen:
             part()
