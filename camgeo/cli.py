@@ -340,7 +340,7 @@ def _new(arguments: argparse.Namespace) -> int:
         print(text, end="")
         return OK
     try:
-        with open(arguments.file, "x", encoding="utf-8") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11
+        with open(arguments.file, "x", encoding="utf-8", newline="\n") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11
             stream.write(text)
     except FileExistsError:
         _complain(f"{escaped(arguments.file)} exists already and is left as it is")
