@@ -26,6 +26,7 @@ R = TypeVar("R")
 AHEAD = 2  # items handed out for each worker: one at work, one waiting
 MOST_ON_WINDOWS = 61  # processes that one wait of Windows can wait for, less two
 _TO_CLEAR_UP = 2.0  # seconds after which a worker whose run is over ends in any case
+FORKS = sys.platform == "linux"  # macOS has it too, and its libraries do not bear it
 KILLED = "a process was killed before {} was done, for want of memory perhaps; see --jobs"
 
 
@@ -74,7 +75,7 @@ def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
     prepare_home()  # once, and not by each process
     # not fork in general: this process may have threads, of a linear algebra library or a compiler
     clean = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
-    method = "fork" if fork and sys.platform == "linux" else clean
+    method = "fork" if fork and FORKS else clean
     context = multiprocessing.get_context(method)
     if method == "forkserver":
         _start_server()
