@@ -1,16 +1,19 @@
-"""What systems do differently where files are concerned: locks, and files that a program holds open."""
+"""What systems do differently: locks, files that a program holds open, interrupts."""
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
 import time
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
+    from types import FrameType
 
 if sys.platform == "win32":
     import msvcrt
@@ -67,6 +70,33 @@ def unlock(lock: int, path: Path) -> None:
         path.unlink()
     if not WINDOWS:
         os.close(lock)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Put an interrupt off to the end; a process that is begun meanwhile is deaf from its start, where a system can.
+
+    Both are needed: a thread of a library may still take the signal, and Python tells it to the main thread.
+    """
+    came: list[tuple[int, FrameType | None]] = []
+    main = threading.current_thread() is threading.main_thread()
+    before = signal.getsignal(signal.SIGINT)
+    if main and callable(before):
+        signal.signal(signal.SIGINT, lambda number, frame: came.append((number, frame)))
+    try:
+        if sys.platform == "win32":
+            yield
+        else:
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                yield
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+    finally:
+        if main and callable(before):
+            signal.signal(signal.SIGINT, before)
+    if came and callable(before):
+        before(*came[0])
 
 
 def _taken(lock: int) -> bool:

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar, cast
 
+from camgeo.system import uninterrupted
 from kin.home import prepare_home
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ class Pool:
 
     def submit(self, function: Callable[[T], R], item: T) -> Future[R]:
         """Hand an item to a function of a module; raises BrokenProcessPool where a process was killed."""
-        with _deaf():  # this may start processes
+        with uninterrupted():  # this may start processes
             return self._executor.submit(cast("Callable[[T], R]", partial(_called, function)), item)
 
 
@@ -112,27 +113,12 @@ def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Gen
                 yield running.pop(future), future.result()
 
 
-@contextmanager
-def _deaf() -> Iterator[None]:
-    """Put interrupts off, where the system can, so that a process begun meanwhile is deaf from its start."""
-    import signal
-
-    if sys.platform == "win32":
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
 def _start_server() -> None:
     """Start the process that workers are forked from, as deaf as they are."""
     from multiprocessing import forkserver, resource_tracker
 
     resource_tracker.ensure_running()  # first: it is deaf by itself, and leaves this process hearing
-    with _deaf():
+    with uninterrupted():
         forkserver.ensure_running()
 
 

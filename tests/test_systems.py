@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -196,3 +197,22 @@ def until(true) -> None:
             return
         time.sleep(0.01)
     pytest.fail("it did not come to that")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of threads")
+def test_an_interrupt_that_another_thread_takes_is_put_off_as_well() -> None:
+    """Threads of a linear algebra library do not block it, and Python tells the main thread."""
+    done = threading.Event()
+    thread = threading.Thread(target=done.wait)
+    thread.start()
+    reached = False
+    try:
+        with pytest.raises(KeyboardInterrupt), system.uninterrupted():
+            signal.pthread_kill(thread.ident, signal.SIGINT)
+            for _ in range(100):
+                time.sleep(0.001)
+            reached = True
+    finally:
+        done.set()
+        thread.join()
+    assert reached
