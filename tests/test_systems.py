@@ -205,13 +205,18 @@ def test_an_interrupt_that_another_thread_takes_is_put_off_as_well() -> None:
     done = threading.Event()
     thread = threading.Thread(target=done.wait)
     thread.start()
-    reached = False
-    try:
-        with pytest.raises(KeyboardInterrupt), system.uninterrupted():
+    reached = []
+
+    def steps() -> None:
+        with system.uninterrupted():
             signal.pthread_kill(thread.ident, signal.SIGINT)
             for _ in range(100):
                 time.sleep(0.001)
-            reached = True
+            reached.append(True)
+
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            steps()
     finally:
         done.set()
         thread.join()
