@@ -11,6 +11,7 @@ Both solvers of scipy get the acceleration from a closed form in plain floats, t
 
 from __future__ import annotations
 
+import argparse
 import math
 import os
 import platform
@@ -168,11 +169,11 @@ def picture(rows):
     figure.savefig(ROOT / "docs" / "pictures" / "dynamics-work.png", dpi=90)
 
 
-def main():
+def main(*, write: bool):
     rows = measured()
     text = table(rows)
     print(text)
-    if "--write" in sys.argv and not SMALL:
+    if write and not SMALL:
         page = ROOT / "docs" / "dynamics.md"
         before, rest = page.read_text(encoding="utf-8").split("<!-- work -->\n")
         page.write_text(f"{before}<!-- work -->\n{text}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}", "utf-8")
@@ -180,4 +181,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
+    parser.add_argument("--write", action="store_true", help="put it into docs/dynamics.md")
+    main(write=parser.parse_args().write)

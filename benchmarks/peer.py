@@ -1,6 +1,6 @@
 """One peer at work: the same cam by what a user would pick instead. Nothing of camgeo is imported here.
 
-    python benchmarks/peer.py PEER CAM COUNT FILE      writes FILE and prints the seconds of warm repeats as JSON
+    python benchmarks/peer.py PEER CAM COUNT FILE REPEATS     writes FILE, prints seconds of warm repeats as JSON
 
 CAM is `yoke` (AS Figure 2a about the shaft (16, 7.5), a closed formula) or `roller` (Wunderlich's Figure 9: the
 parallel of a pitch curve at the roller radius). COUNT is the number of points of the curve that the peer is given. Each
@@ -9,10 +9,10 @@ peer does with its own means what a careful user of it would: exact points, its 
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -140,12 +140,18 @@ PEERS = {
 
 
 def main() -> None:
-    name, cam, count, target, repeats = sys.argv[1:]
-    work, _ = PEERS[name]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("peer", choices=PEERS)
+    parser.add_argument("cam", choices=("yoke", "roller"))
+    parser.add_argument("count", type=int)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("repeats", type=int)
+    given = parser.parse_args()
+    work, _ = PEERS[given.peer]
     seconds = []
-    for _ in range(1 + int(repeats)):
+    for _ in range(1 + given.repeats):
         start = time.perf_counter()
-        work(cam, int(count), Path(target))
+        work(given.cam, given.count, given.file)
         seconds.append(time.perf_counter() - start)
         if len(seconds) > 1 and seconds[-1] > LONG:  # the first also imports
             break

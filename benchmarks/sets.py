@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 import time
 from pathlib import Path
 
@@ -19,12 +19,12 @@ RECIPES = Path(__file__).parents[1] / "recipes"
 TOLERANCE = 0.001  # mm
 
 
-def main() -> None:
+def main(names: list[str], *, small: bool = False) -> None:
     """Print a row for each recipe."""
     print("| recipe | follower | bodies | pairs | least, mm | least beyond the fits, mm | s |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
-    names = sys.argv[1:] or sorted(path.stem for path in RECIPES.glob("*.yaml"))
-    for name in ["fourier"] if "--small" in names else names:
+    chosen = ["fourier"] if small else names or sorted(path.stem for path in RECIPES.glob("*.yaml"))
+    for name in chosen:
         print(row(name), flush=True)
 
 
@@ -51,4 +51,8 @@ def row(name: str) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("recipes", nargs="*", metavar="RECIPE", help="name of a shipped recipe (default: all)")
+    parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
+    arguments = parser.parse_args()
+    main(arguments.recipes, small=arguments.small)

@@ -7,6 +7,7 @@ fails. `--small` takes little of everything, to see that it works: its ratios sa
 
 from __future__ import annotations
 
+import argparse
 import math
 import os
 import statistics
@@ -189,7 +190,13 @@ def spent(command: list[str], environment: dict[str, str]) -> tuple[float, float
 
 
 if __name__ == "__main__":
-    chosen = [name for name in sys.argv[1:] if name != "--small"] or ["cold", "fit", "stl", "judge"]
-    for name, part in (("fit", fits), ("stl", stl), ("judge", judge), ("cold", cold)):
+    parts = {"fit": fits, "stl": stl, "judge": judge, "cold": cold}
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("part", nargs="*", help=f"of {', '.join(parts)} (default: all)")
+    parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
+    chosen = parser.parse_args().part or list(parts)
+    if unknown := [name for name in chosen if name not in parts]:
+        parser.error(f"no part is called {', '.join(unknown)}; there are: {', '.join(parts)}")
+    for name, part in parts.items():
         if name in chosen:
             part()

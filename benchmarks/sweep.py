@@ -9,6 +9,7 @@ OMP_NUM_THREADS=1, and nothing beside it. `command` takes `camgeo sweep` itself,
 
 from __future__ import annotations
 
+import argparse
 import math
 import os
 import subprocess
@@ -26,7 +27,7 @@ from camgeo.figures import breadth_of
 from camgeo.linkage import mechanism_of
 from camgeo.profile.build import intent_of
 from camgeo.recipe.load import load_text
-from camgeo.recipe.model import Limit
+from camgeo.recipe.model_sweep import Limit
 from camgeo.sweep.figures import Evaluator
 from camgeo.sweep.rebuilt import recipe_with
 
@@ -193,7 +194,13 @@ def accuracy() -> None:
 COUNTS = (120, 180, 360, 720, 1440)
 
 if __name__ == "__main__":
-    chosen = [name for name in sys.argv[1:] if name != "--small"] or ["command", "speed", "accuracy"]
-    for name, part in (("command", command), ("speed", speed), ("accuracy", accuracy)):
+    parts = {"command": command, "speed": speed, "accuracy": accuracy}
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("part", nargs="*", help=f"of {', '.join(parts)} (default: all)")
+    parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
+    chosen = parser.parse_args().part or list(parts)
+    if unknown := [name for name in chosen if name not in parts]:
+        parser.error(f"no part is called {', '.join(unknown)}; there are: {', '.join(parts)}")
+    for name, part in parts.items():
         if name in chosen:
             part()

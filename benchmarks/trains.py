@@ -7,10 +7,10 @@ python benchmarks/trains.py --small    two rows, to see that it works
 
 from __future__ import annotations
 
+import argparse
 import math
 import os
 import platform
-import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -95,7 +95,7 @@ def ended(section: dict) -> str:
     return f"{words}; no float" if "float_why" in run else words
 
 
-def main() -> None:
+def main(*, write: bool) -> None:
     """Print the table, and write it where asked."""
     rows = [
         "| train | held by | natural ratio | damping ratio | seconds | outcome |",
@@ -107,11 +107,14 @@ def main() -> None:
         print(rows[-1], flush=True)
     machine = f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}"
     table = "\n".join([*rows, "", f"Measured by `python benchmarks/trains.py --write` ({machine}).", ""])
-    if "--write" in sys.argv and not SMALL:
+    if write and not SMALL:
         text = PAGE.read_text(encoding="utf-8")
         head, rest = text.split(BEGIN)
         PAGE.write_text(head + BEGIN + table + END + rest.split(END)[1], encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
+    parser.add_argument("--write", action="store_true", help="put it into docs/dynamics.md")
+    main(write=parser.parse_args().write)

@@ -1,8 +1,111 @@
-"""`python -m camgeo`: the command line."""
+"""The entry of the command line, also `python -m camgeo`: from here to the end an interrupt ends with status 130.
 
+Nothing is imported before the interrupt is seen to, as the imports take most of a short run. What an interrupt cannot
+reach is Python's own start before this.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
 import sys
+import time
 
-from camgeo.cli import main
+TYPE_CHECKING = False  # as typing has it; importing that takes as long as all the above
+if TYPE_CHECKING:
+    from types import FrameType
+    from typing import NoReturn
+
+_IMPATIENT = 1.0  # seconds from which a second interrupt is a person's: one may arrive twice, by way of a launcher
+
+
+class _Interrupts:
+    """Interrupts of this process: the first is raised as KeyboardInterrupt, and none is forgotten.
+
+    A library's callback may swallow one, or print it; it is raised again until it ends the run. While that clears up,
+    others are ignored; an impatient one ends it at once, which loses nothing: the next run clears up.
+    """
+
+    def __init__(self) -> None:
+        self.first: float | None = None
+        self.quiet = False  # at the end, where there is nothing left to interrupt
+        self._again = False  # the first was swallowed
+
+    def listen(self) -> None:
+        """Take over from Python, unless interrupts are ignored (`nohup`, a shell's background)."""
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, self._came)
+            sys.unraisablehook = self._swallowed
+
+    def _came(self, _number: int, _frame: FrameType | None) -> None:
+        now = time.monotonic()
+        if self.first is None or self._again:
+            self.first, self._again = now, False
+            if not self.quiet:
+                raise KeyboardInterrupt
+        elif now - self.first > _IMPATIENT:
+            os._exit(130)
+
+    def _swallowed(self, what: sys.UnraisableHookArgs) -> None:
+        """Raise an interrupt again that fell into a callback from which nothing can be raised."""
+        if not isinstance(what.exc_value, KeyboardInterrupt):
+            sys.__unraisablehook__(what)
+        elif not self.quiet:
+            import threading
+            from _thread import interrupt_main
+
+            self._again = True
+            again = threading.Timer(0.01, interrupt_main)  # not here: it would fall into this same callback
+            again.daemon = True
+            again.start()
+
+
+def main() -> NoReturn:
+    """Run the command of the process's arguments and leave with its exit status; 130 for any interrupt."""
+    interrupts = _Interrupts()
+    try:
+        interrupts.listen()
+        status = _status()
+        interrupts.quiet = True
+    except KeyboardInterrupt:
+        interrupts.quiet = True
+        status = 130
+        _say("camgeo: interrupted\n")
+    _leave(interrupts, status)
+
+
+def _status() -> int:
+    from camgeo.cli import main as run
+
+    try:
+        return run()
+    except SystemExit as end:  # of argparse
+        return end.code if isinstance(end.code, int) else 0 if end.code is None else 1
+
+
+def _leave(interrupts: _Interrupts, status: int) -> NoReturn:
+    """Leave at once, as the interpreter's own way out is open to interrupts, and tells them as tracebacks."""
+    import atexit
+
+    atexit._run_exitfuncs()  # noqa: SLF001 - what libraries leave to the end; there is no public way to it
+    try:
+        sys.stdout.flush()
+    except (OSError, ValueError):
+        status = status or 3
+    _say("")
+    if interrupts.first is not None and status != 130:
+        status = 130
+        _say("camgeo: interrupted\n")
+    os._exit(status)
+
+
+def _say(text: str) -> None:
+    try:
+        sys.stderr.write(text)
+        sys.stderr.flush()
+    except (OSError, ValueError, AttributeError):
+        return  # there is nobody to tell
+
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from camgeo import workers
 from camgeo.progress import Progress
 from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
 
@@ -38,33 +38,30 @@ class Result:
 
 def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Result]:
     """Give the result of each recipe in their order; `jobs` processes at once, None for as many as pay."""
-    workers = jobs or (min(os.cpu_count() or 1, len(recipes)) if len(recipes) >= PARALLEL_FROM else 1)
-    if workers <= 1 or len(recipes) < 2:
+    count = workers.needed(jobs or (workers.available() if len(recipes) >= PARALLEL_FROM else 1), len(recipes))
+    if count == 1:
         for recipe in recipes:
             yield result(recipe, task, Progress(recipe.name))
         return
-    import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
     from concurrent.futures.process import BrokenProcessPool
 
     progress = Progress(f"{len(recipes)} recipes")
-    context = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
-    with ProcessPoolExecutor(workers, context) as pool:
-        futures = [pool.submit(result, recipe, task) for recipe in recipes]
+    # forked: the recipes were loaded with most of what is needed, and nothing has started a thread yet
+    with workers.pool(count, fork=True) as pool:
         try:
+            futures = [pool.submit(partial(result, task=task), recipe) for recipe in recipes]
             for number, future in enumerate(futures):
                 progress(f"{number} of {len(futures)} done")
                 try:
                     found = future.result()
                 except BrokenProcessPool:
                     # one process was killed, and takes with it what the others had in hand
-                    text = "a process was killed before this recipe was done, for want of memory perhaps; see --jobs"
-                    found = Result(None, f"camgeo: {recipes[number].name}: {text}", SURROUNDINGS)
+                    text = f"camgeo: {recipes[number].name}: {workers.KILLED.format('this recipe')}"
+                    found = Result(None, text, SURROUNDINGS)
                 progress.clear()
                 yield found
-        except KeyboardInterrupt:
-            pool.shutdown(cancel_futures=True)
-            raise
+        finally:
+            progress.clear()
 
 
 def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Result:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import gc
-import os
 import sys
 from contextlib import contextmanager
 from dataclasses import replace
@@ -12,14 +11,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from camgeo.batch import Task, result, results
+from camgeo.mixture import mixtures
 from camgeo.page import command as page_command
 from camgeo.recipe.model import KINDS
 from camgeo.status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.study import command as study_command
 from camgeo.sweep import command as sweep_command
+from camgeo.terminal import complain, escaped, open_streams, say, say_json, silence
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
+
+    from _typeshed import SupportsWrite
 
     from camgeo.recipe.model import Recipe
 
@@ -28,10 +31,10 @@ COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status (0 every check holds, 1 a check fails, 2 wrong, 3 surroundings, 130)."""
-    _open_streams()
-    arguments = _parser().parse_args(argv)
-    command: Callable[[argparse.Namespace], int] = arguments.run
+    open_streams()
     try:
+        arguments = _parser().parse_args(argv)
+        command: Callable[[argparse.Namespace], int] = arguments.run
         with _rare_collections():
             status = command(arguments)
         sys.stdout.flush()
@@ -43,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         # can be said; nothing is wrong with the recipe.
         if not isinstance(error, BrokenPipeError):
             _complain(f"{error.filename or 'the output cannot be written'}: {error.strerror}")
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        silence("stdout")
         return SURROUNDINGS
     return status
 
@@ -62,17 +65,20 @@ def _rare_collections() -> Iterator[None]:
         gc.set_threshold(*usual)
 
 
-def _open_streams() -> None:
-    """Let what is said go nowhere where the caller closed the stream (`>&-`), which Python shows as None."""
-    for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115 - open while we run
+class _Parser(argparse.ArgumentParser):
+    """A parser whose help and complaints go the way of all others."""
+
+    def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
+        if file is sys.stderr:
+            complain(message.removesuffix("\n"))
+        else:
+            say(message.removesuffix("\n"))
 
 
 def _parser() -> argparse.ArgumentParser:
     from camgeo import __version__
 
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="camgeo",
         description="Disc cams from a short recipe to drawings, solids and milling programs, their motion judged from "
         "the files.",
@@ -96,6 +102,8 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument("--watch", action="store_true", help="export again at each saving; a page reloads itself")
     check = command("check", _check, "Every check of a recipe; nothing is written.")
     _add_recipes(check)
+    text = "folder of earlier results, whose files are held against their reports (default: out)"
+    check.add_argument("--out", default="out", metavar="DIR", help=text)
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
@@ -148,7 +156,7 @@ def _jobs(text: str) -> int:
 
 
 def _complain(text: str) -> None:
-    print(f"camgeo: {text}", file=sys.stderr)
+    complain(f"camgeo: {text}")
 
 
 # --- export and check -------------------------------------------------------------------------------------------------
@@ -162,7 +170,7 @@ def _export(arguments: argparse.Namespace) -> int:
     twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
     for recipe in twice:
         text = f"the name {recipe.name} is used by several recipes of this call; give each its own `name:`"
-        _complain(f"{recipe.path}: {text}")
+        _complain(f"{escaped(str(recipe.path))}: {text}")
     if twice:
         return WRONG
     return max(status, _told(recipes, Task(Path(arguments.out), tuple(arguments.only)), arguments))
@@ -191,20 +199,20 @@ def _watch(arguments: argparse.Namespace) -> int:
         try:
             recipe = load(path)
         except RecipeErrors as errors:
-            print(errors, file=sys.stderr)
+            complain(str(errors))
             return None, str(errors)
         asked = [request for request in recipe.export.files if request.kind != "html"]
         page = FileRequest("html")
         recipe = replace(recipe, export=replace(recipe.export, files=(*asked, page)))
         found = result(_at(recipe, arguments.tolerance), Task(out, only))
         if found.report is None:
-            print(found.message, file=sys.stderr)
+            complain(found.message)
             return None, found.message
         _show(found.report, verbose=arguments.verbose)
         folder = out / (recipe.name if found.report["ok"] else f"{recipe.name}{REJECTED}")
         return (folder / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
 
-    watch(path, exported, lambda address: print(f"watching {path}: {address}  (ctrl-c ends)", flush=True))
+    watch(path, exported, lambda address: say(f"watching {escaped(str(path))}: {address}  (ctrl-c ends)", at_once=True))
     return OK
 
 
@@ -218,11 +226,13 @@ def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) 
         try:
             recipe = load(path)
         except RecipeErrors as errors:
-            print(errors, file=sys.stderr)
+            complain(str(errors))
             continue
         if only and not any(request.kind in only for request in recipe.export.files):
             line, column = recipe.locate("export.files")
-            _complain(f"{path}:{line}:{column}: export.files lists no {' or '.join(only)}, which --only asks for")
+            _complain(
+                f"{escaped(path)}:{line}:{column}: export.files lists no {' or '.join(only)}, which --only asks for"
+            )
             continue
         recipes.append(_at(recipe, tolerance))
     return recipes, OK if len(recipes) == len(paths) else WRONG
@@ -242,28 +252,34 @@ def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> i
     for found in results(recipes, task, arguments.jobs):
         status = max(status, found.status)
         if found.report is not None:
+            if task.out is None:
+                _mention(found.report, mixtures(Path(arguments.out) / found.report["recipe"]))
             reports.append(found.report)
             if not arguments.json:
+                if arguments.verbose and len(reports) > 1:
+                    say("")
                 _show(found.report, verbose=arguments.verbose)
         if found.message:
-            print(found.message, file=sys.stderr)
+            complain(found.message)
     if arguments.json:
-        _print_json(reports)
+        from camgeo.report.document import encoded
+
+        say_json(encoded(reports))
     return status
 
 
+def _mention(report: dict[str, Any], mixed: Sequence[str]) -> None:
+    """Say where files and reports do not belong together; the verdict is of what was judged, whatever that is."""
+    if mixed:
+        report["mixed"] = [*report.get("mixed", ()), *mixed]
+    for text in mixed:
+        _complain(text)
+
+
 def _show(report: dict[str, Any], *, verbose: bool) -> None:
-    from camgeo.report.document import summary, table
+    from camgeo.report.document import summary, table, verdict
 
-    print(summary(report))
-    if verbose:
-        print(table(report) + "\n")
-
-
-def _print_json(data: object) -> None:
-    from camgeo.report.document import encoded
-
-    print(encoded(data), end="")
+    say(f"{table(report)}\n\n{verdict(report)}" if verbose else summary(report))
 
 
 # --- the other commands -----------------------------------------------------------------------------------------------
@@ -274,26 +290,29 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo import pipeline
     from camgeo.recipe.errors import RecipeErrors
     from camgeo.recipe.load import load
+    from camgeo.report.document import encoded
     from kin.read import SUFFIXES
 
     try:
         recipe = _at(load(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
         files = [path for path in paths if path.is_file()]
-        faults = [f"{p}: {_no_file(p)}" for p in paths if p not in files]
+        faults = [f"{escaped(str(p))}: {_no_file(p)}" for p in paths if p not in files]
         known = ", ".join(SUFFIXES)
-        faults += [f"{p}: none of {known}" for p in files if p.suffix.lower() not in SUFFIXES]
+        faults += [f"{escaped(str(p))}: none of {known}" for p in files if p.suffix.lower() not in SUFFIXES]
         if faults:
             for fault in faults:
                 _complain(fault)
             return WRONG
         given = arguments.tolerance
         report = pipeline.judged(recipe, paths, tolerance=None if given is None else given * recipe.mm)
+        for folder in dict.fromkeys(path.parent for path in paths):
+            _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except RecipeErrors as errors:
-        print(errors, file=sys.stderr)
+        complain(str(errors))
         return WRONG
     if arguments.json:
-        _print_json(report)
+        say_json(encoded(report))
     else:
         _show(report, verbose=arguments.verbose)
     return OK if report["ok"] else FAILED
@@ -321,13 +340,13 @@ def _new(arguments: argparse.Namespace) -> int:
         print(text, end="")
         return OK
     try:
-        with open(arguments.file, "x", encoding="utf-8") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11
+        with open(arguments.file, "x", encoding="utf-8", newline="\n") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11
             stream.write(text)
     except FileExistsError:
-        _complain(f"{arguments.file} exists already and is left as it is")
+        _complain(f"{escaped(arguments.file)} exists already and is left as it is")
         return WRONG
     except OSError as error:
-        _complain(f"{arguments.file}: {error.strerror}")
+        _complain(f"{escaped(arguments.file)}: {error.strerror}")
         return SURROUNDINGS
     return OK
 
@@ -337,17 +356,14 @@ def _laws(arguments: argparse.Namespace) -> int:
     from kin.law import LAWS
 
     if arguments.json:
-        from camgeo.report.document import finite
+        from camgeo.report.document import encoded
 
-        _print_json(
-            finite(
-                [
-                    {"law": law.name, "velocity": p.velocity, "acceleration": p.acceleration, "jerk": p.jerk}
-                    for law in LAWS.values()
-                    for p in (law.peaks,)
-                ]
-            )
-        )
+        rows = [
+            {"law": law.name, "velocity": p.velocity, "acceleration": p.acceleration, "jerk": p.jerk}
+            for law in LAWS.values()
+            for p in (law.peaks,)
+        ]
+        say_json(encoded(rows))
         return OK
     width = max(map(len, LAWS))
     print(f"{'law'.ljust(width)}  velocity  acceleration      jerk   (peaks for unit stroke over unit time)")
@@ -361,8 +377,9 @@ def _laws(arguments: argparse.Namespace) -> int:
 def _schema(_arguments: argparse.Namespace) -> int:
     """Print the JSON schema."""
     from camgeo.recipe.schema import json_schema
+    from camgeo.report.document import encoded
 
-    _print_json(json_schema())
+    say_json(encoded(json_schema()))
     return OK
 
 

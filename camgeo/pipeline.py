@@ -51,7 +51,7 @@ def export(
         _, found = _produced(recipe, requests, run.folder, clock)
         kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
-        (run.folder / REPORT).write_text(encoded(report), encoding="utf-8")
+        (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
         names = [file.path.name for file in found.files]
         folder = run.commit(names, keep=kept) if found.ok else run.reject()
     return Outcome(report, found.ok, folder)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 import time
 
+from camgeo.terminal import escaped, whisper
+
 PATIENCE = 1.0  # seconds before progress is shown
 
 
@@ -19,13 +21,11 @@ class Progress:
     def __call__(self, stage: str) -> None:
         """Show a stage in place of the last one."""
         if sys.stderr.isatty() and time.perf_counter() - self._start > PATIENCE:
-            sys.stderr.write(f"\r\x1b[K{self._name}: {stage} ...")
-            sys.stderr.flush()
+            whisper(f"\r\x1b[K{escaped(self._name)}: {stage} ...")
             self._shown = True
 
     def clear(self) -> None:
         """Take the line away again."""
         if self._shown:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
+            whisper("\r\x1b[K")
             self._shown = False

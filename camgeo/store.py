@@ -32,20 +32,18 @@ import json
 import os
 import re
 import stat
-import sys
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
+from camgeo import system
+from camgeo.system import locked, patient, unlock
+from camgeo.terminal import escaped
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from types import TracebackType
-
-if sys.platform == "win32":
-    import msvcrt
-else:
-    import fcntl
 
 REPORT = "report.json"
 REJECTED = ".rejected"
@@ -57,7 +55,7 @@ class SurroundingsError(Exception):
     """What is needed around a run is missing or refuses: the disk, a permission, a lock; `path` is where."""
 
     def __init__(self, message: str, path: Path) -> None:
-        super().__init__(f"{path}: {message}")
+        super().__init__(f"{escaped(str(path))}: {message}")
         self.path = path
 
 
@@ -117,7 +115,11 @@ class Run:
         """Lock the name, finish or undo a swap that was cut off, clear away what killed runs left, make `folder`."""
         try:
             self._out.mkdir(parents=True, exist_ok=True)
-            self._lock = _locked(self._beside("lock"), self._out / self._name)
+            lock = locked(self._beside("lock"))
+            if lock is None:
+                text = f"another run is at work here (it holds {self._beside('lock').name})"
+                raise BusyError(text, self._out / self._name)
+            self._lock = lock
             try:
                 self._clear()
                 self._recover()
@@ -170,7 +172,7 @@ class Run:
         folder, swap = self._out / target, self._beside("swap")
         try:
             self._prepare(folder, tuple(names), tuple(keep))
-            self.folder.rename(swap)
+            patient(lambda: self.folder.rename(swap))
         except OSError as error:
             raise _surroundings(error, folder) from error
         try:
@@ -201,7 +203,7 @@ class Run:
         for name in before:
             _linked(folder / name, self.folder / _OLD / name)
         journal = {"target": folder.name, "come": come, "go": sorted(set(before) - set(come)), "before": before}
-        (self.folder / _JOURNAL).write_text(json.dumps(journal), "utf-8")
+        (self.folder / _JOURNAL).write_text(json.dumps(journal), "utf-8", newline="\n")
 
     def _recover(self) -> None:
         """Finish what was committed, or what was being undone."""
@@ -218,7 +220,7 @@ class Run:
         for name in journal.come[:-1]:
             _move(swap / name, folder / name)
         for name in journal.go:
-            (folder / name).unlink(missing_ok=True)
+            _removed(folder / name)
         _move(swap / journal.come[-1], folder / journal.come[-1])
 
     def _back(self, undo: Path) -> None:
@@ -230,11 +232,11 @@ class Run:
             _move(undo / _OLD / name, folder / name)
         for name in journal.come:
             if name not in journal.before:
-                (folder / name).unlink(missing_ok=True)
+                _removed(folder / name)
 
     def _done(self, swap: Path) -> None:
         """Let go of a swap whose files are all in place: one rename, then what is left of it."""
-        swap.rename(self.folder)
+        patient(lambda: swap.rename(self.folder))
         self._clear()
 
     def _clear(self) -> None:
@@ -245,7 +247,7 @@ class Run:
     def _give_up(self, folder: Path, error: OSError) -> None:
         """Undo a swap that failed; raises SurroundingsError in any case."""
         try:
-            self._beside("swap").rename(self._beside("undo"))
+            patient(lambda: self._beside("swap").rename(self._beside("undo")))
             self._back(self._beside("undo"))
             self._done(self._beside("undo"))
         except OSError as second:
@@ -261,15 +263,16 @@ class Run:
         if not os.path.lexists(folder):
             return ()
         _make_own(folder)
-        try:
-            text = (folder / self._report).read_bytes()
-        except FileNotFoundError:
+        report = folder / self._report
+        if not os.path.exists(report):  # noqa: PTH110 - pathlib raises where it may not look
             return ()
+        if not report.is_file():  # a pipe, say, whose reader waits
+            raise SurroundingsError("is not a report of camgeo; move it out of the way", report)
+        text = report.read_bytes()
         try:
             entries = [entry["path"] for entry in json.loads(text)["files"]]
         except (ValueError, TypeError, KeyError, RecursionError) as error:
-            where = folder / self._report
-            raise SurroundingsError("is not a report of camgeo; move it out of the way", where) from error
+            raise SurroundingsError("is not a report of camgeo; move it out of the way", report) from error
         names = [name for name in dict.fromkeys(entries) if isinstance(name, str) and self._ours(name)]
         return (*(name for name in names if _is_file(folder / name)), self._report)
 
@@ -288,56 +291,13 @@ class Run:
         return [path for path in sorted(self._out.iterdir()) if pattern.fullmatch(path.name)]
 
     def _unlock(self) -> None:
-        """Remove the lock's file while it is held, then let go of it."""
-        with suppress(OSError):  # a file that stays behind locks nothing
-            self._beside("lock").unlink()
-        os.close(self._lock)
+        """Let the next run of this name begin."""
+        unlock(self._lock, self._beside("lock"))
 
 
 def _plain(name: str) -> bool:
     """Whether a name is one component of a path, not hidden, that means the same on every system."""
     return bool(name) and not name.startswith(".") and name.isprintable() and not set(name) & set('/\\:*?"<>|')
-
-
-def _locked(path: Path, folder: Path) -> int:
-    """Open and lock a file, and return it; raises SurroundingsError where another process holds it.
-
-    The holder removes the file in the end. So a lock counts only if the path still leads to the file that was locked.
-    """
-    while True:
-        lock = os.open(path, os.O_CREAT | os.O_RDWR | getattr(os, "O_NOFOLLOW", 0), 0o666)
-        try:
-            if _taken(lock):
-                return _checked(lock, path)
-        except FileNotFoundError:
-            os.close(lock)  # removed by its last holder after it was opened here
-            continue
-        except BaseException:
-            os.close(lock)
-            raise
-        os.close(lock)
-        raise BusyError(f"another run is at work here (it holds {path.name})", folder)
-
-
-def _checked(lock: int, path: Path) -> int:
-    if not os.path.samestat(os.fstat(lock), path.stat()):
-        raise FileNotFoundError(path)
-    return lock
-
-
-def _taken(lock: int) -> bool:
-    """Lock an open file until it is closed or the process ends; False where another one has it."""
-    if sys.platform == "win32":
-        try:
-            msvcrt.locking(lock, msvcrt.LK_NBLCK, 1)
-        except PermissionError:
-            return False
-        return True
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    return True
 
 
 def _make_own(folder: Path) -> None:
@@ -354,14 +314,19 @@ def _move(source: Path, target: Path) -> None:
         return
     if os.path.lexists(target) and os.path.samestat(source.lstat(), target.lstat()):
         return
-    source.replace(target)
+    patient(lambda: source.replace(target))
+
+
+def _removed(path: Path) -> None:
+    """Remove a file if it is there."""
+    patient(lambda: path.unlink(missing_ok=True))
 
 
 def _linked(source: Path, target: Path) -> None:
     """Give a file a second name; on file systems without hard links, a copy."""
     try:
         os.link(source, target, follow_symlinks=False)
-    except OSError:
+    except (OSError, NotImplementedError):  # the second where a system knows no link to a link
         import shutil
 
         shutil.copy2(source, target, follow_symlinks=False)
@@ -389,4 +354,7 @@ def _discard(folder: Path) -> None:
 def _surroundings(error: OSError, path: Path) -> SurroundingsError:
     """Name the path that the system named, or else `path`."""
     where = Path(os.fsdecode(error.filename)) if isinstance(error.filename, (str, bytes)) else path
-    return SurroundingsError(error.strerror or str(error), where)
+    text = error.strerror or str(error)
+    if system.WINDOWS and isinstance(error, PermissionError):
+        text += "; if another program has it open, close it there and run again"
+    return SurroundingsError(text, where)

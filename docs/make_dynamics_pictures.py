@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 from pathlib import Path
 
@@ -59,7 +60,7 @@ def main() -> None:
     axes[1].set_title("300 rpm, as cut: flats of the polygon ring", fontsize=9)
     axes[1].legend(fontsize=7, frameon=False)
     speeds = np.linspace(200.0, 1000.0, 400)
-    least = [steady(TRAIN, intended, float(rpm), rough=True).force.least for rpm in speeds]
+    least = [steady(TRAIN, intended, float(rpm)).force.least for rpm in speeds]
     begin = float_speed(TRAIN, intended)
     axes[2].plot(speeds, least, color=INK, lw=1.2)
     axes[2].axhline(0.0, color=PALE, lw=0.8)
@@ -78,4 +79,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     main()

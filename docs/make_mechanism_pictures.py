@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 import tempfile
 from pathlib import Path
 
@@ -35,9 +35,9 @@ COLOURS = {
 TURN, TILT = np.radians(-20.0), np.radians(42.0)
 
 
-def main() -> None:
+def main(names: list[str]) -> None:
     """Export, read back, draw: laid out on the left, put together on the right."""
-    for name in sys.argv[1:] or NAMES:
+    for name in names:
         recipe = load(ROOT / "recipes" / f"{name}.yaml")
         figure, axes = plt.subplots(1, 2, figsize=(13, 6.2), constrained_layout=True)
         with tempfile.TemporaryDirectory() as folder:
@@ -77,4 +77,6 @@ def seen(corners: np.ndarray) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    main()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("recipes", nargs="*", default=NAMES, metavar="RECIPE", help="name of a shipped recipe")
+    main(parser.parse_args().recipes)

@@ -9,6 +9,7 @@ rounding included.
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import re
@@ -332,4 +333,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     main()

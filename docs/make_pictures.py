@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import matplotlib as mpl
 import numpy as np
 
 from camgeo import pipeline
+from camgeo.design import designed, intended
 from camgeo.recipe.load import load
 from kin.read_dxf import read_dxf
 
@@ -35,12 +37,12 @@ def main() -> None:
     for column, (name, title) in enumerate(zip(names, titles, strict=True)):
         recipe = load(ROOT / "recipes" / f"{name}.yaml")
         recipe = replace(recipe, export=replace(recipe.export, files=(recipe.export.files[0],)))
-        design = pipeline.designed(recipe)
+        design = designed(recipe)
         with tempfile.TemporaryDirectory() as folder:
             outcome = pipeline.export(recipe, Path(folder))
             path = Path(folder) / recipe.name / f"{recipe.name}.dxf"
             drawing = read_dxf(path)
-        follower = pipeline.intended(recipe, design).follower
+        follower = intended(recipe, design).follower
         phi = np.linspace(0.0, 2.0 * np.pi, 3601)
         error = np.atleast_2d(follower.contact(drawing.contour, phi) - follower.intended(phi))
         draw_mechanism(axes[0, column], drawing, follower, phi[300])
@@ -96,4 +98,5 @@ def draw_error(axis: Axes, degrees: np.ndarray, error: np.ndarray, report: dict)
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     main()

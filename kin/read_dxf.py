@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from kin.contour import Box
 from kin.drawing import BESIDE, BORE, CUT, ENGRAVED, REFERENCE, Aside, Drawing, Fault, Found, drawing_of
 from kin.dxf_entities import CURVES, NOTES, shape_of
+from kin.home import prepare_home
 from kin.read_error import ReadError
 from kin.shape import UnfitError
 
@@ -86,6 +87,7 @@ def damage_reported(path: Path) -> Iterator[None]:
 
     It can surface anywhere there, as any of DAMAGE. To the caller they all mean the same; the cause stays attached.
     """
+    prepare_home()
     from ezdxf.lldxf.const import DXFError
 
     try:
@@ -105,6 +107,7 @@ def parsed(raw: bytes, path: Path) -> Document:
     if END_MARK.search(raw[-200:]) is None:
         raise ReadError("truncated", "the end mark EOF is missing: the file is cut short, or no DXF file", path)
 
+    prepare_home()
     from ezdxf.filemanagement import dxf_stream_info, read
 
     with damage_reported(path):

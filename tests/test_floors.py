@@ -32,7 +32,7 @@ FLOORS = {
         bezier flight monotone motion response series turn upright
         bernstein chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles
         arcs ball chebyshev distinct newton oscillator read_error
-        check
+        check home
     """,
     "camgeo": """
         __main__
@@ -83,8 +83,11 @@ FLOORS = {
         recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.model_sweep recipe.table_part
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism
         recipe.table_sweep
-        curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors
-        recipe.spec report rounded status store
+        curve files files.markup workers files.table files.triangulate fit fit.pieces profile progress recipe.errors
+        recipe.spec report rounded status
+        mixture
+        store
+        system terminal
         page.followers page.pack page.svg
         page.scene
         bodies files.missing making manufacture page fit.rational part recipe.din6885 recipe.model_part study

@@ -295,7 +295,7 @@ def test_without_manifold3d_a_solid_is_refused_and_the_rest_is_not(tmp_path, mon
     status = main(["export", str(recipe), "--out", str(tmp_path / "out")])
     told = capsys.readouterr().err
     assert status == 3
-    assert "need manifold3d: pip install 'camgeo[solid]'" in told
+    assert "need manifold3d: pip install '.[solid]' in a clone of camgeo" in told
     assert main(["export", str(recipe), "--out", str(tmp_path / "out"), "--only", "dxf"]) == 0
 
 

@@ -107,7 +107,7 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     missing = tmp_path / "missing.yaml"
     assert whole(missing) == f"{missing}: there is no such file"
     assert whole(tmp_path) == f"{tmp_path}: cannot be read: {os.strerror(21)}"
-    assert whole("a\0b") == "a\0b: not the name of a file"
+    assert whole("a\0b") == "a\\x00b: not the name of a file"
     large = tmp_path / "large.yaml"
     large.write_bytes(b"#" * (MAX_BYTES + 1))
     assert whole(large) == f"{large}: the file is larger than 1000000 bytes; a recipe takes a few hundred"
@@ -381,7 +381,7 @@ def test_names_of_devices(name: str) -> None:
 def test_a_name_cannot_be_that_of_a_failed_runs_folder() -> None:
     assert told(f"name: x.Rejected\n{SUPPORT}") == [
         (
-            "c.yaml:1:7: name: ends in .rejected, as the folders of failed runs do, given 'x.Rejected'; "
+            "c.yaml:1:7: name: reserved for the folders of failed runs, which end in .rejected, given 'x.Rejected'; "
             "choose another ending"
         )
     ]

@@ -27,9 +27,7 @@ from camgeo.recipe import RecipeErrors, read
 from kin.part21 import exchange
 from kin.read_step import read_step
 
-kernel = pytest.mark.skipif(
-    importlib.util.find_spec("OCP") is None, reason="needs Open CASCADE: pip install 'camgeo[step]'"
-)
+kernel = pytest.mark.skipif(importlib.util.find_spec("OCP") is None, reason="needs Open CASCADE: pip install '.[step]'")
 AREA = math.pi * (25**2 - 4 * 8 / 2)  # of p = 25 + 2 cos 3t: pi (m^2 + (1 - k^2) a^2/2)
 PERIMETER = 50 * math.pi
 FULL = (
@@ -357,7 +355,7 @@ def test_without_the_extra_the_run_says_what_to_install(tmp_path, monkeypatch, c
     recipe = tmp_path / "cam.yaml"
     recipe.write_text(f"{CAM}part: {{thickness: 8}}\nexport: {{files: [step]}}\n")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 3
-    assert "a STEP file needs Open CASCADE: pip install 'camgeo[step]'" in capsys.readouterr().err
+    assert "a STEP file needs Open CASCADE: pip install '.[step]' in a clone of camgeo" in capsys.readouterr().err
     with pytest.raises(MissingExtraError):
         write_step(
             tmp_path / "x.step",

@@ -170,7 +170,7 @@ def test_a_missing_extra_exits_3_and_is_named_before_anything_is_computed(
     if "sobol" in path.read_text():
         path.write_text(path.read_text().replace(", steps: 25", ""))
     assert main(["sweep", str(path), "--out", str(tmp_path / "out"), *options]) == 3
-    expected = f'camgeo: four-bar: the package {package} is missing: pip install "camgeo[{extra}]"\n'
+    expected = f"camgeo: four-bar: the package {package} is missing: pip install '.[{extra}]' in a clone of camgeo\n"
     assert capsys.readouterr().err == expected
     assert not (tmp_path / "out").exists()
 

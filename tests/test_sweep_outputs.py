@@ -298,7 +298,7 @@ def test_what_a_missing_package_leaves_out_is_told(
     for name in missing:
         monkeypatch.setattr(outputs, name, without)
     report = search(ask(), tmp_path, How(1), MEANS).report
-    why = f'the package {package} is missing: pip install "camgeo[sweep]"'
+    why = f"the package {package} is missing: pip install '.[sweep]' in a clone of camgeo"
     assert report["skipped"] == [{"what": what, "why": why} for what in left_out]
     assert (tmp_path / "four-bar" / "best-1.yaml").exists()
     assert (tmp_path / "four-bar" / "sweep.csv").exists()

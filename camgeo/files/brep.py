@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from camgeo.files.curves import CONFUSION, centre_of, curves_of, inset, measures, point
-from camgeo.files.missing import MissingExtraError
+from camgeo.files.missing import MissingExtraError, install
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import ArcSpline, Bound
 
@@ -42,10 +42,10 @@ def need_kernel() -> None:
         import OCP
         import OCP.STEPControl
     except ImportError as error:
-        raise MissingExtraError("a STEP file needs Open CASCADE: pip install 'camgeo[step]'") from error
+        raise MissingExtraError(f"a STEP file needs Open CASCADE: {install('step')}") from error
     version = str(OCP.__version__)
     if not version.startswith(f"{VERSION}."):
-        message = f"a STEP file needs Open CASCADE {VERSION}, not {version}: pip install 'camgeo[step]'"
+        message = f"a STEP file needs Open CASCADE {VERSION}, not {version}: {install('step')}"
         raise MissingExtraError(message)
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon, RationalSpline
+from kin.home import prepare_home
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -115,6 +116,7 @@ def write_dxf(
         raise ValueError(f"a drawing unit must be 1.0 or 25.4 mm, not {mm!r}")
     unit, insunits, measurement = UNITS[mm]
 
+    prepare_home()
     from ezdxf.document import Drawing  # ezdxf.new() warns whenever it makes an R12 drawing
     from ezdxf.enums import InsertUnits
 

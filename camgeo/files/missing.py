@@ -3,3 +3,8 @@
 
 class MissingExtraError(ImportError):
     """An extra of this package is not installed; the message names it and says how to get it."""
+
+
+def install(extra: str) -> str:
+    """How to get an extra of this package, which no index has: from a clone of it."""
+    return f"pip install '.[{extra}]' in a clone of camgeo"

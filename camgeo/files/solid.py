@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.files.mesh import MeshFacts, settled
-from camgeo.files.missing import MissingExtraError
+from camgeo.files.missing import MissingExtraError, install
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import RegionError, disc
 from camgeo.fit.pieces import Bound, Polygon
@@ -115,7 +115,7 @@ def manifold_maker(what: str) -> Callable[[Array, Triangles], Any]:
     try:
         import manifold3d
     except ImportError as error:
-        raise MissingExtraError(f"{what} need manifold3d: pip install 'camgeo[solid]'") from error
+        raise MissingExtraError(f"{what} need manifold3d: {install('solid')}") from error
 
     def made(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - manifold3d has no types
         body = manifold3d.Manifold(manifold3d.Mesh64(points, triangles.astype(np.uint64)))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.files.missing import install
 from camgeo.progress import Progress
 from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     import argparse
@@ -61,26 +62,26 @@ def run(arguments: argparse.Namespace) -> int:
         report = _written(recipe, files, Path(arguments.out), ok=outcome.ok)
     except RecipeErrors as errors:
         progress.clear()
-        print(errors, file=sys.stderr)
+        complain(str(errors))
         return WRONG
     except ModuleNotFoundError as error:
         progress.clear()
-        print(f'camgeo: the package {error.name} is missing: pip install "camgeo[picture]"', file=sys.stderr)
+        complain(f"camgeo: the package {error.name} is missing: {install('picture')}")
         return SURROUNDINGS
     except (SurroundingsError, OSError) as error:
         progress.clear()
-        print(f"camgeo: {error}", file=sys.stderr)
+        complain(f"camgeo: {error}")
         return SURROUNDINGS
     progress.clear()
     if arguments.json:
         from camgeo.report.document import encoded
 
-        print(encoded(report), end="")
+        say_json(encoded(report))
     else:
         folder = Path(arguments.out) / recipe.name
         verdict = "ok" if outcome.ok else "FAILED"
         told = ", ".join(f"{folder / file['path']} {file['bytes'] / 1000:.0f} kB" for file in report["files"])
-        print(f"{recipe.name}: {verdict}  {told}")
+        say(f"{recipe.name}: {verdict}  {told}")
     return OK if outcome.ok else FAILED
 
 
@@ -103,18 +104,15 @@ def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -
 
 def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> dict[str, Any]:
     """Write page and pictures beside the recipe's files, all or none; return the report that names them."""
-    import hashlib
-
+    from camgeo.mixture import listed
     from camgeo.report.document import encoded
     from camgeo.store import Family, Run
 
-    entries = [
-        {"path": name, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()} for name, data in files.items()
-    ]
+    entries = [listed(name, data) for name, data in files.items()]
     report = {"recipe": recipe.name, "ok": ok, "files": entries}
     with Run(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
         for name, data in files.items():
             (run_.folder / name).write_bytes(data)
-        (run_.folder / REPORT).write_text(encoded(report), encoding="utf-8")
+        (run_.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
         run_.commit(list(files))
     return report

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.page.svg import BESIDE, SIDE
+from kin.home import prepare_home
 
 if TYPE_CHECKING:
     from camgeo.page.scene import Body, Scene, Shape
@@ -40,6 +41,7 @@ LOOKS: dict[str, tuple[str, str, float]] = {
 
 def png(scene: Scene, step: int) -> bytes:
     """Draw a scene at a step of the turn; raises ModuleNotFoundError without matplotlib."""
+    prepare_home()
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from camgeo.terminal import escaped
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -30,7 +32,8 @@ class RecipeError:
 
     def __str__(self) -> str:
         """Write the fault on one line: file:line:column: path: problem, given value; remedy."""
-        place = f"{self.file}:{self.line}:{self.column}" if self.line else self.file
+        file = escaped(self.file)
+        place = f"{file}:{self.line}:{self.column}" if self.line else file
         field = f" {self.path}:" if self.path else ""
         given = f", given {self.value}" if self.value is not None else ""
         remedy = f"; {self.remedy}" if self.remedy else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 def load(path: str | PathLike[str]) -> Recipe:
     """Read a recipe from a file; raises RecipeErrors with all its faults, also where there is no such file."""
     try:
+        mode = Path(path).stat().st_mode
+        if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):  # its reader may wait for ever
+            raise _whole(path, "a pipe or a device, not a file; save the recipe as a file")
         with Path(path).open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
     except FileNotFoundError:

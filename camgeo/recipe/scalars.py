@@ -100,7 +100,9 @@ def read_name(text: str) -> str:
     if _DEVICE.fullmatch(text):
         raise Complaint("reserved for a device by Windows", f"use {NAME_RULE}")
     if text.lower().endswith(RESERVED_SUFFIX):
-        raise Complaint(f"ends in {RESERVED_SUFFIX}, as the folders of failed runs do", "choose another ending")
+        raise Complaint(
+            f"reserved for the folders of failed runs, which end in {RESERVED_SUFFIX}", "choose another ending"
+        )
     return text
 
 

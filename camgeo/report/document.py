@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from camgeo import __version__
+from camgeo.mixture import listed
 from camgeo.recipe.model import NO_CONTOUR, NO_PART
+from camgeo.terminal import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from kin.frame import LinkageVerdict
     from kin.motion import MotionError
 
+ROUNDING = 1e-11  # mm, in or degrees: what sums of doubles of some hundred leave, and no machine makes
+DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part"})  # stages of the exact cam
 UNIT_NAMES = {"mm": "mm", "inch": "in"}
 
 
@@ -122,13 +125,8 @@ def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
 
 
 def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
-    data = file.path.read_bytes()
-    entry: dict[str, Any] = {
-        "path": file.path.name,
-        "kind": file.request.kind,
-        "bytes": len(data),
-        "sha256": hashlib.sha256(data).hexdigest(),
-    }
+    told = listed(file.path.name, file.path.read_bytes())
+    entry: dict[str, Any] = {"path": told.pop("path"), "kind": file.request.kind, **told}
     if file.request.kind in NO_CONTOUR:
         return entry
     mm = recipe.mm
@@ -184,12 +182,12 @@ def summary(report: dict[str, Any]) -> str:
         if file.get("stale"):
             continue
         own = (report["recipe"] + ".", report["recipe"] + "-")
-        text = file["path"][len(own[0]) :] if file["path"].startswith(own) else file["path"]
+        text = escaped(file["path"][len(own[0]) :] if file["path"].startswith(own) else file["path"])
         if file.get("pieces"):
             text += f" {file['pieces']} {pieces_word(file)}"
         motion = file.get("motion")
         if motion and motion["max"] is not None:
-            text += f", motion {motion['max']:.3g} {motion['unit']}"
+            text += f", motion {_measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}"
         parts.append(text)
     parts += _of_linkage(report.get("linkage"))
     failed = [_told(check) for check in report["checks"] if not check["ok"]]
@@ -209,7 +207,7 @@ def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:
     parts = []
     error = linkage.get("error")
     if error is not None:
-        parts.append(f"output {error['max']:.3g} {error['unit']}")
+        parts.append(f"output {_measured(error['max'], error['unit'], digits=3)}")
     made = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] != "intended"]
     meant = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] == "intended"][:1]
     if made or meant:
@@ -234,11 +232,11 @@ def table(report: dict[str, Any]) -> str:
             (
                 check["name"],
                 "ok" if check["ok"] else "FAILED",
-                _number(check["value"]),
+                _value(check),
                 "" if check["limit"] is None else f"{sign} {_number(check['limit'])}",
                 check["unit"],
                 "" if check["at_deg"] is None else f"{check['at_deg']:.2f} deg",
-                check.get("file", ""),
+                escaped(check.get("file", "")),
             )
         )
     text = aligned(rows)
@@ -247,30 +245,45 @@ def table(report: dict[str, Any]) -> str:
         motion = file.get("motion") or {}
         rows.append(
             (
-                file["path"],
+                escaped(file["path"]),
                 str(file.get("bytes", "stale")),
                 str(file.get("pieces") or ""),
                 _number(file.get("tolerance")),
                 _number(file.get("geometry_error")),
-                _number(file.get("measured_error")),
-                " ".join(filter(None, (_number(motion.get("max")), motion.get("unit", "")))),
-                _number(motion.get("rms")),
+                _measured(file.get("measured_error"), limit=file.get("tolerance")),
+                _measured(motion.get("max"), motion.get("unit", ""), limit=file.get("tolerance")),
+                _measured(motion.get("rms"), limit=file.get("tolerance")),
                 "" if motion.get("at_deg") is None else f"{motion['at_deg']:.2f} deg",
             )
         )
     text += "\n\n" + aligned(rows)
     if report["skipped"]:
-        text += "\n\n" + "\n".join(f"skipped {item['what']}: {item['why']}" for item in report["skipped"])
-    seconds = sum(stage["seconds"] for stage in report["stages"])
-    stages = ", ".join(f"{stage['name']} {1e3 * stage['seconds']:.1f}" for stage in report["stages"])
-    return f"{text}\n\n{1e3 * seconds:.1f} ms: {stages}"
+        text += f"\n\nskipped (the JSON says why): {', '.join(item['what'] for item in report['skipped'])}"
+    return f"{text}\n\n{_times(report['stages'])}"
+
+
+def verdict(report: dict[str, Any]) -> str:
+    """What `summary` tells with the verdict's line last, so that it stays in sight under a table."""
+    first, *failed = summary(report).split("\n")
+    return "\n".join([*failed, first])
+
+
+def _times(stages: Sequence[dict[str, Any]]) -> str:
+    """Milliseconds of all stages, and of each group of them: the exact cam, and the rest by the first word."""
+    groups: dict[str, float] = {}
+    for stage in stages:
+        word = stage["name"].split()[0]
+        group = "design" if stage["name"] in DESIGN else word
+        groups[group] = groups.get(group, 0.0) + stage["seconds"]
+    told = ", ".join(f"{group} {1e3 * seconds:.1f}" for group, seconds in groups.items())
+    return f"{1e3 * sum(groups.values()):.1f} ms: {told}"
 
 
 def _told(check: dict[str, Any]) -> str:
     """A failed check as a sentence."""
     text = f"{check['name']}"
     if check.get("file"):
-        text += f" ({check['file']})"
+        text += f" ({escaped(check['file'])})"
     if check["value"] is not None:
         text += f": {_number(check['value'])} {check['unit']}".rstrip()
         if check["limit"] is not None:
@@ -284,7 +297,22 @@ def _told(check: dict[str, Any]) -> str:
 
 
 def _number(value: float | None) -> str:
-    return "" if value is None else f"{value:.6g}"
+    return "" if value is None else f"{value + 0.0:.6g}"  # no minus before a zero
+
+
+def _value(check: dict[str, Any]) -> str:
+    """A check's figure; of an error that holds, without the digits that only rounding made."""
+    holds = check["ok"] and check["sense"] == "at_most"
+    return _measured(check["value"], limit=check["limit"]) if holds else _number(check["value"])
+
+
+def _measured(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
+    """A measured error with its unit; one that rounding made, far from its limit, has no digits worth telling."""
+    if value is None:
+        return ""
+    if 0.0 < abs(value) < ROUNDING and (not limit or abs(value) < 1e-3 * limit):
+        return "below rounding"
+    return f"{value + 0.0:.{digits}g} {unit}".rstrip()
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.files.missing import install
 from camgeo.progress import Progress
 from camgeo.status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.study import FORMS
+from camgeo.terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     import argparse
@@ -68,17 +69,17 @@ def run(arguments: argparse.Namespace) -> int:
         ok = not failed and all(row["ok"] for row in study["rows"])
         _write(recipe, study, Path(arguments.out), ok=ok)
     except RecipeErrors as errors:
-        print(errors, file=sys.stderr)
+        complain(str(errors))
         return WRONG
     except (SurroundingsError, OSError) as error:
-        print(f"camgeo: {error}", file=sys.stderr)
+        complain(f"camgeo: {error}")
         return SURROUNDINGS
     if arguments.json:
         from camgeo.report.document import encoded
 
-        print(encoded(study), end="")
+        say_json(encoded(study))
     else:
-        print(f"{recipe.name}\n{table(study)}")
+        say(f"{recipe.name}\n{table(study)}")
     return OK if ok else FAILED
 
 
@@ -104,23 +105,25 @@ def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> Non
     A study in which a check does not hold, of the exact cam or of a file, leaves the last good one and goes to
     `out`/<name>.rejected. That a ladder ends, at a tolerance that is refused or for want of time, is an ordinary end.
     """
+    from camgeo.mixture import listed
     from camgeo.report.document import encoded
     from camgeo.store import Family, Run
 
-    names = []
+    files: dict[str, bytes] = {}
     with Run(out, recipe.name, Family(REPORT, ("study",), "study")) as run:
         try:
             from camgeo.study.picture import picture
 
             if study["rows"]:
-                (run.folder / PICTURE).write_bytes(picture(study))
-                names.append(PICTURE)
+                drawn = picture(study)
+                (run.folder / PICTURE).write_bytes(drawn)
+                files[PICTURE] = drawn
         except ModuleNotFoundError as error:
-            why = f'the package {error.name} is missing: pip install "camgeo[study]"'
+            why = f"the package {error.name} is missing: {install('study')}"
             study["skipped"].append({"what": PICTURE, "why": why})
-        study["files"] = [{"path": name} for name in names]
-        (run.folder / REPORT).write_text(encoded(study), encoding="utf-8")
+        study["files"] = [listed(name, data) for name, data in files.items()]
+        (run.folder / REPORT).write_text(encoded(study), encoding="utf-8", newline="\n")
         if ok:
-            run.commit(names)
+            run.commit(files)
         else:
             run.reject()

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING, Any
 
+from kin.home import prepare_home
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -16,6 +18,7 @@ DOTS = 150
 
 def picture(study: dict[str, Any]) -> bytes:
     """Draw a study as PNG, under matplotlib's own defaults; raises ModuleNotFoundError without matplotlib."""
+    prepare_home()
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

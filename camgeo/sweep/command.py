@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.files.missing import install
 from camgeo.progress import Progress
 from camgeo.status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
+from camgeo.terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     import argparse
@@ -43,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
         ask = Ask.of(load(arguments.recipe))
         outcome, problem, status = _searched(ask, arguments)
     except RecipeErrors as errors:
-        print(errors, file=sys.stderr)
+        complain(str(errors))
         return WRONG
     if outcome is None:
         _complain(ask, problem)
@@ -56,11 +57,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         from camgeo.report.document import encoded
 
-        print(encoded(report), end="")
+        say_json(encoded(report))
     else:
-        print(_summary(report, outcome.folder))
+        say(_summary(report, outcome.folder))
         if arguments.verbose:
-            print(_table(report))
+            say(_table(report))
     return status
 
 
@@ -81,7 +82,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
         return None, f"interrupted; {resume}", INTERRUPTED
     except ModuleNotFoundError as error:
         extra = _EXTRAS.get(error.name or "", "sweep")
-        return None, f'the package {error.name} is missing: pip install "camgeo[{extra}]"', SURROUNDINGS
+        return None, f"the package {error.name} is missing: {install(extra)}", SURROUNDINGS
     except (EngineError, VersionsError) as error:
         return None, f"{error}; {resume}", SURROUNDINGS
     except SurroundingsError as error:
@@ -103,7 +104,7 @@ def _means() -> Means:
 
 
 def _complain(ask: Ask, text: str) -> None:
-    print(f"camgeo: {ask.recipe.name}: {text}", file=sys.stderr)
+    complain(f"camgeo: {ask.recipe.name}: {text}")
 
 
 def _teller(progress: Progress) -> Told:

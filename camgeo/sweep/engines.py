@@ -6,18 +6,16 @@ chunk only when it is about to come free, so an end that comes early wastes litt
 
 from __future__ import annotations
 
-import os
-import sys
 import time
 from contextlib import contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
+from camgeo import workers
 from camgeo.sweep.job import result
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-    from multiprocessing.connection import Connection
 
     from camgeo.sweep.job import Job
 
@@ -26,7 +24,6 @@ Results: TypeAlias = "Generator[tuple[int, bytes], None, None]"
 T = TypeVar("T")
 R = TypeVar("R")
 
-AHEAD = 2  # chunks handed out for each worker: one at work, one waiting
 _TRIED = 0.5  # seconds of work after which it is clear how long the rest takes
 _PAYS = 2.0  # seconds of remaining work from which more processes pay
 _PATIENCE = 10.0  # seconds for a scheduler to answer
@@ -44,87 +41,26 @@ def serial(job: Job, numbers: Sequence[int]) -> Results:
         yield number, result(job, number, key)
 
 
-def processes(job: Job, numbers: Sequence[int], workers: int) -> Results:
-    """Compute `workers` chunks at once, each in a process of this machine; raises EngineError where one is killed."""
+def processes(job: Job, numbers: Sequence[int], count: int) -> Results:
+    """Compute `count` chunks at once, each in a process of this machine; raises EngineError where one is killed."""
     key = job.key
-    return at_once(partial(result, job, key=key), numbers, workers)
+    return at_once(partial(result, job, key=key), numbers, count)
 
 
-def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Generator[tuple[T, R], None, None]:
-    """Give each item, as it is done, with what a function of a module makes of it, `workers` at once."""
-    import multiprocessing
-    from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+def at_once(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:
+    """Give each item, as it is done, with what a function of a module makes of it, `count` at once."""
     from concurrent.futures.process import BrokenProcessPool
 
-    # not fork: this process may have threads, of a linear algebra library or a compiler
-    clean = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
-    context = multiprocessing.get_context(clean)
-    if clean == "forkserver":
-        _start_server()
-    left = list(items)[::-1]
-    theirs, ours = context.Pipe(duplex=False)
-    with theirs, ours, ProcessPoolExecutor(workers, context, _be_a_worker, (theirs,)) as pool:
-        running: dict[Future[R], T] = {}
-        try:
-            while left or running:
-                while left and len(running) < AHEAD * workers:
-                    item = left.pop()
-                    running[pool.submit(function, item)] = item
-                done, _ = wait(running, return_when=FIRST_COMPLETED)
-                for future in done:
-                    yield running.pop(future), future.result()
-        except BrokenProcessPool as error:
-            text = "a process was killed before it was done, for want of memory perhaps; see --jobs"
-            raise EngineError(text) from error
-        finally:
-            if running:
-                ours.close()  # nobody waits for what is still at work: the workers end
-            # waited for, since a pool that is still ending when the interpreter exits may print a traceback
-            pool.shutdown(cancel_futures=True)
-
-
-def _start_server() -> None:
-    """Start the process that workers are forked from, deaf to interrupts from its first instruction, as they are."""
-    import signal
-    from multiprocessing import forkserver, resource_tracker
-
-    resource_tracker.ensure_running()  # first: it is deaf by itself, and leaves this process hearing
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        forkserver.ensure_running()
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _be_a_worker(run: Connection) -> None:
-    """Leave interrupts to the run that started this process, and end with it: nobody would fetch the results.
-
-    `run` is a pipe that the run closes to be rid of its workers at once.
-    """
-    import multiprocessing
-    import signal
-    import threading
-    from multiprocessing.connection import wait
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
-
-    def watch() -> None:
-        wait([run] if parent is None else [run, parent.sentinel])
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
-
-
-def available() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
+        yield from workers.at_once(function, items, count)
+    except BrokenProcessPool as error:
+        raise EngineError(workers.KILLED.format("it")) from error
 
 
 def as_pays(job: Job, numbers: Sequence[int]) -> Results:
     """Begin here, and go on with a process for each core where what is left takes longer than starting them."""
     started, key = time.perf_counter(), job.key
-    cores = available()
+    cores = workers.available()
     for done, number in enumerate(numbers):
         spent = time.perf_counter() - started
         if cores > 1 and done and spent > _TRIED and spent / done * (len(numbers) - done) > _PAYS:
@@ -147,7 +83,7 @@ def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
         running: dict[Any, int] = {}
         alone = 0
         while left or running:
-            room = AHEAD * max(1, sum(client.nthreads().values())) - len(running)
+            room = workers.AHEAD * max(1, sum(client.nthreads().values())) - len(running)
             for _ in range(min(room, len(left))):
                 number = left.pop()
                 # not pure: a result is kept on our disk and nowhere else

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo import __version__
+from camgeo.files.missing import install
+from camgeo.mixture import listed
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.report.document import encoded
 from camgeo.sweep.gather import MOST_ROWS
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 REPORT = "sweep.json"
 TABLES = ("sweep.csv", "sweep.parquet")
 PICTURES = ("sweep-map.png", "sweep-map.svg", "sweep-best.png", "sweep-best.svg")
-EXTRA = 'pip install "camgeo[sweep]"'
+EXTRA = install("sweep")
 _DRAWN = 10  # best designs in the picture of curves
 
 
@@ -66,10 +67,7 @@ def outputs(
     if best:
         files.make(PICTURES[2:], lambda: _curves(ask, best, files.made))
     report = _report(ask, found, best, reasons)
-    report["files"] = [
-        {"path": name, "bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
-        for name, data in files.made.items()
-    ]
+    report["files"] = [listed(name, data) for name, data in files.made.items()]
     report["skipped"] = files.skipped
     report["run"] = run
     files.made[REPORT] = encoded(report).encode()

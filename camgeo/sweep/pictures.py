@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from camgeo.sweep.gather import KEPT, NONE, OUTSIDE, STUCK
+from kin.home import prepare_home
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -142,6 +143,7 @@ def _draw_curve(axes: Axes, cells: Cells) -> list[Artist]:
 @contextmanager
 def _sheet() -> Iterator[tuple[Figure, Axes]]:
     """An empty picture under matplotlib's defaults."""
+    prepare_home()
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

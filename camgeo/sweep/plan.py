@@ -8,19 +8,15 @@ array otherwise than those in its middle.
 from __future__ import annotations
 
 import math
-import signal
-import threading
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from types import FrameType
+from camgeo.system import uninterrupted
 
+if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats: TypeAlias = NDArray[np.float64]
@@ -128,32 +124,13 @@ def _sobol(first: int, last: int, width: int, seed: int) -> Floats:
     return np.ldexp(points.astype(np.float64), -SOBOL_BITS)
 
 
-@contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Put an interrupt off to the end.
-
-    The first sequence reads scipy's table of numbers, in compiled code that prints an exception and goes on without
-    the numbers.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[tuple[int, FrameType | None]] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: came.append((number, frame)))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if came and callable(before):
-        before(*came[0])
-
-
 @lru_cache(maxsize=8)
 def _sobol_directions(width: int, seed: int, bits: int) -> tuple[NDArray[np.uint64], NDArray[np.uint64]]:
     """Point 0 (width,) and, for each of `bits` bits, how it changes a point (bits, width), as whole numbers."""
     from scipy.stats import qmc
 
-    with _uninterrupted():
+    # the first one reads scipy's table of numbers, in compiled code that prints an exception and goes on without them
+    with uninterrupted():
         sequence = qmc.Sobol(width, scramble=True, bits=SOBOL_BITS, rng=np.random.default_rng(seed))
 
     def point() -> NDArray[np.uint64]:

@@ -11,6 +11,7 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+from camgeo import workers
 from camgeo.sweep import engines
 from camgeo.sweep.gather import gather
 from camgeo.sweep.job import Job, result
@@ -59,7 +60,7 @@ class How:
     @property
     def processes(self) -> int:
         """Processes of this machine for what is left to do here in the end."""
-        return self.jobs or engines.available()
+        return self.jobs or workers.available()
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.system import patient
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
@@ -114,7 +116,7 @@ class Chunks:
         part = self.folder / f".chunk-{number:07d}.{os.getpid()}.part"
         try:
             part.write_bytes(data)
-            part.replace(self.path(number))
+            patient(lambda: part.replace(self.path(number)))
         except BaseException:
             part.unlink(missing_ok=True)
             raise

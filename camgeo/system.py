@@ -1,0 +1,114 @@
+"""What systems do differently: locks, files that a program holds open, interrupts."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+    from types import FrameType
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
+WINDOWS = sys.platform == "win32"
+_PAUSES = (0.01, 0.03, 0.1, 0.3, 1.0)  # seconds before another try where Windows refuses, for a virus scanner say
+
+
+def patient(step: Callable[[], object]) -> None:
+    """Take a step that renames or removes; on Windows again for a while, as it leaves alone what a program has open."""
+    for pause in _PAUSES if WINDOWS else ():
+        try:
+            step()
+        except PermissionError:
+            time.sleep(pause)
+        else:
+            return
+    step()
+
+
+def locked(path: Path) -> int | None:
+    """Open and lock a file, and return it; None where another process holds it.
+
+    The holder removes the file in the end. So a lock counts only if the path still leads to the file that was locked.
+    One that a killed process left behind is held by nobody.
+    """
+    while True:
+        lock = os.open(path, os.O_CREAT | os.O_RDWR | getattr(os, "O_NOFOLLOW", 0), 0o666)
+        try:
+            if not _taken(lock):
+                os.close(lock)
+                return None
+            if os.path.samestat(os.fstat(lock), path.stat()):
+                return lock
+        except FileNotFoundError:  # removed by its last holder after it was opened here
+            os.close(lock)
+        except BaseException:
+            os.close(lock)
+            raise
+        else:
+            os.close(lock)  # and another one is there already
+
+
+def unlock(lock: int, path: Path) -> None:
+    """Remove a lock's file while it is held, then let go of it.
+
+    The other way round on Windows, which removes no file that is open, here or in another run that waits for nothing.
+    """
+    if WINDOWS:
+        os.close(lock)
+    with suppress(OSError):  # a file that stays behind locks nothing
+        path.unlink()
+    if not WINDOWS:
+        os.close(lock)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Put an interrupt off to the end; a process that is begun meanwhile is deaf from its start, where a system can.
+
+    Both are needed: a thread of a library may still take the signal, and Python tells it to the main thread.
+    """
+    came: list[tuple[int, FrameType | None]] = []
+    main = threading.current_thread() is threading.main_thread()
+    before = signal.getsignal(signal.SIGINT)
+    if main and callable(before):
+        signal.signal(signal.SIGINT, lambda number, frame: came.append((number, frame)))
+    try:
+        if sys.platform == "win32":
+            yield
+        else:
+            mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                yield
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+    finally:
+        if main and callable(before):
+            signal.signal(signal.SIGINT, before)
+    if came and callable(before):
+        before(*came[0])
+
+
+def _taken(lock: int) -> bool:
+    """Lock an open file until it is closed or the process ends; False where another one has it."""
+    if sys.platform == "win32":
+        try:
+            msvcrt.locking(lock, msvcrt.LK_NBLCK, 1)
+        except PermissionError:
+            return False
+        return True
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True

@@ -1,0 +1,87 @@
+"""What is said on the terminal: any text, on a stream of any encoding, also where nobody can hear it.
+
+Standard output carries results: where it cannot be written the run fails. Standard error carries what is wrong: where
+it cannot be written nothing more can be said, and the exit status stays what it would have been.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+import unicodedata
+
+_UNSEEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})  # controls, marks of direction, halves of pairs, line separators
+
+
+def open_streams() -> None:
+    """Let both streams take any text: a closed one (`>&-`, None in Python) is no one's, a narrow encoding is escaped.
+
+    Lines end with LF on every system.
+    """
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115 - open while we run
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace", newline="\n")
+
+
+def escaped(text: str, *, keep: str = "") -> str:
+    """Text with whatever could disturb or deceive a terminal as a backslash and its number, but for those of `keep`."""
+    if text.isprintable():
+        return text
+    return "".join(c if c in keep or _seen(c) else c.encode("unicode_escape").decode() for c in text)
+
+
+def say(text: str, *, at_once: bool = False) -> None:
+    """Print lines of a result."""
+    print(escaped(text, keep="\n"), flush=at_once)
+
+
+def complain(text: str) -> None:
+    """Print lines on standard error, if it can be written."""
+    whisper(escaped(text, keep="\n") + "\n")
+
+
+def whisper(text: str) -> None:
+    """Write to standard error as it stands, if it can be written."""
+    try:
+        sys.stderr.write(text)
+        sys.stderr.flush()
+    except (OSError, ValueError):  # full, gone, closed
+        silence("stderr")
+
+
+def silence(name: str) -> None:
+    """Let a stream that cannot be written lead nowhere, with what it still holds: else its flush at the end fails."""
+    stream = getattr(sys, name)
+    try:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+    except (OSError, ValueError):  # it has no file behind it
+        setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115 - open while we run
+
+
+def say_json(text: str) -> None:
+    """Print a JSON text; what the stream's encoding has not, or a terminal would obey, is escaped as JSON has it."""
+    try:
+        text.encode(sys.stdout.encoding or "utf-8")
+        narrow = False
+    except UnicodeEncodeError:
+        narrow = True
+    if narrow or not text.replace("\n", "").isprintable():
+        plain = str.isascii if narrow else _seen
+        text = "".join(c if c == "\n" or (plain(c) and c != "\x7f") else _as_json(c) for c in text)
+    print(text, end="")
+
+
+def _seen(c: str) -> bool:
+    return unicodedata.category(c) not in _UNSEEN
+
+
+def _as_json(c: str) -> str:
+    """A character within a string of JSON as its number, beyond the first 65536 as a pair of them."""
+    units = c.encode("utf-16-be", "surrogatepass")
+    return "".join(f"\\u{units[i]:02x}{units[i + 1]:02x}" for i in range(0, len(units), 2))
