@@ -318,7 +318,7 @@ def _swept(space: Space, number: int) -> Surface:
     file = space.file
     _, curve, vector, *_ = file.values(number, "SURFACE_OF_LINEAR_EXTRUSION", 3)
     arrow = file.reference(vector, number)
-    along = space.triple(file.values(arrow, "VECTOR", 2)[1], arrow, "DIRECTION")
+    along = space.direction(file.values(arrow, "VECTOR", 2)[1], arrow)
     if not np.hypot(*along[:2]) <= LEVEL * abs(along[2]):
         raise file.error(number, "it is not swept along the vertical")
     path = file.reference(curve, number)
