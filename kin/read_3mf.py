@@ -10,7 +10,7 @@ import re
 import zipfile
 import zlib
 from array import array
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 from xml.parsers import expat
@@ -45,12 +45,14 @@ PART = "cam"
 class Placed(NamedTuple):
     """An object that is built: its triangles (t, 3, 3), mm, in axes of its own, and its place on the plate.
 
-    `place` (4, 3) has the images of the three axes and of the origin, mm, as rows.
+    `place` (4, 3) has the images of the three axes and of the origin, mm, as rows; `mm` is the length of the file's
+    unit.
     """
 
     name: str
     corners: Array
     place: Array
+    mm: float = 1.0
 
     @property
     def rigid(self) -> bool:
@@ -75,7 +77,8 @@ def read_3mf(path: Path | str, heights: Sequence[float] = ()) -> Solid:
         message = f"{len(built)} objects are built, {names}: one of them should be named {PART!r}"
         raise ReadError("several" if built else "empty", message if built else "no object is built", path)
     one = chosen[0]
-    return solid_of(one.corners if one.rigid else _moved(one.corners, one.place), "3mf", heights, path)
+    corners = one.corners if one.rigid else _moved(one.corners, one.place)
+    return replace(solid_of(corners, "3mf", heights, path), units_mm=one.mm)
 
 
 def read_placed(path: Path | str) -> tuple[Placed, ...]:
@@ -201,7 +204,7 @@ class _Model:
             there = np.concatenate((place[:3], self.mm * place[3:]))
             if not all(bool((np.abs(numbers) <= LARGEST).all()) for numbers in (corners, there)):
                 raise ReadError("range", f"object {one.name or name!r} reaches beyond all measure", self.path)
-            found.append(Placed(one.name, corners, there))
+            found.append(Placed(one.name, corners, there, self.mm))
         return tuple(found)
 
     def _corners(self, one: _Object, room: int, depth: int) -> Array:

@@ -68,6 +68,7 @@ class Solid:
     form                "binary" or "text", or "3mf"
     sections            those that were asked for, by height as asked for
     faces               heights of the horizontal faces, rising
+    units_mm            length of the file's unit, None where it states none
     """
 
     contour: Contour
@@ -85,6 +86,7 @@ class Solid:
     sections: tuple[Section, ...] = ()
     faces: tuple[float, ...] = ()
     uneven: float = 0.0
+    units_mm: float | None = None
 
     @property
     def closed(self) -> bool:
