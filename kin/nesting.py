@@ -44,8 +44,10 @@ def nested(contours: list[Contour], path: Path) -> list[int]:
         if not len(wrong):
             continue
         x, y = wrong[0].tolist()
+        box = contours[order[rank + 1 + int(np.flatnonzero(inside if rank else ~inside)[0])]].box
+        size = f"{box.x_max - box.x_min:.6g} x {box.y_max - box.y_min:.6g} mm"
+        what = f"the closed contour at ({x:.9g}, {y:.9g})"
         if rank:
-            raise ReadError("island", f"the closed contour at ({x:.9g}, {y:.9g}) lies inside a hole", path, (x, y))
-        message = f"the closed contour at ({x:.9g}, {y:.9g}) does not lie inside the largest one"
-        raise ReadError("several", message, path, (x, y))
+            raise ReadError("island", f"{what} lies inside a hole; it is {size}", path, (x, y))
+        raise ReadError("several", f"{what} does not lie inside the largest one; it is {size}", path, (x, y))
     return order

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from kin.bodies import MOST_BODIES, beside
 from kin.contour import Contour
 from kin.distinct import distinct
 from kin.flaws import first_meeting
@@ -41,6 +42,8 @@ LARGEST = 1e7
 STRAIGHT = 1e-13
 # Sections that are looked at for the widest one.
 MOST_STEPS = 8
+# What a section is found to be where there is more than one body.
+NOT_ONE = frozenset({"several", "island", "crossing"})
 
 
 class Section(NamedTuple):
@@ -154,6 +157,8 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
         if moved is not None and again is not None and again.prism:
             corners, uneven, found = moved.corners, moved.by, again
     mesh, outline = found.mesh, found.outline
+    if not found.prism:
+        _refuse_apart(read, path)
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
     whole = outline
     z = corners[:, :, 2]
@@ -161,7 +166,10 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
     if outline is None:
         stepped = len(levels) > 2 and not len(heights)
         height, outline = widest(mesh, levels, path) if stepped else cut(mesh, height, path)
-    contour, holes = sectioned(outline, path, across=whole is None)
+    try:
+        contour, holes = sectioned(outline, path, across=whole is None)
+    except ReadError as error:
+        raise _named(read, error, path) from None
     sections = []
     for asked in heights:
         if whole is None:
@@ -187,13 +195,54 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
     )
 
 
+def _named(mesh: Mesh, error: ReadError, path: Path) -> ReadError:
+    """Return an error on a section, or where there are several closed bodies one that names them."""
+    if error.reason not in NOT_ONE or mesh.edge_faults.open or not mesh.bodies.any():
+        return error
+    return _others(mesh, path)
+
+
+def _others(mesh: Mesh, path: Path) -> ReadError:
+    count = int(mesh.bodies.max()) + 1
+    named = [(f"body {k + 1}", _box(mesh, k)) for k in range(count)]
+    largest = sorted(named, key=lambda one: -float(np.prod(one[1][1] - one[1][0])))
+    return beside(largest[:MOST_BODIES], count, path)
+
+
+def _box(mesh: Mesh, body: int) -> tuple[Array, Array]:
+    points = mesh.points[mesh.corners[mesh.bodies == body].ravel()]
+    return points.min(axis=0), points.max(axis=0)
+
+
+def _refuse_apart(mesh: Mesh, path: Path) -> None:
+    """Refuse a closed mesh of which some body stands apart from the rest, above it or beside it or in a hole of it."""
+    if mesh.edge_faults.open or not mesh.bodies.any():
+        return
+    count = int(mesh.bodies.max()) + 1
+    if count > MOST_BODIES:
+        raise _others(mesh, path)
+    boxes = [_box(mesh, k) for k in range(count)]
+    for k, (low, high) in enumerate(boxes):
+        others = [box for j, box in enumerate(boxes) if j != k]
+        if all(bool((low > above).any() or (high < below).any()) for below, above in others):
+            raise _others(mesh, path)
+        try:
+            sectioned(section(mesh, float(0.5 * (low[2] + high[2])))[1], path, across=True)
+        except ReadError as error:
+            if error.reason in NOT_ONE:
+                raise _others(mesh, path) from None
+
+
 def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
     """Cut at a height; raises ReadError where the part does not reach there."""
     z = mesh.points[:, 2]
     if not z.min() < height < z.max():
         message = f"the part reaches from z = {z.min():.9g} to {z.max():.9g} mm: it has no section at {height:.9g}"
         raise ReadError("several", message, path)
-    return section(mesh, height)
+    at, found = section(mesh, height)
+    if not len(found.points):
+        raise ReadError("several", f"nothing is at z = {at:.9g} mm, and something above and below", path)
+    return at, found
 
 
 def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
