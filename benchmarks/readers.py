@@ -1,7 +1,7 @@
 """What reading costs at worst: `python benchmarks/readers.py [--small] [FORMAT ...]`.
 
 For each format files that are hard on a reader, in two sizes: many tiny entities, many loops, deep nesting, many things
-that nothing refers to. Told are processor seconds per megabyte of the file, the ratio to a plain parse of the same bytes
+that nothing refers to. Told are processor seconds per megabyte of the file, the ratio to a plain parse of these bytes
 in the same run (expat, numpy, ezdxf, or a split into words), and how the cost grows from the smaller file to the larger
 one: 1 is linear, 2 quadratic. A file that is refused counts as read. Nothing here passes or fails.
 """
@@ -197,7 +197,7 @@ def mf_deep(n: int) -> bytes:
     return model_of(TETRA + f'<vertex x="0" y="0" z="{n}"/>', SIDES, rows, "15")
 
 
-def step_of(n: int, points: np.ndarray, loose: int = 0) -> bytes:
+def step_of(points: np.ndarray, loose: int = 0) -> bytes:
     """A prism with flat walls, and points that nothing refers to."""
     lines: list[str] = []
 
@@ -250,12 +250,12 @@ def step_of(n: int, points: np.ndarray, loose: int = 0) -> bytes:
 
 def step_faces(n: int) -> bytes:
     """Many walls."""
-    return step_of(n, rim(n // 4))
+    return step_of(rim(n // 4))
 
 
 def step_loose(n: int) -> bytes:
     """Many points that nothing refers to."""
-    return step_of(n, rim(20), 10 * n)
+    return step_of(rim(20), 10 * n)
 
 
 def gcode_moves(n: int) -> bytes:
@@ -345,10 +345,8 @@ def main() -> None:
                     math.log(max(seconds, 1e-4) / max(soon, 1e-4)) / math.log(size / less) if size > 1.5 * less else 0.0
                 )
                 ratio = seconds / max(base, 1e-4)
-                print(
-                    f"| {kind} | {name} | {size:.3g} | {seconds:.3g} | {seconds / size:.3g} | {ratio:.3g} | {growth:.2f} |",
-                    flush=True,
-                )
+                told = [f"{one:.3g}" for one in (size, seconds, seconds / size, ratio, growth)]
+                print(f"| {kind} | {name} | {' | '.join(told)} |", flush=True)
 
 
 if __name__ == "__main__":

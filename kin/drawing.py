@@ -11,7 +11,7 @@ from kin.bezier import Beziers
 from kin.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.contour import Box, Contour
 from kin.flaws import first_meeting
-from kin.nesting import counter_clockwise, met, nested
+from kin.nesting import counter_clockwise, demand_few, met, nested
 from kin.pieces import ARC, Pieces
 from kin.read_error import ReadError
 
@@ -268,7 +268,9 @@ def chain(pieces: Pieces, run: Indices, gap: float, same: float, path: Path) -> 
     first = np.flatnonzero(np.diff(run, prepend=-1))
     count = np.diff(first, append=len(run))
     made = []
-    for loop in loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path):
+    found = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path)
+    demand_few(len(found), path)
+    for loop in found:
         many, back = count[loop.runs], loop.backwards
         owner = np.repeat(np.arange(len(many)), many)
         step = np.arange(len(owner)) - np.repeat(np.cumsum(many) - many, many)

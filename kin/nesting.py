@@ -14,7 +14,15 @@ if TYPE_CHECKING:
 
     from kin.contour import Contour
 
-__all__ = ["counter_clockwise", "met", "nested"]
+__all__ = ["counter_clockwise", "demand_few", "met", "nested"]
+
+MOST_CONTOURS = 2000
+
+
+def demand_few(count: int, path: Path) -> None:
+    """Raise ReadError for more closed contours than a part has, before the work on each is begun."""
+    if count > MOST_CONTOURS:
+        raise ReadError("range", f"it has {count} closed contours; up to {MOST_CONTOURS} are read", path)
 
 
 def counter_clockwise(contour: Contour) -> Contour:
@@ -37,9 +45,12 @@ def nested(contours: list[Contour], path: Path) -> list[int]:
     order = sorted(range(len(contours)), key=lambda k: -abs(contours[k].area))
     places = np.array([contours[k].start[0] for k in order])
     for rank, k in enumerate(order[:-1]):
-        chain, _ = counter_clockwise(contours[k]).as_arcs()
         others = places[rank + 1 :]
-        inside = signed_distance(chain, others) < 0.0
+        x_min, y_min, x_max, y_max = contours[k].box
+        inside = ((others >= (x_min, y_min)) & (others <= (x_max, y_max))).all(axis=1)  # its box, at first
+        if inside.any():
+            chain, _ = counter_clockwise(contours[k]).as_arcs()
+            inside[inside] = signed_distance(chain, others[inside]) < 0.0
         wrong = others[inside if rank else ~inside]
         if not len(wrong):
             continue

@@ -31,7 +31,7 @@ UNIT_NAMES = {"mm": 1.0, "millimetre": 1.0, "millimeter": 1.0, "inch": 25.4, "in
 UNIT_COMMENT = re.compile(rb"^[ \t]*999[ \t]*\r?\n[^\r\n]*\bunits?[ \t]*[:=][ \t]*(\w+)", re.IGNORECASE | re.MULTILINE)
 COMMENT_BYTES = 4000
 END_MARK = re.compile(rb"(^|\n)[ \t]*0[ \t]*\r?\n[ \t]*EOF\s*$")
-MOST_ENTITIES = 200_000  # that blocks may bring in
+MOST_ENTITIES = 20_000  # that blocks may bring in
 DEEPEST = 16  # of blocks within blocks
 EXTERNAL = 4 | 32  # flags of a block that another file has
 NO_LAYER = "0"  # what is drawn without choosing a layer stands there

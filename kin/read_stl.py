@@ -12,7 +12,7 @@ from kin.bodies import MOST_BODIES, beside
 from kin.contour import Contour
 from kin.distinct import distinct
 from kin.flaws import first_meeting
-from kin.nesting import counter_clockwise, met, nested
+from kin.nesting import counter_clockwise, demand_few, met, nested
 from kin.read_error import ReadError
 from kin.upright import Outline, evened, upright
 
@@ -203,25 +203,27 @@ def _named(mesh: Mesh, error: ReadError, path: Path) -> ReadError:
 
 
 def _others(mesh: Mesh, path: Path) -> ReadError:
-    count = int(mesh.bodies.max()) + 1
-    named = [(f"body {k + 1}", _box(mesh, k)) for k in range(count)]
-    largest = sorted(named, key=lambda one: -float(np.prod(one[1][1] - one[1][0])))
-    return beside(largest[:MOST_BODIES], count, path)
+    boxes = _boxes(mesh)
+    largest = sorted(range(len(boxes)), key=lambda k: -float(np.prod(boxes[k][1] - boxes[k][0])))[:MOST_BODIES]
+    return beside([(f"body {k + 1}", boxes[k]) for k in largest], len(boxes), path)
 
 
-def _box(mesh: Mesh, body: int) -> tuple[Array, Array]:
-    points = mesh.points[mesh.corners[mesh.bodies == body].ravel()]
-    return points.min(axis=0), points.max(axis=0)
+def _boxes(mesh: Mesh) -> list[tuple[Array, Array]]:
+    """Least and greatest coordinates (3,) of each body."""
+    order = np.argsort(mesh.bodies, kind="stable")
+    heads = np.flatnonzero(np.diff(mesh.bodies[order], prepend=-1))
+    corners = mesh.points[mesh.corners[order]]
+    low, high = np.minimum.reduceat(corners.min(axis=1), heads), np.maximum.reduceat(corners.max(axis=1), heads)
+    return list(zip(low, high, strict=True))
 
 
 def _refuse_apart(mesh: Mesh, path: Path) -> None:
     """Refuse a closed mesh of which some body stands apart from the rest, above it or beside it or in a hole of it."""
     if mesh.edge_faults.open or not mesh.bodies.any():
         return
-    count = int(mesh.bodies.max()) + 1
-    if count > MOST_BODIES:
+    boxes = _boxes(mesh)
+    if len(boxes) > MOST_BODIES:
         raise _others(mesh, path)
-    boxes = [_box(mesh, k) for k in range(count)]
     for k, (low, high) in enumerate(boxes):
         others = [box for j, box in enumerate(boxes) if j != k]
         if all(bool((low > above).any() or (high < below).any()) for below, above in others):
@@ -255,6 +257,7 @@ def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
 def sectioned(outline: Outline, path: Path, *, across: bool) -> tuple[Contour, tuple[Contour, ...]]:
     """Contour and holes of a section, which is one contour with holes in it; `across` triangles, or along a face."""
     loops = [outline.points[ring] for ring in rings(outline, path)]
+    demand_few(len(loops), path)
     contours = [Contour.from_vertices(straightened(loop) if across else loop) for loop in loops]
     meeting = first_meeting(contours)
     if meeting:
