@@ -40,6 +40,7 @@ __all__ = ["StepSolid", "read_step"]
 SAME = 1e-9  # mm: heights this close are one
 GAUSS = 12  # nodes over the height of a level hole
 AREA_NODES, AREA_WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact where a section is a cubic in the height
+WOUND = 1.0  # rad, by which bounds may miss going round and back: they miss it by nothing, or by whole turns
 MOST_NAMED = 3  # edges in a message
 
 
@@ -260,6 +261,8 @@ class _Body:
             named = ", ".join(f"#{edge}" for edge in sorted(wrong)[:MOST_NAMED])
             if wrong:
                 found.append(f"{len(wrong)} edges ({named}): each {what}")
+        wound = [face.number for face in self.faces if abs(face.winding) > WOUND]
+        found += [f"face #{number}: an arc of its bounds goes the wrong way round" for number in wound]
         for lid in self.lids:
             z = lid.heights[0]
             normal = lid.surface.normal[2] if isinstance(lid.surface, Plane) else 0.0

@@ -243,3 +243,17 @@ def test_random_damage_is_never_a_crash(tmp_path):
             letters[place] = chr(random.integers(32, 127))
         with contextlib.suppress(ReadError):  # any other error fails
             read_step(put(tmp_path, "".join(letters)))
+
+
+def test_an_arc_that_goes_the_long_way_round(tmp_path):
+    """The circle of an edge of a lid turned over: the same circle, and the rest of it."""
+    text = stadium()
+    circles = re.findall(r"#(\d+)=CIRCLE\('',#(\d+)", text)
+    assert len(circles) == 4
+    for _, axes in circles:
+        z = re.search(rf"#{axes}=AXIS2_PLACEMENT_3D\('',#\d+,#(\d+),", text)[1]
+        solid = read_step(
+            put(tmp_path, changed(text, rf"#{z}=DIRECTION\('',\(0(\.0)?,0(\.0)?,1", f"#{z}=DIRECTION('',(0.,0.,-1"))
+        )
+        (fault,) = solid.faults
+        assert re.fullmatch(r"face #\d+: an arc of its bounds goes the wrong way round", fault)

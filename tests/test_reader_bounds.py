@@ -35,9 +35,7 @@ def test_vertices_that_no_triangle_has(tmp_path):
     few = "".join(f'<vertex x="{k}" y="0" z="99"/>' for k in range(900))
     assert read_solid(spoilt(path, few)).z_max == 8.0
     many = "".join(f'<vertex x="{math.sqrt(k)!r}" y="{math.sin(k)!r}" z="99"/>' for k in range(5000))
-    with pytest.raises(
-        ReadError, match=r"5900 of the 6380 vertices of object 'cam' belong to no triangle"
-    ):
+    with pytest.raises(ReadError, match=r"5900 of the 6380 vertices of object 'cam' belong to no triangle"):
         read_solid(spoilt(path, many))
 
 
@@ -85,7 +83,7 @@ def test_contours_far_from_each_other_are_not_compared(tmp_path, monkeypatch):
     monkeypatch.setattr(flaws, "nearest", lambda chain, points: compared.append(len(points)) or near(chain, points))
     assert first_meeting(contours) is None
     assert sum(compared) == 64  # each hole with the outline alone
-    assert nested(contours, tmp_path) [0] == 0
+    assert nested(contours, tmp_path)[0] == 0
 
 
 def test_bodies_of_a_mesh_by_another_way():
