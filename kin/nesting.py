@@ -47,10 +47,11 @@ def nested(contours: list[Contour], path: Path) -> list[int]:
     for rank, k in enumerate(order[:-1]):
         others = places[rank + 1 :]
         x_min, y_min, x_max, y_max = contours[k].box
-        inside = ((others >= (x_min, y_min)) & (others <= (x_max, y_max))).all(axis=1)  # its box, at first
-        if inside.any():
+        inside = np.zeros(len(others), dtype=np.bool_)
+        near = np.flatnonzero(((others >= (x_min, y_min)) & (others <= (x_max, y_max))).all(axis=1))  # in its box
+        if near.size:
             chain, _ = counter_clockwise(contours[k]).as_arcs()
-            inside[inside] = signed_distance(chain, others[inside]) < 0.0
+            inside[near] = signed_distance(chain, others[near]) < 0.0
         wrong = others[inside if rank else ~inside]
         if not len(wrong):
             continue

@@ -98,3 +98,10 @@ def test_bodies_of_a_mesh_by_another_way():
     for a, one in zip(found, corners.tolist(), strict=True):
         for b, other in zip(found, corners.tolist(), strict=True):
             assert (a == b) == (group[one[0]] is group[other[0]])
+
+
+def test_pieces_drawn_over_one_another(tmp_path):
+    path = tmp_path / "cam.svg"
+    path.write_text(HEAD + '<circle r="20"/>' * 1200 + "</svg>")
+    with pytest.raises(ReadError, match="more than 1000 pieces are drawn over one another"):
+        read_drawing(path)
