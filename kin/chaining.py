@@ -28,7 +28,7 @@ MISSING_SHARE = 0.01
 ROUNDING = 8.0 * np.finfo(float).eps
 # Openings that an error looks at.
 MOST_SHOWN = 500
-MOST_TOGETHER = 1000  # pieces or ends at one place
+MOST_TOGETHER = 64  # pieces or ends at one place
 # A direction in which no drawing puts many of its points on one line: sorting along it keeps candidates few.
 SLANT = 0.5370795
 

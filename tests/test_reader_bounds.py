@@ -103,5 +103,5 @@ def test_bodies_of_a_mesh_by_another_way():
 def test_pieces_drawn_over_one_another(tmp_path):
     path = tmp_path / "cam.svg"
     path.write_text(HEAD + '<circle r="20"/>' * 1200 + "</svg>")
-    with pytest.raises(ReadError, match="more than 1000 pieces are drawn over one another"):
+    with pytest.raises(ReadError, match="more than 64 pieces are drawn over one another"):
         read_drawing(path)
