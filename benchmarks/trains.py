@@ -11,6 +11,7 @@ import argparse
 import math
 import os
 import platform
+import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path

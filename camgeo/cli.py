@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.model import Recipe
 
+UNIT_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4, "foot": 304.8}
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
 
@@ -108,6 +109,7 @@ def _parser() -> argparse.ArgumentParser:
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
     _add_options(verify, "to which all the files are held, in the recipe's unit")
+    verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
     sweep_command.add_arguments(sweep, _jobs)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, which there are.")
@@ -292,6 +294,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo.recipe.load import load
     from camgeo.report.document import encoded
     from kin.read import SUFFIXES
+    from kin.verify import UnitsError
 
     try:
         recipe = _at(load(arguments.recipe), arguments.tolerance)
@@ -305,9 +308,13 @@ def _verify(arguments: argparse.Namespace) -> int:
                 _complain(fault)
             return WRONG
         given = arguments.tolerance
-        report = pipeline.judged(recipe, paths, tolerance=None if given is None else given * recipe.mm)
+        units = None if arguments.units is None else UNIT_MM[arguments.units]
+        report = pipeline.judged(recipe, paths, tolerance=None if given is None else given * recipe.mm, units=units)
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
+    except UnitsError as error:
+        _complain(f"{error}; leave --units out")
+        return WRONG
     except RecipeErrors as errors:
         complain(str(errors))
         return WRONG

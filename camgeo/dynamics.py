@@ -63,10 +63,13 @@ class _Scene(NamedTuple):
     rests: tuple[tuple[float, float], ...]
     unit: float
     name: str
+    drawn: float | None
 
 
-def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
+def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: float | None = None) -> Found:
     """Find the dynamics of a recipe that asks for them, as intended and with each drawing and solid.
+
+    `units`, mm, is that of a file that states none; without it drawings are in the recipe's, meshes in mm.
 
     Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
     play `play`, that some is left. Raises RecipeErrors where the train has no steady state, and ValueError for a recipe
@@ -83,7 +86,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
     sources: list[Path | None] = [None]
     if recipe.linkage is None:
         sources += [path for path in files if path.suffix.lstrip(".") in KINDS]
-    scene = _scene(recipe, asked, design, _Purse(len(sources), each=1 if asked.play is not None else 2))
+    scene = _scene(recipe, asked, design, _Purse(len(sources), each=1 if asked.play is not None else 2), units)
     entries: list[dict[str, Any]] = []
     checks: list[Check] = []
     for path in sources:
@@ -111,7 +114,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path]) -> Found:
     return Found(section, tuple(checks))
 
 
-def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse) -> _Scene:
+def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn: float | None) -> _Scene:
     from camgeo.design import intended
     from kin.driven import METRE, rests
     from kin.dynamics import Train
@@ -129,7 +132,7 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse) -> _S
         raise recipe.error("dynamics.play", "a single flat face has no play", None, "give preload")
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
-    return _Scene(recipe, asked, train, purse, found, unit, name)
+    return _Scene(recipe, asked, train, purse, found, unit, name, drawn)
 
 
 def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
@@ -147,17 +150,23 @@ def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
         play = play / held.transmission.arm if isinstance(held, DoubleRoller | FlatPair) else METRE * play
     if path is None:
         return intended_faces(intent.follower, play)
-    return measured_faces(intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored), play)
+    return measured_faces(
+        intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored, units=scene.drawn), play
+    )
 
 
-def contour_of(path: Path, mm: float, *, mirrored: bool) -> Contour:
-    """Read the outer contour of a drawing or a solid, in mm as if not mirrored; `mm` is the unit of an R12 drawing."""
+def contour_of(path: Path, mm: float, *, mirrored: bool, units: float | None = None) -> Contour:
+    """Read the outer contour of a drawing or a solid, in mm as if not mirrored.
+
+    Where the file states no unit it is `units`, mm; without that it is `mm` in a drawing, and 1 mm in a mesh.
+    """
     from kin.read import SOLIDS, kind_of, read_drawing, read_solid
 
     if kind_of(path) in SOLIDS:
-        contour = read_solid(path).contour
+        contour = read_solid(path, (), units).contour
     else:
         drawing = read_drawing(path)
+        mm = mm if units is None else units
         contour = drawing.contour if drawing.units_mm is not None or mm == 1.0 else drawing.contour.scaled(mm)
     return contour.mirrored() if mirrored else contour
 

@@ -79,10 +79,13 @@ def shown(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> tuple
         return Outcome(document(recipe, found), found.ok, None), _content(recipe, design, found, clock)
 
 
-def judged(recipe: Recipe, paths: list[Path], *, tolerance: float | None = None) -> dict[str, Any]:
+def judged(
+    recipe: Recipe, paths: list[Path], *, tolerance: float | None = None, units: float | None = None
+) -> dict[str, Any]:
     """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does.
 
     They are held to `tolerance`, mm; without one to that of the recipe's file of the same name, or of its export.
+    `units`, mm, is that of files that state none; raises UnitsError where one states another.
     """
     from camgeo.recipe.model import FileRequest
     from kin.read import kind_of
@@ -96,12 +99,12 @@ def judged(recipe: Recipe, paths: list[Path], *, tolerance: float | None = None)
             within = _tolerance_of(recipe, path) if tolerance is None else tolerance
             by, field = _compensation_of(recipe, path)
             meant = intent_of_file(recipe, design, kind_of(path), by, field)
-            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within))
+            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within), units)
         request = FileRequest(verdict.kind, compensation=by)
         measured = verdict.measured_error
         files.append(FileResult(path, request, within, verdict.pieces, None, measured, verdict.motion, verdict.linkage))
         checks += verdict.checks
-    return document(recipe, _findings(recipe, design, checks, files, clock))
+    return document(recipe, _findings(recipe, design, checks, files, clock, units=units))
 
 
 def _compensation_of(recipe: Recipe, path: Path) -> tuple[Compensation | None, str]:
@@ -172,6 +175,7 @@ def _findings(
     clock: Clock,
     *,
     skipped: tuple[tuple[str, str], ...] = (),
+    units: float | None = None,
 ) -> Findings:
     """Everything that a run found."""
     linkage = None
@@ -185,7 +189,7 @@ def _findings(
         from camgeo.dynamics import dynamics_of
 
         with clock.stage("dynamics"):
-            train = dynamics_of(recipe, design, [file.path for file in files if file.shows_cam])
+            train = dynamics_of(recipe, design, [file.path for file in files if file.shows_cam], units)
         checks = [*checks, *train.checks]
     return Findings(
         tuple(checks),

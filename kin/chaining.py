@@ -28,6 +28,7 @@ MISSING_SHARE = 0.01
 ROUNDING = 8.0 * np.finfo(float).eps
 # Openings that an error looks at.
 MOST_SHOWN = 500
+MOST_TOGETHER = 64  # pieces or ends at one place
 # A direction in which no drawing puts many of its points on one line: sorting along it keeps candidates few.
 SLANT = 0.5370795
 
@@ -40,8 +41,11 @@ class Loop(NamedTuple):
     gap: float
 
 
-def close_pairs(points: Array, tolerance: float) -> tuple[Indices, Indices]:
-    """Pairs i, j (k,), (k,) of points (n, m) no farther apart than `tolerance` in any coordinate; each pair once."""
+def close_pairs(points: Array, tolerance: float, path: Path | None = None) -> tuple[Indices, Indices]:
+    """Pairs i, j (k,), (k,) of points (n, m) no farther apart than `tolerance` in any coordinate; each pair once.
+
+    Those of a file, `path`, are refused where so many lie together that their pairs are beyond number.
+    """
     direction = np.cos(SLANT * np.arange(1, points.shape[1] + 1) ** 2)
     along = points @ direction
     order = np.argsort(along, kind="stable")
@@ -61,6 +65,8 @@ def close_pairs(points: Array, tolerance: float) -> tuple[Indices, Indices]:
         first.append(i[close])
         second.append(j[close])
         step += 1
+        if path is not None and step > MOST_TOGETHER:
+            raise ReadError("range", f"more than {MOST_TOGETHER} pieces are drawn over one another", path)
     return np.concatenate(first), np.concatenate(second)
 
 
@@ -106,7 +112,7 @@ def loops(start: Array, end: Array, gap: float, same: float, path: Path) -> list
 
 def join(free: Indices, ends: Array, tolerance: float, partner: Indices, path: Path) -> None:
     """Make partners of the `free` ends that lie within `tolerance` of one other free end."""
-    i, j = close_pairs(ends[free], tolerance)
+    i, j = close_pairs(ends[free], tolerance, path)
     met = np.bincount(np.concatenate([i, j]), minlength=len(free))
     crowded = np.flatnonzero(met > 1)
     if crowded.size:

@@ -11,7 +11,7 @@ from kin.bezier import Beziers
 from kin.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.contour import Box, Contour
 from kin.flaws import first_meeting
-from kin.nesting import counter_clockwise, met, nested
+from kin.nesting import counter_clockwise, demand_few, met, nested
 from kin.pieces import ARC, Pieces
 from kin.read_error import ReadError
 
@@ -140,7 +140,7 @@ def drawing_of(
         lines = lines.enlarged(scale) if scale != 1.0 else lines
         scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, gap, same, path))
     demand_one_plane(np.concatenate([s.heights for s in found.shapes]) * scale, usual, path)
-    keep, faults = without_faults(pieces, run, found, same)
+    keep, faults = without_faults(pieces, run, found, same, path)
     if not keep.any():
         raise ReadError("empty", "all entities to cut are of zero length", path)
     chained = chain(pieces.take(keep), run[keep], gap, same, path)
@@ -210,7 +210,9 @@ def extent(pieces: Pieces) -> float:
     return float(np.ptp(np.concatenate(points), axis=0).max())
 
 
-def without_faults(pieces: Pieces, run: Indices, found: Found, same: float) -> tuple[NDArray[np.bool_], list[Fault]]:
+def without_faults(
+    pieces: Pieces, run: Indices, found: Found, same: float, path: Path
+) -> tuple[NDArray[np.bool_], list[Fault]]:
     """Which pieces (n,) to keep, and the faults: pieces of no length, and pieces drawn twice, whichever way round.
 
     Pieces no longer than `same`, mm, have no direction to speak of; those whose ends and middles agree to that are
@@ -226,7 +228,7 @@ def without_faults(pieces: Pieces, run: Indices, found: Found, same: float) -> t
     size = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), same)
     # The same whichever way the piece is run through: middle of the chord, of the piece, and the direction doubled.
     doubled = np.stack([chord[:, 0] ** 2 - chord[:, 1] ** 2, 2.0 * chord[:, 0] * chord[:, 1]], axis=1) / size[:, None]
-    one, other = close_pairs(np.column_stack([(start + end) / 2.0, middle, doubled]), same)
+    one, other = close_pairs(np.column_stack([(start + end) / 2.0, middle, doubled]), same, path)
     again = np.zeros(len(pieces), dtype=bool)
     again[kept[np.maximum(one, other)]] = True
     if not again.any():
@@ -268,7 +270,9 @@ def chain(pieces: Pieces, run: Indices, gap: float, same: float, path: Path) -> 
     first = np.flatnonzero(np.diff(run, prepend=-1))
     count = np.diff(first, append=len(run))
     made = []
-    for loop in loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path):
+    found = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path)
+    demand_few(len(found), path)
+    for loop in found:
         many, back = count[loop.runs], loop.backwards
         owner = np.repeat(np.arange(len(many)), many)
         step = np.arange(len(owner)) - np.repeat(np.cumsum(many) - many, many)

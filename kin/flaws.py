@@ -145,8 +145,15 @@ def meetings(contour: Contour, other: Contour) -> Crossings:
 
 def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
     """A place that two of the contours have in common, mm; None if all keep apart."""
+    boxes = np.array([contour.box for contour in contours]).reshape(-1, 4)
     for k, one in enumerate(contours[:-1]):
-        others = contours[k + 1 :]
+        x_min, y_min, x_max, y_max = boxes[k]
+        later = boxes[k + 1 :]
+        near = (later[:, 0] <= x_max + TOUCHING) & (later[:, 2] >= x_min - TOUCHING)
+        near &= (later[:, 1] <= y_max + TOUCHING) & (later[:, 3] >= y_min - TOUCHING)
+        others = [contours[k + 1 + int(j)] for j in np.flatnonzero(near)]
+        if not others:
+            continue
         _, away = nearest(one.as_arcs()[0], np.array([other.start[0] for other in others]))
         for other, distance in zip(others, away, strict=True):
             x_min, y_min, x_max, y_max = other.box

@@ -14,7 +14,15 @@ if TYPE_CHECKING:
 
     from kin.contour import Contour
 
-__all__ = ["counter_clockwise", "met", "nested"]
+__all__ = ["counter_clockwise", "demand_few", "met", "nested"]
+
+MOST_CONTOURS = 2000
+
+
+def demand_few(count: int, path: Path) -> None:
+    """Raise ReadError for more closed contours than a part has, before the work on each is begun."""
+    if count > MOST_CONTOURS:
+        raise ReadError("range", f"it has {count} closed contours; up to {MOST_CONTOURS} are read", path)
 
 
 def counter_clockwise(contour: Contour) -> Contour:
@@ -37,15 +45,21 @@ def nested(contours: list[Contour], path: Path) -> list[int]:
     order = sorted(range(len(contours)), key=lambda k: -abs(contours[k].area))
     places = np.array([contours[k].start[0] for k in order])
     for rank, k in enumerate(order[:-1]):
-        chain, _ = counter_clockwise(contours[k]).as_arcs()
         others = places[rank + 1 :]
-        inside = signed_distance(chain, others) < 0.0
+        x_min, y_min, x_max, y_max = contours[k].box
+        inside = np.zeros(len(others), dtype=np.bool_)
+        near = np.flatnonzero(((others >= (x_min, y_min)) & (others <= (x_max, y_max))).all(axis=1))  # in its box
+        if near.size:
+            chain, _ = counter_clockwise(contours[k]).as_arcs()
+            inside[near] = signed_distance(chain, others[near]) < 0.0
         wrong = others[inside if rank else ~inside]
         if not len(wrong):
             continue
         x, y = wrong[0].tolist()
+        box = contours[order[rank + 1 + int(np.flatnonzero(inside if rank else ~inside)[0])]].box
+        size = f"{box.x_max - box.x_min:.6g} x {box.y_max - box.y_min:.6g} mm"
+        what = f"the closed contour at ({x:.9g}, {y:.9g})"
         if rank:
-            raise ReadError("island", f"the closed contour at ({x:.9g}, {y:.9g}) lies inside a hole", path, (x, y))
-        message = f"the closed contour at ({x:.9g}, {y:.9g}) does not lie inside the largest one"
-        raise ReadError("several", message, path, (x, y))
+            raise ReadError("island", f"{what} lies inside a hole; it is {size}", path, (x, y))
+        raise ReadError("several", f"{what} does not lie inside the largest one; it is {size}", path, (x, y))
     return order

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from kin.drawing import Aside, Drawing, Fault
 from kin.read_dxf import read_dxf
 from kin.read_error import ReadError
-from kin.read_stl import Solid, read_stl
+from kin.read_stl import Section, Solid, read_stl
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,8 +62,11 @@ def read_drawing(path: Path | str, gap: float | None = None, *, engraved: bool =
     return read_dxf(path, gap, engraved=engraved)
 
 
-def read_solid(path: Path | str, heights: Sequence[float] = ()) -> AnySolid:
-    """Read an STL, 3MF or STEP; raises as `read_stl`, `read_3mf` and `read_step` do."""
+def read_solid(path: Path | str, heights: Sequence[float] = (), units: float | None = None) -> AnySolid:
+    """Read an STL, 3MF or STEP; raises as `read_stl`, `read_3mf` and `read_step` do.
+
+    `units`, mm, is that of an STL, which states none and is read in mm without.
+    """
     if kind_of(path) == "step":
         from kin.read_step import read_step
 
@@ -71,4 +75,22 @@ def read_solid(path: Path | str, heights: Sequence[float] = ()) -> AnySolid:
         from kin.read_3mf import read_3mf
 
         return read_3mf(path, heights)
-    return read_stl(path, heights)
+    if units is None or units == 1.0:
+        return read_stl(path, heights)
+    found = read_stl(path, [z / units for z in heights])
+    sections = [
+        Section(z, one.contour.scaled(units), tuple(hole.scaled(units) for hole in one.holes))
+        for z, one in zip(heights, found.sections, strict=False)
+    ]
+    return replace(
+        found,
+        contour=found.contour.scaled(units),
+        holes=tuple(hole.scaled(units) for hole in found.holes),
+        z_min=units * found.z_min,
+        z_max=units * found.z_max,
+        height=units * found.height,
+        volume=units**3 * found.volume,
+        sections=tuple(sections),
+        faces=tuple(units * z for z in found.faces),
+        uneven=units * found.uneven,
+    )

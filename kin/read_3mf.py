@@ -10,7 +10,7 @@ import re
 import zipfile
 import zlib
 from array import array
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 from xml.parsers import expat
@@ -32,6 +32,11 @@ LINK = "http://schemas.openxmlformats.org/package/2006/relationships Relationshi
 MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 UNIT_MM = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 MOST_BYTES = 1 << 29  # of a member of the archive when unpacked
+# Models pack to a fifth or a tenth. What packs to next to nothing says the same over and over: so many times its packed
+# size, and a free allowance, are unpacked.
+MOST_UNPACKED, FREE_BYTES = 50, 1 << 18
+# Vertices that no triangle has: up to a share of all, and a free allowance.
+LOOSE_SHARE, FREE_LOOSE = 0.5, 1000
 # Components may repeat one mesh, or nothing at all, without end: what all items together may hold.
 MOST_TRIANGLES = 1 << 24
 MOST_COMPONENTS = 1 << 14
@@ -45,12 +50,14 @@ PART = "cam"
 class Placed(NamedTuple):
     """An object that is built: its triangles (t, 3, 3), mm, in axes of its own, and its place on the plate.
 
-    `place` (4, 3) has the images of the three axes and of the origin, mm, as rows.
+    `place` (4, 3) has the images of the three axes and of the origin, mm, as rows; `mm` is the length of the file's
+    unit.
     """
 
     name: str
     corners: Array
     place: Array
+    mm: float = 1.0
 
     @property
     def rigid(self) -> bool:
@@ -75,7 +82,8 @@ def read_3mf(path: Path | str, heights: Sequence[float] = ()) -> Solid:
         message = f"{len(built)} objects are built, {names}: one of them should be named {PART!r}"
         raise ReadError("several" if built else "empty", message if built else "no object is built", path)
     one = chosen[0]
-    return solid_of(one.corners if one.rigid else _moved(one.corners, one.place), "3mf", heights, path)
+    corners = one.corners if one.rigid else _moved(one.corners, one.place)
+    return replace(solid_of(corners, "3mf", heights, path), units_mm=one.mm)
 
 
 def read_placed(path: Path | str) -> tuple[Placed, ...]:
@@ -113,19 +121,21 @@ def _parse(
         parser.EndElementHandler = end
     try:
         with archive.open(name) as stream:
-            _feed(parser, stream, name, path)
+            packed = archive.getinfo(name).compress_size
+            _feed(parser, stream, min(MOST_BYTES, MOST_UNPACKED * packed + FREE_BYTES), name, path)
     except KeyError as error:
         raise ReadError("syntax", f"the archive has no {name}", path) from error
     except expat.ExpatError as error:
         raise ReadError("syntax", f"{name} is not sound: {error}", path) from error
 
 
-def _feed(parser: expat.XMLParserType, stream: IO[bytes], name: str, path: Path) -> None:
+def _feed(parser: expat.XMLParserType, stream: IO[bytes], most: int, name: str, path: Path) -> None:
     size = 0
     while block := stream.read(BLOCK):
         size += len(block)
-        if size > MOST_BYTES:
-            raise ReadError("range", f"{name} unpacks to more than {MOST_BYTES} bytes", path)
+        if size > most:
+            bound = f"{MOST_UNPACKED} times its packed size and {FREE_BYTES} bytes, and {MOST_BYTES} in all, are read"
+            raise ReadError("range", f"{name} unpacks to more than {most} bytes: {bound}", path)
         parser.Parse(block, False)
     parser.Parse(b"", True)
 
@@ -150,6 +160,8 @@ class _Object:
     points: array[float] = field(default_factory=lambda: array("d"))
     corners: array[int] = field(default_factory=lambda: array("q"))
     components: list[tuple[str, Array]] = field(default_factory=list)
+    whole: Array | None = None  # its triangles with those of its components, once they are put together
+    under: int = 0  # components of that, and theirs
 
 
 class _Model:
@@ -201,17 +213,22 @@ class _Model:
             there = np.concatenate((place[:3], self.mm * place[3:]))
             if not all(bool((np.abs(numbers) <= LARGEST).all()) for numbers in (corners, there)):
                 raise ReadError("range", f"object {one.name or name!r} reaches beyond all measure", self.path)
-            found.append(Placed(one.name, corners, there))
+            found.append(Placed(one.name, corners, there, self.mm))
         return tuple(found)
 
     def _corners(self, one: _Object, room: int, depth: int) -> Array:
         """Triangles (t, 3, 3) of an object and all its components, in the file's unit."""
         if depth > DEEPEST:
             raise ReadError("unsupported", f"components lie more than {DEEPEST} deep, or hold themselves", self.path)
+        if one.whole is not None:
+            self.components += one.under
+            return one.whole
+        before = self.components
         points = np.array(one.points, dtype=np.float64).reshape(-1, 3)
         corners: Indices = np.array(one.corners, dtype=np.intp).reshape(-1, 3)
         if not bool((corners < len(points)).all()):
             raise self._fault(f"a triangle has a corner that is none of the {len(points)} vertices")
+        self._demand_used(one, len(points), corners)
         parts = [points[corners]]
         for name, place in one.components:
             room -= len(parts[-1])
@@ -220,7 +237,17 @@ class _Model:
                 most = f"more than {MOST_TRIANGLES} triangles or {MOST_COMPONENTS} components"
                 raise ReadError("range", f"{most}, those that repeat an object counted", self.path)
             parts.append(_moved(self._corners(self._named(name), room, depth + 1), place))
-        return np.concatenate(parts)
+        one.whole, one.under = np.concatenate(parts), self.components - before
+        return one.whole
+
+    def _demand_used(self, one: _Object, count: int, corners: Indices) -> None:
+        """Refuse a mesh most of whose vertices no triangle has."""
+        used = np.zeros(count, dtype=bool)
+        used[corners.ravel()] = True
+        loose = count - int(np.count_nonzero(used))
+        if loose > FREE_LOOSE + LOOSE_SHARE * count:
+            message = f"{loose} of the {count} vertices of object {one.name!r} belong to no triangle; leave them out"
+            raise ReadError("range", message, self.path)
 
     def _begin(self, given: dict[str, str]) -> None:
         unit = given.get("unit", "millimeter")

@@ -8,6 +8,7 @@ more than one solid are refused with the number of the instance.
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -15,13 +16,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.bodies import MOST_BODIES, beside
 from kin.distinct import distinct
 from kin.drawing import Found, drawing_of
-from kin.part21 import Typed, exchange
+from kin.part21 import exchange
 from kin.read_error import ReadError
 from kin.read_stl import Section
-from kin.step_curve import Space
 from kin.step_face import Plane, Tube, face_of
+from kin.step_space import space_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,27 +32,15 @@ if TYPE_CHECKING:
     from kin.contour import Contour
     from kin.drawing import Drawing
     from kin.part21 import Exchange
-    from kin.step_curve import Edge
+    from kin.step_curve import Edge, Space
     from kin.step_face import Face
 
 __all__ = ["StepSolid", "read_step"]
 
-# Mm in a metre under each prefix of an SI unit.
-PREFIXES = {
-    "MICRO": 1e-3, "MILLI": 1.0, "CENTI": 10.0, "DECI": 100.0, "DECA": 1e4, "HECTO": 1e5, "KILO": 1e6, "NANO": 1e-6,
-}  # fmt: skip
-REPRESENTATIONS = (
-    "ADVANCED_BREP_SHAPE_REPRESENTATION",
-    "SHAPE_REPRESENTATION",
-    "MANIFOLD_SURFACE_SHAPE_REPRESENTATION",
-)
-# What puts a solid somewhere else than it is drawn.
-MOVED = ("MAPPED_ITEM", "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION", "REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION")
-# Ends are joined within the accuracy that the file states, but no closer and no farther than this, mm.
-ACCURACY = (1e-6, 1e-3)
 SAME = 1e-9  # mm: heights this close are one
 GAUSS = 12  # nodes over the height of a level hole
 AREA_NODES, AREA_WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact where a section is a cubic in the height
+WOUND = 1.0  # rad, by which bounds may miss going round and back: they miss it by nothing, or by whole turns
 MOST_NAMED = 3  # edges in a message
 
 
@@ -142,18 +132,28 @@ class _Body:
     @staticmethod
     def of(file: Exchange) -> _Body:
         """Read the one solid of a file."""
-        for kind in MOVED:
-            for number in file.of(kind):
-                raise file.error(number, "an assembly is not read; export the part alone")
         solids = [*file.of("MANIFOLD_SOLID_BREP"), *file.of("BREP_WITH_VOIDS"), *file.of("FACETED_BREP")]
-        if len(solids) != 1:
-            what = f"it holds {len(solids)} solids, where one is meant to be" if solids else "it holds no solid"
-            raise ReadError("several" if solids else "empty", what, file.path)
-        solid = solids[0]
+        if not solids:
+            raise ReadError("empty", "it holds no solid", file.path)
+        if len(solids) > 1:
+            raise beside(
+                [(f"solid #{one}", _Body._reach(file, one)) for one in solids[:MOST_BODIES]], len(solids), file.path
+            )
+        return _Body._one(file, solids[0])
+
+    @staticmethod
+    def _reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:
+        """Box of a solid that may not be sound, if it can be told."""
+        with suppress(ReadError):
+            return _Body._one(file, solid).box
+        return None
+
+    @staticmethod
+    def _one(file: Exchange, solid: int) -> _Body:
         kind = file.kind(solid, ("MANIFOLD_SOLID_BREP",), solid)
         shell = file.reference(file.values(solid, kind, 2)[1], solid)
         file.kind(shell, ("CLOSED_SHELL",), solid)
-        space = _space(file, solid)
+        space = space_of(file, solid)
         edges: dict[int, Edge] = {}
         listed = file.several(file.values(shell, "CLOSED_SHELL", 2)[1], shell)
         faces = [face_of(space, file.reference(one, shell), edges) for one in listed]
@@ -168,6 +168,12 @@ class _Body:
         if len(levels) < 2:
             raise ReadError("empty", f"the part is flat: all corners lie at z = {rising[0]:g}", file.path)
         return _Body(space, faces, edges, levels)
+
+    @property
+    def box(self) -> tuple[Array, Array]:
+        """Least and greatest coordinates (3,) of its edges."""
+        points = np.concatenate([edge.samples for edge in self.edges.values()])
+        return points.min(axis=0), points.max(axis=0)
 
     @property
     def lids(self) -> list[Face]:
@@ -255,6 +261,8 @@ class _Body:
             named = ", ".join(f"#{edge}" for edge in sorted(wrong)[:MOST_NAMED])
             if wrong:
                 found.append(f"{len(wrong)} edges ({named}): each {what}")
+        wound = [face.number for face in self.faces if abs(face.winding) > WOUND]
+        found += [f"face #{number}: an arc of its bounds goes the wrong way round" for number in wound]
         for lid in self.lids:
             z = lid.heights[0]
             normal = lid.surface.normal[2] if isinstance(lid.surface, Plane) else 0.0
@@ -277,57 +285,3 @@ class _Body:
             message = f"{what} by {off[worst]:.3g} mm, permitted are {self.space.accuracy:.3g}"
             raise self.space.file.error(worst, message, "gap")
         return off[worst]
-
-
-def _space(file: Exchange, solid: int) -> Space:
-    """Units and accuracy of the representation that holds a solid."""
-    holders = [
-        (number, kind)
-        for kind in REPRESENTATIONS
-        for number in file.of(kind)
-        if any(item == solid for item in file.several(file.values(number, kind, 3)[1], number))
-    ]
-    if len(holders) != 1:
-        raise file.error(solid, f"{len(holders)} representations hold it, one belongs there", "syntax")
-    holder, kind = holders[0]
-    context = file.reference(file.values(holder, kind, 3)[2], holder)
-    units = file.several(file.values(context, "GLOBAL_UNIT_ASSIGNED_CONTEXT", 1)[0], context)
-    length = angle = None
-    for item in units:
-        unit = file.reference(item, context)
-        records = file.instances.get(unit, {})
-        if "LENGTH_UNIT" in records:
-            length = _unit(file, unit)
-        elif "PLANE_ANGLE_UNIT" in records:
-            angle = _unit(file, unit)
-    if length is None or not 1e-9 < length < 1e9:
-        raise file.error(context, "states no unit of length")
-    accuracy = 0.0
-    if "GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT" in file.instances[context]:
-        for item in file.several(file.values(context, "GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT", 1)[0], context):
-            measure = file.reference(item, context)
-            size = file.values(measure, "UNCERTAINTY_MEASURE_WITH_UNIT", 2)[0]
-            if isinstance(size, Typed) and size.name == "LENGTH_MEASURE":
-                accuracy = max(accuracy, file.number(size, measure) * length)
-    return Space(file, length, angle, min(max(accuracy, ACCURACY[0]), ACCURACY[1]))
-
-
-def _unit(file: Exchange, number: int, depth: int = 0) -> float:
-    """Mm or rad in a unit: an SI unit, or one that is told by another."""
-    records = file.instances[number]
-    if "SI_UNIT" in records:
-        prefix, name, *_ = file.values(number, "SI_UNIT", 2)
-        if name == "RADIAN" and prefix is None:
-            return 1.0
-        if name == "METRE" and (prefix is None or prefix in PREFIXES):
-            return 1000.0 if prefix is None else PREFIXES[str(prefix)]
-        raise file.error(number, f"is no unit that is read: {prefix} {name}")
-    if "CONVERSION_BASED_UNIT" not in records or depth > 3:
-        raise file.error(number, "is no unit that is read")
-    measure = file.reference(file.values(number, "CONVERSION_BASED_UNIT", 2)[1], number)
-    kinds = ("LENGTH_MEASURE_WITH_UNIT", "PLANE_ANGLE_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT")
-    size, unit, *_ = file.values(measure, file.kind(measure, kinds, number), 2)
-    base = file.reference(unit, measure)
-    if base not in file.instances:
-        raise file.error(measure, f"refers to #{base}, which is not there", "syntax")
-    return file.number(size, measure) * _unit(file, base, depth + 1)

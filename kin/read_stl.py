@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from kin.bodies import MOST_BODIES, beside
 from kin.contour import Contour
 from kin.distinct import distinct
 from kin.flaws import first_meeting
-from kin.nesting import counter_clockwise, met, nested
+from kin.nesting import counter_clockwise, demand_few, met, nested
 from kin.read_error import ReadError
 from kin.upright import Outline, evened, upright
 
@@ -41,6 +42,8 @@ LARGEST = 1e7
 STRAIGHT = 1e-13
 # Sections that are looked at for the widest one.
 MOST_STEPS = 8
+# What a section is found to be where there is more than one body.
+NOT_ONE = frozenset({"several", "island", "crossing"})
 
 
 class Section(NamedTuple):
@@ -68,6 +71,7 @@ class Solid:
     form                "binary" or "text", or "3mf"
     sections            those that were asked for, by height as asked for
     faces               heights of the horizontal faces, rising
+    units_mm            length of the file's unit, None where it states none
     """
 
     contour: Contour
@@ -85,6 +89,7 @@ class Solid:
     sections: tuple[Section, ...] = ()
     faces: tuple[float, ...] = ()
     uneven: float = 0.0
+    units_mm: float | None = None
 
     @property
     def closed(self) -> bool:
@@ -152,6 +157,8 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
         if moved is not None and again is not None and again.prism:
             corners, uneven, found = moved.corners, moved.by, again
     mesh, outline = found.mesh, found.outline
+    if not found.prism:
+        _refuse_apart(read, path)
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
     whole = outline
     z = corners[:, :, 2]
@@ -159,7 +166,10 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
     if outline is None:
         stepped = len(levels) > 2 and not len(heights)
         height, outline = widest(mesh, levels, path) if stepped else cut(mesh, height, path)
-    contour, holes = sectioned(outline, path, across=whole is None)
+    try:
+        contour, holes = sectioned(outline, path, across=whole is None)
+    except ReadError as error:
+        raise _named(read, error, path) from None
     sections = []
     for asked in heights:
         if whole is None:
@@ -185,13 +195,56 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
     )
 
 
+def _named(mesh: Mesh, error: ReadError, path: Path) -> ReadError:
+    """Return an error on a section, or where there are several closed bodies one that names them."""
+    if error.reason not in NOT_ONE or mesh.edge_faults.open or not mesh.bodies.any():
+        return error
+    return _others(mesh, path)
+
+
+def _others(mesh: Mesh, path: Path) -> ReadError:
+    boxes = _boxes(mesh)
+    largest = sorted(range(len(boxes)), key=lambda k: -float(np.prod(boxes[k][1] - boxes[k][0])))[:MOST_BODIES]
+    return beside([(f"body {k + 1}", boxes[k]) for k in largest], len(boxes), path)
+
+
+def _boxes(mesh: Mesh) -> list[tuple[Array, Array]]:
+    """Least and greatest coordinates (3,) of each body."""
+    order = np.argsort(mesh.bodies, kind="stable")
+    heads = np.flatnonzero(np.diff(mesh.bodies[order], prepend=-1))
+    corners = mesh.points[mesh.corners[order]]
+    low, high = np.minimum.reduceat(corners.min(axis=1), heads), np.maximum.reduceat(corners.max(axis=1), heads)
+    return list(zip(low, high, strict=True))
+
+
+def _refuse_apart(mesh: Mesh, path: Path) -> None:
+    """Refuse a closed mesh of which some body stands apart from the rest, above it or beside it or in a hole of it."""
+    if mesh.edge_faults.open or not mesh.bodies.any():
+        return
+    boxes = _boxes(mesh)
+    if len(boxes) > MOST_BODIES:
+        raise _others(mesh, path)
+    for k, (low, high) in enumerate(boxes):
+        others = [box for j, box in enumerate(boxes) if j != k]
+        if all(bool((low > above).any() or (high < below).any()) for below, above in others):
+            raise _others(mesh, path)
+        try:
+            sectioned(section(mesh, float(0.5 * (low[2] + high[2])))[1], path, across=True)
+        except ReadError as error:
+            if error.reason in NOT_ONE:
+                raise _others(mesh, path) from None
+
+
 def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
     """Cut at a height; raises ReadError where the part does not reach there."""
     z = mesh.points[:, 2]
     if not z.min() < height < z.max():
         message = f"the part reaches from z = {z.min():.9g} to {z.max():.9g} mm: it has no section at {height:.9g}"
         raise ReadError("several", message, path)
-    return section(mesh, height)
+    at, found = section(mesh, height)
+    if not len(found.points):
+        raise ReadError("several", f"nothing is at z = {at:.9g} mm, and something above and below", path)
+    return at, found
 
 
 def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
@@ -204,6 +257,7 @@ def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
 def sectioned(outline: Outline, path: Path, *, across: bool) -> tuple[Contour, tuple[Contour, ...]]:
     """Contour and holes of a section, which is one contour with holes in it; `across` triangles, or along a face."""
     loops = [outline.points[ring] for ring in rings(outline, path)]
+    demand_few(len(loops), path)
     contours = [Contour.from_vertices(straightened(loop) if across else loop) for loop in loops]
     meeting = first_meeting(contours)
     if meeting:

@@ -13,10 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 from xml.etree import ElementTree as ET
 
+from kin.affine import Affine
 from kin.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, Drawing, Found, drawing_of
 from kin.read_error import ReadError
 from kin.shape import Shape, UnfitError, shape
-from kin.svg_path import NUMBER, Affine, path_of
+from kin.svg_path import NUMBER, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,6 +42,7 @@ SQUARE = 1e-6
 # Least and greatest unit, mm, and number of groups within groups: bounds against nonsense.
 UNITS = (1e-6, 1e4)
 DEEPEST = 100
+LEANING = 1e-6  # least cosine of an angle of skew
 DRAWN = frozenset({"path", "circle"})
 # Elements that draw nothing themselves, and whose content draws nothing where it stands.
 SILENT = frozenset({"title", "desc", "metadata", "defs", "style", "text", "namedview", "script"})
@@ -196,7 +198,7 @@ def _numbers(text: str) -> list[float] | None:
 
 
 def _transform(text: str, path: Path) -> Affine:
-    """Read the attribute transform: matrix, translate and scale, the last of which is done first."""
+    """Read the attribute transform: its steps, the last of which is done first."""
     found, at = Affine(), 0
     while at < len(text.rstrip()):
         step = STEP.match(text, at)
@@ -210,8 +212,16 @@ def _transform(text: str, path: Path) -> Affine:
                 one = Affine(e=x, f=rest[0] if rest else 0.0)
             case "scale", [x, *rest] if len(rest) < 2:
                 one = Affine(a=x, d=rest[0] if rest else x)
+            case "rotate", [angle]:
+                one = Affine.rotation(angle)
+            case "rotate", [angle, x, y]:
+                one = Affine(e=x, f=y).after(Affine.rotation(angle)).after(Affine(e=-x, f=-y))
+            case "skewX" | "skewY" as kind, [angle] if abs(math.cos(math.radians(angle))) > LEANING:
+                lean = math.tan(math.radians(angle))
+                one = Affine(c=lean) if kind == "skewX" else Affine(b=lean)
             case _:
-                message = f"the transform {step[0].strip()} is not read; matrix, translate and scale are"
+                read = "matrix, translate, scale, rotate, skewX and skewY are"
+                message = f"the transform {step[0].strip()} is not read; {read}"
                 raise ReadError("unsupported", message, path)
         found = found.after(one)
         at = step.end()

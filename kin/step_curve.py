@@ -34,6 +34,7 @@ SPLINES = ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE")
 class Space(NamedTuple):
     """A file, with the length of its unit in mm, its unit of angle in rad if stated, and its own accuracy in mm.
 
+    `place` is where the file puts what it draws, None where it stays. What is read is there already.
     Entities are read from a value that refers to them, in the entity numbered `by`; ReadError for what is not one of
     the kind, or out of bounds.
     """
@@ -42,13 +43,27 @@ class Space(NamedTuple):
     mm: float
     radian: float | None
     accuracy: float
+    place: Frame | None = None
 
     def point(self, value: Value, by: int) -> Array:
         """Place (3,) of a CARTESIAN_POINT, mm."""
-        place = self.triple(value, by, "CARTESIAN_POINT") * self.mm
-        if not bool((np.abs(place) <= LARGEST).all()):
-            raise self.file.error(by, f"a coordinate of {np.abs(place).max():g} mm", "range")
-        return place
+        found = self.triple(value, by, "CARTESIAN_POINT") * self.mm
+        if self.place is not None:
+            found = self.place.origin + self.turned(found)
+        if not bool((np.abs(found) <= LARGEST).all()):
+            raise self.file.error(by, f"a coordinate of {np.abs(found).max():g} mm", "range")
+        return found
+
+    def direction(self, value: Value, by: int) -> Array:
+        """Direction (3,) of a DIRECTION, of any length."""
+        return self.turned(self.triple(value, by, "DIRECTION"))
+
+    def turned(self, drawn: Array) -> Array:
+        """Turn a direction (3,) as the file's place does."""
+        if self.place is None:
+            return drawn
+        found: Array = drawn[0] * self.place.x + drawn[1] * self.place.y + drawn[2] * self.place.z
+        return found
 
     def triple(self, value: Value, by: int, kind: str) -> Array:
         """Three numbers (3,) of an entity of a kind, a point in the file's unit or a direction of any length."""
@@ -81,7 +96,8 @@ class Space(NamedTuple):
         size = np.linalg.norm(x)
         if not size > 1e-9:
             raise self.file.error(number, "its axes are parallel", "range")
-        return Frame(self.point(place, number), x / size, np.cross(z, x / size), z)
+        x, z = self.turned(x / size), self.turned(z)
+        return Frame(self.point(place, number), x, np.cross(z, x), z)
 
 
 class Frame(NamedTuple):
@@ -252,7 +268,7 @@ def _vertex(space: Space, number: int) -> Array:
 def _line(space: Space, number: int) -> Straight:
     _, point, vector, *_ = space.file.values(number, "LINE", 3)
     arrow = space.file.reference(vector, number)
-    along = space.triple(space.file.values(arrow, "VECTOR", 2)[1], arrow, "DIRECTION")
+    along = space.direction(space.file.values(arrow, "VECTOR", 2)[1], arrow)
     size = np.linalg.norm(along)
     if not size > 0.0:
         raise space.file.error(number, "it has no direction", "range")

@@ -15,7 +15,7 @@ import numpy as np
 from kin.biarc import arcs_along
 from kin.nearest import nearest
 from kin.shape import Shape, shape
-from kin.step_curve import TURN, edge_of, spline_of
+from kin.step_curve import TURN, Spline, edge_of, spline_of
 
 if TYPE_CHECKING:
     from kin.arcs import Arcs, Array
@@ -160,6 +160,28 @@ class Face:
     def misfit(self) -> float:
         """Farthest that its edges lie off its surface, mm."""
         return float(self.surface.off(np.concatenate([edge.samples for edge, _ in self.uses])).max())
+
+    @property
+    def winding(self) -> float:
+        """Angle, rad, by which all bounds together run round the axis of a cylinder or a cone; 0 where they are sound.
+
+        An arc that goes the long way round lies on the same surface, and its height is no other: only this tells.
+        """
+        if isinstance(self.surface, Round):
+            x, y, centre = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.append(self.surface.centre, 0.0)
+        elif isinstance(self.surface, Tube):
+            y, centre = np.array([0.0, 0.0, 1.0]), self.surface.point
+            x = np.cross(y, self.surface.along)
+        else:
+            return 0.0
+        total = 0.0
+        for edge, forward in self.uses:
+            away = edge.samples - centre
+            angle = np.unwrap(np.arctan2(away @ y, away @ x))
+            run = float(angle[-1] - angle[0])
+            backwards = isinstance(edge.curve, Spline) and edge.curve.back
+            total += run if forward != backwards else -run
+        return total
 
     def section(self, space: Space, z: float) -> list[Shape]:
         """The face's part of the section at a height; raises ReadError where its bounds do not pair."""
@@ -318,7 +340,7 @@ def _swept(space: Space, number: int) -> Surface:
     file = space.file
     _, curve, vector, *_ = file.values(number, "SURFACE_OF_LINEAR_EXTRUSION", 3)
     arrow = file.reference(vector, number)
-    along = space.triple(file.values(arrow, "VECTOR", 2)[1], arrow, "DIRECTION")
+    along = space.direction(file.values(arrow, "VECTOR", 2)[1], arrow)
     if not np.hypot(*along[:2]) <= LEVEL * abs(along[2]):
         raise file.error(number, "it is not swept along the vertical")
     path = file.reference(curve, number)

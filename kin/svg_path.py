@@ -8,55 +8,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.affine import ALIKE
 from kin.bezier import Beziers
 from kin.shape import Shape, UnfitError, check, shape
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["NUMBER", "Affine", "path_of"]
+    from kin.affine import Affine
+
+__all__ = ["NUMBER", "path_of"]
 
 NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 TOKEN = re.compile(rf"([A-Za-z])|({NUMBER})|[\s,]+|(.)", re.DOTALL)
 # Numbers that follow each letter that is read.
 COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "A": 7, "C": 6, "Z": 0}
-# Two radii, or two scales, that differ by less are equal; an arc's radius may be short of half its chord by as much.
-ALIKE = 1e-12
-
-
-class Affine(NamedTuple):
-    """The map x' = a x + c y + e, y' = b x + d y + f, as SVG writes it."""
-
-    a: float = 1.0
-    b: float = 0.0
-    c: float = 0.0
-    d: float = 1.0
-    e: float = 0.0
-    f: float = 0.0
-
-    def after(self, first: Affine) -> Affine:
-        """Return the map that does `first` and then this."""
-        a, b, c, d, e, f = self
-        return Affine(
-            a * first.a + c * first.b,
-            b * first.a + d * first.b,
-            a * first.c + c * first.d,
-            b * first.c + d * first.d,
-            a * first.e + c * first.f + e,
-            b * first.e + d * first.f + f,
-        )
-
-    def at(self, x: float, y: float) -> tuple[float, float]:
-        """Map a point."""
-        return self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f
-
-    def similar(self) -> tuple[float, float]:
-        """Scale of a similarity and its sense, -1 for a mirror. Raises UnfitError for a map that bends circles."""
-        scale, sense = math.hypot(self.a, self.b), 1.0 if self.a * self.d - self.b * self.c > 0.0 else -1.0
-        off = max(abs(self.c + sense * self.b), abs(self.d - sense * self.a))
-        if not 0.0 < scale < math.inf or not off <= ALIKE * scale:
-            raise UnfitError("unsupported", "a transform makes ellipses of its circles")
-        return scale, sense
 
 
 class Loose(NamedTuple):

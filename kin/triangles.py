@@ -66,6 +66,21 @@ class Mesh:
         return EdgeFaults(*(int(np.count_nonzero(fault)) for fault in (one, many, same_way)))
 
     @cached_property
+    def bodies(self) -> Indices:
+        """Number of the body that each triangle belongs to (t,), from 0: triangles that share corners are one body."""
+        least = np.arange(len(self.points))  # the least corner that each is known to hang together with
+        while True:
+            roots = least[self.corners]
+            low = roots.min(axis=1)
+            if bool((roots == low[:, None]).all()):
+                break
+            np.minimum.at(least, roots.ravel(), np.repeat(low, 3))
+            while not np.array_equal(further := least[least], least):
+                least = further
+        numbers: Indices = np.unique(low, return_inverse=True)[1]
+        return numbers
+
+    @cached_property
     def area_vectors(self) -> tuple[Array, Array, Array]:
         """Components of twice the area of each triangle times its normal, mm^2, 3 x (t,)."""
         (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (column[self.corners].T for column in self.points.T)

@@ -27,9 +27,13 @@ if TYPE_CHECKING:
     from kin.frame import LinkageVerdict
     from kin.read import AnySolid, Kind
 
-__all__ = ["DwellAsked", "Intent", "Limits", "Verdict", "verify"]
+__all__ = ["DwellAsked", "Intent", "Limits", "UnitsError", "Verdict", "verify"]
 
 UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
+SIZE_SHARE = (
+    0.05  # a drawing that comes out by another unit's factor too large or small, within this, misstates its own
+)
+SIZED = np.linspace(0.0, TURN, 64)  # parameters at which the exact contour's size is looked at
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
 MOST_NAMED = 5  # faults named in a message
 OTHERS = (
@@ -65,11 +69,16 @@ class Verdict:
         return all(check.ok for check in self.checks)
 
 
-def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
+class UnitsError(ValueError):
+    """A unit was given for a file that states another one itself."""
+
+
+def verify(path: Path, intent: Intent, angles: int, limits: Limits, units: float | None = None) -> Verdict:
     """Judge a drawing, a solid or a milling program, told apart by the suffix, at `angles` equal steps of the shaft.
 
-    A file from which no contour can be read gets a verdict that says why. Raises OSError as the file system does, and
-    ValueError for another suffix or no angles.
+    What a file states as its unit counts; `units`, mm, is that of one that states none. A file from which no contour
+    can be read gets a verdict that says why. Raises OSError as the file system does, UnitsError where the file states
+    another unit than `units`, and ValueError for another suffix or no angles.
     """
     kind = kind_of(path)
     if angles < 1:
@@ -77,7 +86,7 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits) -> Verdict:
     phi = TURN / angles * np.arange(angles, dtype=np.float64)
     try:
         read = _of_program if kind == "gcode" else _of_solid if kind in SOLIDS else _of_drawing
-        one = read(path, intent, limits)
+        one = read(path, intent, limits, units)
     except ReadError as error:
         unread = "watertight" if kind in SOLIDS else "closed" if error.reason in NOT_CLOSED else "readable"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
@@ -105,17 +114,25 @@ class _Read(NamedTuple):
     uneven: float = 0.0
 
 
-def _of_drawing(path: Path, intent: Intent, limits: Limits) -> _Read:
+def _demand_same(stated: float | None, given: float | None, path: Path) -> None:
+    """Refuse a unit that is given beside another one that the file states."""
+    if stated is not None and given is not None and not abs(stated / given - 1.0) <= UNITS_SHARE:
+        told = f"{path}: the file states its unit, {stated:.9g} mm; {given:.9g} mm is given for it"
+        raise UnitsError(f"{told}, which is for files that state none")
+
+
+def _of_drawing(path: Path, intent: Intent, limits: Limits, units: float | None) -> _Read:
     """Read a DXF or SVG: the checks on what is drawn, contour in mm as if not mirrored, number of its pieces."""
     drawing = read_drawing(path, engraved=any(hole.depth is not None for hole in intent.holes))
-    scale = intent.mm if drawing.units_mm is None else 1.0
+    _demand_same(drawing.units_mm, units, path)
+    scale = (intent.mm if units is None else units) if drawing.units_mm is None else 1.0
     contour, *holes = (_placed(c, scale, intent.mirrored) for c in (drawing.contour, *drawing.holes))
-    checks = [_units_check(drawing.units_mm, intent.mm), _closed_check(drawing, contour)]
+    checks = [_units_check(drawing.units_mm, units, intent, contour), _closed_check(drawing, contour)]
     engraved = [_placed(c, scale, intent.mirrored) for c in drawing.engraved]
     return _Read([*checks, *_opening_checks(holes, engraved, intent, limits)], contour, drawing.pieces)
 
 
-def _of_program(path: Path, intent: Intent, limits: Limits) -> _Read:
+def _of_program(path: Path, intent: Intent, limits: Limits, units: float | None) -> _Read:
     """Read a program: the checks on it and on what it mills, that contour as if not mirrored, number of its moves."""
     from kin.milled import milled
     from kin.read_gcode import read_gcode
@@ -123,9 +140,10 @@ def _of_program(path: Path, intent: Intent, limits: Limits) -> _Read:
     if intent.milling is None:
         raise ReadError("unsupported", "how the part is milled is not given", path)
     program = read_gcode(path)
+    _demand_same(program.units_mm, units, path)
     done = milled(program, intent.milling, limits.tolerance)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (done.contour, *done.holes))
-    checks = [_units_check(program.units_mm, intent.mm), _count_check("closed", _crossing_places(contour))]
+    checks = [_units_check(program.units_mm, units, intent, contour), _count_check("closed", _crossing_places(contour))]
     return _Read([*checks, *done.checks, *_opening_checks(holes, [], intent, limits)], contour, done.pieces)
 
 
@@ -148,11 +166,20 @@ def _placed(contour: Contour, scale: float, mirrored: bool) -> Contour:
     return contour.mirrored() if mirrored else contour
 
 
-def _units_check(stated: float | None, expected: float) -> Check:
+def _units_check(stated: float | None, given: float | None, intent: Intent, contour: Contour) -> Check:
+    """Check the unit of a drawing or a program: what it states counts, unless its size tells that it is misstated."""
+    meant = intent.mm
+    if stated is None and given is None:
+        told = f"the drawing states no unit and is judged in that of the recipe, {meant:.9g} mm"
+        return failed("units", f"{told}; tell it by --units, such as --units mm", limit=UNITS_SHARE)
     if stated is None:
-        return failed("units", f"the drawing states no unit; {expected:.9g} mm is meant", limit=UNITS_SHARE)
-    off = abs(stated / expected - 1.0)
-    detail = f"a drawing unit is {stated:.9g} mm, {expected:.9g} mm is meant"
+        return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"the file states no unit; {given:.9g} mm is given")
+    off = abs(stated / meant - 1.0)
+    detail = f"a drawing unit is {stated:.9g} mm, {meant:.9g} mm is meant"
+    if off > UNITS_SHARE:
+        large = float(np.abs(contour.vertices).max() / np.abs(intent.follower.envelope.points(SIZED)).max())
+        if abs(large * meant / stated - 1.0) > SIZE_SHARE or abs(large - 1.0) <= SIZE_SHARE:
+            return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"a drawing unit is {stated:.9g} mm, as stated")
     return Check("units", off <= UNITS_SHARE, off, UNITS_SHARE, "", detail=detail)
 
 
@@ -172,14 +199,15 @@ def _count_check(name: str, faults: list[str]) -> Check:
     return at_most(name, len(faults), 0, "faults", detail="; ".join(faults[:MOST_NAMED]) + more)
 
 
-def _of_solid(path: Path, intent: Intent, limits: Limits) -> _Read:
+def _of_solid(path: Path, intent: Intent, limits: Limits, units: float | None) -> _Read:
     """Read a solid: the checks on the solid, its contour in mm as if not mirrored, and the number of its edges."""
     from kin.read_stl import Section
 
     if intent.layers:
         from kin.part import levels, solid_checks
 
-        solid = read_solid(path, levels(intent))
+        solid = read_solid(path, levels(intent), units)
+        _demand_same(solid.units_mm, units, path)
         sections = [
             Section(one.height, _placed(one.contour, 1.0, intent.mirrored), _all_placed(one.holes, intent))
             for one in solid.sections
@@ -187,7 +215,8 @@ def _of_solid(path: Path, intent: Intent, limits: Limits) -> _Read:
         contour = sections[0].contour
         checks = [_watertight_check(solid, contour), *solid_checks(solid, sections, intent, limits.tolerance)]
         return _Read(checks, contour, solid.pieces, solid.uneven)
-    solid = read_solid(path)
+    solid = read_solid(path, (), units)
+    _demand_same(solid.units_mm, units, path)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (solid.contour, *solid.holes))
     checks = [_watertight_check(solid, contour)]
     bore = bore_check(holes, intent.bore, limits.tolerance)

@@ -413,7 +413,7 @@ def test_archives_that_unpack_without_end(plain, monkeypatch):
     monkeypatch.setattr("kin.read_3mf.MOST_BYTES", 1 << 20)
     spoilt = rewritten(sound, lambda text: text.replace("<resources>", "<resources>" + " " * (1 << 20), 1))
     assert spoilt.stat().st_size < 1 << 16
-    with pytest.raises(ReadError, match="unpacks to more than 1048576 bytes"):
+    with pytest.raises(ReadError, match=r"unpacks to more than \d+ bytes: .*, and 1048576 in all, are read"):
         read_3mf(spoilt)
 
 

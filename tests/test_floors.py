@@ -22,15 +22,15 @@ FLOORS = {
         lift transmission
         chain formula possible read swept
         collision read_3mf read_step
-        dyad encounter forces hole read_dxf read_stl read_svg switches transmission_law
+        dyad encounter forces hole read_dxf read_stl read_svg step_space switches transmission_law
         drawing milled region svg_path
         floating
         bearing bouncing bounding flaws holding integrated law linkage nesting parallel roots routes step_face syntax
-        contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
+        affine contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
         stretch
         biarc dwell figures jet mobility peaks pieces shape
         bezier flight monotone motion response series turn upright
-        bernstein chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles
+        bernstein bodies chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles
         arcs ball chebyshev distinct newton oscillator read_error
         check home
     """,

@@ -196,7 +196,10 @@ def test_inches_meant_and_inches_drawn(tmp_path, cam):
     inches = Intent(intent.follower, mm=25.4, bore=10.0)
     path = write_dxf(tmp_path / "cam.dxf", points(EDGES) / 25.4, bores=[(0, 0, 5 / 25.4)], units=1)
     assert failures(path, inches) == set()
-    assert "units" in failures(write_dxf(tmp_path / "mm.dxf", points(EDGES)), inches)
+    # what the file states counts: mm are as good, as long as they are mm
+    assert failures(write_dxf(tmp_path / "mm.dxf", points(EDGES)), inches) == set()
+    inch = points(EDGES) / 25.4
+    assert "units" in failures(write_dxf(tmp_path / "not.dxf", inch, bores=[(0, 0, 5 / 25.4)]), inches)
 
 
 def test_everything_drawn_twice(tmp_path, cam):

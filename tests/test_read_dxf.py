@@ -466,15 +466,24 @@ def island(document: Document) -> None:
         document.modelspace().add_circle((0, 0), radius)
 
 
-def insert(document: Document) -> None:
+def bent_by_a_block(document: Document) -> None:
     document.blocks.new("PART").add_circle((0, 0), 25.0)
+    document.modelspace().add_blockref("PART", (0, 0), dxfattribs={"layer": "CUT", "xscale": 2.0})
+
+
+def block_in_itself(document: Document) -> None:
+    document.blocks.new("PART").add_blockref("PART", (0, 0))
     document.modelspace().add_blockref("PART", (0, 0), dxfattribs={"layer": "CUT"})
 
 
-def insert_from_elsewhere(document: Document) -> None:
-    document.blocks.new("PART").add_circle((0, 0), 5.0, dxfattribs={"layer": "CUT"})
-    document.modelspace().add_blockref("PART", (0, 0), dxfattribs={"layer": "FRAME"})
-    document.modelspace().add_circle((0, 0), 25.0, dxfattribs={"layer": "CUT"})
+def block_of_many(document: Document) -> None:
+    document.blocks.new("PART").add_circle((0, 0), 25.0)
+    array = {"column_count": 32000, "row_count": 32000}
+    document.modelspace().add_blockref("PART", (0, 0), dxfattribs={"layer": "CUT", **array})
+
+
+def no_block(document: Document) -> None:
+    document.modelspace().add_blockref("PART", (0, 0), dxfattribs={"layer": "CUT"})
 
 
 def paper(document: Document) -> None:
@@ -538,8 +547,10 @@ def only_reference(document: Document) -> None:
         (two_outer, "several", "the closed contour at (65, 0) does not lie inside the largest one"),
         (island, "island", "lies inside a hole"),
         (hole_through_the_edge, "crossing", "two closed contours cross or touch at (24."),
-        (insert, "unsupported", "explode the block"),
-        (insert_from_elsewhere, "unsupported", "brings in block PART"),
+        (bent_by_a_block, "unsupported", "of block PART on layer CUT: a transform makes ellipses of its circles"),
+        (block_in_itself, "range", "blocks more than 16 deep"),
+        (block_of_many, "range", "32000 columns and 32000 rows of 1 entities"),
+        (no_block, "syntax", "there is no block PART"),
         (paper, "unsupported", "paper space Layout1"),
         (hatch, "unsupported", "HATCH"),
         (tilted, "unsupported", "a plane of its own, with the extrusion (0, 1, 1)"),
