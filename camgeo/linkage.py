@@ -149,9 +149,8 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
         raise recipe.error(
             "linkage", "a square frame holds a cam of constant breadth alone, and this cam's varies", None, remedy
         )
-    mechanism = mechanism_of(recipe, lift, breadth)
     try:
-        return _driven(recipe, mechanism)
+        return _driven(recipe, mechanism_of(recipe, lift, breadth))
     except RoughError as error:
         at = math.degrees(error.at % TURN)
         problem = f"the motion is too sudden to be followed, near a relative angle of {at:.6g} degrees"
