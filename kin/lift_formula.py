@@ -40,7 +40,8 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
     """Make p = scale times a formula in t (AS eq. 7 and Figure 2), mm, about the shaft at `pivot`, mm.
 
     Raises IntentError, each with angle and figure, where the formula has no value or p, p', p'' no bound; where it does
-    not close, p(t + 2 pi) = p(t); where it has too many waves to be worked out; and where abs, min, max or the like make p or p' jump. Jumps of p'' become breaks.
+    not close, p(t + 2 pi) = p(t); where it has too many waves to be worked out; and where abs, min, max or the like
+    make p or p' jump. Jumps of p'' become breaks.
     """
     _demand_calm(formula)
     try:

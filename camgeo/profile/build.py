@@ -121,8 +121,8 @@ def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
     mean = 0.0 if abs(mean) < ROUNDING * farthest else mean
     remedy = f"add more than {upward((least - mean) / scale)} to p" if field == "p" else "give a larger one"
     raise IntentError(
-        f"the mean radius is {mean / scale:.6g}, not above {least / scale:.3g}: a cam's perimeter is 2 pi times it, and "
-        f"this one's points lie up to {farthest / scale:.6g} from the shaft; {remedy}",
+        f"the mean radius is {mean / scale:.6g}, not above {least / scale:.3g}: a cam's perimeter is 2 pi times it, "
+        f"and this one's points lie up to {farthest / scale:.6g} from the shaft; {remedy}",
         field,
     )
 

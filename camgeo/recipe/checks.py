@@ -31,10 +31,12 @@ def check(values: Values, reader: Reader) -> None:
     _corners(cam.get("reuleaux", {}), reader)
     _harmonics(cam, reader)
     if "motion" in cam:
-        _filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader)
+        why = "two parallel faces touch the cam at once, so in the other half turn the follower goes back as it came"
+        _filled(cam["motion"], "cam.motion", math.pi, f"one half turn, 180 degrees: {why}", reader)
     if "law" in cam and "ratio" in cam:
         lam, _ = cam["ratio"]
-        _filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader)
+        why = "what follows is given by it, as both rollers or faces touch the cam at once"
+        _filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees: {why}", reader)
     _linkage(values, reader)
     check_part(values.get("part", {}), reader)
     _files(values, reader)
@@ -62,7 +64,7 @@ def _filled(segments: list[Values], path: str, angle: float, wanted: str, reader
     covered = math.fsum(segment["dwell"] if "dwell" in segment else segment["over"] for segment in segments)
     if abs(covered - angle) > _ANGLE:
         value = f"{math.degrees(covered):.10g} degrees"
-        remedy = f"let them cover {wanted}; an angle may be a fraction such as 180/7"
+        remedy = f"let them cover {wanted}"
         reader.fault_at(path, "the segments do not fill their angle", value, remedy)
 
 
