@@ -116,7 +116,7 @@ def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
     p = lift.derivatives(np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False), 0)[0]
     mean, farthest = float(np.mean(p)), float(np.abs(p).max())
     least = LEAST_PART * farthest
-    if mean > least:
+    if mean > least or not farthest:  # of p = 0 the radius of curvature is held against 0 like any other
         return lift
     mean = 0.0 if abs(mean) < ROUNDING * farthest else mean
     remedy = f"add more than {upward((least - mean) / scale)} to p" if field == "p" else "give a larger one"

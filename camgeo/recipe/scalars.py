@@ -7,7 +7,8 @@ import re
 
 from camgeo.recipe.spec import MOST_LAMBDA, MOST_TEXT
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_NUMBER = re.compile(rf"[+-]?{_UNSIGNED.pattern}")
 _FRACTION = re.compile(r"([+-]?[0-9]{1,9})/([0-9]{1,9})")
 _RATIO = re.compile(r"([0-9]{1,9})(?:/([0-9]{1,9}))?")
 _ZEROS_BEFORE = re.compile(r"(?<![0-9.eE])(?<![eE][+-])0+[0-9]")
@@ -57,7 +58,7 @@ def read_number(text: str) -> float:
         value = float(text)
     else:
         hint = next((hint for pattern, hint in _NOT_NUMBERS if pattern.fullmatch(text)), None)
-        left = re.sub(r"\bpi\b", " ", _NUMBER.sub(" ", text))
+        left = re.sub(r"\bpi\b", " ", _UNSIGNED.sub(" ", text))
         if hint is not None or not (_ARITHMETIC.fullmatch(left) or text == "pi"):
             raise Complaint("not a number", hint or "")
         value = _worked_out(text)
@@ -80,8 +81,9 @@ def _worked_out(text: str) -> float:
     try:
         return float(parse(text, ()).steps[-1].value)
     except FormulaError as error:
-        by_zero = error.message == "division by zero"
-        raise Complaint("divides by zero" if by_zero else f"not a number: {error.message}") from None
+        known = {"division by zero": "divides by zero", "overflow": "too large"}
+        problem = known.get(error.message, f"not a number: {error.message.replace('the formula', 'it')}")
+        raise Complaint(problem) from None
 
 
 def read_whole(text: str) -> int:

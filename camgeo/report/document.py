@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from camgeo import __version__
 from camgeo.recipe.model import NO_CONTOUR, NO_PART
-from camgeo.report.bound import sign, words
+from camgeo.report.bound import is_strict, sign, words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -274,7 +274,8 @@ def _told(check: dict[str, Any]) -> str:
     if check["value"] is not None:
         text += f": {_number(check['value'])} {check['unit']}".rstrip()
         if check["limit"] is not None:
-            text += f", {words(check)} {_number(check['limit'])} needed"
+            word = "needed" if is_strict(check) else "allowed"
+            text += f", {words(check)} {_number(check['limit'])} {word}"
         if check["at_deg"] is not None:
             text += f", at {check['at_deg']:.2f} deg"
     if check.get("detail"):
