@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, cast
 from camgeo.curve import CurveError
 from camgeo.profile.build import Profile, intent_of, profile_of
 from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, output_slides
-from camgeo.remedies import larger
+from camgeo.remedies import larger, less_swing
 from camgeo.rounded import downward
 from kin.check import Check, degrees
 
@@ -179,7 +179,8 @@ def _free(recipe: Recipe, profile: Profile, free_at: float) -> str:
     """Say what would be free of undercut; `free_at` in mm."""
     value = free_at / recipe.mm
     if isinstance(recipe.cam, FlatPairCam):
-        return "a smaller swing would be free of it"  # r + const closes no pair: there is no base radius to enlarge
+        # r + const closes no pair: there is no base radius to enlarge
+        return f"{less_swing(recipe.cam, recipe.mm)} would be free of it"
     if profile.roller_radius and not value > 0.0:
         return "no roller radius is proved to be free of it"
     if profile.roller_radius:

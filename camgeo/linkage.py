@@ -160,7 +160,8 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
     except RoughError as error:
         at = math.degrees(error.at % TURN)
         problem = f"the motion is too sudden to be followed, near a relative angle of {at:.6g} degrees"
-        raise recipe.error("linkage", problem, None, "keep its loops farther from binding, or give p fewer waves") from error
+        remedy = "keep its loops farther from binding, or give p fewer waves"
+        raise recipe.error("linkage", problem, None, remedy) from error
 
 
 def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:

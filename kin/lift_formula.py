@@ -26,6 +26,7 @@ _SEAM_ORDER = 6  # derivatives that must agree at 0 and 2 pi, else 0 is a break
 _SLIVER = 1e-11  # rad: switches closer than this are one, found twice
 _CLEAR = 1e-6  # rad: nearer to a switch p is not compared with itself a turn later
 _MOST_WAVES = 5000  # of p in a turn: what is proved and drawn of it is divided for each of them
+_ABOUT = 1.01  # the estimate may be off by so much
 _PLACES = 2048  # at which its waves are looked for
 _CALM = 1e-6  # of the largest p: slopes of the radius of curvature no steeper are no waves, they may be rounding
 _WHOLE = "a whole exponent is smooth where what it is put on vanishes"
@@ -83,7 +84,7 @@ def _demand_calm(formula: Formula) -> None:
         waves = _waves(formula)
     except FormulaDomainError:  # why it has no value or derivative, and where, is found and told next
         return
-    if waves > _MOST_WAVES:
+    if waves > _MOST_WAVES * _ABOUT:
         raise IntentError(f"p has about {waves:.3g} waves in a turn; no more than {_MOST_WAVES} are worked out", "p")
 
 

@@ -14,7 +14,8 @@ from camgeo.fit.bound import FormError
 from camgeo.fit.nodes import ToleranceError
 from camgeo.manufacture.meant import intent_of_file
 from camgeo.outlines import Outlines, formula_rounding
-from camgeo.recipe.model import ArcRoute, DoubleRollerCam
+from camgeo.recipe.model import DoubleRollerCam
+from camgeo.remedies import less_swing
 from camgeo.report.document import FileResult
 from camgeo.store import SurroundingsError
 
@@ -154,6 +155,6 @@ class Job:
         slope = next(own.value for own in self.design.checks if own.name == "transmission")
         if slope is None or slope < STEEP:
             return check
-        smaller = "a smaller arc.radius" if isinstance(self.recipe.cam.route, ArcRoute) else "a smaller swing"
-        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {smaller} would do"
+        less = less_swing(self.recipe.cam, self.recipe.mm)
+        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would do"
         return replace(check, detail=f"{check.detail}: {why}")
