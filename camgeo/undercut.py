@@ -140,6 +140,9 @@ def _neck_of(curve: Curve, lost: Lost) -> Neck:
     from camgeo.reach import neck_from, rolling_radius
 
     radius = follower_radius(curve)
+    if math.isinf(radius):  # a flat face has no necks: a reversal was not found where contact is lost for it
+        where = f"near parameter {lost.start:.9g}"
+        raise UndercutError(f"the stretches of the contour that run backwards cannot be told apart {where}", lost.start)
     pitch = Pitch.of(curve)
     t = np.linspace(lost.start, lost.end, LOOKS)
     s = curve.runs[0].low + curve.shape.period * np.arange(4 * LOOKS) / (4 * LOOKS)
