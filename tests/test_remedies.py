@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from camgeo.design import designed
+from camgeo.making.job import Made
 from camgeo.pipeline import check
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load_text
@@ -261,6 +262,13 @@ SETS = [  # what stands in the set's recipe, what in its place with a figure, th
 ]
 
 
+@pytest.fixture
+def unwritten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a set only the bodies are worked out: none is turned round or written."""
+    monkeypatch.setattr("camgeo.making.mechanism.collision_checks", lambda _: ())
+    monkeypatch.setattr("camgeo.making.mechanism.make_parts", lambda *_: Made(()))
+
+
 def said_of_set(text: str) -> str:
     """What a set is told of its bodies."""
     recipe = load_text(text, "set.yaml")
@@ -271,6 +279,7 @@ def said_of_set(text: str) -> str:
     return ""
 
 
+@pytest.mark.usefixtures("unwritten")
 @pytest.mark.parametrize(("old", "new", "wrong", "pattern"), SETS, ids=[pattern for *_, pattern in SETS])
 def test_a_set_that_is_changed_as_told_can_be_made(old: str, new: str, wrong: float, pattern: str) -> None:
     value = figure(said_of_set(SET.replace(old, new % wrong)), pattern)
@@ -280,3 +289,29 @@ def test_a_set_that_is_changed_as_told_can_be_made(old: str, new: str, wrong: fl
     if "clearance above" in pattern:
         changed += f"mechanism: {{clearance: {1.001 * value}}}\n"
     assert pattern.split(": ", maxsplit=1)[0].replace("\\", "") + ":" not in said_of_set(changed)
+
+
+@pytest.mark.parametrize(
+    ("p", "words"),
+    [
+        ("25 + 25*cos(99*t)", "99 stretches of the contour run backwards into each other; up to 40 are told apart"),
+        ("25 + cos(1000*t)", "1000 stretches of the contour run backwards; up to 200 are told one by one"),
+    ],
+)
+def test_undercut_in_very_many_places_is_told_as_a_number(p: str, words: str) -> None:
+    """Each of them takes milliseconds, or the square of their number where they cross."""
+    assert words in said(support(f"p: {p}, undercut: trim"))
+
+
+@pytest.mark.parametrize("word", ["disc", "roller", "translating-roller", "plate", "flat", "groove"])
+def test_a_kind_of_cam_that_is_none_tells_which_are_made(word: str) -> None:
+    told = said(f"cam: {{kind: {word}}}\n")
+    assert all(f"({kind}" in told for kind in ("support", "constant-breadth", "double-roller", "flat-pair"))
+    assert told.endswith("cylindrical cams and grooves are not made")
+    assert said("cam: {kind: suport}\n").endswith("did you mean support?")
+
+
+def test_why_a_motion_of_constant_breadth_covers_a_half_turn() -> None:
+    whole = "motion: [{rise: 20, over: 180, law: harmonic}, {return: 20, over: 180, law: harmonic}]"
+    told = said(f"cam: {{kind: constant-breadth, base_radius: 40, {whole}}}\n")
+    assert "given 360 degrees; let them cover one half turn, 180 degrees; two parallel faces hold the cam" in told
