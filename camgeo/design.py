@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, cast
 from camgeo.curve import CurveError
 from camgeo.profile.build import Profile, intent_of, profile_of
 from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, output_slides
-from camgeo.rounded import downward, upward
+from camgeo.remedies import larger, less_swing
+from camgeo.rounded import downward
 from kin.check import Check, degrees
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
     radius = least.radius + profile.roller_radius
     roomy, at_deg = radius > profile.roller_radius, shaft_deg(intent, least.at)
     bent = Check("radius-of-curvature", roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
-    if least.room:
+    if least.room and roomy:
         lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
         bent = replace(bent, detail=lower)
     try:
@@ -178,12 +179,13 @@ def _free(recipe: Recipe, profile: Profile, free_at: float) -> str:
     """Say what would be free of undercut; `free_at` in mm."""
     value = free_at / recipe.mm
     if isinstance(recipe.cam, FlatPairCam):
-        return "a smaller swing would be free of it"  # r + const closes no pair: there is no base radius to enlarge
+        # r + const closes no pair: there is no base radius to enlarge
+        return f"{less_swing(recipe.cam, recipe.mm)} would be free of it"
     if profile.roller_radius and not value > 0.0:
         return "no roller radius is proved to be free of it"
     if profile.roller_radius:
         return f"a roller radius below {downward(value)} would be free of it"
-    return f"a base radius larger by more than {upward(value)} would be free of it"
+    return f"{larger(recipe.cam, value)} would be free of it"
 
 
 def _unproved(recipe: Recipe, error: CurveError, intent: Lift | Transmission) -> str:

@@ -149,13 +149,19 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
         raise recipe.error(
             "linkage", "a square frame holds a cam of constant breadth alone, and this cam's varies", None, remedy
         )
-    mechanism = mechanism_of(recipe, lift, breadth)
+    try:
+        mechanism = mechanism_of(recipe, lift, breadth)
+    except RoughError as error:
+        at = math.degrees(error.at % TURN)
+        problem = f"its motion is too sudden for a linkage's to be followed, near {at:.6g} degrees"
+        raise recipe.error("cam", problem, None, "give p fewer or lower waves") from error
     try:
         return _driven(recipe, mechanism)
     except RoughError as error:
         at = math.degrees(error.at % TURN)
         problem = f"the motion is too sudden to be followed, near a relative angle of {at:.6g} degrees"
-        raise recipe.error("linkage", problem, None, "keep its loops farther from binding") from error
+        remedy = "keep its loops farther from binding, or give p fewer waves"
+        raise recipe.error("linkage", problem, None, remedy) from error
 
 
 def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:

@@ -235,26 +235,34 @@ class _Intervals:
         ends = np.concatenate([self.low[_radius(self.at_low) <= v], self.high[_radius(self.at_high) <= v]])
         return distinct(ends)
 
+    def _holding(self, minima: Array) -> Mask:
+        """Whether one of the minima (m,), in any order, lies in each interval (n,), its ends included."""
+        rising = np.append(np.sort(minima), np.inf)
+        inside: Mask = rising[np.searchsorted(rising, self.low)] <= self.high
+        return inside
+
     def divided(self, curve: Curve, minima: Array, grade: float, *, fresh: bool) -> _Intervals:
         """Divide each interval evenly, or finely about a minimum (m,) found in it, from steps of `grade` upward.
 
         `fresh` forms the bounds over many intervals anew.
         """
-        lows, highs, owner = [], [], []
-        for i, (low, high) in enumerate(zip(self.low.tolist(), self.high.tolist(), strict=True)):
-            inside = minima[(minima >= low) & (minima <= high)]
-            knots = np.linspace(low, high, SPLITS + 1)
-            if inside.size and high - low > 2.0 * grade:  # one that is fine already would come back as it is
-                middle = float(inside[0])
-                count = max(1, math.ceil(math.log(max((high - low) / grade, 2.0)) / math.log(GROWTH)))
-                away = grade * GROWTH ** np.arange(count)
-                knots = np.concatenate([[low, middle, high], middle - away, middle + away])
-                knots = distinct(knots[(knots >= low) & (knots <= high)])
+        fine = self._holding(minima) & (self.high - self.low > 2.0 * grade)  # others would come back as they are
+        even = np.linspace(self.low[~fine], self.high[~fine], SPLITS + 1)
+        lows, highs = [even[:-1].T.ravel()], [even[1:].T.ravel()]
+        owner = [np.repeat(np.flatnonzero(~fine), SPLITS)]
+        for i in np.flatnonzero(fine).tolist():
+            low, high = self.low[i], self.high[i]
+            middle = float(minima[(minima >= low) & (minima <= high)][0])
+            count = max(1, math.ceil(math.log(max((high - low) / grade, 2.0)) / math.log(GROWTH)))
+            away = grade * GROWTH ** np.arange(count)
+            knots = np.concatenate([[low, middle, high], middle - away, middle + away])
+            knots = distinct(knots[(knots >= low) & (knots <= high)])
             lows.append(knots[:-1])
             highs.append(knots[1:])
             owner.append(np.full(knots.size - 1, i))
         of = np.concatenate(owner)
-        low, high = np.concatenate(lows), np.concatenate(highs)
+        order = np.argsort(of, kind="stable")
+        of, low, high = of[order], np.concatenate(lows)[order], np.concatenate(highs)[order]
         speed_bend, turn_bend = self.speed_bend[of], self.turn_bend[of]
         if fresh and len(self.low) > FRESH:
             # Where terms cancel, as on a circle that its formula does not tell, a bound falls with the width.

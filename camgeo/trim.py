@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from camgeo.curve import Array, Frame
 
 NODES = 480  # of the polygon on which crossings are first seen
+MOST_TANGLED = 40  # stretches that run backwards whose crossings are looked for all over: time grows with their square
 ROUNDS = 3  # of seeing them, each with twice the nodes
 NEAR_BY = 0.03  # of a reversal's length: the first node beside it; the following ones grow
 GROWTH = 1.35
@@ -102,6 +103,12 @@ def remains(curve: Curve, why: Causes) -> Remains:
     plain = _swallowtails(curve, contact, why)
     if plain is not None:
         return plain
+    backwards = sum(not r.still for r in why.reversals)
+    if backwards > MOST_TANGLED * curve.shape.repeats:
+        message = (
+            f"{backwards} stretches of the contour run backwards into each other; up to {MOST_TANGLED} are told apart"
+        )
+        raise UndercutError(message, why.reversals[0].start)
     for turn in range(ROUNDS):
         nodes = _nodes(curve, why, NODES << turn)
         on = curve.sample(nodes)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from camgeo.reach import Neck
     from camgeo.trim import Lost, Remains
 
+MOST_TOLD = 200  # stretches that run backwards, of which the extent is found: a cam with more is no cam
 LOOKS = 240  # parameters at which a neck is looked for where it is known to exist
 
 
@@ -49,13 +50,17 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
 
     A `Parallel` is a roller's contour inside its pitch curve, any other shape that of a flat face. A stretch that is
     lost for both reasons is reported for each. Raises CurveError where freedom from undercut can be neither proved nor
-    refuted, UndercutError where the extent cannot be told.
+    refuted, UndercutError where the extent cannot be told or more than `MOST_TOLD` stretches run backwards.
 
     What finds the extent is imported where there is one: most contours are sound.
     """
     why = causes(curve)
     if not why.necks and all(r.still for r in why.reversals):
         return ()
+    backwards = sum(not r.still for r in why.reversals)
+    if backwards > MOST_TOLD * curve.shape.repeats:
+        message = f"{backwards} stretches of the contour run backwards; up to {MOST_TOLD} are told one by one"
+        raise UndercutError(message, why.reversals[0].start, _free_at(curve, why))
     from camgeo.trim import remains
 
     try:
@@ -135,6 +140,9 @@ def _neck_of(curve: Curve, lost: Lost) -> Neck:
     from camgeo.reach import neck_from, rolling_radius
 
     radius = follower_radius(curve)
+    if math.isinf(radius):  # a flat face has no necks: a reversal was not found where contact is lost for it
+        where = f"near parameter {lost.start:.9g}"
+        raise UndercutError(f"the stretches of the contour that run backwards cannot be told apart {where}", lost.start)
     pitch = Pitch.of(curve)
     t = np.linspace(lost.start, lost.end, LOOKS)
     s = curve.runs[0].low + curve.shape.period * np.arange(4 * LOOKS) / (4 * LOOKS)

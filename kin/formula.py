@@ -27,7 +27,7 @@ __all__ = ["Expression", "Formula", "FormulaDomainError", "FormulaError"]
 Array = NDArray[np.float64]
 
 # Stretches looked at while a formula is taken apart; some milliseconds each.
-_MOST_STRETCHES = 2000
+_MOST_STRETCHES = 500
 
 
 @dataclass(frozen=True)

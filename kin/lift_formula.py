@@ -25,6 +25,10 @@ _PERIOD = 1e-9
 _SEAM_ORDER = 6  # derivatives that must agree at 0 and 2 pi, else 0 is a break
 _SLIVER = 1e-11  # rad: switches closer than this are one, found twice
 _CLEAR = 1e-6  # rad: nearer to a switch p is not compared with itself a turn later
+_MOST_WAVES = 5000  # of p in a turn: what is proved and drawn of it is divided for each of them
+_ABOUT = 1.01  # the estimate may be off by so much
+_PLACES = 2048  # at which its waves are looked for
+_CALM = 1e-6  # of the largest p: slopes of the radius of curvature no steeper are no waves, they may be rounding
 _WHOLE = "a whole exponent is smooth where what it is put on vanishes"
 _HINTS = (
     ("fractional power", _WHOLE),
@@ -37,8 +41,10 @@ def lift_from_formula(formula: Formula, pivot: tuple[float, float] = (0.0, 0.0),
     """Make p = scale times a formula in t (AS eq. 7 and Figure 2), mm, about the shaft at `pivot`, mm.
 
     Raises IntentError, each with angle and figure, where the formula has no value or p, p', p'' no bound; where it does
-    not close, p(t + 2 pi) = p(t); and where abs, min, max or the like make p or p' jump. Jumps of p'' become breaks.
+    not close, p(t + 2 pi) = p(t); where it has too many waves to be worked out; and where abs, min, max or the like
+    make p or p' jump. Jumps of p'' become breaks.
     """
+    _demand_calm(formula)
     try:
         places, pieces = formula.pieces(0.0, _TURN)
         _demand_period(formula, places, scale)
@@ -70,6 +76,34 @@ def _runs_on(last: Expression, first: Expression) -> bool:
     except FormulaDomainError:  # a high derivative does not exist there: a break
         return False
     return bool((np.abs(end - begin) <= _PERIOD * (1 + np.abs(begin).max())).all())
+
+
+def _demand_calm(formula: Formula) -> None:
+    """Refuse p with more waves in a turn than are worked out, before any of them is."""
+    try:
+        waves = _waves(formula)
+    except FormulaDomainError:  # why it has no value or derivative, and where, is found and told next
+        return
+    if waves > _MOST_WAVES * _ABOUT:
+        raise IntentError(f"p has about {waves:.3g} waves in a turn; no more than {_MOST_WAVES} are worked out", "p")
+
+
+def _waves(formula: Formula) -> float:
+    """Estimate how often the radius of curvature goes up and down in a turn.
+
+    A wave of its slope g is a turn of the point (g, g'/s) about 0 (Pruefer's angle), whatever the rate s: the mean rate
+    of turning is counted, at places that no symmetry repeats. Derivatives are exact, so that waves between two places
+    are counted as well.
+    """
+    t = np.mod(np.arange(1, _PLACES + 1) * (math.sqrt(5) - 1) * math.pi, _TURN)
+    with np.errstate(all="ignore"):  # what is not finite is refused where it can be told
+        p = formula.jet(t, 5).derivatives()
+        g, slope, bend = p[1:4] + p[3:6]
+        rate = math.sqrt(float(np.mean(slope**2))) / (math.sqrt(float(np.mean(g**2))) or 1.0) or 1.0
+        across = slope / rate
+        turned = np.abs(g * bend / rate - rate * across**2)
+        mean = float(np.mean(turned / (g**2 + across**2 + (_CALM * np.abs(p[0]).max()) ** 2)))
+    return mean if math.isfinite(mean) else 0.0
 
 
 def _demand_period(formula: Formula, switches: Array, scale: float) -> None:

@@ -103,9 +103,9 @@ class Mechanism:
     """A linkage whose frame holds the cam of a lift, and further links.
 
     `breadth` is that of the frame and the cam, mm; `chain` is all the links. ValueError if the first dyad hangs on a
-    previous one. IntentError if p(theta) + p(theta + pi) is not the breadth all round (field "p"), or if the shaft is
-    not within the cam (field "pivot"): on its edge is allowed; or if the point a dyad hangs on goes right round the
-    dyad's ground pivot (field "dyads").
+    previous one. IntentError if the breadth is not above 0 or p(theta) + p(theta + pi) is not the breadth all round
+    (field "p"), or if the shaft is not within the cam (field "pivot"): on its edge is allowed; or if the point a dyad
+    hangs on goes right round the dyad's ground pivot (field "dyads").
     """
 
     linkage: Linkage
@@ -116,6 +116,8 @@ class Mechanism:
     chain: Chain = field(init=False)
 
     def __post_init__(self) -> None:
+        if not self.breadth > 0:
+            raise IntentError(f"no frame has a breadth of {self.breadth:.6g} mm: it must be above 0", "p")
         object.__setattr__(self, "chain", Chain(self.linkage, self.breadth, self.dyads))
         self._demand_constant_breadth()
         self._demand_shaft_within()

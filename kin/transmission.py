@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 __all__ = ["IntentError", "Transmission", "from_arc", "from_delta", "from_law", "from_rosette"]
 
 
+_ABOVE = 1 + 1e-9  # of a least radius: a figure told with nine digits is not below it
+
+
 def _over_period(
     delta: float, knots: Sequence[float], functions: Sequence[Stretch], lean: tuple[float, float]
 ) -> tuple[Piecewise, tuple[float, ...]]:
@@ -123,17 +126,19 @@ def from_arc(
 
     The arc joins two mean positions, psi = 0 and r = R = 2 l cos(alpha/2), bulging outwards (convex) or inwards. Being
     symmetric about its bisector it meets its image with a common tangent. Raises IntentError for an excluded ratio, a
-    radius below half the chord (concave: below the radius at which the arc is tangent to a ray from the shaft), and a
-    law that swings too far or turns the cam back.
+    radius below half the chord (concave: up to `_least_concave`), and a law that swings too far or turns the cam back.
     """
     demand_ratio(lam, mu, arm)
     alpha, delta = math.pi * mu / lam, math.pi / lam
     mean = 2 * arm * math.cos(alpha / 2)
     chord, height = mean * math.sin(delta / 2), mean * math.cos(delta / 2)
-    least = chord if side == "convex" else chord / math.cos(delta / 2)
+    least = chord if side == "convex" else _least_concave(lam, mu, mean)
     if not (math.isfinite(radius) and (radius >= least if side == "convex" else radius > least)):
         raise IntentError(
-            f"a {side} arc needs a radius of at least {least:.9g} mm to join the mean positions, not {radius:.9g} mm",
+            f"a {side} arc needs a radius of at least {least:.9g} mm to join the mean positions, not {radius:.9g} mm"
+            if side == "convex"
+            else f"a concave arc needs a radius above {least * _ABOVE:.9g} mm, not {radius:.9g} mm: below, psi'(phi) "
+            "reaches 1 where the arc begins, and the cam cannot be turned through",
             "arc.radius",
         )
     sagitta = math.sqrt((radius - chord) * (radius + chord))  # from the centre to the chord
@@ -145,24 +150,30 @@ def from_arc(
     if not 0 < top < 2 * arm:
         where = f"the middle of the arc is {top:.9g} mm from the shaft"
         raise IntentError(f"{where}; it must lie between 0 and 2 l = {2 * arm:.9g} mm", "arc.radius")
-    if side == "concave":
-        # r cuts the arc's circle at this distance from its middle; at 0 it is tangent to the ray, and r' infinite
-        half_chord = centre * math.cos(delta / 2) - mean
-        steep = centre * math.sin(delta / 2) * mean
-        room = half_chord * math.sqrt((2 * arm - mean) * (2 * arm + mean))
-        if room <= steep:
-            reached = 2 * steep / (max(room, 0.0) + steep)
-            raise IntentError(
-                f"psi'(phi) must stay below 1, else the cam cannot be turned through; it reaches {reached:.9g} at a "
-                f"shaft angle of {math.degrees(alpha / 2):.6g} degrees, where the arc begins; a larger radius is less "
-                "steep",
-                "arc.radius",
-                math.degrees(alpha / 2),
-            )
     arc = FromArc(arm, alpha, delta, centre, radius, power, side == "convex")
     psi, lean = _over_period(delta, [0.0, delta], [arc], (0.5, 0.5))
     place = (centre * math.cos(delta / 2), centre * math.sin(delta / 2), radius if side == "convex" else -radius)
     return checked(Transmission(lam, mu, arm, psi, lean, alpha / 2, place), [0.0, delta], [arc], "arc")
+
+
+def _least_concave(lam: int, mu: int, mean: float) -> float:
+    """Radius at which psi'(phi) is 1 where a concave arc begins; it must be larger. IntentError where none will do.
+
+    By t psi' is there 2 steep/(steep + room), steep = c sin(delta/2) R and room = (c cos(delta/2) - R) R tan(alpha/2),
+    with the centre at c on the bisector and R the mean distance: 2 for c = R sin(alpha/2)/sin((alpha - delta)/2). With
+    mu = 1, alpha = delta, that is a straight line, which the arc's other side alone is less steep than.
+    """
+    alpha, delta = math.pi * mu / lam, math.pi / lam
+    if mu == 1:
+        raise IntentError(
+            f"psi'(phi) must stay below 1, else the cam cannot be turned through; with a whole ratio such as {lam} a "
+            "straight first line reaches 1 where it begins, and a concave arc of any radius more; a convex arc would "
+            "do, or a ratio such as 5/3",
+            "arc.side",
+            math.degrees(alpha / 2),
+        )
+    centre = mean * math.sin(alpha / 2) / math.sin((alpha - delta) / 2)
+    return math.hypot(centre - mean * math.cos(delta / 2), mean * math.sin(delta / 2))
 
 
 def from_rosette(lam: int, mu: int, arm: float, leaf: Formula, scale: float = 1.0) -> Transmission:

@@ -35,7 +35,7 @@ def test_a_radius_of_curvature_that_is_just_0_fails_its_check(
 ) -> None:
     recipe = f"cam: {{kind: support, p: {p}, undercut: {undercut}}}\npart: {{thickness: 8}}\n"
     assert exported(tmp_path, recipe + FILES) == 1
-    assert "radius-of-curvature: 0 mm, at least 0 allowed" in capsys.readouterr().out
+    assert "radius-of-curvature: 0 mm, more than 0 needed" in capsys.readouterr().out
 
 
 def test_a_wall_thinner_than_the_tolerance_is_refused_at_the_bore(

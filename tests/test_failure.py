@@ -29,7 +29,7 @@ def told(name: str, value: float | None, limit: float | None, cam: str, more: st
     [
         ("a smaller swing, or the same over a wider angle", "transmission", 1.2, 1.0, "roller"),
         ("a smaller swing, or the same over a wider angle", "pressure-angle", None, 90.0, "roller"),
-        ("a support function larger by more than 1.23457 mm", "radius-of-curvature", -1.2345678, 0.0, "support"),
+        ("a p larger by more than 1.23457 mm", "radius-of-curvature", -1.2345678, 0.0, "support"),
         ("a base radius larger by more than 1.23457 mm", "radius-of-curvature", -1.2345621, 0.0, "breadth"),
         ("a roller radius below 7.65432 mm", "radius-of-curvature", 7.6543288, 8.0, "roller"),
         ("", "radius-of-curvature", -1.0, 8.0, "roller"),

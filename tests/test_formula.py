@@ -394,7 +394,7 @@ def test_a_switch_that_cannot_be_settled_is_refused(text: str, message: str, col
 
 def test_too_many_switches_are_refused() -> None:
     assert len(Formula("abs(sin(200*t))").breaks(0.001, TURN)) == 400
-    with pytest.raises(FormulaError, match="switches too often to be taken apart: more than 2000 stretches"):
+    with pytest.raises(FormulaError, match="switches too often to be taken apart: more than 500 stretches"):
         Formula("abs(sin(1100*t))").breaks(0, TURN)
     with pytest.raises(FormulaError, match="too often near"):
         Formula("abs(sin(1e6*t))").breaks(0, TURN)

@@ -460,3 +460,27 @@ def test_a_cusp_on_the_shaft_is_no_jump():
     size = 25.0 / (151 * 151 - 1)
     found = lift_from_fourier(25.0, {151: size}, {}, (25.0 + size, 0.0))
     assert np.abs(found.derivatives(0.0, 2)).max() < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("text", "waves"),
+    [
+        ("25 + cos(20000*t)", "2e+04"),
+        ("25 + cos(131072*t)", "1.31e+05"),  # alike at each of 2**17 equal steps
+        ("25 + cos(3*t) + 1e-9*cos(9000*t)", "9e+03"),
+        ("25 + 1e-9*cos(3000*cos(5000*t))", "9.59e+06"),
+        ("25 + sin(1000*sin(1000*sin(1000*t)))", "4.02e+08"),
+    ],
+)
+def test_more_waves_than_are_worked_out_are_counted_and_refused(text, waves):
+    with pytest.raises(IntentError) as caught:
+        lift_from_formula(Formula(text))
+    assert caught.value.message == f"p has about {waves} waves in a turn; no more than 5000 are worked out"
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["25 + 1e-9*cos(5000*t)", "25 + 1e-4*exp(-1e5*sin(t/2)**2)", "25*sqrt(sin(t)**2 + cos(t)**2)", "0*t", "25"],
+)
+def test_few_waves_and_steep_or_rounded_ones_are_not_refused(text):
+    assert lift_from_formula(Formula(text)).law.period == 2 * math.pi

@@ -542,3 +542,10 @@ def test_the_shaft_angle_is_inverted_where_newton_s_method_creeps():
     of = Steep(LINKAGES["four-bar"], cam_2a(), 50.0)
     shaft = np.linspace(0.01, 6.2, 50)
     assert np.abs(of.at(of.relative(shaft), 0).shaft[0] - shaft).max() < 1e-8
+
+
+@pytest.mark.parametrize("mean", [-25.0, 0.0])
+def test_a_frame_without_breadth_is_refused(mean):
+    lift = lift_from_fourier(mean, {}, {}, (10.0, 4.0))
+    with pytest.raises(IntentError, match=r"^no frame has a breadth of (-50|0) mm: it must be above 0$"):
+        Mechanism(SliderCrank(90.0, 0.0), lift, 2 * mean)

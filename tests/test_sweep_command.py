@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import pty
+import re
 import signal
 import subprocess
 import sys
@@ -73,7 +74,8 @@ def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: py
     said = capsys.readouterr().out
     assert said.startswith("four-bar: no design will do, of 825 designs")
     assert "do not turn (binds " in said
-    assert "break the limit of margin; " in said
+    assert "break the limit of margin; nearest: cam.pivot[0] " in said
+    assert re.search(r"linkage\.rocker \S+, with margin \S+ mm where at least 99 is asked; ", said)
     assert said.endswith("four-bar.rejected\n")
 
 

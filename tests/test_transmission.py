@@ -503,9 +503,21 @@ def test_ratios_that_wunderlich_excludes(lam, mu, arm, field, message):
         ),
         (
             lambda: from_arc(3, 1, L, 59.5, "concave"),
+            "arc.side",
+            30.0,
+            (
+                f"{STEEP.removesuffix('; it reaches')}; with a whole ratio such as 3 a straight first line reaches 1 "
+                "where it begins, and a concave arc of any radius more; a convex arc would do, or a ratio such as 5/3"
+            ),
+        ),
+        (
+            lambda: from_arc(5, 3, L, 37.0, "concave"),
             "arc.radius",
             None,
-            "a concave arc needs a radius of at least 60 mm to join the mean positions, not 59.5 mm",
+            (
+                "a concave arc needs a radius above 37.0820394 mm, not 37 mm: below, psi'(phi) reaches 1 where the arc "
+                "begins, and the cam cannot be turned through"
+            ),
         ),
         (
             lambda: from_arc(3, 1, L, 55.0),

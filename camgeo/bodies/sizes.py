@@ -6,9 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from camgeo.rounded import downward, upward
+
 if TYPE_CHECKING:
     from camgeo.recipe.model_mechanism import MechanismAsked
 
+JUST = 1.0 - 1e-9  # a least size as it is told, rounded, is not too small
 HALF = 0.5  # mm: what follows from the cam is a multiple of it
 LEAST_PIN = 3.0  # mm: a thinner one breaks between its layers
 MOST_PIN = 12.0
@@ -29,9 +32,13 @@ class BodyError(ValueError):
 
     def told(self, mm: float = 1.0, units: str = "mm") -> tuple[str, str]:
         """Give message and remedy in a unit of so many mm."""
+        message, remedy = self._texts
         lengths = {name: f"{length / mm:.4g} {units}" for name, length in self._lengths.items()}
-        message, remedy = (text.format(**lengths) for text in self._texts)
-        return message, remedy
+        bounds = dict(lengths)  # of a remedy, rounded to the side on which it helps
+        for name, length in self._lengths.items():
+            most = name == "most" or f"at most {{{name}}}" in remedy
+            bounds[name] = f"{(downward if most else upward)(length / mm, 4)} {units}"
+        return message.format(**lengths), remedy.format(**bounds)
 
 
 @dataclass(frozen=True)
@@ -133,16 +140,16 @@ def _go_together(s: Sizes, bore: float) -> None:
     ):
         thick(f"mechanism.{name}", length, least)
     least = s.hole + 2.0 * THIN
-    if s.bar < least:
+    if s.bar < least * JUST:
         raise BodyError("mechanism.bar", "too narrow for the hole of a pin", "give at least {least}", least=least)
     least = s.sunk + 2.0 * THIN
-    if s.plate < least:
+    if s.plate < least * JUST:
         message = "too thin for the sink of the shaft's retainer"
         raise BodyError("mechanism.plate", message, "give at least {least}, or a thinner clip", least=least)
     if s.press >= min(s.pin, bore):
         raise BodyError("mechanism.press", "no hole is left", "give less, such as {such}", such=0.1)
     least = 1.2 * bore + 2.0 * THIN  # a square's corners reach farther than its width
-    if s.knob < least:
+    if s.knob < least * JUST:
         raise BodyError("mechanism.knob", "does not reach beyond the bore", "give at least {least}", least=least)
 
 

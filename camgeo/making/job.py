@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.curve import CurveError
@@ -14,6 +14,8 @@ from camgeo.fit.bound import FormError
 from camgeo.fit.nodes import ToleranceError
 from camgeo.manufacture.meant import intent_of_file
 from camgeo.outlines import Outlines, formula_rounding
+from camgeo.recipe.model import DoubleRollerCam
+from camgeo.remedies import less_swing
 from camgeo.report.document import FileResult
 from camgeo.store import SurroundingsError
 
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.model import FileRequest, Recipe
     from camgeo.recipe.model_manufacture import Compensation
     from kin.check import Check
+
+STEEP = 0.999  # psi'(phi) from which a roller may run past a contour that is within its tolerance
 
 
 class Made(NamedTuple):
@@ -142,4 +146,15 @@ class Job:
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance))
         measured = verdict.measured_error
         file = FileResult(path, request, tolerance, pieces, bound, measured, verdict.motion, verdict.linkage)
-        return Made((file,), tuple(verdict.checks))
+        return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
+
+    def _why_lost(self, check: Check) -> Check:
+        """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""
+        if check.name != "motion" or check.value is not None or not isinstance(self.recipe.cam, DoubleRollerCam):
+            return check
+        slope = next(own.value for own in self.design.checks if own.name == "transmission")
+        if slope is None or slope < STEEP:
+            return check
+        less = less_swing(self.recipe.cam, self.recipe.mm)
+        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would do"
+        return replace(check, detail=f"{check.detail}: {why}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from camgeo.report.bound import sign
 from camgeo.report.document import pieces_word
 
 if TYPE_CHECKING:
@@ -48,8 +49,8 @@ def checks(report: dict[str, Any]) -> str:
 
 
 def _check(check: dict[str, Any], *, linked: bool) -> str:
-    sign = "≥" if check["sense"] == "at_least" else "≤"
-    limit = NONE if check["limit"] is None else f"{sign} {number(check['limit'])}"
+    side = {">=": "≥", "<=": "≤"}.get(sign(check), sign(check))
+    limit = NONE if check["limit"] is None else f"{escape(side)} {number(check['limit'])}"
     over = "relative" if linked and check["name"] in OVER_RELATIVE else "shaft"
     detail = f'<div class="detail">{escape(check["detail"])}</div>' if check.get("detail") else ""
     return (

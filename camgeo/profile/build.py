@@ -23,6 +23,7 @@ from camgeo.recipe.model import (
     SupportCam,
 )
 from camgeo.recipe.spec import MOST
+from camgeo.rounded import upward
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from kin.transmission import Transmission
 
 LOOKS = 72  # places at which the size of a formula's values is looked at
+LEAST_PART = 1e-9  # of its farthest point from the shaft: a cam with a smaller mean radius is lost in rounding
+ROUNDING = 1e-15  # of the same: a mean radius below it is 0
 
 
 @dataclass(frozen=True)
@@ -92,12 +95,36 @@ def _support(cam: SupportCam) -> Lift:
 
     shape = cam.shape
     if isinstance(shape, FormulaShape):
-        return _formula(shape, cam.pivot)
+        return _with_size(_formula(shape, cam.pivot), "p", shape.scale)
     if isinstance(shape, FourierShape):
-        return lift.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), cam.pivot)
+        found = lift.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), cam.pivot)
+        return _with_size(found, "fourier.mean")
     if isinstance(shape, ReuleauxShape):
-        return lift.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, cam.pivot)
-    return lift.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, cam.pivot)
+        found = lift.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, cam.pivot)
+        return _with_size(found, "reuleaux.breadth")
+    found = lift.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, cam.pivot)
+    return _with_size(found, "hypocycloid.breadth")
+
+
+def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
+    """Give the lift back unless its mean is no length: 2 pi times the mean is the perimeter, wherever the shaft is.
+
+    Raises IntentError with the mean in the recipe's unit, `scale` mm.
+    """
+    from kin.law import IntentError
+
+    p = lift.derivatives(np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False), 0)[0]
+    mean, farthest = float(np.mean(p)), float(np.abs(p).max())
+    least = LEAST_PART * farthest
+    if mean > least or not farthest:  # of p = 0 the radius of curvature is held against 0 like any other
+        return lift
+    mean = 0.0 if abs(mean) < ROUNDING * farthest else mean
+    remedy = f"add more than {upward((least - mean) / scale)} to p" if field == "p" else "give a larger one"
+    raise IntentError(
+        f"the mean radius is {mean / scale:.6g}, not above {least / scale:.3g}: a cam's perimeter is 2 pi times it, "
+        f"and this one's points lie up to {farthest / scale:.6g} from the shaft; {remedy}",
+        field,
+    )
 
 
 def _formula(shape: FormulaShape, pivot: tuple[float, float]) -> Lift:

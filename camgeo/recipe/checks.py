@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law)
+_OTHER_HALF = "two parallel faces hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
+_OTHER_PARTS = "both sides of the follower touch the cam at once, so the motion after that follows"
 
 
 def check(values: Values, reader: Reader) -> None:
@@ -31,10 +33,10 @@ def check(values: Values, reader: Reader) -> None:
     _corners(cam.get("reuleaux", {}), reader)
     _harmonics(cam, reader)
     if "motion" in cam:
-        _filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader)
+        _filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader, why=_OTHER_HALF)
     if "law" in cam and "ratio" in cam:
         lam, _ = cam["ratio"]
-        _filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader)
+        _filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader, why=_OTHER_PARTS)
     _linkage(values, reader)
     check_part(values.get("part", {}), reader)
     _files(values, reader)
@@ -58,11 +60,12 @@ def _harmonics(cam: Values, reader: Reader) -> None:
         reader.fault_at("cam.delta", "no harmonics, so no motion", None, "give some, such as {cos: {1: 625}}")
 
 
-def _filled(segments: list[Values], path: str, angle: float, wanted: str, reader: Reader) -> None:
+def _filled(segments: list[Values], path: str, angle: float, wanted: str, reader: Reader, *, why: str) -> None:
     covered = math.fsum(segment["dwell"] if "dwell" in segment else segment["over"] for segment in segments)
     if abs(covered - angle) > _ANGLE:
         value = f"{math.degrees(covered):.10g} degrees"
-        remedy = f"let them cover {wanted}; an angle may be a fraction such as 180/7"
+        more = why if covered > angle else "an angle may be a fraction such as 180/7"
+        remedy = f"let them cover {wanted}; {more}"
         reader.fault_at(path, "the segments do not fill their angle", value, remedy)
 
 

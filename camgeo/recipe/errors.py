@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _SHOWN = 60  # characters of a value that an error repeats
+NEAR, NEARER = 0.6, 0.8  # likeness of words that may be meant, and of those that are slips of the pen
 _LONGEST_WORD = 40  # for which a near one is sought
 
 
@@ -60,11 +61,11 @@ def shown(text: str) -> str:
     return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """Name the nearest of the known words, if one is near."""
+def suggestion(word: str, known: Iterable[str], near: float = NEAR) -> str:
+    """Name the nearest of the known words, if one is as near as `near`, of 1 for the same word."""
     from difflib import get_close_matches  # for the message alone
 
     if len(word) > _LONGEST_WORD:
         return ""
-    near = get_close_matches(word.lower(), list(known), n=1)
-    return f"did you mean {near[0]}?" if near else ""
+    found = get_close_matches(word.lower(), list(known), n=1, cutoff=near)
+    return f"did you mean {found[0]}?" if found else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.errors import shown, suggestion
+from camgeo.recipe.errors import NEAR, NEARER, shown, suggestion
 from camgeo.recipe.scalars import Complaint, read_name, read_number, read_paragraph, read_ratio, read_whole
 from camgeo.recipe.source import Scalar, described, written
 from camgeo.recipe.spec import Kind
@@ -39,7 +39,8 @@ def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | No
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in field.choices:
         return None if scalar is None else scalar.text
-    remedy = suggestion(scalar.text, field.choices) or reader.wanted(field)
+    remedy = suggestion(scalar.text, field.choices, NEARER if field.others else NEAR)
+    remedy = remedy or field.others or reader.wanted(field)
     reader.fault(node.mark, path, "not one of the choices", shown(scalar.text), remedy)
     return None
 

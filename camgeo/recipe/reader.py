@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from camgeo.recipe.errors import RecipeError, shown, suggestion
 from camgeo.recipe.source import Mapping, Scalar, Sequence, described, entries, is_empty, join, keys
 from camgeo.recipe.spec import Field, Kind, Table, either
-from camgeo.recipe.table_cam import CAMS, SWINGING
+from camgeo.recipe.table_cam import CAMS, MADE, SWINGING
 from camgeo.recipe.table_linkage import DYADS, LINKAGES, SLIDING
 from camgeo.recipe.tables import RECIPE, elsewhere
 
@@ -202,7 +202,8 @@ class Reader:
             self.fault(node.mark, path, "not a mapping", described(node), self.wanted(field))
             return None
         about = f"the kind of {field.kind.value.removeprefix('a ')}"
-        kind = Field("kind", Kind.CHOICE, about, required=True, choices=tuple(tables))
+        others = MADE if tables is CAMS else ""
+        kind = Field("kind", Kind.CHOICE, about, required=True, choices=tuple(tables), others=others)
         if found := _kind(node, tables):
             table = tables[found]
             return self.table(Table((kind, *table.fields), table.alternatives, table.later), node, path)

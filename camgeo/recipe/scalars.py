@@ -7,9 +7,12 @@ import re
 
 from camgeo.recipe.spec import MOST_LAMBDA, MOST_TEXT
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_NUMBER = re.compile(rf"[+-]?{_UNSIGNED.pattern}")
 _FRACTION = re.compile(r"([+-]?[0-9]{1,9})/([0-9]{1,9})")
 _RATIO = re.compile(r"([0-9]{1,9})(?:/([0-9]{1,9}))?")
+_ZEROS_BEFORE = re.compile(r"(?<![0-9.eE])(?<![eE][+-])0+[0-9]")
+_ARITHMETIC = re.compile(r"[-+*/() ]*[-+*/()][-+*/() ]*")  # what is left of it without numbers and pi
 _LEADING_ZERO = re.compile(r"[+-]?0+[0-9]")
 _MOST_DIGITS = 60
 _LEAST = 1e-30  # so that no later square or quotient leaves the range of floats
@@ -42,24 +45,45 @@ class Complaint(ValueError):  # noqa: N818 - it never leaves the package
 
 
 def read_number(text: str) -> float:
-    """Read a decimal number or a fraction such as 180/7; raises Complaint."""
+    """Read a decimal number, a fraction such as 180/7 or plain arithmetic such as 15/25.4; raises Complaint."""
     if len(text) > _MOST_DIGITS:
         raise Complaint(f"a number of more than {_MOST_DIGITS} characters", "sixteen digits are all that counts")
     if found := _FRACTION.fullmatch(text):
         if int(found[2]) == 0:
             raise Complaint("divides by zero")
         return int(found[1]) / int(found[2])
-    if not _NUMBER.fullmatch(text):
-        hint = next((hint for pattern, hint in _NOT_NUMBERS if pattern.fullmatch(text)), "")
-        raise Complaint("not a number", hint)
-    if _LEADING_ZERO.match(text):
-        raise Complaint("a leading zero, which some read as octal", "leave the zero out")
-    value = float(text)
-    if math.isinf(value):
+    if _NUMBER.fullmatch(text):
+        if _LEADING_ZERO.match(text):
+            raise Complaint("a leading zero, which some read as octal", "leave the zero out")
+        value = float(text)
+    else:
+        hint = next((hint for pattern, hint in _NOT_NUMBERS if pattern.fullmatch(text)), None)
+        left = re.sub(r"\bpi\b", " ", _UNSIGNED.sub(" ", text))
+        if hint is not None or not (_ARITHMETIC.fullmatch(left) or text == "pi"):
+            raise Complaint("not a number", hint or "")
+        value = _worked_out(text)
+    if not math.isfinite(value):
         raise Complaint("too large")
     if 0 < abs(value) < _LEAST:
         raise Complaint("too small", "write 0, or what was meant")
     return value
+
+
+def _worked_out(text: str) -> float:
+    """Work out sums, products and quotients of numbers and pi; raises Complaint."""
+    from kin.formula import FormulaError
+    from kin.syntax import parse
+
+    if "**" in text or "//" in text:
+        raise Complaint("not a number", "numbers are joined by + - * / and parentheses alone")
+    if _ZEROS_BEFORE.search(text):
+        raise Complaint("a leading zero, which some read as octal", "leave the zero out")
+    try:
+        return float(parse(text, ()).steps[-1].value)
+    except FormulaError as error:
+        known = {"division by zero": "divides by zero", "overflow": "too large"}
+        problem = known.get(error.message, f"not a number: {error.message.replace('the formula', 'it')}")
+        raise Complaint(problem) from None
 
 
 def read_whole(text: str) -> int:

@@ -26,8 +26,9 @@ from camgeo.recipe.tables import FILES, RECIPE
 
 Schema: TypeAlias = dict[str, Any]
 
-# Texts that are numbers all the same: fractions, and 1e-3, which YAML 1.1 takes for a text.
-_NUMBER_TEXT = r"^[+-]?([0-9]+/[0-9]+|([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?)$"
+# Texts that are numbers all the same: 1e-3, which YAML 1.1 takes for a text, fractions and plain arithmetic. What the
+# signs mean is for `load` to say.
+_NUMBER_TEXT = r"^(?=.*([0-9]|pi))([-+*/(). ]|[0-9]([eE][+-]?[0-9])?|pi)+$"
 _NAME = r"^[A-Za-z0-9_][A-Za-z0-9._-]{0,63}$"
 _RATIO = r"^[0-9]+(/[0-9]+)?$"
 

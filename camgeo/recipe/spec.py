@@ -74,6 +74,7 @@ class Field:
     kind: Kind
     about: str
     required: bool = False
+    others: str = ""  # said of a word that is none of the choices
     default: str = ""  # as documented; `load` knows the value
     above: float | None = None
     at_least: float | None = None

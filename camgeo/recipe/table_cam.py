@@ -141,4 +141,10 @@ CAMS: dict[str, Table] = {
     "double-roller": DOUBLE_ROLLER,
     "flat-pair": FLAT_PAIR,
 }
+MADE = (
+    "made are cams for a flat face (support), for a yoke of two parallel faces (constant-breadth, support), for two "
+    "rollers on one oscillating arm (double-roller) and for two faces on one (flat-pair); cams for a single roller, a "
+    "knife edge or a curved shoe, cylindrical cams and grooves are not made"
+)
+"""Which followers there are cams for, in the error of a kind that is none."""
 SWINGING = ("double-roller", "flat-pair")  # their motion errors are angles

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo import __version__
 from camgeo.mixture import listed
 from camgeo.recipe.model import NO_CONTOUR, NO_PART
+from camgeo.report.bound import is_strict, sign, words
 from camgeo.terminal import escaped
 
 if TYPE_CHECKING:
@@ -226,19 +227,18 @@ def pieces_word(file: dict[str, Any]) -> str:
 def table(report: dict[str, Any]) -> str:
     """Every check and file of a report as aligned text."""
     rows: list[Sequence[str]] = [("check", "", "value", "limit", "unit", "at", "file")]
-    for check in report["checks"]:
-        sign = ">=" if check["sense"] == "at_least" else "<="
-        rows.append(
-            (
-                check["name"],
-                "ok" if check["ok"] else "FAILED",
-                _value(check),
-                "" if check["limit"] is None else f"{sign} {_number(check['limit'])}",
-                check["unit"],
-                "" if check["at_deg"] is None else f"{check['at_deg']:.2f} deg",
-                escaped(check.get("file", "")),
-            )
+    rows += [
+        (
+            check["name"],
+            "ok" if check["ok"] else "FAILED",
+            _value(check),
+            "" if check["limit"] is None else f"{sign(check)} {_number(check['limit'])}",
+            check["unit"],
+            "" if check["at_deg"] is None else f"{check['at_deg']:.2f} deg",
+            escaped(check.get("file", "")),
         )
+        for check in report["checks"]
+    ]
     text = aligned(rows)
     rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
     for file in report["files"]:
@@ -287,8 +287,8 @@ def _told(check: dict[str, Any]) -> str:
     if check["value"] is not None:
         text += f": {_number(check['value'])} {check['unit']}".rstrip()
         if check["limit"] is not None:
-            least = "at least" if check["sense"] == "at_least" else "at most"
-            text += f", {least} {_number(check['limit'])} allowed"
+            word = "needed" if is_strict(check) else "allowed"
+            text += f", {words(check)} {_number(check['limit'])} {word}"
         if check["at_deg"] is not None:
             text += f", at {check['at_deg']:.2f} deg"
     if check.get("detail"):

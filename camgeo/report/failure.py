@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, SupportCam
+from camgeo.remedies import larger
+from camgeo.report.bound import words
 from camgeo.rounded import downward, upward
 
 if TYPE_CHECKING:
@@ -94,11 +96,7 @@ def _rounder(recipe: Recipe, value: float, limit: float, unit: str) -> str:
     """Tell what would make the least radius of curvature, `value`, large enough."""
     if isinstance(recipe.cam, DoubleRollerCam):
         return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
-    if isinstance(recipe.cam, ConstantBreadthCam):
-        return f"a base radius larger by more than {upward(limit - value)} {unit}"
-    if isinstance(recipe.cam, SupportCam):
-        return f"a support function larger by more than {upward(limit - value)} {unit}"
-    return ""
+    return larger(recipe.cam, limit - value, unit)
 
 
 def _field(check: dict[str, Any], recipe: Recipe) -> str:
@@ -116,5 +114,4 @@ def _value(check: dict[str, Any]) -> str:
 def _limit(check: dict[str, Any]) -> str:
     if check["limit"] is None:
         return ""
-    least = "at least" if check["sense"] == "at_least" else "at most"
-    return f"{least} {check['limit']:.6g} {check['unit']}".rstrip()
+    return f"{words(check)} {check['limit']:.6g} {check['unit']}".rstrip()

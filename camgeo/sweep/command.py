@@ -137,7 +137,19 @@ def _summary(report: dict[str, Any], folder: Path) -> str:
         return f"{report['recipe']}: {rank} {value}, the best of {counts['kept']:,} kept of {looked}; {folder}"
     reasons = [_stuck(report)] if counts["not_turning"] else []
     reasons += [f"{number:,} break the limit of {figure}" for figure, number in counts["failing"].items() if number]
-    return f"{report['recipe']}: no design will do, of {looked}: {', '.join(reasons)}; {folder}"
+    near = _nearest(report) if report["nearest"] is not None else ""
+    return f"{report['recipe']}: no design will do, of {looked}: {', '.join(reasons)}{near}; {folder}"
+
+
+def _nearest(report: dict[str, Any]) -> str:
+    """The design that misses the limits by least, as a share of each, and what it misses."""
+    near = report["nearest"]
+    bounds = report["sweep"]["limits"][near["breaks"]]
+    least = "at_least" in bounds and near["value"] < bounds["at_least"]
+    asked = f"at least {bounds['at_least']:.6g}" if least else f"at most {bounds['at_most']:.6g}"
+    values = ", ".join(f"{path} {value:.6g}" for path, value in near["values"].items())
+    figure = f"{near['breaks']} {near['value']:.6g} {near['unit']}".rstrip()
+    return f"; nearest: {values}, with {figure} where {asked} is asked"
 
 
 def _stuck(report: dict[str, Any]) -> str:

@@ -46,6 +46,15 @@ class Ranking:
         most = np.inf if limit.at_most is None else limit.at_most
         return (figures[limit.figure] >= least) & (figures[limit.figure] <= most)
 
+    def miss(self, limit: Limit, figures: Mapping[str, Floats]) -> Floats:
+        """By how much figures (m,) lie outside a limit, as a share of the bound they break; 0 within."""
+        figure = figures[limit.figure]
+        found = np.zeros_like(figure)
+        for bound, past in ((limit.at_least, -1.0), (limit.at_most, 1.0)):
+            if bound is not None:
+                found = np.fmax(found, past * (figure - bound) / (abs(bound) or 1.0))
+        return found
+
     def score(self, figures: Mapping[str, Floats]) -> Floats:
         """The figure of the ranking, turned so that more is better, (m,)."""
         return figures[self.rank] if self.most else -figures[self.rank]
@@ -63,6 +72,19 @@ class Counts:
     reasons: tuple[tuple[int, int], ...]
     failing: tuple[tuple[str, int], ...]
     kept: int
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The design that is nearest to keeping all limits where none does, and the limit that it breaks by most.
+
+    `index` of the design, its `values` (axes,) in the recipe's units; `value` of the limit's figure in mm or degrees.
+    """
+
+    index: int
+    values: Floats
+    limit: Limit
+    value: float
 
 
 @dataclass(frozen=True)
@@ -96,6 +118,7 @@ class Gathered:
     values: Floats
     figures: dict[str, Floats]
     cells: Cells
+    nearest: Nearest | None = None
 
     @property
     def rows(self) -> int:
@@ -109,6 +132,7 @@ def gather(plan: Plan, ranking: Ranking, chunks: Iterable[Mapping[str, Floats]])
     failing = dict.fromkeys((limit.figure for limit in ranking.limits), 0)
     stuck = kept = first = waiting = 0
     reasons: Counter[int] = Counter()
+    nearest, missed = None, np.inf
     parts: list[_Rows] = []
     names: tuple[str, ...] = ()
     for figures in chunks:
@@ -122,6 +146,13 @@ def gather(plan: Plan, ranking: Ranking, chunks: Iterable[Mapping[str, Floats]])
             fine = ranking.held(limit, figures)
             failing[limit.figure] += int((turns & ~fine).sum())
             held &= fine
+        if not (kept or held.any()) and turns.any():
+            misses = np.array([ranking.miss(limit, figures) for limit in ranking.limits])
+            near = int(np.argmin(np.where(turns, misses.max(axis=0), np.inf)))
+            if misses[:, near].max() < missed:
+                worst = ranking.limits[int(np.argmax(misses[:, near]))]
+                missed = float(misses[:, near].max())
+                nearest = Nearest(first + near, values[near], worst, float(figures[worst.figure][near]))
         stuck += int((~turns).sum())
         if REASON in figures:
             reasons.update(figures[REASON][~turns].astype(int).tolist())
@@ -144,6 +175,7 @@ def gather(plan: Plan, ranking: Ranking, chunks: Iterable[Mapping[str, Floats]])
         rows.values,
         {name: rows.table[:, i] for i, name in enumerate(names)},
         cells.finished(most=ranking.most),
+        None if kept else nearest,
     )
 
 

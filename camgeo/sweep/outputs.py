@@ -21,8 +21,8 @@ from camgeo.sweep.table import as_csv, as_parquet, columns
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.sweep.ask import Ask
-    from camgeo.sweep.gather import Gathered
+    from camgeo.sweep.ask import Ask, Unit
+    from camgeo.sweep.gather import Gathered, Nearest
     from camgeo.sweep.recipes import Best
 
 REPORT = "sweep.json"
@@ -175,6 +175,7 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
             "rows": found.rows,
             "most_rows": MOST_ROWS,
         },
+        "nearest": None if found.nearest is None else _nearest(ask, found.nearest, units[found.nearest.limit.figure]),
         "best": [
             {
                 "file": design.file,
@@ -185,6 +186,17 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
             }
             for design in best
         ],
+    }
+
+
+def _nearest(ask: Ask, near: Nearest, unit: Unit) -> dict[str, Any]:
+    """The design that comes nearest to the limits where none keeps them, its figure in the recipe's unit."""
+    return {
+        "index": near.index,
+        "values": {axis.path: float(value) for axis, value in zip(ask.plan.axes, near.values, strict=True)},
+        "breaks": near.limit.figure,
+        "value": near.value / unit.divisor,
+        "unit": unit.name,
     }
 
 

@@ -1,0 +1,35 @@
+"""How a check's limit is told: whether the limit itself is allowed, in words and as a sign."""
+
+from __future__ import annotations
+
+from typing import Any
+
+STRICT: dict[str, float | None] = {
+    "radius-of-curvature": None,
+    "chamfer": None,
+    "wall": 0.0,
+    "mobility": 0.0,
+    "reversal": 0.0,
+    "play": 0.0,
+    "clearance": 0.0,
+    "transmission": 1.0,
+    "pressure-angle": 90.0,
+}
+"""Checks that a figure on its limit does not hold, and the one limit for which that is so (None: any)."""
+
+
+def is_strict(check: dict[str, Any]) -> bool:
+    """Whether a figure equal to the check's limit fails."""
+    name, limit = check["name"], check["limit"]
+    return name in STRICT and "file" not in check and STRICT[name] in {None, limit}
+
+
+def words(check: dict[str, Any]) -> str:
+    """Say on which side of its limit the figure must lie: `at least`, `more than`, `at most`, `less than`."""
+    below, least = ("less than", "more than") if is_strict(check) else ("at most", "at least")
+    return least if check["sense"] == "at_least" else below
+
+
+def sign(check: dict[str, Any]) -> str:
+    """Give the same as a sign."""
+    return {"at least": ">=", "more than": ">", "at most": "<=", "less than": "<"}[words(check)]
