@@ -1,4 +1,5 @@
-"""Roller followers: a single roller on an arm or a line of travel, and two on rigid arms that hold the cam between them.
+"""Roller followers: a single roller on an arm or a line of travel, and two on rigid arms that hold the cam from two
+sides.
 
 Positions are mm or swings in radians, error figures mm or degrees. The greatest motion error is that over all shaft
 angles, with a proved remainder (`kin.tracking`). On a contour of more than MOST_PIECES pieces, and where the proof does
@@ -24,7 +25,7 @@ from kin.guide import LEADING, TRAILING, Arm, polar_rows
 from kin.motion import TURN, ContactError, Judged, Play, Unit, motion_error, with_steps
 from kin.nearest import signed_distance
 from kin.steepness import Steepness, steepness_of_law, steepness_of_transmission
-from kin.tracking import Greatest, Tracking
+from kin.tracking import Greatest, Held, greatest_error
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from kin.contour import Contour
     from kin.guide import Guide, Side
     from kin.piecewise import Piecewise
-    from kin.tracking import Intended
+    from kin.tracking import Law
     from kin.transmission import Transmission
 
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
@@ -83,9 +84,10 @@ class Roller:
         """Motion error; rms and increments from the given shaft angles phi (n,). ContactError where nothing is met."""
         obstacle = dilated(contour.as_arcs()[0], self.radius)
         steps = with_steps(phi)
-        held = Held.on(obstacle, self.guide, self._law, steps)
-        worst, remainder = greatest_error([held], len(steps))
-        return Judged(motion_error(worst, held.errors(len(steps)), None, self.unit, remainder=remainder), None)
+        held = held_on(obstacle, self.guide, steps)
+        errors = (held.position[: len(steps)] - self.intended(steps))[None]
+        worst, remainder = settled([held], self._law, errors, few=len(obstacle) <= MOST_PIECES)
+        return Judged(motion_error(worst, errors[0], None, self.unit, remainder=remainder), None)
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest error, degrees or mm, of a contour within `tolerance` of the exact one.
@@ -125,7 +127,7 @@ class DoubleRoller:
             [self._psi(held_position(obstacle, self._arm(side), phi), side) for side in (TRAILING, LEADING)]
         )
 
-    def _psi(self, lean: Array, side: Side) -> Array:
+    def _psi(self, lean: Array, side: int) -> Array:
         """Swing psi (n,) of the arms at which the roller on that side leans so, radians (n,)."""
         return side * (lean - np.pi + self.transmission.alpha)
 
@@ -150,29 +152,30 @@ class DoubleRoller:
         chain, _ = contour.as_arcs()
         obstacle, steps = dilated(chain, self.radius), with_steps(phi)
         passing = [passing_angles(obstacle, self._arm(side)) for side in (TRAILING, LEADING)]
-        a = self._held(obstacle, TRAILING, np.concatenate([steps, *passing]))
-        b = self._held(obstacle, LEADING, steps)
-        worst, remainder = greatest_error([a, b], len(steps))
-        errors = np.stack([a.errors(len(steps)), b.errors(len(steps))])
+        # psi = alpha' - lean with roller A in contact, lean - alpha' with B, alpha' = pi - alpha
+        straight = np.pi - self.transmission.alpha
+        held = [
+            held_on(obstacle, self._arm(side), looked, straight, side)
+            for side, looked in ((TRAILING, np.concatenate([steps, *passing])), (LEADING, steps))
+        ]
+        psi = np.stack([self._psi(one.position[: len(steps)], one.sense) for one in held])
+        errors = psi - self.intended(steps)
+        worst, remainder = settled(held, self._law, errors, few=len(obstacle) <= MOST_PIECES)
         dwells = dwell_angles(self.transmission, phi)
         flatness = [float(np.ptp(self._contact(obstacle, angle), axis=1).max()) for angle in dwells]
         motion = motion_error(worst, errors, max(flatness, default=None), "deg", remainder=remainder)
         # the increments tell nothing new of the gap
         chosen = np.r_[: len(phi), len(steps) : len(steps) + sum(map(len, passing))]
-        angle = a.phi[chosen]
-        psi = self._psi(a.position[chosen], TRAILING)
-        second = self._arm(LEADING).centre(angle, np.pi - self.transmission.alpha + psi)
+        angle = held[0].phi[chosen]
+        second = self._arm(LEADING).centre(angle, straight + self._psi(held[0].position[chosen], TRAILING))
         gap = signed_distance(chain, second) - self.radius
         least, most = int(np.argmin(gap)), int(np.argmax(gap))
         at_least, at_most = degrees(angle[least]), degrees(angle[most])
         return Judged(motion, Play(float(gap[least]), at_least, float(gap[most]), at_most, "mm", "sampled"))
 
-    def _held(self, obstacle: Arcs, side: Side, phi: Array) -> Held:
-        return Held.on(obstacle, self._arm(side), BySwing(self.transmission, side, self._steepness), phi)
-
     @cached_property
-    def _steepness(self) -> Steepness:
-        return steepness_of_transmission(self.transmission)
+    def _law(self) -> BySwing:
+        return BySwing(self.transmission)
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest error, degrees, of a contour within `tolerance` of the exact one.
@@ -222,7 +225,7 @@ class GuidedPitch:
 
 @dataclass(frozen=True, eq=False)
 class ByLaw:
-    """`kin.tracking.Intended`: a position that is a law over the shaft angle."""
+    """`kin.tracking.Law`: a position that is a law over the shaft angle."""
 
     law: Piecewise
 
@@ -241,74 +244,50 @@ class ByLaw:
 
 @dataclass(frozen=True, eq=False)
 class BySwing:
-    """`kin.tracking.Intended`: the lean pi - alpha +- psi of one of W's two rollers."""
+    """`kin.tracking.Law`: the swing psi over the shaft angle."""
 
     transmission: Transmission
-    side: Side
-    steepness: Steepness
 
     def rows(self, phi: Array) -> Array:
-        """Lean and two derivatives at shaft angles phi (n,): (3, n)."""
-        rows = self.side * self.transmission.psi_of_shaft(phi, 2)
-        rows[0] += np.pi - self.transmission.alpha
-        return rows
+        """Swing and two derivatives at shaft angles phi (n,): (3, n)."""
+        return self.transmission.psi_of_shaft(phi, 2)
+
+    @cached_property
+    def _steepness(self) -> Steepness:
+        return steepness_of_transmission(self.transmission)
 
     def steepest(self, low: Array, high: Array) -> Array:
         """Bounds of three derivatives over shaft angles from low to high, each (n,): (3, n)."""
-        return self.steepness.over(low, high)
+        return self._steepness.over(low, high)
 
 
-@dataclass(frozen=True, eq=False)
-class Held:
-    """A roller held in contact at shaft angles phi (n,): distance r from the shaft, piece met, position, (n,) each."""
+def held_on(obstacle: Arcs, guide: Guide, looked: Array, offset: float = 0.0, sense: int = 1) -> Held:
+    """Hold a roller at shaft angles `looked` (n,) first, and where pieces end if they are few. ContactError if loose.
 
-    tracking: Tracking
-    phi: Array
-    r: Array
-    piece: Indices
-    few: bool
-
-    @staticmethod
-    def on(obstacle: Arcs, guide: Guide, intended: Intended, looked: Array) -> Held:
-        """Hold it at shaft angles `looked` (n,) first, and where pieces end if they are few. ContactError if loose."""
-        few = len(obstacle) <= MOST_PIECES
-        tracking = Tracking(shortened(obstacle, guide)[0] if few else obstacle, guide, intended)
-        phi = np.concatenate([looked, end_angles(tracking, looked)]) if few else looked
-        return Held(tracking, phi, *_touched(tracking.pieces, guide, phi), few)
-
-    @cached_property
-    def position(self) -> Array:
-        """Position (n,), mm or radians."""
-        return self.tracking.guide.position(self.r)
-
-    def errors(self, count: int | None = None) -> Array:
-        """Errors at the first `count` of the angles."""
-        errors: Array = self.position[:count] - self.tracking.intended.rows(self.phi[:count])[0]
-        return errors
+    It is meant to be at offset + sense * law.
+    """
+    pieces, phi = obstacle, looked
+    if len(obstacle) <= MOST_PIECES:
+        pieces, _ = shortened(obstacle, guide)
+        phi = np.concatenate([looked, end_angles(pieces, guide, looked)])
+    return Held(pieces, guide, phi, *_touched(pieces, guide, phi), offset, sense)
 
 
-def greatest_error(held: Sequence[Held], count: int) -> tuple[tuple[float, float], float | None]:
+def settled(held: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[tuple[float, float], float | None]:
     """Greatest absolute error of rollers held in contact, and its shaft angle; and by how much it may be exceeded.
 
-    The first `count` angles of each are looked at, and all of them where that cannot be proved: None then.
+    `sampled` are the errors (k, n) at the first n angles of each. That is all that is known where pieces are not few;
+    where they are and no proof is found, all angles are looked at: None then.
     """
-    found = _sampled(held, count)
-    if all(one.few for one in held):
+    found = Greatest(*greatest(np.abs(sampled).max(axis=0), held[0].phi[: sampled.shape[1]]), 0.0)
+    if few:
         try:
-            for one in held:
-                found = one.tracking.greatest(found)
-            for one in held:
-                found = one.tracking.least(found, one.phi, one.r, one.piece)
+            found = greatest_error(held, law, found)
         except UnsettledError:
-            found = _sampled(held, None)
+            found = Greatest(*max(greatest(one.errors(law), one.phi) for one in held), 0.0)
         else:
             return (found.error, found.at), found.remainder
     return (found.error, found.at), None
-
-
-def _sampled(held: Sequence[Held], count: int | None) -> Greatest:
-    worst = [greatest(one.errors(count), one.phi[:count]) for one in held]
-    return Greatest(*max(worst), 0.0)
 
 
 def _touched(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
@@ -324,10 +303,9 @@ def held_position(obstacle: Arcs, guide: Guide, phi: Array) -> Array:
     return guide.position(_touched(obstacle, guide, phi)[0])
 
 
-def end_angles(tracking: Tracking, known: Array) -> Array:
+def end_angles(pieces: Arcs, guide: Guide, known: Array) -> Array:
     """Shaft angles at which the roller's centre comes to an end of a piece, each once, without those known (n,)."""
-    pieces = tracking.pieces
-    angle = tracking.guide.shaft_angle(np.concatenate([pieces.start, pieces.ends]))
+    angle = guide.shaft_angle(np.concatenate([pieces.start, pieces.ends]))
     angle = np.concatenate([np.mod(known, TURN), np.mod(angle[np.isfinite(angle)], TURN)])
     order = np.argsort(angle, kind="stable")
     new = np.diff(angle[order], prepend=-1.0) > ONE_ANGLE

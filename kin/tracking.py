@@ -17,16 +17,20 @@ error found so far are halved. The roller's position is the greatest that any pi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from kin.arcs import Arcs, cross, dot, nearest_on
 from kin.check import UnsettledError
-from kin.contact import angles_of, extent, meet, within_reach
+from kin.contact import angles_of, extent, first_contact, meet, within_reach
+from kin.motion import TURN
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from kin.arcs import Array, Indices
@@ -37,11 +41,11 @@ RESOLUTION = 1e-12  # of a radian, or of the cam's extent: what rounding leaves 
 OUTWARD = 1.0 + 1e-9  # by which bounds are widened against their own rounding
 MOST_HALVINGS = 60
 MOST_OPEN = 100_000  # intervals, beside four times those given, that may stay undecided
-BLOCK = 8192  # intervals at a time, so that their arrays stay in the cache
+TRIES = 4  # to find the pieces that are touched between samples
 STEPS = 8  # towards the crossing of two pieces
 
 
-class Intended(Protocol):
+class Law(Protocol):
     """An intended motion over the shaft angle."""
 
     def rows(self, phi: Array) -> Array:
@@ -59,159 +63,99 @@ class Greatest(NamedTuple):
     remainder: float
 
 
-class Spans(NamedTuple):
-    """Intervals middle +- half of arc length, each (n,), on the pieces of these numbers (n,)."""
-
-    piece: Indices
-    middle: Array
-    half: Array
-
-    def take(self, which: slice | NDArray[np.bool_]) -> Spans:
-        """Choose some."""
-        return Spans(self.piece[which], self.middle[which], self.half[which])
-
-    def halved(self) -> Spans:
-        """Both halves of each."""
-        half = 0.5 * self.half
-        middle = np.concatenate([self.middle - half, self.middle + half])
-        return Spans(np.tile(self.piece, 2), middle, np.tile(half, 2))
-
-
 @dataclass(frozen=True, eq=False)
-class Tracking:
-    """A guided roller on short pieces (`kin.contact.shortened`) that bound its centre, and what it is meant to do."""
+class Held:
+    """A guided roller held on `pieces`, short ones (`kin.contact.shortened`), that bound its centre.
+
+    At shaft angles phi (n,) it touches pieces `piece` (n,) at distances r (n,) from the shaft; among them are the ends
+    of all pieces. It is meant to be at offset + sense * law.
+    """
 
     pieces: Arcs
     guide: Guide
-    intended: Intended
+    phi: Array
+    r: Array
+    piece: Indices
+    offset: float = 0.0
+    sense: int = 1
 
-    @property
-    def resolution(self) -> float:
-        """What rounding may make of no error, mm or radians."""
-        return RESOLUTION * (extent(self.pieces) if self.guide.unit == "mm" else 1.0)
+    @cached_property
+    def position(self) -> Array:
+        """Position (n,), mm or radians."""
+        return self.guide.position(self.r)
 
-    def greatest(self, found: Greatest) -> Greatest:
-        """Greatest error where the roller stands too far out; `found` if that is more. UnsettledError if unproved."""
-        near = np.flatnonzero(within_reach(self.pieces, self.guide, self.guide.slack(extent(self.pieces))))
+    def errors(self, law: Law) -> Array:
+        """Errors of position (n,)."""
+        return self.position - self.meant(law.rows(self.phi))[0]
+
+    def meant(self, rows: Array) -> Array:
+        """Intended position and its derivatives (m, n) from the law's."""
+        meant = self.sense * rows
+        meant[0] += self.offset
+        return meant
+
+    @cached_property
+    def slack(self) -> float:
+        """Length, mm, that rounding may make of nothing."""
+        return self.guide.slack(extent(self.pieces))
+
+    def everywhere(self) -> Spans:
+        """Spans of all pieces."""
+        near = np.flatnonzero(within_reach(self.pieces, self.guide, self.slack))
         half = 0.5 * self.pieces.length[near]
-        return self._search(Spans(near, half, half), 1.0, found)
+        return Spans(self, 1.0, near, half, half)
 
-    def least(self, found: Greatest, phi: Array, r: Array, piece: Indices) -> Greatest:
-        """Greatest error where it stands too far in; `found` if that is more. UnsettledError if unproved.
-
-        At shaft angles phi (n,) the centre touches pieces (n,) at distances r (n,) from the shaft. Among phi must be
-        the ends of all pieces.
-        """
-        return self._search(self._touched(phi, r, piece), -1.0, found)
-
-    def _search(self, spans: Spans, sign: float, found: Greatest) -> Greatest:
-        """Halve the spans until none can hold much more than the greatest of sign * error."""
-        most, ceiling = 4 * len(spans.piece) + MOST_OPEN, found.error + found.remainder
-        for _ in range(MOST_HALVINGS):
-            bounds, tops = [], []
-            for begin in range(0, len(spans.piece), BLOCK):
-                block = spans.take(slice(begin, begin + BLOCK))
-                bound, top = self._bound(block, sign)
-                bounds.append(bound)
-                tops.append(top)
-            bound = np.concatenate(bounds) if bounds else np.empty(0)
-            if not len(bound):
+    def touched(self) -> Spans:
+        """Spans of the pieces that are touched, over the whole turn."""
+        phi, r, piece = self.phi, self.r, self.piece
+        for _ in range(TRIES):
+            lone = self._unspanned(phi, piece)
+            if not len(lone):
+                return self._spans(phi, r, piece)
+            more, met = first_contact(self.pieces, self.guide, lone)  # between its ends a short arc stands out alone
+            if (met < 0).any():
                 break
-            found = self._better(found, spans, np.concatenate(tops, axis=1), sign)
-            enough = found.error + max(SHARE * found.error, self.resolution)
-            open_ = ~(bound <= enough)
-            ceiling = max(ceiling, float(bound[~open_].max(initial=ceiling)))
-            if not open_.any():
-                break
-            if 2 * np.count_nonzero(open_) > most:
-                raise UnsettledError("the motion error is not proved: too many intervals stay undecided")
-            spans = spans.take(open_).halved()
-        else:
-            raise UnsettledError("the motion error is not proved: it is rougher than rounding")
-        return found._replace(remainder=max(ceiling - found.error, 0.0))
+            phi, r, piece = (np.concatenate(rows) for rows in ((phi, lone), (r, more), (piece, met)))
+        raise UnsettledError("the motion error is not proved: the roller leaps from piece to piece")
 
-    def _better(self, found: Greatest, spans: Spans, tops: Array, sign: float) -> Greatest:
-        """The greatest error at the middles, or where the most promising parabola has its top, if it exceeds `found`.
+    def _unspanned(self, phi: Array, piece: Indices) -> Array:
+        """Shaft angles midway between two neighbours in phi (n,) that no piece touched at either spans."""
+        a, b, one, other = _changes(phi, piece)[2:]
+        leap = ~(np.isfinite(self._meet(one, b)) | np.isfinite(self._meet(other, a)))
+        return 0.5 * (a + b)[leap]
 
-        `tops` (3, n): errors at the middles, greatest of each parabola, and where.
-        """
-        value, top, where = tops
-        for i, s in ((int(np.argmax(value)), 0.0), (int(np.argmax(top)), float(where[int(np.argmax(top))]))):
-            piece, at = spans.piece[i : i + 1], spans.middle[i : i + 1] + s
-            phi, rows = self._errors(piece, at)
-            reached = sign * float(rows[0, 0])
-            if reached > found.error:
-                found = Greatest(reached, float(phi[0]), 0.0)
-        return found
-
-    def _errors(self, piece: Indices, s: Array) -> tuple[Array, Array]:
-        """Shaft angles (n,), and error and two derivatives by s (3, n), at s (n,) on pieces (n,)."""
-        state = _State.of(self.pieces.take(piece), s, self.guide)
-        return state.phi, state.error(self.intended.rows(state.phi))
-
-    def _bound(self, spans: Spans, sign: float) -> tuple[Array, Array]:
-        """Upper bounds of sign * error over spans (n,), and rows (3, n) of what `_better` asks for."""
-        state = _State.of(self.pieces.take(spans.piece), spans.middle, self.guide)
-        f, slope, bend = sign * state.error(self.intended.rows(state.phi))
-        h = spans.half
-        first, second, third = state.most(h, self.intended)
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            where = np.where(bend < 0.0, np.clip(-slope / bend, -h, h), np.copysign(h, slope))
-            top = f + where * (slope + 0.5 * where * bend)
-            bound = top + third * h**3 / 6.0
-            bound = np.fmin(bound, f + np.abs(slope) * h + 0.5 * second * h**2)
-            bound = np.fmin(bound, f + first * h)
-        return np.where(np.isnan(bound), np.inf, bound), np.stack([f, top, where])
-
-    def _touched(self, phi: Array, r: Array, piece: Indices) -> Spans:
-        """Spans of pieces that reach over the whole turn, from contacts at shaft angles phi (n,)."""
-        turn = 2.0 * np.pi
-        order = np.argsort(np.mod(phi, turn), kind="stable")
-        phi, r, piece = np.mod(phi, turn)[order], r[order], piece[order]
-        change = np.flatnonzero(piece != np.roll(piece, -1))  # before each change of piece
-        if len(change) < 2:
-            raise UnsettledError("the motion error is not proved: one piece is touched all round")
-        after = (change + 1) % len(phi)
-        a, b, one, other = phi[change], phi[after], piece[change], piece[after]
+    def _spans(self, phi: Array, r: Array, piece: Indices) -> Spans:
+        """Spans of touched pieces from contacts at shaft angles phi (n,)."""
+        change, after, a, b, one, other = _changes(phi, piece)
         here, there = self.guide.position(r[change]), self.guide.position(r[after])
         spans = [(one, np.roll(self._place(other, b, there), 1), self._place(one, a, here))]
-        b = np.where(b < a, b + turn, b)
         far, near = self._meet(one, b), self._meet(other, a)
         both = np.isfinite(far) & np.isfinite(near)
-        if not (np.isfinite(far) | np.isfinite(near)).all():
-            raise UnsettledError("the motion error is not proved: the roller leaps from piece to piece")
         # where just one of them spans the gap it is taken over all of it, else each up to about the crossing
         switch = np.where(np.isfinite(far), b, a)
-        switch[both] = self._crossing(
-            one[both], other[both], a[both], b[both], here[both] - near[both], far[both] - there[both]
-        )
+        gaps = np.maximum(here - near, 0.0)[both], np.minimum(far - there, 0.0)[both]
+        switch[both] = self._crossing((one[both], other[both]), (a[both], b[both]), gaps)
         for real, number, known, position in ((switch > a, one, a, here), (switch < b, other, b, there)):
             to = self._place(number[real], switch[real], self._meet(number[real], switch[real]))
             spans.append((number[real], self._place(number[real], known[real], position[real]), to))
         number, begin, end = (np.concatenate(rows) for rows in zip(*spans, strict=True))
-        self._demand_short(np.unique(number))
-        half = 0.5 * np.abs(end - begin)
-        return Spans(number, 0.5 * (begin + end), half + 1e-15 * self.pieces.length[number])
-
-    def _demand_short(self, number: Indices) -> None:
-        """Raise UnsettledError unless pieces span so little that from one shaft angle to another there is one way."""
-        _, reach = angles_of(self.pieces.take(number), self.guide, self.guide.slack(extent(self.pieces)))
-        if not (reach < 0.5 * np.pi).all():
+        _, reach = angles_of(self.pieces.take(number), self.guide, self.slack)
+        if not (reach < 0.5 * np.pi).all():  # else there is one way only along it from one shaft angle to another
             raise UnsettledError("the motion error is not proved: a piece is reached from half the turn")
+        half = 0.5 * np.abs(end - begin) + 1e-15 * self.pieces.length[number]
+        return Spans(self, -1.0, number, 0.5 * (begin + end), half)
 
-    def _crossing(self, one: Indices, other: Indices, a: Array, b: Array, at_a: Array, at_b: Array) -> Array:
-        """About where pieces `other` come to stand out beyond `one`, between shaft angles a and b (n,).
+    def _crossing(self, pair: tuple[Indices, Indices], ends: tuple[Array, Array], gaps: tuple[Array, Array]) -> Array:
+        """About where the second of a pair of pieces comes to stand out beyond the first: shaft angles (n,).
 
-        `at_a` >= 0 >= `at_b` is how far the one stands beyond the other there. Any angle between is right.
+        `gaps` is how far the first stands beyond the second at both ends, >= 0 and <= 0. Any angle between is right.
         """
-        low, high, f, g = a, b, np.maximum(at_a, 0.0), np.minimum(at_b, 0.0)
-        middle = 0.5 * (a + b)
-        for _ in range(STEPS):
+        (low, high), (f, g) = ends, gaps
+        middle = 0.5 * (low + high)
+        for _ in range(STEPS if len(middle) else 0):
             with np.errstate(divide="ignore", invalid="ignore"):
                 middle = low + (high - low) * np.where(f > g, f / (f - g), 0.5)
-            if not len(middle):
-                break
-            gap = self._meet(one, middle) - self._meet(other, middle)
+            gap = self._meet(pair[0], middle) - self._meet(pair[1], middle)
             if not np.isfinite(gap).all():
                 raise UnsettledError("the motion error is not proved: a piece is left between its ends")
             up = gap > 0.0
@@ -222,13 +166,128 @@ class Tracking:
 
     def _meet(self, piece: Indices, phi: Array) -> Array:
         """Position with the centre on pieces (n,) at shaft angles phi (n,), -inf where it does not come there."""
-        slack = self.guide.slack(extent(self.pieces))
-        r = meet(self.pieces.take(piece), self.guide, phi, slack)
+        r = meet(self.pieces.take(piece), self.guide, phi, self.slack)
         return np.where(np.isfinite(r), self.guide.position(np.maximum(r, 0.0)), -np.inf)
 
     def _place(self, piece: Indices, phi: Array, position: Array) -> Array:
         """Arc length on pieces (n,) of the centre at shaft angles phi and positions (n,)."""
         return nearest_on(self.pieces.take(piece), self.guide.centre(phi, position))[0]
+
+
+def _changes(phi: Array, piece: Indices) -> tuple[Indices, Indices, Array, Array, Indices, Indices]:
+    """Before and after each change of the piece touched, in order round the turn, phi (n,) being sorted: UnsettledError
+
+    where there is none. Numbers into phi and piece, shaft angles there, the second at least the first, and the pieces.
+    """
+    order = np.argsort(np.mod(phi, TURN), kind="stable")
+    met, at = piece[order], np.mod(phi, TURN)[order]
+    change = np.flatnonzero(met != np.roll(met, -1))
+    if len(change) < 2:
+        raise UnsettledError("the motion error is not proved: one piece is touched all round")
+    after = (change + 1) % len(at)
+    a, b = at[change], at[after]
+    return order[change], order[after], a, np.where(b < a, b + TURN, b), met[change], met[after]
+
+
+@dataclass(frozen=True, eq=False)
+class Spans:
+    """Intervals middle +- half of arc length, each (n,), on the pieces of these numbers (n,) that a roller is held on.
+
+    `sign` is -1 where errors inwards are asked for.
+    """
+
+    held: Held
+    sign: float
+    piece: Indices
+    middle: Array
+    half: Array
+
+    def halves(self, which: NDArray[np.bool_]) -> Spans:
+        """Both halves of some."""
+        half = 0.5 * self.half[which]
+        middle = np.concatenate([self.middle[which] - half, self.middle[which] + half])
+        return replace(self, piece=np.tile(self.piece[which], 2), middle=middle, half=np.tile(half, 2))
+
+    def state(self) -> _State:
+        """The roller's centre at the middles."""
+        return _State.of(self.held.pieces.take(self.piece), self.middle, self.held.guide)
+
+    def bounds(self, state: _State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
+        """Upper bounds of sign * error, an error reached in each span, and where, off the middle: (n,) each.
+
+        `most` bounds the error's three derivatives, `rows` (3, n) are the law's at the middles.
+        """
+        f, slope, bend = self.sign * state.error(self.held.meant(rows))
+        h = self.half
+        first, second, third = most
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            where = np.where(bend < 0.0, np.clip(-slope / bend, -h, h), np.copysign(h, slope))
+            top = f + where * (slope + 0.5 * where * bend)
+            bound = top + third * h**3 / 6.0
+            bound = np.fmin(bound, f + np.abs(slope) * h + 0.5 * second * h**2)
+            bound = np.fmin(bound, f + first * h)
+            reached = top - third * np.abs(where) ** 3 / 6.0
+        better = reached > f
+        return np.where(np.isnan(bound), np.inf, bound), np.where(better, reached, f), np.where(better, where, 0.0)
+
+
+def greatest_error(held: Sequence[Held], law: Law, found: Greatest) -> Greatest:
+    """Greatest absolute error of rollers, which is at least that `found`. UnsettledError where it is not proved."""
+    groups = [one.everywhere() for one in held] + [one.touched() for one in held]
+    mm = held[0].guide.unit == "mm"
+    resolution = RESOLUTION * (extent(held[0].pieces) if mm else 1.0)
+    most = 4 * sum(len(group.piece) for group in groups) + MOST_OPEN
+    error, best, ceiling = found.error, None, found.error
+    for _ in range(MOST_HALVINGS):
+        states = [group.state() for group in groups]
+        limits = [state.limits(group.half) for state, group in zip(states, groups, strict=True)]
+        phi = np.concatenate([state.phi for state in states])
+        reach = np.concatenate([one.angle[0] * group.half for one, group in zip(limits, groups, strict=True)])
+        cuts = np.cumsum([len(group.piece) for group in groups])[:-1]
+        rows, steepest = law.rows(phi), law.steepest(phi - reach, phi + reach)
+        given = zip(groups, states, limits, np.split(rows, cuts, axis=1), np.split(steepest, cuts, axis=1), strict=True)
+        upper = []
+        for group, state, limit, meant, steep in given:
+            bound, reached, where = group.bounds(state, limit.of_error(steep), meant)
+            upper.append(bound)
+            i = int(np.argmax(reached)) if len(reached) else -1
+            if i >= 0 and reached[i] > error:
+                error = float(reached[i])
+                best = replace(group, piece=group.piece[[i]], middle=group.middle[[i]] + where[i], half=np.zeros(1))
+        enough = error + max(SHARE * error, resolution)
+        open_ = [~(bound <= enough) for bound in upper]
+        ceiling = max(ceiling, *(float(b[~o].max(initial=ceiling)) for b, o in zip(upper, open_, strict=True)))
+        count = sum(int(np.count_nonzero(one)) for one in open_)
+        if not count:
+            break
+        if 2 * count > most:
+            raise UnsettledError("the motion error is not proved: too many intervals stay undecided")
+        groups = [group.halves(which) for group, which in zip(groups, open_, strict=True)]
+    else:
+        raise UnsettledError("the motion error is not proved: it is rougher than rounding")
+    if best is not None:
+        state = best.state()
+        error = max(error, float(abs(state.error(best.held.meant(law.rows(state.phi)))[0, 0])))
+        found = Greatest(error, float(state.phi[0]), 0.0)
+    return found._replace(remainder=max(ceiling - found.error, 0.0))
+
+
+class _Limits(NamedTuple):
+    """Bounds of the magnitudes of three derivatives by s of the position and of the shaft angle, over spans: (n,)."""
+
+    position: tuple[Array, Array, Array]
+    angle: tuple[Array, Array, Array]
+
+    def of_error(self, steepest: Array) -> tuple[Array, Array, Array]:
+        """Bounds of the error's derivatives, from bounds (3, n) of the law's."""
+        (q, q_1, q_2), (phi_1, phi_2, phi_3) = self
+        first, second, third = steepest
+        with np.errstate(invalid="ignore", over="ignore"):
+            return (
+                OUTWARD * (q + first * phi_1),
+                OUTWARD * (q_1 + second * phi_1**2 + first * phi_2),
+                OUTWARD * (q_2 + third * phi_1**3 + 3.0 * second * phi_1 * phi_2 + first * phi_3),
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,8 +330,8 @@ class _State:
         with np.errstate(invalid="ignore", over="ignore"):
             return np.stack([place - meant[0], q - meant[1] * phi_1, q_1 - meant[2] * phi_1**2 - meant[1] * phi_2])
 
-    def most(self, half: Array, intended: Intended) -> tuple[Array, Array, Array]:
-        """Bounds of the magnitudes of the error's three derivatives by s, within `half` (n,): (n,) each."""
+    def limits(self, half: Array) -> _Limits:
+        """Bounds of three derivatives by s of the position, and of the shaft angle, within `half` (n,): (n,) each."""
         guide, k, h = self.guide, np.abs(self.k), half * OUTWARD
         far, near = self.r + h, np.maximum(self.r - h, 0.0)
         c = np.abs(self.c) + k * h * far
@@ -293,9 +352,4 @@ class _State:
             phi_1 = np.fmin(phi_1, np.abs(self.angle[0]) + phi_2 * h)
             q = np.fmin(q, np.abs(self.position[1]) + q_1 * h)
             phi_3 = (k * b + m_2 * q + 2.0 * m_1 * q_1 + m * q_2 + 2.0 * b * phi_1 + 4.0 * a * phi_2) / least
-            first, second, third = intended.steepest(self.phi - phi_1 * h, self.phi + phi_1 * h)
-            return (
-                OUTWARD * (q + first * phi_1),
-                OUTWARD * (q_1 + second * phi_1**2 + first * phi_2),
-                OUTWARD * (q_2 + third * phi_1**3 + 3.0 * second * phi_1 * phi_2 + first * phi_3),
-            )
+        return _Limits((q, q_1, q_2), (phi_1, phi_2, phi_3))
