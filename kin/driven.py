@@ -324,7 +324,7 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
         if play is not None:
             raise ValueError("a single roller has no play")
         if not isinstance(follower.guide, Arm):
-            raise ValueError("the dynamics know rollers on arms only")
+            raise ValueError("the dynamics know rollers on arms only")  # noqa: TRY004 - the recipe is at fault
         return Faces(OfRoller(obstacle, follower.guide), None)
     first, second = (OfRoller(obstacle, _arm_of(follower, side)) for side in (TRAILING, LEADING))
     rest = math.pi - follower.transmission.alpha

@@ -1,5 +1,4 @@
-"""Roller followers: a single roller on an arm or a line of travel, and two on rigid arms that hold the cam from two
-sides.
+"""Roller followers: a single roller on an arm or on a line of travel, and two on rigid arms, the cam between them.
 
 Positions are mm or swings in radians, error figures mm or degrees. The greatest motion error is that over all shaft
 angles, with a proved remainder (`kin.tracking`). On a contour of more than MOST_PIECES pieces, and where the proof does
@@ -24,7 +23,8 @@ from kin.foot import grid
 from kin.guide import LEADING, TRAILING, Arm, polar_rows
 from kin.motion import TURN, ContactError, Judged, Play, Unit, motion_error, with_steps
 from kin.nearest import signed_distance
-from kin.steepness import Steepness, steepness_of_law, steepness_of_transmission
+from kin.series import Jet
+from kin.steepness import ParameterTable, Steepness, steepness_of_law, steepness_of_transmission
 from kin.tracking import Greatest, Held, greatest_error
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
 ONE_ANGLE = 1e-12  # rad; shaft angles this near are one
+NEAR = 1e-7  # rad; a step of second order is good to rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -250,7 +251,20 @@ class BySwing:
 
     def rows(self, phi: Array) -> Array:
         """Swing and two derivatives at shaft angles phi (n,): (3, n)."""
-        return self.transmission.psi_of_shaft(phi, 2)
+        tau, side = self._parameter.at(phi)
+        shaft, psi = (jet.derivatives() for jet in self.transmission.jets(Jet.variable(tau, 2), side))
+        slope = psi[1] / shaft[1]
+        bend = (psi[2] - slope * shaft[2]) / shaft[1] ** 2
+        step = np.mod(phi - shaft[0] + np.pi, TURN) - np.pi  # tau is near enough for a step of second order
+        rows = np.stack([psi[0] + step * (slope + 0.5 * step * bend), slope + step * bend, bend])
+        far = np.abs(step) > NEAR
+        if far.any():
+            rows[:, far] = self.transmission.psi_of_shaft(phi[far], 2)
+        return rows
+
+    @cached_property
+    def _parameter(self) -> ParameterTable:
+        return ParameterTable.of(self.transmission)
 
     @cached_property
     def _steepness(self) -> Steepness:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,11 +14,11 @@ from kin.series import BallJet
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from kin.arcs import Array
+    from kin.arcs import Array, Indices
     from kin.piecewise import Piecewise
     from kin.transmission import Transmission
 
-CELLS = 512  # in a turn, besides those that breaks add
+CELLS = 256  # in a turn, besides those that breaks add
 ROUNDING = 1e-12  # rad; a break this near counts as inside
 SMOOTH = 1e-9  # of the derivative's greatest, below which a jump of it is rounding
 
@@ -82,6 +83,7 @@ def steepness_of_law(law: Piecewise) -> Steepness:
     return _steepness(edges, (np.abs(mid) + rad)[1:], jumps, at_knot)
 
 
+@lru_cache(maxsize=8)  # the files of one cam are judged one after another
 def steepness_of_transmission(transmission: Transmission) -> Steepness:
     """Bounds of psi over the shaft angle, which rises with the parameter of the law."""
     edges, at_knot = _cells(transmission.psi.knots)
@@ -97,12 +99,45 @@ def steepness_of_transmission(transmission: Transmission) -> Steepness:
     return _steepness(phi, np.stack(most), jumps, at_knot)
 
 
+@dataclass(frozen=True, eq=False)
+class ParameterTable:
+    """A transmission's parameter over the shaft angle, by cubics between ends of cells: for a start, not for an end.
+
+    phi, tau (m + 1,)       shaft angle and parameter at the ends of cells, rising over one period
+    after, before (m,)      derivative of tau by phi at the lower and at the upper end of each cell, from within
+    """
+
+    phi: Array
+    tau: Array
+    after: Array
+    before: Array
+
+    @staticmethod
+    @lru_cache(maxsize=8)
+    def of(transmission: Transmission) -> ParameterTable:
+        """Tabulate."""
+        tau, _ = _cells(transmission.psi.knots)
+        phi = transmission.at(tau, 0)[0][0]
+        phi[-1] = phi[0] + 2.0 * transmission.delta
+        after, before = transmission.at(tau[:-1], 1)[0][1], transmission.at(tau[1:], 1, -1)[0][1]
+        return ParameterTable(phi, tau, 1.0 / after, 1.0 / before)
+
+    def at(self, phi: Array) -> tuple[Array, Indices]:
+        """Parameter near that of shaft angles phi (n,), in the same stretch of the law, and its side if at a break."""
+        x = np.mod(phi - self.phi[0], self.phi[-1] - self.phi[0]) + self.phi[0]
+        cell = np.clip(np.searchsorted(self.phi, x, side="right") - 1, 0, len(self.after) - 1)
+        low, high, width = self.tau[cell], self.tau[cell + 1], self.phi[cell + 1] - self.phi[cell]
+        u = (x - self.phi[cell]) / width
+        begin, end = u * (1.0 - u) ** 2 * self.after[cell], u * u * (1.0 - u) * self.before[cell]
+        tau = low + (high - low) * u * u * (3.0 - 2.0 * u) + width * (begin - end)
+        tau = np.clip(tau, low, high) + (phi - x)
+        return tau, np.where(u < 0.5, 1, -1)
+
+
 def _cells(knots: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Edges of cells between knots, and whether each but the last is a knot."""
     step = 2.0 * np.pi / CELLS
-    parts = [
-        np.linspace(a, b, int(np.ceil((b - a) / step)) + 1)[:-1] for a, b in zip(knots[:-1], knots[1:], strict=True)
-    ]
+    parts = [np.linspace(a, b, int(np.ceil((b - a) / step)) + 1)[:-1] for a, b in pairwise(knots.tolist())]
     at_knot = np.concatenate([np.arange(len(part)) == 0 for part in parts])
     return np.append(np.concatenate(parts), knots[-1]), at_knot
 

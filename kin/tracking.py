@@ -42,7 +42,7 @@ OUTWARD = 1.0 + 1e-9  # by which bounds are widened against their own rounding
 MOST_HALVINGS = 60
 MOST_OPEN = 100_000  # intervals, beside four times those given, that may stay undecided
 TRIES = 4  # to find the pieces that are touched between samples
-STEPS = 8  # towards the crossing of two pieces
+STEPS = 4  # towards the crossing of two pieces
 
 
 class Law(Protocol):
@@ -61,6 +61,17 @@ class Greatest(NamedTuple):
     error: float
     at: float
     remainder: float
+
+
+class _Changes(NamedTuple):
+    """Contacts before and after each change of the piece touched: numbers, shaft angles a <= b, and pieces, (n,)."""
+
+    change: Indices
+    after: Indices
+    a: Array
+    b: Array
+    one: Indices
+    other: Indices
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +97,8 @@ class Held:
 
     def errors(self, law: Law) -> Array:
         """Errors of position (n,)."""
-        return self.position - self.meant(law.rows(self.phi))[0]
+        errors: Array = self.position - self.meant(law.rows(self.phi))[0]
+        return errors
 
     def meant(self, rows: Array) -> Array:
         """Intended position and its derivatives (m, n) from the law's."""
@@ -109,27 +121,23 @@ class Held:
         """Spans of the pieces that are touched, over the whole turn."""
         phi, r, piece = self.phi, self.r, self.piece
         for _ in range(TRIES):
-            lone = self._unspanned(phi, piece)
-            if not len(lone):
-                return self._spans(phi, r, piece)
-            more, met = first_contact(self.pieces, self.guide, lone)  # between its ends a short arc stands out alone
+            change, after, a, b, one, other = changes = _changes(phi, piece)
+            spanned = self._meet(one, b), self._meet(other, a)
+            leap = ~(np.isfinite(spanned[0]) | np.isfinite(spanned[1]))
+            if not leap.any():
+                return self._spans(changes, self.guide.position(r[change]), self.guide.position(r[after]), spanned)
+            lone = 0.5 * (a + b)[leap]  # between its ends a short arc stands out alone
+            more, met = first_contact(self.pieces, self.guide, lone)
             if (met < 0).any():
                 break
-            phi, r, piece = (np.concatenate(rows) for rows in ((phi, lone), (r, more), (piece, met)))
+            phi, r, piece = np.append(phi, lone), np.append(r, more), np.append(piece, met)
         raise UnsettledError("the motion error is not proved: the roller leaps from piece to piece")
 
-    def _unspanned(self, phi: Array, piece: Indices) -> Array:
-        """Shaft angles midway between two neighbours in phi (n,) that no piece touched at either spans."""
-        a, b, one, other = _changes(phi, piece)[2:]
-        leap = ~(np.isfinite(self._meet(one, b)) | np.isfinite(self._meet(other, a)))
-        return 0.5 * (a + b)[leap]
-
-    def _spans(self, phi: Array, r: Array, piece: Indices) -> Spans:
-        """Spans of touched pieces from contacts at shaft angles phi (n,)."""
-        change, after, a, b, one, other = _changes(phi, piece)
-        here, there = self.guide.position(r[change]), self.guide.position(r[after])
+    def _spans(self, changes: _Changes, here: Array, there: Array, spanned: tuple[Array, Array]) -> Spans:
+        """Spans of touched pieces: of each from where it comes to be touched to where it is left, and between."""
+        _, _, a, b, one, other = changes
+        far, near = spanned
         spans = [(one, np.roll(self._place(other, b, there), 1), self._place(one, a, here))]
-        far, near = self._meet(one, b), self._meet(other, a)
         both = np.isfinite(far) & np.isfinite(near)
         # where just one of them spans the gap it is taken over all of it, else each up to about the crossing
         switch = np.where(np.isfinite(far), b, a)
@@ -174,11 +182,8 @@ class Held:
         return nearest_on(self.pieces.take(piece), self.guide.centre(phi, position))[0]
 
 
-def _changes(phi: Array, piece: Indices) -> tuple[Indices, Indices, Array, Array, Indices, Indices]:
-    """Before and after each change of the piece touched, in order round the turn, phi (n,) being sorted: UnsettledError
-
-    where there is none. Numbers into phi and piece, shaft angles there, the second at least the first, and the pieces.
-    """
+def _changes(phi: Array, piece: Indices) -> _Changes:
+    """Changes of the piece (n,) touched at phi (n,), going round the turn. UnsettledError where there are none."""
     order = np.argsort(np.mod(phi, TURN), kind="stable")
     met, at = piece[order], np.mod(phi, TURN)[order]
     change = np.flatnonzero(met != np.roll(met, -1))
@@ -186,7 +191,7 @@ def _changes(phi: Array, piece: Indices) -> tuple[Indices, Indices, Array, Array
         raise UnsettledError("the motion error is not proved: one piece is touched all round")
     after = (change + 1) % len(at)
     a, b = at[change], at[after]
-    return order[change], order[after], a, np.where(b < a, b + TURN, b), met[change], met[after]
+    return _Changes(order[change], order[after], a, np.where(b < a, b + TURN, b), met[change], met[after])
 
 
 @dataclass(frozen=True, eq=False)
