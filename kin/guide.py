@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.arcs import Array
-    from kin.motion import Unit
 
 Side = Literal[-1, 1]
+Unit = Literal["mm", "deg"]
 TRAILING: Side = -1  # roller A
 LEADING: Side = 1  # roller B
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
 ONE_ANGLE = 1e-12  # rad; shaft angles this near are one
-NEAR = 1e-7  # rad; a step of second order is good to rounding
+NEAR = 1e-7  # rad; a step of third order is good to rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -252,12 +252,14 @@ class BySwing:
     def rows(self, phi: Array) -> Array:
         """Swing and two derivatives at shaft angles phi (n,): (3, n)."""
         tau, side = self._parameter.at(phi)
-        shaft, psi = (jet.derivatives() for jet in self.transmission.jets(Jet.variable(tau, 2), side))
-        slope = psi[1] / shaft[1]
-        bend = (psi[2] - slope * shaft[2]) / shaft[1] ** 2
-        step = np.mod(phi - shaft[0] + np.pi, TURN) - np.pi  # tau is near enough for a step of second order
-        rows = np.stack([psi[0] + step * (slope + 0.5 * step * bend), slope + step * bend, bend])
-        far = np.abs(step) > NEAR
+        shaft, psi = self.transmission.jets(Jet.variable(tau, 3), side)
+        p = [psi.c[0]]
+        for order in (2, 1, 0):
+            psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1])
+            p.append(psi.c[0])
+        h = np.mod(phi - shaft.c[0] + np.pi, TURN) - np.pi  # tau is near enough for a step of third order
+        rows = np.stack([p[0] + h * (p[1] + 0.5 * h * p[2]), p[1] + h * (p[2] + 0.5 * h * p[3]), p[2] + h * p[3]])
+        far = np.abs(h) > NEAR
         if far.any():
             rows[:, far] = self.transmission.psi_of_shaft(phi[far], 2)
         return rows
