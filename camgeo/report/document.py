@@ -192,7 +192,7 @@ def summary(report: dict[str, Any]) -> str:
         motion = file.get("motion")
         if motion and motion["max"] is not None:
             text += f", motion {motion['max']:.3g} {motion['unit']}"
-            if motion["extremes"] == "sampled":
+            if motion.get("extremes") == "sampled":
                 text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
     parts += _of_linkage(report.get("linkage"))
