@@ -300,7 +300,12 @@ def settled(held: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[
         try:
             found = greatest_error(held, law, found)
         except UnsettledError:
-            found = Greatest(*max(greatest(one.errors(law), one.phi) for one in held), 0.0)
+            looked = np.concatenate([one.phi for one in held] + [passing_angles(one.pieces, one.guide) for one in held])
+            every = [
+                Held(one.pieces, one.guide, looked, *_touched(one.pieces, one.guide, looked), one.offset, one.sense)
+                for one in held
+            ]
+            found = Greatest(*max(greatest(one.errors(law), one.phi) for one in every), 0.0)
         else:
             return (found.error, found.at), found.remainder
     return (found.error, found.at), None
