@@ -1,76 +1,33 @@
-"""First contact of a roller on a swinging arm, with the contour as it lies in a file.
+"""First contact of a guided roller (`kin.guide`) with the contour as it lies in a file.
 
 The roller's centre may not come closer than its radius to any point of the contour: it stays outside the dilated
-contour, whose pieces are the contour's own moved outward, and arcs of the roller's radius about convex corners. The
-arm's end runs on a circle about the pivot; on the side of either roller a point at polar coordinates (r, t) is reached
-from exactly one shaft angle,
+contour, whose pieces are the contour's own moved outward, and arcs of the roller's radius about convex corners. At a
+shaft angle the centre runs on a circle about the pivot, or on a line; a point at polar coordinates (r, t) is reached
+from exactly one shaft angle, for an arm
 
     phi = t + acos((r^2 + L^2 - l^2)/(2 r L))   roller A, which trails the pivot;   minus for roller B, which leads it
 
 (L from shaft to pivot, l arm). So each piece covers an interval of shaft angles, found by sorting, and each pair of
-piece and angle is one intersection of two circles in closed form. The first contact from outside is that of largest r.
+piece and angle is one intersection in closed form. The first contact from outside is that of largest r.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.arcs import Arcs, circle, cross, dot, left, right, unit
+from kin.arcs import Arcs, circle, cross, dot, left, right
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.arcs import Array, Indices
-
-Side = Literal[-1, 1]
-TRAILING: Side = -1  # roller A
-LEADING: Side = 1  # roller B
+    from kin.guide import Guide
 
 STRAIGHT_ON = 1e-12  # corners that turn less, in radians, get no arc of their own
 MOST_TURN = np.pi / 8.0  # pieces are cut until each turns less
-MOST_SHARE = 0.1  # and is shorter than this share of the arm
 PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask for
-SLACK = 1e-12  # of the arm's reach, by which neighbouring pieces may overlap, against rounding at their joints
-
-
-@dataclass(frozen=True)
-class Arm:
-    """A roller's arm: `length` l, `pivot` its distance L from the shaft, mm; `side` on which the roller lies."""
-
-    length: float
-    pivot: float
-    side: Side = TRAILING
-
-    @property
-    def slack(self) -> float:
-        """Length, mm, that rounding may make of nothing."""
-        return SLACK * (self.length + self.pivot)
-
-    def shaft_angle(self, points: Array) -> Array:
-        """Shaft angle at which the arm's end reaches points (n, 2): (n,); nan out of reach."""
-        r = np.hypot(points[:, 0], points[:, 1])
-        with np.errstate(invalid="ignore", divide="ignore"):
-            lead = np.arccos((r * r + (self.pivot - self.length) * (self.pivot + self.length)) / (2.0 * r * self.pivot))
-        angle: Array = np.arctan2(points[:, 1], points[:, 0]) - self.side * lead
-        return angle
-
-    def lean(self, r: Array) -> Array:
-        """Angle at the pivot between shaft and roller centre, from the centre's distance r (n,) from the shaft.
-
-        A distance beyond the arm's reach counts as the end of it.
-        """
-        # Half-angle form: good digits at either end of the reach.
-        above = (r - (self.pivot - self.length)) * (r + (self.pivot - self.length))
-        below = ((self.pivot + self.length) - r) * ((self.pivot + self.length) + r)
-        angle: Array = 2.0 * np.arctan2(np.sqrt(np.maximum(above, 0.0)), np.sqrt(np.maximum(below, 0.0)))
-        return angle
-
-    def centre(self, phi: Array, lean: Array) -> Array:
-        """Roller centre (n, 2) at shaft angles phi and leans (n,)."""
-        return self.pivot * unit(phi) - self.length * unit(phi - self.side * lean)
 
 
 def dilated(chain: Arcs, radius: float) -> Arcs:
@@ -91,20 +48,31 @@ def dilated(chain: Arcs, radius: float) -> Arcs:
     return pieces
 
 
-def first_contact(obstacle: Arcs, arm: Arm, phi: Array) -> tuple[Array, Indices]:
-    """Find where the arm's end, coming from outside, meets the obstacle first: distance from the shaft, and piece met.
+def shortened(obstacle: Arcs, guide: Guide) -> tuple[Arcs, Indices]:
+    """Pieces of the obstacle short enough to be searched one by one, in order, and the piece each is part of (k,)."""
+    step = guide.step(extent(obstacle))
+    parts = np.maximum(
+        np.ceil(np.abs(obstacle.curvature) * obstacle.length / MOST_TURN), np.ceil(obstacle.length / step)
+    )
+    return obstacle.cut(np.maximum(parts, 1.0).astype(np.intp))
+
+
+def extent(pieces: Arcs) -> float:
+    """Greatest coordinate of a piece's start, mm."""
+    return float(np.abs(pieces.start).max())
+
+
+def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
+    """Find where the roller's centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
 
     `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,) in mm and the index of the piece (n,):
     nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle that can meet.
     """
-    parts = np.maximum(
-        np.ceil(np.abs(obstacle.curvature) * obstacle.length / MOST_TURN),
-        np.ceil(obstacle.length / (MOST_SHARE * arm.length)),
-    )
-    pieces, owner = obstacle.cut(np.maximum(parts, 1.0).astype(np.intp))
-    within = _within_reach(pieces, arm)
+    slack = guide.slack(extent(obstacle))
+    pieces, owner = shortened(obstacle, guide)
+    within = within_reach(pieces, guide, slack)
     pieces, owner = pieces.take(within), owner[within]
-    middle, reach = _interval(pieces, arm)
+    middle, reach = angles_of(pieces, guide, slack)
     turn = 2.0 * np.pi
     order = np.argsort(np.mod(phi, turn), kind="stable")
     angle = np.mod(phi, turn)[order]
@@ -122,7 +90,7 @@ def first_contact(obstacle: Arcs, arm: Arm, phi: Array) -> tuple[Array, Indices]
         piece = np.repeat(chosen, count[chosen])
         number = np.arange(len(piece)) - np.repeat(np.cumsum(count[chosen]) - count[chosen], count[chosen])
         index = (first[piece] + number) % len(angle)
-        r = _meet(pieces.take(piece), arm, angle[index])
+        r = meet(pieces.take(piece), guide, angle[index], slack)
         np.maximum.at(best, index, r)
         won = (r == best[index]) & (r > 0.0)
         met[index[won]] = piece[won]
@@ -134,95 +102,41 @@ def first_contact(obstacle: Arcs, arm: Arm, phi: Array) -> tuple[Array, Indices]
     return radius, piece_met
 
 
-def _within_reach(pieces: Arcs, arm: Arm) -> NDArray[np.bool_]:
-    """Whether some point of each short piece may lie as far from the shaft as the arm's end can."""
+def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:
+    """Whether some point of each short piece may lie as far from the shaft as the roller's centre can."""
     middle = pieces.points(0.5 * pieces.length)
     r = np.hypot(middle[:, 0], middle[:, 1])
-    half = 0.5 * pieces.length + arm.slack
-    within: NDArray[np.bool_] = (r + half >= abs(arm.pivot - arm.length)) & (r - half <= arm.pivot + arm.length)
+    half = 0.5 * pieces.length + slack
+    least, most = guide.reach()
+    within: NDArray[np.bool_] = (r + half >= least) & (r - half <= most)
     return within
 
 
-def _interval(pieces: Arcs, arm: Arm) -> tuple[Array, Array]:
+def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
     """Middle and half-width of an interval of shaft angles that holds all from which each short piece is reached."""
     middle = pieces.points(0.5 * pieces.length)
     r = np.hypot(middle[:, 0], middle[:, 1])
-    half = 0.5 * pieces.length + arm.slack
-    least, most = np.maximum(r - half, arm.slack), r + half
-    # w = cos(phi - t) = (r^2 + L^2 - l^2)/(2 r L); its slope is steepest, and sqrt(1 - w^2) least, at an end
-    excess = arm.pivot**2 - arm.length**2
-
-    def w(x: Array) -> Array:
-        return (x * x + excess) / (2.0 * x * arm.pivot)
-
-    turning = np.sqrt(max(excess, 0.0))  # where w is least, if at all
-    sine = np.sqrt(np.maximum(1.0 - np.maximum(np.abs(w(least)), np.abs(w(most))) ** 2, 0.0))
-    slope = np.maximum(np.abs(1.0 - excess / least**2), np.abs(1.0 - excess / most**2)) / (2.0 * arm.pivot)
-    slope = np.where((least < turning) & (turning < most), np.maximum(slope, 1.0 / (2.0 * arm.pivot)), slope)
-    with np.errstate(divide="ignore", over="ignore"):
-        reach = half * np.hypot(1.0 / least, slope / sine)
-    w_middle = np.clip(w(r), -1.0, 1.0)
-    angle = np.arctan2(middle[:, 1], middle[:, 0]) - arm.side * np.arccos(w_middle)
-    return angle, np.minimum(reach, np.pi)
+    half = 0.5 * pieces.length + slack
+    least, most = np.maximum(r - half, slack), r + half
+    with np.errstate(over="ignore"):
+        reach = half * np.hypot(1.0 / least, guide.lead_slope(least, most))
+    angle = np.arctan2(middle[:, 1], middle[:, 0]) - guide.lead(r)
+    return angle, np.fmin(reach, np.pi)
 
 
-def _meet(pieces: Arcs, arm: Arm, phi: Array) -> Array:
-    """Greatest distance from the shaft at which each piece meets the arm's circle at its angle (n,), -inf if nowhere.
-
-    From the start of the piece, its circle is 2 y.m + k y^2 = 0 and the arm's |y - q| = l; their difference is the line
-    both intersections lie on, y.(m + k q) = k (q^2 - l^2)/2, also for k = 0. Where on that line they lie is asked of
-    the smaller of the two circles: of the other one it would be a difference of large numbers.
-    """
-    pivot, slack = arm.pivot * unit(phi), arm.slack
-    q = pivot - pieces.start
-    small = np.abs(pieces.curvature) * arm.length > 1.0
-    y = np.empty((2, len(phi), 2))
-    for rows, crossings in ((np.flatnonzero(~small), _on_arm), (np.flatnonzero(small), _on_piece)):
-        if len(rows):
-            y[:, rows] = crossings(pieces.take(rows), q[rows], arm.length, slack)
+def meet(pieces: Arcs, guide: Guide, phi: Array, slack: float) -> Array:
+    """Greatest distance from the shaft at which the centre meets each short piece at its angle (n,), else -inf."""
     chord_turn = 0.5 * pieces.curvature * pieces.length
     chord = pieces.length * np.sinc(chord_turn / np.pi)
     along = np.cos(chord_turn)[:, None] * pieces.tangent + np.sin(chord_turn)[:, None] * left(pieces.tangent)
     sagitta = np.abs(chord * np.tan(0.5 * chord_turn)) + slack
     best = np.full(len(phi), -np.inf)
-    for found in y:
+    for found in guide.crossings(pieces, phi, slack):
         s = dot(found, along)
+        point = pieces.start + found
         with np.errstate(invalid="ignore"):
             on_piece = (s >= -slack) & (s <= chord + slack) & (np.abs(cross(along, found)) <= sagitta)
-            point = pieces.start + found
-            on_side = arm.side * cross(pivot, point) >= -slack * arm.pivot
+            on_side = guide.on_side(phi, point, slack)
         r = np.hypot(point[:, 0], point[:, 1])
         best = np.where(on_piece & on_side & (r > best), r, best)
     return best
-
-
-def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
-    """Both crossings (2, n, 2), seen from the pieces' starts, nan where there are none; from the arm's circle."""
-    m, k = right(pieces.tangent), pieces.curvature
-    v = m + k[:, None] * q
-    size = np.hypot(v[:, 0], v[:, 1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        across = v / size[:, None]
-        depth = -(dot(q, m) + 0.5 * k * (dot(q, q) + length**2)) / size
-        square = (length - depth) * (length + depth)
-        touching = (square < 0.0) & (square >= -slack * length)
-        half = np.sqrt(np.where(touching, 0.0, square))
-    middle, aside = q + depth[:, None] * across, half[:, None] * left(across)
-    return np.stack([middle + aside, middle - aside])
-
-
-def _on_piece(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
-    """The same from the piece's own circle, which is the smaller one."""
-    m, k = right(pieces.tangent), pieces.curvature
-    v = m + k[:, None] * q
-    size, away = np.hypot(v[:, 0], v[:, 1]), np.hypot(q[:, 0], q[:, 1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        across = v / size[:, None]
-        foot = 0.5 * k * (away - length) * (away + length) / size
-        cosine = dot(across, m) + k * foot
-        square = (1.0 - cosine) * (1.0 + cosine)
-        touching = (square < 0.0) & (square >= -2.0 * slack * np.abs(k))
-        half = np.sqrt(np.where(touching, 0.0, square)) / k
-    aside = left(across)
-    middle = foot[:, None] * across - (dot(aside, m) / k)[:, None] * aside
-    return np.stack([middle + half[:, None] * aside, middle - half[:, None] * aside])

@@ -16,17 +16,18 @@ from numpy.typing import NDArray
 
 from kin.arcs import cross, dot, left, right, unit
 from kin.bearing import bearing_of
-from kin.contact import LEADING, TRAILING, Arm, dilated, first_contact
+from kin.contact import dilated, first_contact
 from kin.flat import dwells
 from kin.follower import DoubleRoller, FlatFace, FlatPair, Follower, Roller, Yoke
+from kin.guide import LEADING, TRAILING, Arm
 from kin.motion import ContactError
 
 if TYPE_CHECKING:
     from kin.arcs import Arcs
     from kin.bearing import Bearing
-    from kin.contact import Side
     from kin.contour import Contour
     from kin.drive import Motion
+    from kin.guide import Side
     from kin.lift import Lift
     from kin.mechanism import Mechanism
     from kin.piecewise import Piecewise
@@ -232,7 +233,7 @@ class OfRoller:
         arm, side = self.arm, self.arm.side
         r, piece = self._met(phi)
         met = self.obstacle.take(piece)
-        lean = arm.lean(r)
+        lean = arm.position(r)
         x = arm.centre(phi, lean)
         outward = right(met.tangent) + met.curvature[:, None] * (x - met.start)
         tangent = left(outward / np.hypot(outward[:, 0], outward[:, 1])[:, None])
@@ -322,7 +323,9 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
     if isinstance(follower, Roller):
         if play is not None:
             raise ValueError("a single roller has no play")
-        return Faces(OfRoller(obstacle, Arm(follower.arm, follower.pivot_distance, TRAILING)), None)
+        if not isinstance(follower.guide, Arm):
+            raise ValueError("the dynamics know rollers on arms only")  # noqa: TRY004 - the recipe is at fault
+        return Faces(OfRoller(obstacle, follower.guide), None)
     first, second = (OfRoller(obstacle, _arm_of(follower, side)) for side in (TRAILING, LEADING))
     rest = math.pi - follower.transmission.alpha
     # psi = pi - lean - alpha with roller A in contact, lean - pi + alpha with B

@@ -12,7 +12,8 @@ from kin.check import Check, UnsettledError, at_most, failed
 from kin.contour import ARC_SHARE
 from kin.deviation import Deviation, convex_deviation, deviation
 from kin.extremes import extremes, resolution
-from kin.follower import ContactError, DoubleRoller, FlatPair, Follower, Judged, Yoke
+from kin.follower import ContactError, DoubleRoller, FlatPair, Follower, Judged, MotionError, Yoke
+from kin.motion import ALLOWANCE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -178,7 +179,10 @@ def _motion_checks(judged: Judged, intent: Intent, limits: Limits, slack: float)
     checks = []
     if limits.motion is not None or not intent.trimmed:
         limit, room = _limit(follower.motion_limit, limits.motion, limits.tolerance, slack)
-        checks.append(at_most("motion", motion.max, limit, motion.unit, at=np.radians(motion.at_deg), slack=room))
+        # the implied limit is a theorem about contours; one that a user gives is held by all that may be
+        worst = motion.max if limits.motion is None else motion.bound
+        at, detail = np.radians(motion.at_deg), _found(motion)
+        checks.append(at_most("motion", worst, limit, motion.unit, at=at, detail=detail, slack=room))
     if play is None or not isinstance(follower, Yoke | FlatPair | DoubleRoller):
         return checks
     if limits.play is None and intent.trimmed:
@@ -186,14 +190,24 @@ def _motion_checks(judged: Judged, intent: Intent, limits: Limits, slack: float)
     limit, room = _limit(follower.play_limit, limits.play, limits.tolerance, slack)
     tight, loose = (-play.least, np.radians(play.least_at_deg)), (play.most, np.radians(play.most_at_deg))
     worst, at = max(tight, loose)
+    if play.extremes == "sampled" and limits.play is not None:
+        worst += ALLOWANCE * abs(worst)
     if isinstance(follower, Yoke):
         detail = f"breadth {follower.breadth - play.most:.9g} to {follower.breadth - play.least:.9g} mm"
         checks.append(at_most("constant-breadth", worst, limit, "mm", at=at, detail=detail, slack=room))
         checks.append(at_most("breadth-max", tight[0], limit, "mm", at=tight[1], slack=room))
     else:
         detail = f"play from {play.least:.3g} to {play.most:.3g} {play.unit}"
+        detail += ", sampled" if play.extremes == "sampled" else ""
         checks.append(at_most("form-closure", worst, limit, play.unit, at=at, detail=detail, slack=room))
     return checks
+
+
+def _found(motion: MotionError) -> str:
+    """Tell how the greatest motion error was found, where that leaves a remainder."""
+    if motion.extremes == "sampled":
+        return f"sampled; {motion.remainder:.3g} {motion.unit} more is an estimate of what lies between"
+    return f"true within {motion.remainder:.2g} {motion.unit}" if motion.remainder else ""
 
 
 def _limit(

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from kin.extremes import Extremes
 
 Unit = Literal["mm", "deg"]
+Extreme = Literal["true", "sampled"]
+ALLOWANCE = 0.02  # of a sampled extreme, by which the true one is estimated to exceed it at most
 TURN = 2.0 * np.pi
 STEP_DEG = 1.0  # the shaft turns by this much in an increment
 
@@ -27,6 +29,8 @@ class MotionError:
     at_deg          shaft angle of the greatest, [0, 360)
     increment       greatest change of the error while the shaft turns by `step_deg`, starting from each given angle
     dwell_flatness  greatest range of the measured position over a dwell of the intended motion; None without a dwell
+    extremes        "true": `max` is the greatest over all shaft angles; "sampled": over those that were looked at
+    remainder       by how much the greatest may exceed `max`: proved where extremes are true, else an estimate
     """
 
     max: float
@@ -36,6 +40,13 @@ class MotionError:
     increment: float
     step_deg: float
     dwell_flatness: float | None = None
+    extremes: Extreme = "true"
+    remainder: float = 0.0
+
+    @property
+    def bound(self) -> float:
+        """What the greatest error does not exceed."""
+        return self.max + self.remainder
 
     def less_sure(self, by: float) -> MotionError:
         """Count in that every measured position may be off by as much."""
@@ -55,7 +66,7 @@ class Play:
 
     A yoke: the breadth of the frame less that of the contour, mm. A double roller: the gap at the second roller while
     the first is held in contact, mm. A flat pair: the angle by which the faces stand wider than they need, degrees.
-    The angles are shaft angles, [0, 360).
+    The angles are shaft angles, [0, 360). `extremes` as in `MotionError`.
     """
 
     least: float
@@ -63,6 +74,7 @@ class Play:
     most: float
     most_at_deg: float
     unit: Unit
+    extremes: Extreme = "true"
 
     def less_sure(self, by: float) -> Play:
         """Count in that it may be off by as much."""
@@ -96,10 +108,18 @@ def with_steps(phi: Array) -> Array:
     return np.concatenate([phi, phi + np.radians(STEP_DEG)])
 
 
-def motion_error(worst: tuple[float, float], errors: Array, flatness: float | None, unit: Unit) -> MotionError:
+def motion_error(
+    worst: tuple[float, float],
+    errors: Array,
+    flatness: float | None,
+    unit: Unit,
+    *,
+    remainder: float | None = 0.0,
+) -> MotionError:
     """Sum up: `worst` error and where, `errors` (..., 2n) at `with_steps` of the given angles, dwell flatness.
 
-    Radians become degrees if the unit says so.
+    `remainder` is by how much the worst may be exceeded, proved; None where it is but the worst of samples. Radians
+    become degrees if the unit says so.
     """
     scale = 180.0 / np.pi if unit == "deg" else 1.0
     here, further = np.split(errors, 2, axis=-1)
@@ -111,4 +131,6 @@ def motion_error(worst: tuple[float, float], errors: Array, flatness: float | No
         increment=scale * float(np.abs(further - here).max()),
         step_deg=STEP_DEG,
         dwell_flatness=None if flatness is None else scale * flatness,
+        extremes="sampled" if remainder is None else "true",
+        remainder=scale * (ALLOWANCE * worst[0] if remainder is None else remainder),
     )

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kin.arcs import unit
-from kin.contact import LEADING, TRAILING, Arm, dilated, first_contact
+from kin.contact import dilated, first_contact
 from kin.contour import Contour
+from kin.guide import LEADING, TRAILING, Arm
 from kin.nearest import nearest, signed_distance
 
 PHI = np.arange(40) * 2 * np.pi / 40 + 0.0137
@@ -57,7 +58,7 @@ def test_eccentric_circle_of_two_arcs_in_closed_form(side, length, pivot):
     direction = np.arctan2(to_centre[:, 1], to_centre[:, 0]) - side * at_pivot
     expected = pivot * unit(PHI) + length * unit(direction)
     assert r == pytest.approx(np.hypot(*expected.T), abs=1e-12)
-    assert arm.centre(PHI, arm.lean(r)) == pytest.approx(expected, abs=1e-11)
+    assert arm.centre(PHI, arm.position(r)) == pytest.approx(expected, abs=1e-11)
     assert np.cos(arm.shaft_angle(expected) - PHI) == pytest.approx(1.0, abs=1e-12)
 
 
@@ -115,7 +116,7 @@ def test_the_piece_met_is_the_one_that_touches():
     obstacle = dilated(chain, 8.0)
     arm = Arm(60.0, 60.0, LEADING)
     r, piece = first_contact(obstacle, arm, PHI)
-    centre = arm.centre(PHI, arm.lean(r))
+    centre = arm.centre(PHI, arm.position(r))
     _, distance = nearest(chain, centre)
     assert distance == pytest.approx(8.0, abs=1e-12)
     touched = obstacle.take(piece)
@@ -162,8 +163,8 @@ def test_a_contour_through_the_shaft_and_one_at_the_end_of_the_reach():
     rim = Contour.from_bulges(112.0 * np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2))
     r, _ = first_contact(dilated(rim.as_arcs()[0], 8.0), arm, PHI)
     assert r == pytest.approx(120.0, abs=1e-6)
-    assert arm.lean(r) == pytest.approx(np.pi, abs=1e-6)
-    assert arm.lean(np.array([120.0 + 1e-9, 120.0])) == pytest.approx(np.pi, abs=1e-12)
+    assert arm.position(r) == pytest.approx(np.pi, abs=1e-6)
+    assert arm.position(np.array([120.0 + 1e-9, 120.0])) == pytest.approx(np.pi, abs=1e-12)
 
 
 @pytest.mark.parametrize("size", [2e-5, 2e4])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kin.bearing import bearing_of
-from kin.contact import LEADING, TRAILING, Arm, dilated
+from kin.contact import dilated
 from kin.contour import Contour
 from kin.drive import drives
 from kin.driven import (
@@ -19,6 +19,7 @@ from kin.driven import (
 )
 from kin.dynamics import Train, steady
 from kin.follower import DoubleRoller, FlatFace, FlatPair, Roller, Yoke
+from kin.guide import LEADING, TRAILING, Arm
 from kin.integrated import integrated
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_reuleaux
@@ -151,7 +152,7 @@ def test_double_followers_are_held_from_below_and_above(follower):
 
 
 @pytest.mark.parametrize(
-    "follower", [FlatFace(lift_from_fourier(25.0, {2: 1.5}, {})), Roller(40.0, 50.0, 5.0, constant_breadth().law)]
+    "follower", [FlatFace(lift_from_fourier(25.0, {2: 1.5}, {})), Roller(Arm(40.0, 50.0), 5.0, constant_breadth().law)]
 )
 def test_one_face_has_no_play(follower):
     with pytest.raises(ValueError, match="has no play"):

@@ -19,7 +19,7 @@ FLOORS = {
         follower
         frame roller
         deviation flat layers resting
-        envelope lift_formula mechanism
+        envelope lift_formula mechanism steepness
         lift transmission
         chain formula possible read swept
         collision read_3mf read_step
@@ -29,9 +29,9 @@ FLOORS = {
         bearing bouncing bounding flaws holding integrated law linkage nesting parallel roots routes step_face syntax
         contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
         stretch
-        biarc dwell figures jet mobility peaks pieces shape
-        bezier flight monotone motion response series turn upright
-        bernstein chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles
+        biarc dwell figures jet mobility peaks pieces shape tracking
+        bezier contact flight monotone motion response series turn upright
+        bernstein chaining drive extremes foot guide hull instants nearest part21 read_gcode taylor triangles
         arcs ball chebyshev distinct newton oscillator read_error
         check
     """,

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from kin.arcs import unit
 from kin.contour import Contour
 from kin.follower import ContactError, DoubleRoller, FlatFace, FlatPair, Roller, Yoke
+from kin.guide import Arm
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
 from kin.piecewise import Piecewise
@@ -290,7 +291,7 @@ def test_roller_on_an_eccentric_circle(arm, pivot):
     """Circle of R = 30 about (4, 0); pivot, circle centre and roller centre make a triangle of known sides."""
     contour = Contour.from_bulges(np.array([[34.0, 0.0], [-26.0, 0.0]]), np.ones(2))
     flat = Piecewise(np.array([0.0, 2 * np.pi]), (Constant(1.0),), 2 * np.pi, smooth_seam=True)
-    roller = Roller(arm, pivot, 8.0, flat)
+    roller = Roller(Arm(arm, pivot), 8.0, flat)
     away = pivot - 4.0 * np.exp(-1j * PHI)  # from the circle's centre to the pivot, the pivot's direction made real
     expected = np.arccos((np.abs(away) ** 2 + arm**2 - 38.0**2) / (2 * np.abs(away) * arm)) + np.angle(away)
     assert roller.contact(contour, PHI) == pytest.approx(expected, abs=1e-12)
@@ -311,7 +312,7 @@ def test_roller_on_its_own_envelope():
     )
     motion = rise.motion
     functions = tuple(raised(f, np.radians(30)) for f in motion.functions)
-    roller = Roller(50.0, 75.0, 8.0, Piecewise(motion.knots, functions, 2 * np.pi))
+    roller = Roller(Arm(50.0, 75.0), 8.0, Piecewise(motion.knots, functions, 2 * np.pi))
     assert roller.envelope.regular
     contour = through(roller.envelope, 20_000)
     judged = roller.judge(contour, PHI)

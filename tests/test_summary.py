@@ -80,3 +80,13 @@ def test_the_verdict_is_the_last_line(tmp_path, capsys):
     assert lines[-1].startswith("bad: FAILED")
     assert lines[-2].startswith("  ")
     assert verdict(reported()) == summary(reported())
+
+
+@pytest.mark.parametrize(
+    ("extremes", "told"),
+    [("true", "motion 0.0123 deg"), ("sampled", "motion 0.0123 deg (sampled, estimated within 0.00025)")],
+)
+def test_a_sampled_motion_error_is_called_one(extremes, told):
+    motion = {"max": 0.01234, "unit": "deg", "extremes": extremes, "remainder": 0.00025}
+    report = {"recipe": "c", "ok": True, "files": [{"path": "c.dxf", "motion": motion}], "checks": []}
+    assert summary(report) == f"c: ok  dxf, {told}"

@@ -13,6 +13,7 @@ from kin.contour import Contour
 from kin.deviation import deviation
 from kin.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower import DoubleRoller, FlatFace, FlatPair, Roller, Yoke
+from kin.guide import Arm
 from kin.judge import judge_contour, volume_check
 from kin.lift import lift_from_fourier, lift_hypocycloid, lift_reuleaux
 from kin.piecewise import Piecewise
@@ -119,7 +120,7 @@ def test_a_circle_entity_under_one_roller(tmp_path):
     document.saveas(tmp_path / "circle.dxf")
     lean = np.arccos((75.0**2 + 50.0**2 - 38.0**2) / (2 * 75.0 * 50.0))
     still = Piecewise(np.array([0.0, 2 * np.pi]), (Constant(lean),), 2 * np.pi, smooth_seam=True)
-    verdict = verify(tmp_path / "circle.dxf", Intent(Roller(50.0, 75.0, 8.0, still)), 90, Limits(1e-9))
+    verdict = verify(tmp_path / "circle.dxf", Intent(Roller(Arm(50.0, 75.0), 8.0, still)), 90, Limits(1e-9))
     assert verdict.ok
     assert verdict.play is None
     assert set(named(verdict)) == {"units", "closed", "contour", "motion"}

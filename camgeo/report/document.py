@@ -160,7 +160,9 @@ def _motion(recipe: Recipe, motion: MotionError) -> dict[str, Any]:
         ("dwell_flatness", motion.dwell_flatness),
     ):
         entry[key], unit = in_units(recipe, value, motion.unit)
-    return {**entry, "unit": unit, "at_deg": motion.at_deg, "increment_deg": motion.step_deg}
+    remainder, _ = in_units(recipe, motion.remainder, motion.unit)
+    found = {"extremes": motion.extremes, "remainder": remainder}
+    return {**entry, "unit": unit, "at_deg": motion.at_deg, "increment_deg": motion.step_deg, **found}
 
 
 def finite(value: Any) -> Any:  # noqa: ANN401 - plain JSON data of any shape
@@ -189,6 +191,8 @@ def summary(report: dict[str, Any]) -> str:
         motion = file.get("motion")
         if motion and motion["max"] is not None:
             text += f", motion {_measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}"
+            if motion.get("extremes") == "sampled":
+                text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
     parts += _of_linkage(report.get("linkage"))
     failed = [_told(check) for check in report["checks"] if not check["ok"]]
