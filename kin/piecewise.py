@@ -71,15 +71,21 @@ class _Powers:
 
     def __call__(self, t: Series, index: Indices) -> Series:
         """Apply each stretch's polynomial to its points or intervals t (n,), in stretches (n,)."""
-        rows = self.coefficients[:, index]
+        return _moved(_Horner(self.coefficients[:, index]), self.ways[:, index], t)
 
-        def polynomial(u: Series) -> Series:
-            total = u.constant(rows[-1])
-            for row in rows[-2::-1]:
-                total = total * u + row
-            return total
 
-        return _moved(polynomial, self.ways[:, index], t)
+@dataclass(frozen=True, eq=False)
+class _Horner:
+    """Polynomials by their rows of coefficients (k, n), each at its own point or interval."""
+
+    rows: Array
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give each polynomial."""
+        total = u.constant(self.rows[-1])
+        for row in self.rows[-2::-1]:
+            total = total * u + row
+        return total
 
 
 def _moved(function: Stretch, ways: Array, t: Series) -> Series:

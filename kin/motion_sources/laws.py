@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from kin.law import LAWS, IntentError, Law, Polynomial, Run, mirrored, symmetric
+from kin.law import LAWS, IntentError, Law, Polynomial, mirrored, symmetric
 from kin.motion_sources.functions import Cosines, Sines, TwoPoint
 from kin.motion_sources.peaks import peaks
 from kin.piecewise import Piecewise
@@ -191,7 +191,7 @@ def _catalogue() -> dict[str, _Entry]:
     half = (0.0, 0.5)
     double = Cosines(((_PI, 0.5), (2 * _PI, -0.125)))
     square = Cosines(((4 * _PI, -1 / (4 * _PI**2)),), square=2.0)
-    entries = {
+    return {
         "constant-velocity": _Entry(lambda: _single("constant-velocity", Polynomial((0.0, 1.0))), "u"),
         **{name: _Entry(lambda name=name: LAWS[name], text) for name, text in _TODAY.items()},  # type: ignore[misc]
         **{
@@ -206,8 +206,12 @@ def _catalogue() -> dict[str, _Entry]:
         "sine-squared": _Entry(
             lambda: _of("sine-squared", _imaged(half, [square])), "acceleration 8 sin^2 2 pi u, and its image"
         ),
-        "polynomial-23": _Entry(lambda: _single("polynomial-23", Polynomial((0.5, 1.5, 0.0, -2.0), 0.5)), "3 u^2 - 2 u^3"),
-        "cubic": _Entry(lambda: _of("cubic", _imaged(half, [Polynomial((0.0, 0.0, 0.0, 4.0))])), "4 u^3, and its image"),
+        "polynomial-23": _Entry(
+            lambda: _single("polynomial-23", Polynomial((0.5, 1.5, 0.0, -2.0), 0.5)), "3 u^2 - 2 u^3"
+        ),
+        "cubic": _Entry(
+            lambda: _of("cubic", _imaged(half, [Polynomial((0.0, 0.0, 0.0, 4.0))])), "4 u^3, and its image"
+        ),
         "freudenstein-13": _Entry(
             lambda: sines({1: 27 / 28, 3: 1 / 28}, "freudenstein-13"), "u - 27/(56 pi) (sin 2 pi u + sin 6 pi u/81)"
         ),
@@ -219,7 +223,6 @@ def _catalogue() -> dict[str, _Entry]:
             lambda: sines({1: 15 / 16, 3: 1 / 16}, "gutman-13"), "u - 15/(32 pi) sin 2 pi u - sin 6 pi u/(96 pi)"
         ),
     }
-    return entries
 
 
 _TODAY = {

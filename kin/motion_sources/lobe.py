@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kin.law import IntentError
@@ -31,7 +32,7 @@ def lobe(
             f"half the event lies between 0 and {math.degrees(total / 2):.6g} degrees, not {math.degrees(half):.6g}",
             f"{field}.half",
         )
-    rising = all(int(k) == k for k in powers) and all(a < b for a, b in zip(powers, powers[1:], strict=False))
+    rising = all(int(k) == k for k in powers) and all(a < b for a, b in pairwise(powers))
     if len(powers) != 5 or powers[0] != 2 or not rising or powers[-1] > _GREATEST_POWER:
         shown = "-".join(f"{k:g}" for k in powers)
         raise IntentError(

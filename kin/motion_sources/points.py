@@ -73,9 +73,7 @@ def _exact(rows: Samples, ends: Ends | None, between: tuple[float, float], /) ->
     return sites, through(sites, np.append(rows.s, rows.s[0]), None)
 
 
-def _dwelling(
-    rows: Samples, dwell: tuple[float, float], total: float, around: int | None, field: str
-) -> Dwelling:
+def _dwelling(rows: Samples, dwell: tuple[float, float], total: float, around: int | None, field: str) -> Dwelling:
     n, ends = len(rows.theta), []
     for angle in dwell:
         turns = math.floor((angle + SAME_ANGLE) / total) if around == 1 else 0
@@ -90,5 +88,7 @@ def _dwelling(
     a, b = float(rows.s[first % n]), float(rows.s[last % n])
     if a != b:
         at = [math.degrees(x) for x in dwell]
-        raise IntentError(f"no dwell from {at[0]:.6g} to {at[1]:.6g} degrees: it would climb from {a:.6g} to {b:.6g}", field)
+        raise IntentError(
+            f"no dwell from {at[0]:.6g} to {at[1]:.6g} degrees: it would climb from {a:.6g} to {b:.6g}", field
+        )
     return Dwelling(first, last, a)

@@ -131,7 +131,8 @@ def programme(segments: Sequence[Step], total: float, *, around: int | None = 1,
     for i, part in enumerate(parts):
         if part.built is None:
             _match(parts, i, around)
-    knots, functions = [0.0], []
+    knots: list[float] = [0.0]
+    functions: list[Stretch] = []
     for part in parts:
         assert part.built is not None
         functions += part.built.functions
@@ -213,32 +214,44 @@ def _match(parts: Sequence[_Part], i: int, around: int | None) -> None:
     order = (step.law.degree - 1) // 2
     width = part.end - part.begin
     scales = np.array([width**k for k in range(1, order + 1)])
-    start = _state(parts, i, -1, around, step.law.at_start, order) * scales
-    end = _state(parts, i, 1, around, step.law.at_end, order) * scales
+    start, end = (_state(parts, i, way, around)[:order] * scales for way in (-1, 1))
     function = TwoPoint.of((0.0, *start.tolist()), (part.by, *end.tolist()))
     part.lay([part.begin, part.end], [Affine(function, offset=part.level, start=part.begin, width=width)])
 
 
-def _state(parts: Sequence[_Part], i: int, way: int, around: int | None, given: State | None, order: int) -> Array:
-    """v, a (j) at the end of segment i on the side `way` (-1 its start), (order,)."""
+def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Array:
+    """v, a and j at the end of matched segment i on the side `way` (-1 its start), (3,)."""
+    given = _given(parts[i], way)
     if given is not None:
-        return np.array([given.v, given.a, given.j])[:order]
+        return given
     sign, n = 1.0, i + way
     if not 0 <= n < len(parts):
         if around is None:
-            return np.zeros(order)
+            return np.zeros(3)
         sign, n = float(around), n % len(parts)
     other = parts[n]
-    if isinstance(other.step, Move) and isinstance(other.step.law, Matched):
-        state = other.step.law.at_end if way < 0 else other.step.law.at_start
-        if state is None:
-            where = math.degrees(parts[i].end if way > 0 else parts[i].begin)
-            raise IntentError(
-                f"two matched segments meet at {where:.6g} degrees: give one `at_end: {{v: ..., a: ...}}`",
-                parts[min(i, i + way) if 0 <= i + way < len(parts) else len(parts) - 1].field,
-                where,
-            )
-        return sign * np.array([state.v, state.a, state.j])[:order]
-    assert other.built is not None
-    at, side = (other.end, -1) if way < 0 else (other.begin, 1)
-    return sign * other.built.derivatives(at, order, side)[1:, 0]
+    if other.built is not None and not _is_matched(other):
+        at, side = (other.end, -1) if way < 0 else (other.begin, 1)
+        return sign * other.built.derivatives(at, 3, side)[1:, 0]
+    state = _given(other, -way)
+    if state is None:
+        first = parts[i] if way > 0 else other
+        where = math.degrees(first.end)
+        raise IntentError(
+            f"two matched segments meet at {where:.6g} degrees: give the first one `at_end: {{v: ..., a: ...}}`",
+            first.field,
+            where,
+        )
+    return sign * state
+
+
+def _is_matched(part: _Part) -> bool:
+    return isinstance(part.step, Move) and isinstance(part.step.law, Matched)
+
+
+def _given(part: _Part, way: int) -> Array | None:
+    """The state that a matched segment has been given at its end on a side, if it is matched and has."""
+    if not (isinstance(part.step, Move) and isinstance(part.step.law, Matched)):
+        return None
+    state = part.step.law.at_start if way < 0 else part.step.law.at_end
+    return None if state is None else np.array([state.v, state.a, state.j])

@@ -28,6 +28,10 @@ class Samples(NamedTuple):
     s: Array
     lines: NDArray[np.intp]
 
+    def part(self, which: slice) -> Samples:
+        """Some of the rows."""
+        return Samples(self.theta[which], self.s[which], self.lines[which])
+
 
 class Dwelling(NamedTuple):
     """A dwell from row `first` to row `last` (counted on beyond the turn) at a level."""
@@ -40,7 +44,9 @@ class Dwelling(NamedTuple):
 class Fit(Protocol):
     """How the rows of one moving stretch become spans."""
 
-    def __call__(self, rows: Samples, ends: Ends | None, between: tuple[float, float], /) -> tuple[Array, Sequence[Stretch]]:
+    def __call__(
+        self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
+    ) -> tuple[Array, Sequence[Stretch]]:
         """Give the sites (m + 1,) and m functions."""
 
 
@@ -114,7 +120,7 @@ def _open(rows: Samples, dwells: Sequence[Dwelling], fit: Fit) -> Motion:
     stops = [*dwells, Dwelling(len(rows.s) - 1, len(rows.s) - 1, float(rows.s[-1]))]
     for dwell in stops:
         if dwell.first > last:
-            part = Samples(*(column[last : dwell.first + 1] for column in rows))
+            part = rows.part(slice(last, dwell.first + 1))
             sites, spans = fit(part, Ends(level, dwell.level), (float(part.theta[0]), float(part.theta[-1])))
             knots += sites[1:].tolist()
             functions += list(spans)

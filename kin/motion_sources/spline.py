@@ -112,7 +112,9 @@ def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
     return basis.spans(fixed)
 
 
-def nearest(x: Array, s: Array, count: int, ends: Ends | None, between: tuple[float, float]) -> tuple[Basis, Array, Array]:
+def nearest(
+    x: Array, s: Array, count: int, ends: Ends | None, between: tuple[float, float]
+) -> tuple[Basis, Array, Array]:
     """Least-squares spline of `count` equal spans `between` two angles: basis, coefficients, residuals (n,)."""
     basis = Basis(np.linspace(*between, count + 1), ends is None)
     span, rows = basis.rows(x)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,16 +72,23 @@ def from_table(
     _demand_rows(rows, total, field)
     rows, event = _one_turn(rows, total, around, reading, field)
     demand_whole(rows, total, around, field)
-    if dwells is None:
-        found = _found(rows, reading, total, around)
-    else:
-        found = _given(rows, dwells, reading, total, around, field)
+    task = _Task(rows, reading, total, around)
+    found = _found(task) if dwells is None else _given(task, dwells, field)
     if event is not None:
         found = merged(sorted([*found, event]), len(rows.s))
     _demand_even(rows, found, field)
     smoother = _Smoother(reading, spans, field, step=2 if around == -1 else 1)
     motion = laid(rows, found, total, around, smoother)
     return Smoothed(motion, smoother.count, smoother.residual, smoother.line)
+
+
+class _Task(NamedTuple):
+    """Rows to smooth, how closely, over which angle."""
+
+    rows: Samples
+    reading: float
+    total: float
+    around: int | None
 
 
 def _demand_rows(rows: Samples, total: float, field: str) -> None:
@@ -100,9 +107,7 @@ def _demand_rows(rows: Samples, total: float, field: str) -> None:
     over = float(rows.theta[-1] - rows.theta[0])
     if over > total + SAME_ANGLE:
         i = int(np.argmax(rows.theta - rows.theta[0] > total + SAME_ANGLE))
-        raise TableError(
-            f"the table covers more than {math.degrees(total):.6g} degrees", field, int(rows.lines[i])
-        )
+        raise TableError(f"the table covers more than {math.degrees(total):.6g} degrees", field, int(rows.lines[i]))
 
 
 def _one_turn(
@@ -116,7 +121,7 @@ def _one_turn(
     if over > total - SAME_ANGLE:
         if apart > 2 * reading:
             raise TableError(f"the motion does not close: {apart:.6g} off the first row, a turn later", field, line)
-        return Samples(*(column[:-1] for column in rows)), None
+        return rows.part(slice(None, -1)), None
     if total - over <= _GAP * step:
         return rows, None
     if apart > 2 * reading:
@@ -130,8 +135,9 @@ def _one_turn(
     return rows, Dwelling(n - 1, n, 0.5 * float(rows.s[0] + rows.s[-1]))
 
 
-def _found(rows: Samples, reading: float, total: float, around: int | None) -> list[Dwelling]:
+def _found(task: _Task) -> list[Dwelling]:
     """Dwells where rows are equal over 10 degrees and more."""
+    rows, total, around = task.rows, task.total, task.around
     n = len(rows.s)
     whole = around == 1 and rows.theta[0] + total - rows.theta[-1] <= _GAP * float(np.median(np.diff(rows.theta)))
     same = np.append(np.diff(rows.s) == 0, bool(whole and rows.s[0] == rows.s[-1]))
@@ -146,23 +152,22 @@ def _found(rows: Samples, reading: float, total: float, around: int | None) -> l
         end = rows.theta[b % n] + total * (b // n)
         if end - begin >= _LEAST_DWELL - SAME_ANGLE:
             turns, middle = int(a) // n, (int(a) + int(b)) // 2
-            leave = _foot(rows, int(b), 1, middle, reading, total, around)
-            reach = _foot(rows, int(a), -1, middle, reading, total, around)
+            leave = _foot(task, int(b), 1, middle)
+            reach = _foot(task, int(a), -1, middle)
             found.append(Dwelling(reach - turns * n, leave - turns * n, float(rows.s[a % n])))
     return sorted(found)
 
 
-def _foot(
-    rows: Samples, end: int, way: int, middle: int, reading: float, total: float, around: int | None
-) -> int:
+def _foot(task: _Task, end: int, way: int, middle: int) -> int:
     """Row at which the motion leaves a dwell, on the side `way` of its last equal row.
 
     Rounded rows stay equal for a while after the motion has begun. It begins as a cube, so the cube roots of the first
     displacements lead back to its foot.
     """
+    rows, reading, total = task.rows, task.reading, task.total
     n = len(rows.s)
     index = end + way * np.arange(1, n // 2)
-    if around != 1:
+    if task.around != 1:
         index = index[(index >= 0) & (index < n)]
     climb = np.abs(rows.s[index % n] - rows.s[end % n])
     chosen = np.flatnonzero(climb >= _FOOT * reading)[:2]
@@ -183,10 +188,9 @@ def _foot(
     return int(inside[int(np.argmin(apart))])
 
 
-def _given(
-    rows: Samples, dwells: Sequence[tuple[float, float]], reading: float, total: float, around: int | None, field: str
-) -> list[Dwelling]:
+def _given(task: _Task, dwells: Sequence[tuple[float, float]], field: str) -> list[Dwelling]:
     """Dwells from a row to a row at given angles; the rows between must be within the reading of their mean."""
+    rows, reading, total, around = task.rows, task.reading, task.total, task.around
     n, found = len(rows.s), []
     for begin, end in dwells:
         ends = []
@@ -196,7 +200,8 @@ def _given(
             ends.append(i + turns * n)
         index = np.arange(ends[0], ends[1] + 1)
         if len(index) < 2:
-            raise IntentError(f"no two rows lie between {math.degrees(begin):.6g} and {math.degrees(end):.6g} degrees", field)
+            at = [math.degrees(angle) for angle in (begin, end)]
+            raise IntentError(f"no two rows lie between {at[0]:.6g} and {at[1]:.6g} degrees", field)
         s = rows.s[index % n]
         level = float(0.5 * (s.min() + s.max()))
         if s.max() - s.min() > 2 * reading:
@@ -242,7 +247,7 @@ class _Smoother:
     def __call__(
         self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
     ) -> tuple[Array, Sequence[Stretch]]:
-        inside = rows if ends is None else Samples(*(column[1:-1] for column in rows))
+        inside = rows if ends is None else rows.part(slice(1, -1))
         step = self.step if ends is None else 1
         count = self.spans or self._fewest(inside, ends, between, step)
         basis, coefficients, off = nearest(inside.theta, inside.s, count, ends, between)

@@ -36,7 +36,7 @@ def read_table(
     if not kept:
         raise IntentError("the table is empty", field)
     separator = _separator([line for _, line in kept])
-    if not _numbers(kept[0][1], separator):
+    if not re.match(r'["\s]*[+-]?[.,]?\d', kept[0][1]):
         kept = kept[1:]  # a heading
     theta, s, places = np.empty(len(kept)), np.empty(len(kept)), 0
     for row, (i, line) in enumerate(kept):
