@@ -40,7 +40,7 @@ FLOORS = {
     "camgeo": """
         __main__
         cli pytest_plugin testing
-        batch page.command study.command sweep.command
+        batch laws page.command study.command sweep.command
         study.document sweep.means sweep.refine sweep.search
         study.ladder study.margins sweep.outputs sweep.run
         sweep.engines sweep.recipes sweep.table
