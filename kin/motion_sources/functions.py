@@ -89,13 +89,13 @@ def _over_power(derivatives: Sequence[float]) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class Flank:
-    """(1 - u)**5 Q(u): a lobe's flank from its nose, u = 0, with five derivatives 0..4 that vanish at u = 1."""
+    """v**5 Q(1 - v): a lobe's flank up to its nose, v = 1, with derivatives 0..4 that vanish at v = 0."""
 
     coefficients: tuple[float, ...]
 
     @staticmethod
     def of(powers: Sequence[int]) -> tuple[Flank, tuple[float, ...]]:
-        """Make 1 + C2 u**2 + ... from its five powers, and give the C as well.
+        """Make 1 + C2 u**2 + ..., u = 1 - v, from its five powers, and give the C as well.
 
         C_k is the product over the other powers l of l/(l - k), negated: the s-fold zero at u = 1. The
         division by (1 - u)**5 is done in whole fractions, so that nothing cancels near u = 1.
@@ -113,9 +113,9 @@ class Flank:
         ]
         return Flank(tuple(map(float, quotient))), tuple(float(full[k]) for k in powers)
 
-    def __call__(self, u: Series, /) -> Series:
+    def __call__(self, v: Series, /) -> Series:
         """Give the displacement, 1 at the nose."""
-        return (1.0 - u) ** 5.0 * _horner(self.coefficients, u)
+        return v**5.0 * _horner(self.coefficients, 1.0 - v)
 
 
 @dataclass(frozen=True)

@@ -41,8 +41,8 @@ def lobe(
             f"{field}.powers",
         )
     flank, _ = Flank.of([int(k) for k in powers])
-    falling = Affine(flank, scale=lift, width=half)
-    rising_flank = Affine(flank, scale=lift, start=total, width=-half)
+    falling = Affine(flank, scale=lift, start=half, width=-half)
+    rising_flank = Affine(flank, scale=lift, start=total - half, width=half)
     return joined([0.0, half, total - half, total], [falling, Constant(0.0), rising_flank])
 
 

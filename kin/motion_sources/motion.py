@@ -27,6 +27,7 @@ ORDERS = 3  # displacement, velocity, acceleration and jerk are held together at
 _JOIN = 1e-9  # of the greatest value of a derivative: a jump below this is rounding
 _CLOSED = 1e-11  # of the greatest of S, S', S'': a jump of S or S' below this is rounding, as for a lift
 _NAMES = ("S", "S'", "S''", "S'''")
+_LOOKS = 64  # places at which the size of a derivative is looked at, besides the knots
 _SEAM_ORDER = 6  # derivatives that agree where a function runs on over the seam
 
 
@@ -104,7 +105,7 @@ class Motion(Programme):
         knots = self.motion.knots
         right, left = self.motion.derivatives(knots[:-1], ORDERS, 1), self.motion.derivatives(knots[1:], ORDERS, -1)
         size = np.maximum(np.abs(right).max(axis=1), np.abs(left).max(axis=1))
-        between = self.motion.derivatives(0.5 * (knots[:-1] + knots[1:]), ORDERS)
+        between = self.motion.derivatives(np.linspace(knots[0], knots[-1], _LOOKS), ORDERS)
         size = np.maximum(size, np.abs(between).max(axis=1))
         found = []
         if self.around is not None:
@@ -123,7 +124,7 @@ class Motion(Programme):
     @cached_property
     def _size(self) -> float:
         knots = self.motion.knots
-        return float(np.abs(self.motion.derivatives(np.linspace(knots[0], knots[-1], 64), 2)).max())
+        return float(np.abs(self.motion.derivatives(np.linspace(knots[0], knots[-1], _LOOKS), 2)).max())
 
     def demand_joined(self, field: str = "motion", unit: str = "mm") -> Motion:
         """Return the motion if S and S' join all round, else raise IntentError with the first place where not."""

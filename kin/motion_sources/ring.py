@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 SAME_ANGLE = 1e-9  # rad
+_FOLDED = 1e-13  # rad: by so much at most folding by a turn rounds
 
 
 class Samples(NamedTuple):
@@ -143,7 +146,17 @@ def _settled(knots: Sequence[float], functions: Sequence[Stretch], turn: float, 
             pieces.append((max(low, 0.0), high, moved))
     pieces.sort(key=lambda piece: piece[0])
     kept = [piece for piece in pieces if piece[0] < total - SAME_ANGLE]
-    return joined([0.0, *(piece[0] for piece in kept[1:]), total], [piece[2] for piece in kept])
+    at = [0.0, *(piece[0] for piece in kept[1:]), total]
+    return joined(at, [_on_knots(piece[2], ends) for piece, ends in zip(kept, pairwise(at), strict=True)])
+
+
+def _on_knots(function: Stretch, ends: tuple[float, float]) -> Stretch:
+    """The function counted from a knot of its own exactly, where folding has rounded that."""
+    if isinstance(function, Affine):
+        for knot in ends:
+            if abs(function.start - knot) <= _FOLDED:
+                return replace(function, start=knot)
+    return function
 
 
 def _shifted(function: Stretch, by: float) -> Stretch:

@@ -104,7 +104,7 @@ def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
     inner = slice(1, -1) if ends else slice(0, -1)
     span, rows = basis.rows(x[inner])
     matrix = np.zeros((len(span), basis.size))
-    matrix[np.arange(len(span)), basis.columns(span)] += rows
+    np.add.at(matrix, (np.arange(len(span)), basis.columns(span)), rows)
     fixed = _fixed(basis, ends)
     free = np.isnan(fixed)
     known = np.where(free, 0.0, fixed)
