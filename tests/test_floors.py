@@ -28,8 +28,8 @@ FLOORS = {
         drawing milled motion_sources.laws motion_sources.motion region svg_path
         floating motion_sources.peaks
         bearing bouncing bounding flaws holding integrated law linkage nesting parallel roots routes step_face syntax
-        contour dxf_entities dynamics expression frame_dwell loop motion_sources.functions motion_sources.spline piecewise
-        poses step_curve
+        contour dxf_entities dynamics expression frame_dwell loop motion_sources.functions motion_sources.spline
+        piecewise poses step_curve
         stretch
         biarc dwell figures jet mobility peaks pieces shape
         bezier flight monotone motion response series turn upright

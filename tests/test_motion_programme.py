@@ -255,9 +255,9 @@ def test_a_motion_by_formula():
     assert kinked.rests[0].level == 0
     assert [round(math.degrees(j.at)) for j in kinked.joints] == [0, 180]
     assert all(j.jumps[0][0] == 3 for j in kinked.joints)
-    with pytest.raises(IntentError, match="S jumps from 6.28319 to 0 mm at 0 degrees"):
+    with pytest.raises(IntentError, match=r"S jumps from 6.28319 to 0 mm at 0 degrees"):
         from_formula(Formula("t")).demand_joined()
-    with pytest.raises(IntentError, match="the displacement does not exist at .* degrees: log of a number"):
+    with pytest.raises(IntentError, match=r"the displacement does not exist at .* degrees: log of a number"):
         from_formula(Formula("log(sin(t))"))
 
 

@@ -81,8 +81,10 @@ def test_a_lobe_ends_with_four_derivatives_at_rest():
             1.0,
             1.0,
             (2, 8, 8, 20, 26),
-            "the powers of a lobe are 2 and four more whole numbers that rise to 100 at most, "
-            "such as 2-8-14-20-26, not 2-8-8-20-26",
+            (
+                "the powers of a lobe are 2 and four more whole numbers that rise to 100 at most, "
+                "such as 2-8-14-20-26, not 2-8-8-20-26"
+            ),
         ),
     ],
 )
@@ -143,7 +145,7 @@ def test_a_measured_dwell_is_given():
     noisy = Samples(rows.theta, rows.s + rng.uniform(-0.0008, 0.0008, 360), rows.lines)
     smoothed = from_table(noisy, 0.002, dwells=[(rad(100), rad(160)), (rad(300), rad(360))])
     assert [r.level for r in smoothed.motion.rests] == pytest.approx([20, 0], abs=5e-4)
-    with pytest.raises(TableError, match="line 166: the row is no part of a dwell at 19.99"):
+    with pytest.raises(TableError, match=r"line 166: the row is no part of a dwell at 19.99"):
         from_table(noisy, 0.002, dwells=[(rad(100), rad(165))])
 
 
@@ -290,8 +292,10 @@ def test_crank_degrees_inches_and_degrees():
         ),
         (
             "0,1,0,2\n1,5,0,3\n",
-            "line 1: '0,1,0,2' is no row parted by commas: an angle and a displacement are expected: with decimal "
-            "commas, part the columns by semicolons",
+            (
+                "line 1: '0,1,0,2' is no row parted by commas: an angle and a displacement are expected: with decimal "
+                "commas, part the columns by semicolons"
+            ),
         ),
         ("0 1 2\n1 2 3\n", "line 1: '0 1 2' is no row parted by blanks: an angle and a displacement are expected"),
         ("# nothing\n", "the table is empty"),
