@@ -44,7 +44,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Show the laws' peaks for unit stroke over unit time."""
     from kin.law import IntentError
-    from kin.motion_sources import NAMES, named
+    from kin.motion_sources.laws import NAMES, named
 
     try:
         laws = [named(name) for name in arguments.names or NAMES]

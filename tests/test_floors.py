@@ -18,7 +18,7 @@ FLOORS = {
         driven judge
         follower
         frame roller
-        deviation flat layers motion_sources resting
+        deviation flat layers resting
         envelope lift_formula mechanism motion_sources.programme
         lift motion_sources.whole transmission
         chain formula motion_sources.table_text possible read swept
@@ -35,7 +35,7 @@ FLOORS = {
         bezier flight monotone motion response series turn upright
         bernstein chaining contact drive extremes foot hull instants nearest part21 read_gcode taylor triangles
         arcs ball chebyshev distinct newton oscillator read_error
-        check
+        check motion_sources
     """,
     "camgeo": """
         __main__

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from camgeo.cli import main
-from kin.motion_sources import NAMES, named
+from kin.motion_sources.laws import NAMES, named
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -10,8 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kin.law import LAWS, IntentError
-from kin.motion_sources import NAMES, boundary, named, scca, sines, split, trapezoid
-from kin.motion_sources.laws import _MEMBERS, scca_motion
+from kin.motion_sources.laws import _MEMBERS, NAMES, boundary, named, scca, scca_motion, sines, split, trapezoid
 from kin.motion_sources.peaks import peaks
 
 INF = math.inf

@@ -11,21 +11,10 @@ from kin import law as today
 from kin.formula import Formula
 from kin.law import IntentError, Segment
 from kin.lift import lift_constant_breadth
-from kin.motion_sources import (
-    NAMES,
-    Dwell,
-    Given,
-    Matched,
-    Motion,
-    Move,
-    RiseAndFall,
-    State,
-    from_formula,
-    named,
-    programme,
-    scca,
-    split,
-)
+from kin.motion_sources.laws import NAMES, named, scca, split
+from kin.motion_sources.motion import Motion
+from kin.motion_sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State, programme
+from kin.motion_sources.whole import from_formula
 
 TURN = 2 * math.pi
 rad = math.radians

@@ -8,7 +8,8 @@ import pytest
 from camgeo import pipeline
 from camgeo.profile.build import intent_of
 from camgeo.recipe import RecipeErrors, read
-from kin.motion_sources import Dwell, Matched, Move, State, named, programme, scca, split
+from kin.motion_sources.laws import named, scca, split
+from kin.motion_sources.programme import Dwell, Matched, Move, State, programme
 
 rad = math.radians
 
@@ -56,10 +57,9 @@ def test_each_kind_of_segment_is_what_it_says():
 
 
 def test_inches_scale_strokes_formulas_and_states():
-    mm = "[{rise: 5.08, over: 80, law: match, at_end: {v: 0, a: -12.7}}, {return: 5.08, over: 60, law: match}, {dwell: 40}]"
-    inch = (
-        "[{rise: 0.2, over: 80, law: match, at_end: {v: 0, a: -0.5}}, {return: 0.2, over: 60, law: match}, {dwell: 40}]"
-    )
+    rest = "over: 60, law: match}, {dwell: 40}]"
+    mm = "[{rise: 5.08, over: 80, law: match, at_end: {v: 0, a: -12.7}}, {return: 5.08, " + rest
+    inch = "[{rise: 0.2, over: 80, law: match, at_end: {v: 0, a: -0.5}}, {return: 0.2, " + rest
     theta = np.linspace(0, 360, 73)
     first = displacement(intent(mm), theta)
     head = "kind: constant-breadth, base_radius: 2.4"

@@ -7,19 +7,13 @@ import pytest
 
 from kin.law import IntentError
 from kin.lift import lift_constant_breadth
-from kin.motion_sources import (
-    Dwell,
-    Move,
-    Samples,
-    TableError,
-    from_points,
-    from_table,
-    lobe,
-    named,
-    programme,
-    read_table,
-)
-from kin.motion_sources.lobe import coefficients
+from kin.motion_sources.laws import named
+from kin.motion_sources.lobe import coefficients, lobe
+from kin.motion_sources.points import from_points
+from kin.motion_sources.programme import Dwell, Move, programme
+from kin.motion_sources.ring import Samples
+from kin.motion_sources.table import TableError, from_table
+from kin.motion_sources.table_text import read_table
 
 TURN = 2 * math.pi
 rad = math.radians

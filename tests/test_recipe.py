@@ -43,8 +43,8 @@ from camgeo.recipe.schema import json_schema
 from camgeo.recipe.starter import KINDS, starter
 from kin.law import IntentError
 from kin.lift import Lift
-from kin.motion_sources import Dwell, Matched, RiseAndFall, State
-from kin.motion_sources import named as named_law
+from kin.motion_sources.laws import named as named_law
+from kin.motion_sources.programme import Dwell, Matched, RiseAndFall, State
 from kin.transmission import Transmission
 
 SHIPPED = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))

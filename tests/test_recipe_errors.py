@@ -12,7 +12,7 @@ import yaml
 from camgeo.recipe import RecipeError, RecipeErrors, load, read
 from camgeo.recipe.source import MAX_ALIASES, MAX_BYTES, MAX_DEPTH, MAX_NODES
 from kin.formula import Formula, FormulaError
-from kin.motion_sources import NAMES
+from kin.motion_sources.laws import NAMES
 
 SUPPORT = "cam: {kind: support, p: 9}\n"
 KEYS = (

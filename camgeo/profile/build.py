@@ -134,7 +134,7 @@ def _transmission(cam: DoubleRollerCam | FlatPairCam) -> Transmission:
 
 
 def _programme(segments: Sequence[MotionSegment], total: float, field: str, around: int | None = None) -> Programme:
-    from kin.motion_sources import programme
+    from kin.motion_sources.programme import programme
 
     steps = [segment.step(f"{field}[{i}]") for i, segment in enumerate(segments)]
     return programme(steps, total, around=around, field=field)

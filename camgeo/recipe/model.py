@@ -103,7 +103,8 @@ class MotionSegment:
         """
         from kin.formula import Formula
         from kin.law import IntentError
-        from kin.motion_sources import Dwell, Given, Matched, Move, RiseAndFall, State, split
+        from kin.motion_sources.laws import split
+        from kin.motion_sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State
 
         if self.kind == "dwell":
             return Dwell(self.over)
@@ -125,7 +126,7 @@ class MotionSegment:
 
     def _law(self, field: str) -> kin.law.Law:
         from kin.law import polynomial_law
-        from kin.motion_sources import named, scca
+        from kin.motion_sources.laws import named, scca
 
         if isinstance(self.law, str):
             return named(self.law)

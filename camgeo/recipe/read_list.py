@@ -78,7 +78,7 @@ def read_harmonics(reader: Reader, field: Field, node: Node, path: str) -> tuple
 def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple[float, ...] | SccaLaw | None:
     """Read the name of a motion law, the coefficients of a polynomial, or the shares of a member of the SCCA family."""
     from kin.law import IntentError, polynomial_law
-    from kin.motion_sources import NAMES, scca
+    from kin.motion_sources.laws import NAMES, scca
 
     names = (*NAMES, MATCH)
     if isinstance(node, Scalar):

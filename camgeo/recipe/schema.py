@@ -155,6 +155,6 @@ def _below(field: Field) -> Table:
 
 
 def _laws() -> tuple[str, ...]:
-    from kin.motion_sources import NAMES
+    from kin.motion_sources.laws import NAMES
 
     return (*NAMES, MATCH)

@@ -10,7 +10,7 @@ from camgeo import pipeline
 from camgeo.cli import main
 from camgeo.recipe import read
 from kin.expression import FUNCTIONS
-from kin.motion_sources import NAMES
+from kin.motion_sources.laws import NAMES
 
 PAGES = ("README.md", *(f"docs/{name}.md" for name in ("recipe", "linkages", "manufacture", "mechanism", "sweep")))
 
