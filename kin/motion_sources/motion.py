@@ -18,7 +18,6 @@ from kin.stretch import Affine, Constant
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.jet import BallJet, Jet
     from kin.stretch import Series, Stretch
 
 Array = NDArray[np.float64]
@@ -202,17 +201,3 @@ def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | N
         kept.append(function)
         at.append(float(end))
     return Motion(Piecewise(np.array(at), tuple(kept)), around)
-
-
-def jet_over(motion: Motion, lower: float | Array, upper: float | Array, order: int) -> BallJet:
-    """Proved Taylor coefficients of S over intervals [lower, upper]."""
-    from kin.jet import BallJet
-
-    return motion.on(BallJet.variable(lower, upper, order))
-
-
-def jet_at(motion: Motion, theta: float | Array, order: int, side: Side = 1) -> Jet:
-    """Taylor coefficients of S at points."""
-    from kin.jet import Jet
-
-    return motion.on(Jet.variable(theta, order), side)
