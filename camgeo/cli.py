@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo import laws as laws_command
 from camgeo.batch import Task, result, results
 from camgeo.mixture import mixtures
 from camgeo.page import command as page_command
@@ -119,8 +120,8 @@ def _parser() -> argparse.ArgumentParser:
     study_command.add_arguments(study)
     report = command("report", page_command.run, "A page to look at: the mechanism turning, its curves, its checks.")
     page_command.add_arguments(report)
-    laws = command("laws", _laws, "The motion laws with their peak velocity, acceleration and jerk.")
-    laws.add_argument("--json", action="store_true", help="as JSON, for machines")
+    laws = command("laws", laws_command.run, "The motion laws with their peak velocity, acceleration and jerk.")
+    laws_command.add_arguments(laws)
     command("schema", _schema, "The recipe's JSON schema.")
     return parser
 
@@ -355,29 +356,6 @@ def _new(arguments: argparse.Namespace) -> int:
     except OSError as error:
         _complain(f"{escaped(arguments.file)}: {error.strerror}")
         return SURROUNDINGS
-    return OK
-
-
-def _laws(arguments: argparse.Namespace) -> int:
-    """Print the laws' peaks for unit stroke over unit time."""
-    from kin.law import LAWS
-
-    if arguments.json:
-        from camgeo.report.document import encoded
-
-        rows = [
-            {"law": law.name, "velocity": p.velocity, "acceleration": p.acceleration, "jerk": p.jerk}
-            for law in LAWS.values()
-            for p in (law.peaks,)
-        ]
-        say_json(encoded(rows))
-        return OK
-    width = max(map(len, LAWS))
-    print(f"{'law'.ljust(width)}  velocity  acceleration      jerk   (peaks for unit stroke over unit time)")
-    for law in LAWS.values():
-        p = law.peaks
-        print(f"{law.name.ljust(width)}  {p.velocity:8.6f}  {p.acceleration:12.6f}  {p.jerk:8.6g}")
-    print("\nalso: {polynomial: [c0, c1, ...]} in u, from 0 to 1")
     return OK
 
 

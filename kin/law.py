@@ -55,11 +55,15 @@ class Peaks:
 
 @dataclass(frozen=True)
 class Law:
-    """A normalised motion law s(u) on [0, 1] with its peaks."""
+    """A normalised motion law s(u) on [0, 1] with its peaks.
+
+    A return falls by s(u), or with `reverses` runs the law backwards, s(1 - u): the same for a symmetric law.
+    """
 
     name: str
     motion: Piecewise
     peaks: Peaks
+    reverses: bool = False
 
     def derivatives(self, u: float | Array, order: int, side: int = 1) -> Array:
         """Give s and its derivatives by u, (order + 1, n), at u (n,) in [0, 1]; `side` as for `Piecewise`."""
@@ -67,7 +71,7 @@ class Law:
 
 
 @dataclass(frozen=True)
-class _Polynomial:
+class Polynomial:
     """Sum of coefficient[k] (u - centre)**k, by Horner's scheme."""
 
     coefficients: tuple[float, ...]
@@ -83,7 +87,7 @@ class _Polynomial:
 
 
 @dataclass(frozen=True)
-class _Run:
+class Run:
     """Displacement under a given acceleration: s and s' at `start`, then peak sin(rate x), peak cos(rate x) or peak."""
 
     start: float
@@ -112,7 +116,7 @@ def first_harmonic(stretch: Affine) -> tuple[float, float, float] | None:
     That is the harmonic law over a half turn: the eccentric, of which the radius of curvature is constant.
     """
     run = stretch.function
-    if not (isinstance(run, _Run) and run.shape == "cos" and run.start == run.s == run.v == 0.0):
+    if not (isinstance(run, Run) and run.shape == "cos" and run.start == run.s == run.v == 0.0):
         return None
     if abs(run.rate / abs(stretch.width) - 1.0) > 4.0 * 2.0**-52:
         return None
@@ -120,12 +124,12 @@ def first_harmonic(stretch: Affine) -> tuple[float, float, float] | None:
     return stretch.offset + half, -half * math.cos(stretch.start), -half * math.sin(stretch.start)
 
 
-def _mirrored(function: Stretch) -> Stretch:
+def mirrored(function: Stretch) -> Stretch:
     """1 - f(1 - u): the other half of a symmetric law."""
     return Affine(function, offset=1.0, scale=-1.0, start=1.0, width=-1.0)
 
 
-def _symmetric(
+def symmetric(
     knots: Sequence[float], runs: Sequence[tuple[float, float, Literal["sin", "cos", "flat"]]], centre: bool
 ) -> Piecewise:
     """Build a law from the accelerations (peak, rate, shape) of its first half, each beginning as the last one ends.
@@ -135,10 +139,10 @@ def _symmetric(
     half: list[Stretch] = []
     s = v = 0.0
     for (begin, end), (peak, rate, shape) in zip(pairwise(knots), runs, strict=True):
-        run = _Run(begin, s, v, peak, rate, shape)
+        run = Run(begin, s, v, peak, rate, shape)
         half.append(run)
         (s,), (v,) = run(Jet.variable(end, 1)).c
-    images = [_mirrored(function) for function in reversed(half[:-1] if centre else half)]
+    images = [mirrored(function) for function in reversed(half[:-1] if centre else half)]
     first = knots[:-1] if centre else knots
     return Piecewise(np.array([*first, *(1 - u for u in reversed(knots[:-1]))]), (*half, *images))
 
@@ -151,7 +155,7 @@ def _law(
     *,
     centre: bool = True,
 ) -> Law:
-    return Law(name, _symmetric(knots, runs, centre), peaks)
+    return Law(name, symmetric(knots, runs, centre), peaks)
 
 
 def _standard_laws() -> dict[str, Law]:
@@ -194,7 +198,7 @@ def _standard_laws() -> dict[str, Law]:
 
 
 def _smooth(name: str, coefficients: Sequence[float], centre: float, peaks: Peaks) -> Law:
-    polynomial = _Polynomial(tuple(map(float, coefficients)), centre)
+    polynomial = Polynomial(tuple(map(float, coefficients)), centre)
     return Law(name, Piecewise(np.array([0.0, 1.0]), (polynomial,)), peaks)
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kin.ball import Ball, hull
 from kin.jet import BallJet, DomainError, Jet, cos, sin
 from kin.series import finite
-from kin.stretch import Affine, Round
+from kin.stretch import Affine, Power, Round
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,31 +50,67 @@ class _Group:
         """Group stretches that share a function, at `places` among `count`."""
         if not any(isinstance(member, Affine) for member in members):
             return _Group(function, None)
-        ways = np.empty((4, count))
-        for place, member in zip(places, members, strict=True):
-            ways[:, place] = _AS_IS
-            if isinstance(member, Affine):
-                ways[:, place] = member.offset, member.scale, member.start, 1 / member.width
-        return _Group(function, ways)
+        return _Group(function, _ways(members, places, count))
 
     def __call__(self, t: Series, index: Indices) -> Series:
         """Apply the function to points or intervals t (n,), each in its stretch (n,)."""
         if self.ways is None:
             return self.function(t)
-        offset, scale, start, rate = self.ways[:, index]
-        if isinstance(t, BallJet):
-            value: BallJet = self.function((t - start) * rate) * scale + offset
-            return value
-        c = t.c.copy()
-        with np.errstate(all="ignore"):
-            c[0] -= start
-            c *= rate
-            c = self.function(finite(c, "overflow")).c * scale
-            c[0] += offset
-            return finite(c, "overflow")
+        return _moved(self.function, self.ways[:, index], t)
 
 
 _AS_IS = (0.0, 1.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Powers:
+    """Stretches that are polynomials of one length, each moved its own way; `coefficients` is (k, m), lowest first."""
+
+    coefficients: Array
+    ways: Array
+
+    def __call__(self, t: Series, index: Indices) -> Series:
+        """Apply each stretch's polynomial to its points or intervals t (n,), in stretches (n,)."""
+        return _moved(_Horner(self.coefficients[:, index]), self.ways[:, index], t)
+
+
+@dataclass(frozen=True, eq=False)
+class _Horner:
+    """Polynomials by their rows of coefficients (k, n), each at its own point or interval."""
+
+    rows: Array
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give each polynomial."""
+        total = u.constant(self.rows[-1])
+        for row in self.rows[-2::-1]:
+            total = total * u + row
+        return total
+
+
+def _moved(function: Stretch, ways: Array, t: Series) -> Series:
+    """Apply a function moved in the ways (4, n) to t (n,)."""
+    offset, scale, start, rate = ways
+    if isinstance(t, BallJet):
+        value: BallJet = function((t - start) * rate) * scale + offset
+        return value
+    c = t.c.copy()
+    with np.errstate(all="ignore"):
+        c[0] -= start
+        c *= rate
+        c = function(finite(c, "overflow")).c * scale
+        c[0] += offset
+        return finite(c, "overflow")
+
+
+def _ways(members: list[Stretch], places: list[int], count: int) -> Array:
+    """Collect the ways of stretches at `places` among `count`, (4, count)."""
+    ways = np.empty((4, count))
+    for place, member in zip(places, members, strict=True):
+        ways[:, place] = _AS_IS
+        if isinstance(member, Affine):
+            ways[:, place] = member.offset, member.scale, member.start, 1 / member.width
+    return ways
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,9 +283,9 @@ class Piecewise:
         return index, np.where(on_knot, knots[near], x), turns
 
     @cached_property
-    def _groups(self) -> tuple[Indices, tuple[_Group | _Round, ...]]:
+    def _groups(self) -> tuple[Indices, tuple[_Group | _Powers | _Round, ...]]:
         """For each stretch its group, and the groups: stretches that are one function moved in several ways."""
-        found: dict[Stretch, list[int]] = {}
+        found: dict[Stretch | int, list[int]] = {}  # polynomials by their length
         owner = np.zeros(len(self.functions), dtype=np.intp)
         parts, arcs = np.zeros((3, owner.size)), []
         for i, function in enumerate(self.functions):
@@ -257,11 +293,19 @@ class Piecewise:
                 parts[:, i] = function.first_harmonic
                 arcs.append(i)
             else:
-                found.setdefault(function.function if isinstance(function, Affine) else function, []).append(i)
-        groups: list[_Group | _Round] = []
-        for number, (function, members) in enumerate(found.items()):
+                bare = _bare(function)
+                key = len(bare.coefficients) if isinstance(bare, Power) else bare
+                found.setdefault(key, []).append(i)
+        groups: list[_Group | _Powers | _Round] = []
+        for number, (shared, members) in enumerate(found.items()):
             owner[members] = number
-            groups.append(_Group.of(function, [self.functions[i] for i in members], members, owner.size))
+            stretches = [self.functions[i] for i in members]
+            if isinstance(shared, int):
+                rows = np.zeros((shared, owner.size))
+                rows[:, members] = np.transpose([_bare(f).coefficients for f in stretches])  # type: ignore[attr-defined]
+                groups.append(_Powers(rows, _ways(stretches, members, owner.size)))
+            else:
+                groups.append(_Group.of(shared, stretches, members, owner.size))
         if arcs:
             owner[arcs] = len(groups)
             groups.append(_Round(parts))
@@ -305,6 +349,10 @@ class Piecewise:
             for row, found in zip(out, _rows(part), strict=True):
                 row[:, here] = found
         return kind(*out)
+
+
+def _bare(function: Stretch) -> Stretch:
+    return function.function if isinstance(function, Affine) else function
 
 
 def _rows(t: Jet | BallJet) -> tuple[Array, ...]:

@@ -86,6 +86,20 @@ class Affine:
 
 
 @dataclass(frozen=True)
+class Power:
+    """Sum of coefficient[k] u**k by Horner's scheme; polynomials of one length are worked out together."""
+
+    coefficients: tuple[float, ...]
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the polynomial."""
+        total = u.constant(self.coefficients[-1])
+        for coefficient in self.coefficients[-2::-1]:
+            total = total * u + coefficient
+        return total
+
+
+@dataclass(frozen=True)
 class Harmonics:
     """mean + sum of a cos(k t) + b sin(k t) over the terms (k, a, b), k a whole number."""
 

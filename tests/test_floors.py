@@ -19,26 +19,28 @@ FLOORS = {
         follower
         frame roller
         deviation flat layers resting
-        envelope lift_formula mechanism steepness
-        lift transmission
-        chain formula possible read swept
-        collision read_3mf read_step
-        dyad encounter forces hole read_dxf read_stl read_svg switches transmission_law
-        drawing milled region svg_path
-        floating
+        envelope lift_formula mechanism motion_sources.programme
+        lift motion_sources.whole transmission
+        chain formula motion_sources.table_text possible read swept
+        collision motion_sources.points motion_sources.table read_3mf read_step
+        dyad encounter forces hole motion_sources.lobe motion_sources.ring read_dxf read_stl read_svg switches
+        transmission_law
+        drawing milled motion_sources.laws motion_sources.motion region svg_path
+        floating motion_sources.peaks
         bearing bouncing bounding flaws holding integrated law linkage nesting parallel roots routes step_face syntax
-        contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
+        contour dxf_entities dynamics expression frame_dwell loop motion_sources.functions motion_sources.spline
+        piecewise poses step_curve
         stretch
         biarc dwell figures jet mobility peaks pieces shape tracking
         bezier contact flight monotone motion response series turn upright
         bernstein chaining drive extremes foot guide hull instants nearest part21 read_gcode taylor triangles
         arcs ball chebyshev distinct newton oscillator read_error
-        check
+        check motion_sources
     """,
     "camgeo": """
         __main__
         cli pytest_plugin testing
-        batch page.command study.command sweep.command
+        batch laws page.command study.command sweep.command
         study.document sweep.means sweep.refine sweep.search
         study.ladder study.margins sweep.outputs sweep.run
         sweep.engines sweep.recipes sweep.table

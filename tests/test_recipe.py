@@ -32,6 +32,7 @@ from camgeo.recipe.model import (
     MotionSegment,
     ReuleauxShape,
     RosetteRoute,
+    SccaLaw,
     SupportCam,
     Verify,
 )
@@ -40,7 +41,10 @@ from camgeo.recipe.model_part import Part
 from camgeo.recipe.scalars import Complaint, read_number
 from camgeo.recipe.schema import json_schema
 from camgeo.recipe.starter import KINDS, starter
+from kin.law import IntentError
 from kin.lift import Lift
+from kin.motion_sources.laws import named as named_law
+from kin.motion_sources.programme import Dwell, Matched, RiseAndFall, State
 from kin.transmission import Transmission
 
 SHIPPED = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
@@ -359,9 +363,21 @@ def test_a_segment_gives_its_step() -> None:
         MotionSegment("return", 1.0, 2.0, (0.0, 1.0)).step(),
         MotionSegment("dwell", 1.0).step(),
     )
-    assert (named.kind, named.over, named.stroke, named.law.name) == ("rise", 1.0, 2.0, "harmonic")
+    assert (named.over, named.by, named.to, named.law.name) == (1.0, 2.0, None, "harmonic")
+    assert given_.by == -2.0
     assert given_.law.derivatives(0.25, 1)[:, 0].tolist() == [0.25, 1.0]
-    assert (rest.stroke, rest.law) == (0.0, None)
+    assert rest == Dwell(1.0)
+    to = MotionSegment("to", 1.0, 2.0, SccaLaw(0.25, 0.0, 0.2), split=0.4).step()
+    assert (to.by, to.to) == (None, 2.0)
+    assert to.law.peaks.velocity == pytest.approx(named_law("scca-20").peaks.velocity, rel=1e-12)
+    match = MotionSegment("rise", 1.0, 2.0, "match", at_end=(0.0, -3.0)).step()
+    assert match.law == Matched(at_end=State(0.0, -3.0))
+    assert MotionSegment("rise_fall", 1.0, 2.0).step() == RiseAndFall(1.0, 2.0)
+    assert MotionSegment("displacement", 1.0, formula="u**3", scale=25.4).step().scale == 25.4
+    with pytest.raises(IntentError, match="only a matched segment takes a state at its end"):
+        MotionSegment("rise", 1.0, 2.0, "cubic", at_end=(0.0, 1.0)).step("motion[3]")
+    with pytest.raises(IntentError, match="a matched segment takes no split"):
+        MotionSegment("rise", 1.0, 2.0, "match", split=0.4).step()
 
 
 # --- the shipped recipes ----------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import yaml
 from camgeo.recipe import RecipeError, RecipeErrors, load, read
 from camgeo.recipe.source import MAX_ALIASES, MAX_BYTES, MAX_DEPTH, MAX_NODES
 from kin.formula import Formula, FormulaError
-from kin.law import LAWS
+from kin.motion_sources.laws import NAMES
 
 SUPPORT = "cam: {kind: support, p: 9}\n"
 KEYS = (
@@ -556,7 +556,7 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
             [
                 (
                     "1:84: cam.motion[0].law: no such motion law, given 'xyz'; give "
-                    f"{', '.join([*LAWS][:-1])} or {[*LAWS][-1]}, or {{polynomial: [...]}}"
+                    f"{', '.join(NAMES)} or match, {{polynomial: [...]}} or {{scca: {{...}}}}"
                 )
             ],
         ),
@@ -570,16 +570,29 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
             ],
         ),
         (
+            MOTION.replace("LAW", "{scca: {sine: 0.75, constant: 0.5}}"),
+            [
+                (
+                    "1:84: cam.motion[0].law.scca: `sine` and `constant` together are at most 1, not 1.25; let `sine` "
+                    "and `constant` together be at most 1, and `velocity` below 1"
+                )
+            ],
+        ),
+        (
+            "cam: {kind: constant-breadth, base_radius: 4, motion: [{dwell: 90, split: 0.4}, {dwell: 90, at_end: {}}]}",
+            [
+                "1:75: cam.motion[0].split: cannot stand without a law; leave it out",
+                "1:101: cam.motion[1].at_end: cannot stand without a law; leave it out",
+            ],
+        ),
+        (
             MOTION.replace("LAW", "{polynomial: [0, 2, -1, 1e-310]}"),
             ["1:108: cam.motion[0].law.polynomial[3]: too small, given 1e-310; write 0, or what was meant"],
         ),
         (
             MOTION.replace("LAW", "{polynom: [0, 1]}"),
             [
-                (
-                    "1:84: cam.motion[0].law.polynomial: missing; give a list of numbers: coefficients c0, c1, "
-                    "... of u, from 0 to 1 as u does"
-                ),
+                "1:84: cam.motion[0].law: needs polynomial or scca; give exactly one of them",
                 "1:85: cam.motion[0].law.polynom: unknown key; did you mean polynomial?",
             ],
         ),
@@ -604,23 +617,27 @@ cam:
     - {table: motion.csv}
     - 7
 """
-    here = "leave it out; here it has rise, return, dwell, over and law"
+    keys = "rise, return, to, rise_fall, displacement, dwell, over, law, split and at_end"
+    kinds = "rise, return, to, rise_fall, displacement or dwell"
     assert told(body) == [
         "c.yaml:5:25: cam.motion[0].over: cannot stand beside dwell; leave it out",
-        "c.yaml:6:25: cam.motion[1].return: cannot stand beside rise; give exactly one of rise, return or dwell",
-        "c.yaml:7:7: cam.motion[2]: needs rise, return or dwell; give exactly one of them",
+        "c.yaml:6:25: cam.motion[1].return: cannot stand beside rise; give exactly one of " + kinds,
+        f"c.yaml:7:7: cam.motion[2]: needs {kinds}; give exactly one of them",
         (
             "c.yaml:8:7: cam.motion[3].over: missing beside rise; give an angle above 0 up to 180 in degrees: "
             "shaft angle of the segment"
         ),
         (
             "c.yaml:9:7: cam.motion[4].law: missing beside return; give a motion law: "
-            "motion law by name, or {polynomial: [c0, c1, ...]}"
+            "motion law by name, match, {polynomial: [c0, c1, ...]} or {scca: ...}"
         ),
         "c.yaml:9:25: cam.motion[4].over: above 180, given 200; give an angle above 0 up to 180 in degrees",
-        f"c.yaml:10:8: cam.motion[5].displacement: not available in this version; {here}",
-        f"c.yaml:11:8: cam.motion[6].table: not available in this version; {here}",
-        "c.yaml:12:7: cam.motion[7]: not a mapping, given 7; give a mapping with rise, return, dwell, over and law",
+        (
+            "c.yaml:10:7: cam.motion[5].over: missing beside displacement; give an angle above 0 up to 180 in degrees: "
+            "shaft angle of the segment"
+        ),
+        f"c.yaml:11:8: cam.motion[6].table: not available in this version; leave it out; here it has {keys}",
+        f"c.yaml:12:7: cam.motion[7]: not a mapping, given 7; give a mapping with {keys}",
     ]
 
 

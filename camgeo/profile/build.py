@@ -61,7 +61,7 @@ def intent_of(cam: Cam) -> Lift | Transmission:
     if isinstance(cam, ConstantBreadthCam):
         from kin.lift import lift_constant_breadth
 
-        return lift_constant_breadth(cam.base_radius, _programme(cam.motion, math.pi, "motion"))
+        return lift_constant_breadth(cam.base_radius, _programme(cam.motion, math.pi, "motion", around=-1))
     return _transmission(cam)
 
 
@@ -160,7 +160,8 @@ def _transmission(cam: DoubleRollerCam | FlatPairCam) -> Transmission:
     return transmission.from_rosette(cam.lam, cam.mu, cam.arm, leaf, route.scale)
 
 
-def _programme(segments: Sequence[MotionSegment], total: float, field: str) -> Programme:
-    from kin.law import programme
+def _programme(segments: Sequence[MotionSegment], total: float, field: str, around: int | None = None) -> Programme:
+    from kin.motion_sources.programme import programme
 
-    return programme([segment.step() for segment in segments], total, field)
+    steps = [segment.step(f"{field}[{i}]") for i, segment in enumerate(segments)]
+    return programme(steps, total, around=around, field=field)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.build_part import build_part
@@ -116,7 +117,7 @@ def _cam(cam: Values, mm: float) -> Cam:
         case "support":
             return SupportCam(_shape(cam, mm), cam.get("pivot", (0.0, 0.0)), undercut)
         case "constant-breadth":
-            return ConstantBreadthCam(cam["base_radius"], _motion(cam["motion"]), undercut)
+            return ConstantBreadthCam(cam["base_radius"], _motion(cam["motion"], mm), undercut)
         case "double-roller":
             lam, mu = cam["ratio"]
             return DoubleRollerCam(lam, mu, cam["arm"], cam["roller_radius"], _route(cam, mm), undercut)
@@ -139,21 +140,26 @@ def _route(cam: Values, mm: float) -> Route:
     if "delta" in cam:
         return DeltaRoute(**{"cos": (), "sin": (), **cam["delta"]})
     if "law" in cam:
-        return LawRoute(_motion(cam["law"]))
+        return LawRoute(_motion(cam["law"], math.pi / 180))
     if "arc" in cam:
         return ArcRoute(**{"side": "convex", **cam["arc"]})
     return RosetteRoute(cam["rosette"]["leaf"], mm)
 
 
-def _motion(segments: list[Values]) -> tuple[MotionSegment, ...]:
-    return tuple(map(_segment, segments))
+def _motion(segments: list[Values], scale: float) -> tuple[MotionSegment, ...]:
+    return tuple(_segment(segment, scale) for segment in segments)
 
 
-def _segment(segment: Values) -> MotionSegment:
+def _segment(segment: Values, scale: float) -> MotionSegment:
     if "dwell" in segment:
         return MotionSegment("dwell", segment["dwell"])
-    kind: Literal["rise", "return"] = "rise" if "rise" in segment else "return"
-    return MotionSegment(kind, segment["over"], segment[kind], segment["law"])
+    if "displacement" in segment:
+        return MotionSegment("displacement", segment["over"], formula=segment["displacement"], scale=scale)
+    kinds: tuple[Literal["rise", "return", "to", "rise_fall"], ...] = ("rise", "return", "to", "rise_fall")
+    kind = next(kind for kind in kinds if kind in segment)
+    end = segment.get("at_end")
+    state = None if end is None else (end.get("v", 0.0), end.get("a", 0.0))
+    return MotionSegment(kind, segment["over"], segment[kind], segment.get("law"), segment.get("split"), state)
 
 
 def _linkage(linkage: Values) -> Linkage:

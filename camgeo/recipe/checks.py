@@ -61,6 +61,10 @@ def _harmonics(cam: Values, reader: Reader) -> None:
 
 
 def _filled(segments: list[Values], path: str, angle: float, wanted: str, reader: Reader, *, why: str) -> None:
+    for i, segment in enumerate(segments):
+        for key in ("split", "at_end"):
+            if key in segment and "law" not in segment:
+                reader.fault_at(f"{path}[{i}].{key}", "cannot stand without a law", None, "leave it out")
     covered = math.fsum(segment["dwell"] if "dwell" in segment else segment["over"] for segment in segments)
     if abs(covered - angle) > _ANGLE:
         value = f"{math.degrees(covered):.10g} degrees"

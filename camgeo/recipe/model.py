@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_mechanism import MechanismAsked
     from camgeo.recipe.model_part import Part
     from camgeo.recipe.model_sweep import Sweep
+    from kin.motion_sources.programme import Step
 
 Undercut: TypeAlias = Literal["refuse", "trim"]
 Harmonics: TypeAlias = tuple[tuple[int, float], ...]  # (harmonic, coefficient), rising
@@ -65,26 +66,73 @@ Shape: TypeAlias = FormulaShape | FourierShape | ReuleauxShape | HypocycloidShap
 
 
 @dataclass(frozen=True)
+class SccaLaw:
+    """A member of the SCCA family: shares of sine and constant acceleration, and of constant velocity."""
+
+    sine: float = 0.0
+    constant: float = 0.0
+    velocity: float = 0.0
+
+
+MATCH = "match"  # the law that takes its neighbours' velocity and acceleration
+
+
+@dataclass(frozen=True)
 class MotionSegment:
     """One segment of a motion programme.
 
-    `over` in rad; `stroke` in mm for a plate, in rad for a follower that swings, 0 for a dwell. `law` is a name, or
-    the coefficients c0, c1, ... of a polynomial in u, or None for a dwell.
+    `over` in rad; `stroke` in mm for a plate, in rad for a follower that swings: of a rise, a return and a rise_fall
+    their height, of `to` the displacement at the end, 0 for a dwell. `law` is a name, the coefficients c0, c1, ... of
+    a polynomial in u, or shares. `formula` is a displacement in u, its values times `scale`. `at_end` holds v and a at
+    the end of a matched segment, per rad.
     """
 
-    kind: Literal["rise", "return", "dwell"]
+    kind: Literal["rise", "return", "to", "rise_fall", "displacement", "dwell"]
     over: float
     stroke: float = 0.0
-    law: str | tuple[float, ...] | None = None
+    law: str | tuple[float, ...] | SccaLaw | None = None
+    split: float | None = None
+    at_end: tuple[float, float] | None = None
+    formula: str = ""
+    scale: float = 1.0
 
-    def step(self) -> kin.law.Segment:
-        """Give the segment with its law looked up, as `kin.law.programme` takes it."""
-        from kin.law import Segment, law, polynomial_law
+    def step(self, field: str = "motion") -> Step:
+        """Give the segment with its law looked up, as `kin.motion_sources.programme` takes it.
 
-        if self.law is None:
-            return Segment(self.kind, self.over)
-        found = law(self.law) if isinstance(self.law, str) else polynomial_law(self.law)
-        return Segment(self.kind, self.over, self.stroke, found)
+        Raises kin's IntentError where a split or an end does not go with the law, with its field.
+        """
+        from kin.formula import Formula
+        from kin.law import IntentError
+        from kin.motion_sources.laws import split
+        from kin.motion_sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State
+
+        if self.kind == "dwell":
+            return Dwell(self.over)
+        if self.kind == "rise_fall":
+            return RiseAndFall(self.over, self.stroke)
+        if self.kind == "displacement":
+            return Given(self.over, Formula(self.formula, ("u",)), self.scale)
+        by = {"rise": self.stroke, "return": -self.stroke}.get(self.kind)
+        to = self.stroke if self.kind == "to" else None
+        if self.law == MATCH:
+            if self.split is not None:
+                raise IntentError("a matched segment takes no split", f"{field}.split")
+            state = None if self.at_end is None else State(*self.at_end)
+            return Move(self.over, Matched(at_end=state), by, to)
+        if self.at_end is not None:
+            raise IntentError("only a matched segment takes a state at its end", f"{field}.at_end")
+        law = self._law(field)
+        return Move(self.over, law if self.split is None else split(law, self.split, field), by, to)
+
+    def _law(self, field: str) -> kin.law.Law:
+        from kin.law import polynomial_law
+        from kin.motion_sources.laws import named, scca
+
+        if isinstance(self.law, str):
+            return named(self.law)
+        if isinstance(self.law, SccaLaw):
+            return scca(self.law.sine, self.law.constant, self.law.velocity, f"{field}.law.scca")
+        return polynomial_law(self.law or (), f"{field}.law")
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.errors import shown, suggestion
+from camgeo.recipe.model import MATCH, SccaLaw
 from camgeo.recipe.source import Mapping, Scalar, Sequence, described, entries, is_empty, join, keys
 from camgeo.recipe.spec import (
     MOST,
@@ -74,19 +75,29 @@ def read_harmonics(reader: Reader, field: Field, node: Node, path: str) -> tuple
     return tuple(sorted(read.items()))
 
 
-def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple[float, ...] | None:
-    """Read the name of a motion law, or the coefficients of a polynomial."""
-    from kin.law import LAWS, IntentError, polynomial_law
+def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple[float, ...] | SccaLaw | None:
+    """Read the name of a motion law, the coefficients of a polynomial, or the shares of a member of the SCCA family."""
+    from kin.law import IntentError, polynomial_law
+    from kin.motion_sources.laws import NAMES, scca
 
-    names = tuple(LAWS)
+    names = (*NAMES, MATCH)
     if isinstance(node, Scalar):
-        if node.text in LAWS:
+        if node.text in names:
             return node.text
-        remedy = suggestion(node.text, names) or f"give {either(names)}, or {{polynomial: [...]}}"
+        remedy = suggestion(node.text, names) or f"give {either(names)}, {{polynomial: [...]}} or {{scca: {{...}}}}"
         reader.fault(node.mark, path, "no such motion law", shown(node.text), remedy)
         return None
-    values = reader.mapping(field, node, path)
-    coefficients: tuple[float, ...] | None = values.get("polynomial") if values else None
+    values = reader.mapping(field, node, path) or {}
+    if "scca" in values:
+        shares = SccaLaw(**values["scca"])
+        try:
+            scca(shares.sine, shares.constant, shares.velocity)
+        except IntentError as error:
+            remedy = "let `sine` and `constant` together be at most 1, and `velocity` below 1"
+            reader.fault(node.mark, join(path, "scca"), error.message, None, remedy)
+            return None
+        return shares
+    coefficients: tuple[float, ...] | None = values.get("polynomial")
     if coefficients is None:
         return None
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
+from camgeo.recipe.model import MATCH
 from camgeo.recipe.spec import (
     MOST,
     MOST_AXES,
@@ -155,6 +156,6 @@ def _below(field: Field) -> Table:
 
 
 def _laws() -> tuple[str, ...]:
-    from kin.law import LAWS
+    from kin.motion_sources.laws import NAMES
 
-    return tuple(LAWS)
+    return (*NAMES, MATCH)

@@ -11,27 +11,65 @@ def _odd(name: str, about: str) -> Field:
     return Field(name, Kind.INTEGER, about, required=True, at_least=3, at_most=99, odd=True)
 
 
-POLYNOMIAL = Table(
-    (Field("polynomial", Kind.NUMBERS, "coefficients c0, c1, ... of u, from 0 to 1 as u does", required=True),)
+_LAW = Table(
+    (
+        Field("polynomial", Kind.NUMBERS, "coefficients c0, c1, ... of u, from 0 to 1 as u does"),
+        mapping(
+            "scca",
+            "sine, constant and cosine acceleration by their shares, and constant velocity",
+            Field("sine", Kind.NUMBER, "share of sine in the accelerating half", default="0", at_least=0, at_most=1),
+            Field("constant", Kind.NUMBER, "share of constant acceleration", default="0", at_least=0, at_most=1),
+            Field(
+                "velocity", Kind.NUMBER, "share of the segment at constant velocity", default="0", at_least=0, at_most=1
+            ),
+        ),
+    ),
+    alternatives=(("polynomial", ()), ("scca", ())),
 )
 
 
 def _motion(name: str, stroke: Kind, about: str) -> Field:
     """Make the field of a motion programme whose strokes are lengths or angles."""
-    strokes = [
-        Field(key, stroke, f"stroke of the {key}", above=0, at_most=MOST if stroke is Kind.LENGTH else 180)
-        for key in ("rise", "return")
-    ]
+    most = MOST if stroke is Kind.LENGTH else 180
+    strokes = [Field(key, stroke, f"stroke of the {key}", above=0, at_most=most) for key in ("rise", "return")]
     angle = Field("over", Kind.ANGLE, "shaft angle of the segment", above=0, at_most=180)
     segment = Table(
         (
             *strokes,
+            Field("to", stroke, "displacement at the end of the segment", at_least=-most, at_most=most),
+            Field("rise_fall", stroke, "height of a rise and fall by 64 u³ (1 - u)³", above=0, at_most=most),
+            Field(
+                "displacement",
+                Kind.FORMULA,
+                "displacement from the segment's start, u from 0 to 1 over the segment",
+                variable="u",
+                unit=stroke,
+            ),
             replace(angle, name="dwell", about="shaft angle of a rest"),
             angle,
-            Field("law", Kind.LAW, "motion law by name, or {polynomial: [c0, c1, ...]}", table=POLYNOMIAL),
+            Field("law", Kind.LAW, "motion law by name, match, {polynomial: [c0, c1, ...]} or {scca: ...}", table=_LAW),
+            Field(
+                "split",
+                Kind.NUMBER,
+                "share of the segment that accelerates",
+                default="0.5",
+                at_least=0.01,
+                at_most=0.99,
+            ),
+            mapping(
+                "at_end",
+                "state at the end of a segment with law match",
+                Field("v", stroke, "velocity there, per radian", default="0", at_least=-MOST, at_most=MOST),
+                Field("a", stroke, "acceleration there, per radian²", default="0", at_least=-MOST, at_most=MOST),
+            ),
         ),
-        alternatives=(("rise", ("over", "law")), ("return", ("over", "law")), ("dwell", ())),
-        later=("displacement", "table"),
+        alternatives=(
+            *((key, ("over", "law")) for key in ("rise", "return", "to")),
+            ("rise_fall", ("over",)),
+            ("displacement", ("over",)),
+            ("dwell", ()),
+        ),
+        later=("table",),
     )
     return Field(name, Kind.SEGMENTS, about, table=segment)
 

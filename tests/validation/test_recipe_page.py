@@ -10,7 +10,7 @@ from camgeo import pipeline
 from camgeo.cli import main
 from camgeo.recipe import read
 from kin.expression import FUNCTIONS
-from kin.law import LAWS
+from kin.motion_sources.laws import NAMES
 
 PAGES = ("README.md", *(f"docs/{name}.md" for name in ("recipe", "linkages", "manufacture", "mechanism", "sweep")))
 
@@ -64,7 +64,7 @@ def test_the_page_has_no_table_besides():
 
 def test_the_page_names_every_law_and_function():
     text = recipe_page.PAGE.read_text(encoding="utf-8")
-    assert [name for name in LAWS if f"`{name}`" not in text] == []
+    assert [name for name in NAMES if f"`{name}`" not in text] == []
     functions = re.search(r"the functions `(.*?)`", text, re.DOTALL)
     assert functions
     assert sorted(functions[1].split()) == sorted(FUNCTIONS)
