@@ -5,12 +5,12 @@ import re
 import zipfile
 from dataclasses import replace
 
-import lib3mf
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from parts import failures, files_of, recipe_of
+from support.heavy import lib3mf
+from support.parts import failures, files_of, recipe_of
 
 from camgeo import testing
 from camgeo.cli import main

@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from camgeo.cli import main
 
-RECIPES = Path(__file__).parents[1] / "recipes"
+if TYPE_CHECKING:
+    from pathlib import Path
+
 GOOD = """\
 cam: {kind: support, p: 25 + 2*cos(3*t)}
 part: {thickness: 8, bore: 10}

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import affinity
+from support.heavy import shapely
+from support.places import RECIPES
 
 import kin.collision
 import kin.region
@@ -22,8 +21,6 @@ from kin.encounter import Encounter, Relative, rates, see
 from kin.poses import Formula, Sampled, Still, Turning
 from kin.read import read_drawing
 from kin.swept import swept_box, swept_radius
-
-RECIPES = Path(__file__).parents[1] / "recipes"
 
 
 def disc(x, y, r):
@@ -252,6 +249,8 @@ def polygon(contour, holes=()):
 
 
 def placed(shape, pose):
+    from shapely import affinity
+
     return affinity.translate(affinity.rotate(shape, pose[2], origin=(0, 0), use_radians=True), pose[0], pose[1])
 
 

@@ -5,8 +5,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-import shapely
-import trimesh
+from support.heavy import shapely, trimesh
 
 from camgeo import pipeline
 from camgeo.cli import main

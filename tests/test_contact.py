@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-import shapely
-from camfiles import arcs_through, circle_points, roller_points, support_points
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.camfiles import arcs_through, circle_points, roller_points, support_points
+from support.heavy import shapely
 
 from kin.arcs import unit
 from kin.contact import LEADING, TRAILING, Arm, dilated, first_contact

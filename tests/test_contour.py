@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import BSpline
+from support.heavy import interpolate
 
 from kin.arcs import unit
 from kin.bearing import bearing_of
@@ -361,7 +361,7 @@ def test_spline_spans_are_the_spline(degree: int, clamped: bool) -> None:
     beziers = Beziers.from_spline(degree, knots, control, np.ones(count))
     domain = np.unique(knots[degree : count + 1])
     assert beziers.count == len(domain) - 1
-    curve = BSpline(knots, control, degree)
+    curve = interpolate.BSpline(knots, control, degree)
     for share in (0.0, 0.21, 0.5, 0.83, 1.0):
         at = domain[:-1] + share * np.diff(domain)
         points = beziers.point(np.arange(beziers.count), np.full(beziers.count, share))
@@ -443,14 +443,13 @@ def test_a_cut_into_halves_keeps_area_and_length() -> None:
 
 def rose(size: float = 1.0) -> Contour:
     """The cam of p = 25 + 2 cos 3t as a periodic quintic through 60 points; radius of curvature 9 to 41 mm."""
-    from scipy.interpolate import make_interp_spline
 
     t = np.linspace(0.0, 2.0 * np.pi, 61)
     p, slope = 25.0 + 2.0 * np.cos(3.0 * t), -6.0 * np.sin(3.0 * t)
     points = p[:, None] * unit(t) + slope[:, None] * unit(t + np.pi / 2.0)
     points *= size
     points[-1] = points[0]
-    spline = make_interp_spline(t, points, k=5, bc_type="periodic")
+    spline = interpolate.make_interp_spline(t, points, k=5, bc_type="periodic")
     beziers = Beziers.from_spline(5, spline.t, spline.c, np.ones(len(spline.c)))
     beziers.control[-1, -1] = beziers.control[0, 0]
     return Contour.from_pieces(turning(beziers))

@@ -6,7 +6,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-import shapely
+from support.heavy import shapely
 
 from camgeo import pipeline
 from camgeo.causes import UndercutError

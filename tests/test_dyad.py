@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from linkage_oracle import judged_dyad, ratio
+from support.linkage_oracle import judged_dyad, ratio
 
 from kin.dyad import RPR, RRP, RRR, BindingError, Link, coupler, output_link
 from kin.jet import Jet

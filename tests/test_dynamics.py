@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from dynamics_oracle import Cycloid, Oracle, harmonic
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.dynamics_oracle import Cycloid, Oracle, harmonic
 
 from kin.chebyshev import DEGREE, DERIVATIVE, INTEGRAL, NODES, evaluated, fitted
 from kin.drive import Drive, DriveError, drives

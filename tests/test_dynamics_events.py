@@ -2,11 +2,12 @@
 
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
-from dynamics_oracle import Cycloid
+from support.dynamics_oracle import Cycloid
+from support.integrated import integrated
+from support.places import ROOT
 from test_dynamics import Harmonic, Saw
 
 from camgeo.design import designed, intended
@@ -18,10 +19,8 @@ from kin.dynamics import DynamicsError, Train, steady
 from kin.floating import float_speed
 from kin.holding import Look, Range
 from kin.instants import FREE, LOWER, UPPER, Work, crossing
-from kin.integrated import integrated
 
 TURN = 2.0 * math.pi
-ROOT = Path(__file__).parents[1]
 
 
 class Still:

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-import shapely
-from camfiles import circle_points, pitch_polar, roller_points, support_points
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from scipy.spatial import cKDTree
+from support.camfiles import circle_points, pitch_polar, roller_points, support_points
+from support.heavy import shapely, spatial
 
 from kin.arcs import unit
 from kin.contour import Contour
@@ -201,7 +200,7 @@ def test_deviation_from_a_roller_envelope_by_dense_distances(name):
     found = deviation(contour.as_arcs()[0], envelope)
     exact = samples(envelope, 400_000)
     sample = contour.sample(400)
-    distance, _ = cKDTree(exact).query(sample)
+    distance, _ = spatial.cKDTree(exact).query(sample)
     polygon = shapely.Polygon(exact)
     shapely.prepare(polygon)
     signed = np.where(shapely.contains_xy(polygon, *sample.T), -distance, distance)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.places import RECIPES
 
 from camgeo.curve import Curve
 from camgeo.design import designed
@@ -31,7 +32,6 @@ from kin.lift import lift_from_fourier, lift_hypocycloid
 from kin.lift_formula import lift_from_formula
 from kin.read_dxf import read_dxf
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 POLYNOMIALS = ["as-figure-1", "as-figure-2a", "as-figure-2b", "as-figure-2d", "fourier", "hypocycloid", "rabinowitz"]
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 import tomllib
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[1]
+if TYPE_CHECKING:
+    from pathlib import Path
 
 # Top floor first. A module imports from floors below its own only; neighbours on one floor do not import each other.
 FLOORS = {
@@ -26,7 +28,7 @@ FLOORS = {
         dyad encounter forces hole read_dxf read_stl read_svg switches transmission_law
         drawing milled region svg_path
         floating
-        bearing bouncing bounding flaws holding integrated law linkage nesting parallel roots routes step_face syntax
+        bearing bouncing bounding flaws holding law linkage nesting parallel roots routes step_face syntax
         contour dxf_entities dynamics expression frame_dwell loop piecewise poses step_curve
         stretch
         biarc dwell figures jet mobility peaks pieces shape

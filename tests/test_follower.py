@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from camfiles import arcs_through, circle_points, roller_points, support_points
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.camfiles import arcs_through, circle_points, roller_points, support_points
 
 from kin.arcs import unit
 from kin.contour import Contour

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from camfiles import arcs_through, support_points
-from sensitivity import sensitivity
-from square_frame import CENTRED, RESTS, Bars, Bench
+from support.camfiles import arcs_through, support_points
+from support.sensitivity import sensitivity
+from support.square_frame import CENTRED, RESTS, Bars, Bench
 
 from kin.bearing import bearing_of
 from kin.contour import Contour

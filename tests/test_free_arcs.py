@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import mpmath
 import numpy as np
 import pytest
+from support.places import RECIPES
 
 from camgeo.curve import Curve
 from camgeo.fit import arcs as fitting
@@ -33,7 +33,6 @@ from kin.transmission import from_arc, from_delta
 if TYPE_CHECKING:
     from camgeo.fit.pieces import ArcSpline
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 ARM = 60.0
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from support.heavy import shapely
 
 from camgeo import pipeline
 from camgeo.cli import main

@@ -12,7 +12,7 @@ from collections import defaultdict
 
 import numpy as np
 import pytest
-from linkage_oracle import NAMES, discriminant, judged_linkage, ratio
+from support.linkage_oracle import NAMES, discriminant, judged_linkage, ratio
 
 from kin.jet import Jet
 from kin.lift import lift_hypocycloid, lift_reuleaux

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from support.places import RECIPES
 
 from camgeo import pipeline
 from camgeo.design import designed
@@ -23,7 +24,6 @@ from kin.monotone import RoughError
 if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 FOUR_BAR = """\
 name: four-bar
 cam:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from sensitivity import sensitivity
+from support.sensitivity import sensitivity
 
 from kin.dyad import RPR, RRP, RRR
 from kin.extremes import extremes

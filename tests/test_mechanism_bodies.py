@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 from functools import cache
 from itertools import combinations, pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.model import Recipe
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 FIT = 0.002  # mm
 FLATTENED = 0.0005  # mm by which a shapely polygon of an outline is off, about
 PART = "part: {thickness: 8, bore: 8}\nexport: {files: [{3mf: {parts: all}}]}\n"

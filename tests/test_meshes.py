@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-import trimesh
+from support.heavy import trimesh
 
 from camgeo.bodies.body import Plate, PrintBody
 from camgeo.bodies.build import assembly_of

@@ -17,7 +17,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
-from pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
+from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
 
 from camgeo.cli import main
 from camgeo.design import designed

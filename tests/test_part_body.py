@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from parts import CAM, found, recipe_of
+from support.parts import CAM, found, recipe_of
 
 from camgeo.foreseen import foreseen
 from camgeo.part.body import body_of

@@ -7,13 +7,12 @@ import sys
 from pathlib import Path
 
 import ezdxf
-import manifold3d
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from parts import CAM, files_of, found, recipe_of
+from support.heavy import manifold3d, trimesh
+from support.parts import CAM, files_of, found, recipe_of
 
 from camgeo.cli import main
 from camgeo.files.prism import loop_polygon
@@ -127,7 +126,7 @@ import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[2])
 sys.modules["manifold3d"] = None
-from parts import files_of, recipe_of
+from support.parts import files_of, recipe_of
 part = "{thickness: 8, bore: 12, keyway: din6885, bolts: {count: 5, circle: 32, hole: 4}, mark: {as: cut, width: 1}}"
 files_of(recipe_of(part), Path(sys.argv[1]))
 """

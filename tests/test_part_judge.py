@@ -6,7 +6,7 @@ from dataclasses import replace
 import ezdxf
 import numpy as np
 import pytest
-from parts import failures, files_of, recipe_of
+from support.parts import failures, files_of, recipe_of
 
 from camgeo.design import intended
 from kin.contour import Contour

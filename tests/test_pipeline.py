@@ -5,12 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import replace
-from pathlib import Path
+from typing import TYPE_CHECKING
 from unittest import mock
 
 import ezdxf
 import numpy as np
 import pytest
+from support.places import SHIPPED as RECIPES
 
 from camgeo import pipeline
 from camgeo.design import Clock, designed
@@ -19,7 +20,9 @@ from camgeo.recipe.load import load, read
 from camgeo.recipe.model import FileRequest
 from kin.judge import SPLINE_ERROR
 
-RECIPES = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
+if TYPE_CHECKING:
+    from pathlib import Path
+
 UNDERCUT = b"""\
 cam: {kind: support, p: 10 + 2*cos(3*t)%s}
 part: {thickness: 5}

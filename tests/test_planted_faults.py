@@ -7,7 +7,7 @@ one that contact cannot feel must be seen in the contour.
 import ezdxf
 import numpy as np
 import pytest
-from camfiles import (
+from support.camfiles import (
     arcs_through,
     circle_points,
     roller_points,

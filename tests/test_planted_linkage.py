@@ -8,7 +8,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from camfiles import arcs_through, circle_points, solid_triangles, support_points, write_dxf, write_stl
+from support.camfiles import arcs_through, circle_points, solid_triangles, support_points, write_dxf, write_stl
 
 from kin.dyad import RRR
 from kin.follower import Yoke

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from shapes import booth
+from support.shapes import booth
 
 from camgeo.curve import Curve
 from camgeo.manufacture.cutter import Backwards

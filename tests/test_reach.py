@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
-from shapes import PEAR, Polar, booth, waves
+from support.shapes import PEAR, Polar, booth, waves
 
 from camgeo.curve import Bounds, Curve, CurveError, Frame
 from camgeo.offset import Parallel

@@ -14,6 +14,7 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from support.places import SHIPPED
 
 from camgeo.profile.build import intent_of, profile_of
 from camgeo.recipe import Recipe, RecipeErrors, load, read
@@ -43,7 +44,6 @@ from camgeo.recipe.starter import KINDS, starter
 from kin.lift import Lift
 from kin.transmission import Transmission
 
-SHIPPED = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
 MM = 25.4
 DEG = math.pi / 180
 

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 import re
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from support.places import SHIPPED
 
 from camgeo.recipe import RecipeErrors, load_text
 from camgeo.recipe.edit import spelled, with_values, without
 from camgeo.recipe.scalars import read_number
 from camgeo.recipe.source import Scalar, read_source, scalars
 
-SHIPPED = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
+if TYPE_CHECKING:
+    from pathlib import Path
 
 TEXT = """\
 # a four-bar   é 😀

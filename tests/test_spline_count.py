@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-from shapes import booth
+from support.places import RECIPES
+from support.shapes import booth
 
 from camgeo import pipeline
 from camgeo.curve import Curve
@@ -24,7 +24,6 @@ from camgeo.recipe.load import load_text
 from camgeo.study.least import least_pieces, least_spline
 from kin.lift import lift_from_fourier, lift_reuleaux
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 # one recipe for each contour that is shipped
 CONTOURS = [
     "as-figure-1", "as-figure-2a", "as-figure-2b", "as-figure-2c", "as-figure-2d", "fourier", "hypocycloid",

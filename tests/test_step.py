@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from parts import CAM, failures, files_of
+from support.parts import CAM, failures, files_of
 
 from camgeo.cli import main
 from camgeo.design import designed

@@ -4,12 +4,11 @@ import math
 from collections import Counter
 from fractions import Fraction
 
-import manifold3d
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from support.heavy import manifold3d, trimesh
 
 from camgeo.files import stl
 from camgeo.files.precision import SINGLE

@@ -11,8 +11,8 @@ import time
 from contextlib import suppress
 
 import pytest
-import sets
-from sets import NAME, STEPS, export, names_of, write
+from support import sets
+from support.sets import NAME, STEPS, export, names_of, write
 
 from camgeo.store import Run, SurroundingsError
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.places import RECIPES
 
 from camgeo import cli
 from camgeo.design import designed
@@ -15,8 +16,6 @@ from camgeo.recipe.load import load, read
 from camgeo.study.ladder import Ended, Rung, climb
 from camgeo.study.least import least_pieces
 from camgeo.study.margins import Margin, margins
-
-RECIPES = Path(__file__).parents[1] / "recipes"
 
 
 def named(recipe_name: str) -> dict[str, Margin]:

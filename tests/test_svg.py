@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from parts import CAM, failures
+from support.parts import CAM, failures
 
 from camgeo.cli import main
 from camgeo.design import designed, intended

@@ -14,7 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from sweepers import FOUR_BAR, MEANS
+from support.sweepers import FOUR_BAR, MEANS
 
 from camgeo.cli import main
 from camgeo.sweep import command, search
@@ -22,7 +22,7 @@ from camgeo.sweep import command, search
 FIRST = "dwell 49.7 deg, dwell-relative 24.85 deg, margin 3.83333 mm"
 RUN = """\
 import sys
-from sweepers import MEANS
+from support.sweepers import MEANS
 from camgeo.cli import main
 from camgeo.sweep import command
 if __name__ == "__main__":

@@ -13,11 +13,12 @@ import threading
 import time
 from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from distributed import LocalCluster
-from sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
+from support.heavy import distributed
+from support.sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
 
 from camgeo.recipe.load import read
 from camgeo.sweep import engines
@@ -29,10 +30,13 @@ from camgeo.sweep.run import How, chunks_of, compute
 from camgeo.sweep.search import search
 from camgeo.sweep.store import decode
 
+if TYPE_CHECKING:
+    from distributed import LocalCluster
+
 RUN = """\
 import sys
 from pathlib import Path
-from sweepers import MEANS, ask
+from support.sweepers import MEANS, ask
 from camgeo.sweep.run import How
 from camgeo.sweep.search import search
 if __name__ == "__main__":
@@ -42,7 +46,7 @@ if __name__ == "__main__":
 
 @pytest.fixture(scope="module")
 def cluster():
-    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster:
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster:
         yield cluster
 
 
@@ -193,7 +197,7 @@ def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(engines, "_PATIENCE", 0.5)
     monkeypatch.setattr(engines, "_WORKERLESS", 2)
     with (
-        LocalCluster(n_workers=0, dashboard_address=":0") as empty,
+        distributed.LocalCluster(n_workers=0, dashboard_address=":0") as empty,
         pytest.raises(engines.EngineError, match="has no workers"),
     ):
         next(engines.dask(job(), [0], empty.scheduler_address))

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from shapes import PEAR, STAR, Moved, booth, waves
+from support.heavy import shapely
+from support.shapes import PEAR, STAR, Moved, booth, waves
 
 from camgeo.causes import UndercutError
 from camgeo.curve import Curve

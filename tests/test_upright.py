@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from camfiles import circle_points, roller_points, solid_triangles, support_points, write_stl
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_stl
 
 from kin.contour import Contour
 from kin.follower import DoubleRoller, Yoke
