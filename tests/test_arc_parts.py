@@ -55,6 +55,7 @@ def test_near_rounding_arcs_are_found_at_once(name, roundings, monkeypatch):
     assert found.count <= 1.01 * seen.free[0]
 
 
+@pytest.mark.slow
 def test_arcs_grow_as_the_third_root_of_the_tolerance_down_to_the_floor():
     curve = curve_of("w-ellipse")
     unit = rounding(curve.size)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples, few
 from support.heavy import shapely
 from support.places import RECIPES
 
@@ -269,7 +270,7 @@ def brute(one, other):
 
 
 @pytest.mark.slow
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(st.integers(0, 100_000))
 def test_against_brute_force(seed):
     rng = np.random.default_rng(seed)
@@ -295,7 +296,7 @@ def test_against_brute_force(seed):
         assert gap[-1] == pytest.approx(found.least, abs=chords)
 
 
-@pytest.mark.parametrize(("parts", "finest", "few"), [(24, 2, math.inf), (4, 0, 0), (8, 6, math.inf)])
+@pytest.mark.parametrize(("parts", "finest", "few"), few([(24, 2, math.inf), (4, 0, 0), (8, 6, math.inf)], 3, first=1))
 def test_how_finely_outlines_are_cut_decides_nothing_but_the_time(monkeypatch, parts, finest, few):
     def found():
         return [

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 from support.heavy import interpolate
 
 from kin.arcs import unit
@@ -223,7 +224,7 @@ def lumpy(draw: st.DrawFn) -> tuple[np.ndarray, np.ndarray]:
 
 
 @given(lumpy())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_support_bounds_every_point_and_is_reached(shape: tuple[np.ndarray, np.ndarray]) -> None:
     contour = Contour.from_bulges(*shape)
     theta = np.linspace(0.0, 2.0 * np.pi, 91)
@@ -236,7 +237,7 @@ def test_support_bounds_every_point_and_is_reached(shape: tuple[np.ndarray, np.n
 
 
 @given(lumpy(), st.integers(0, 11))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_support_does_not_depend_on_how_the_contour_is_cut_or_run_through(
     shape: tuple[np.ndarray, np.ndarray], first: int
 ) -> None:
@@ -311,7 +312,7 @@ def test_ends_that_do_not_meet_are_all_counted() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=1, max_size=60))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_hull_of_points_on_a_grid(points: list[tuple[int, int]]) -> None:
     shapely = pytest.importorskip("shapely")
     given_points = np.array(points, dtype=float)
@@ -516,7 +517,7 @@ def test_a_hundred_thousand_pieces() -> None:
     assert contour.is_convex
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(seed=st.integers(0, 10_000), off=st.sampled_from([1e-13, 1e-12, 1e-11, 1e-9]))
 def test_arcs_that_a_file_rounds_bear_one_after_the_other(seed, off):
     """Thirteen digits put an arc's end beside it by more than doubles do; no arc may bear in place of the next one."""

@@ -123,6 +123,7 @@ def test_play_makes_impacts() -> None:
     assert 0.018 <= play[1]["value"] <= 0.02
 
 
+@pytest.mark.slow
 def test_turns_that_do_not_settle_are_told_by_their_range() -> None:
     cam = (
         "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}\n"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 from support.heavy import shapely
 
 from camgeo.curve import Curve
@@ -120,7 +121,7 @@ def test_wall_between_two_circles(x, y, r, s):
 OUTLINES = [keyed(5, 3, 1.4, 0.4), flattened(5, 9, -1.0), polygonal(4, 8, 0.2), slot(-4, 4, 2)]
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.sampled_from(OUTLINES), st.sampled_from(OUTLINES), st.floats(13.5, 20), st.floats(0, 6.28))
 def test_wall_between_outlines_is_that_of_fine_polygons(one, two, away, angle):
     moved = ArcSpline(two.points + away * np.array([math.cos(angle), math.sin(angle)]), two.bulges, EXACT)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from support.cases import examples, few
 from support.heavy import manifold3d, trimesh
 from support.parts import CAM, files_of, found, recipe_of
 
@@ -166,7 +167,7 @@ def covers_once(outer, holes):
     assert areas.sum() == pytest.approx(3600 - inner, rel=1e-12)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.integers(2, 9), st.integers(3, 9), st.floats(0.02, 0.9), st.randoms(use_true_random=False))
 def test_regions_with_holes_are_covered_once(count, corners, turn, random):
     cells = [(x, y) for x in (-20, 0, 20) for y in (-20, 0, 20)]
@@ -179,7 +180,7 @@ def test_regions_with_holes_are_covered_once(count, corners, turn, random):
     covers_once(SQUARE, holes)
 
 
-@pytest.mark.parametrize("corners", [3, 4, 5, 7, 24])
+@pytest.mark.parametrize("corners", few([3, 4, 5, 7, 24], 3))
 @pytest.mark.parametrize("turn", [0.0, 0.5, math.pi / 4])
 @pytest.mark.parametrize("side", [3, 5, 9])
 def test_rows_of_equal_holes_have_bridges(corners, turn, side):
@@ -341,7 +342,7 @@ def part_texts(draw):
     return "{" + ", ".join(keys) + "}"
 
 
-@settings(max_examples=14, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(14), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(part_texts(), st.sampled_from(["cw", "ccw"]))
 def test_a_part_passes_every_check_or_is_refused_by_name(tmp_path, part, rotation):
     recipe = recipe_of(part, more=f"rotation: {rotation}\n")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 from support.heavy import interpolate
 
 from camgeo.fit.pieces import ArcSpline, Bound, BSpline, Polygon
@@ -219,7 +220,7 @@ class TestSpline:
             BSpline(**(fields | change))
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.floats(max_value=0.0) | st.sampled_from([math.inf, math.nan]))
 def test_scale_must_be_positive(k):
     for outline in (

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
+from support.cases import examples
 from support.shapes import PEAR, Polar, booth, waves
 
 from camgeo.curve import Bounds, Curve, CurveError, Frame
@@ -95,7 +96,7 @@ def test_alike_necks_are_all_found():
     st.lists(st.tuples(st.integers(2, 7), st.floats(-4.0, 4.0), st.floats(0.0, 6.28)), min_size=1, max_size=3),
     st.floats(1.0, 25.0),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_no_pair_of_points_lies_closer_than_is_proved(terms, below):
     shape = waves(25.0, *terms)
     curve = pitch(shape, 0.5)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples, few
 from support.shapes import booth
 
 from camgeo.curve import Curve
@@ -47,8 +48,8 @@ def distances(curve: Curve, control: np.ndarray, low: float, high: float) -> np.
     return np.sum((points - at.point) * at.normal, axis=1)
 
 
-@pytest.mark.parametrize("name", CURVES)
-@settings(max_examples=12, deadline=None)
+@pytest.mark.parametrize("name", few(CURVES, 2))
+@settings(max_examples=examples(12), deadline=None)
 @given(
     st.floats(0, 1),
     st.floats(-3, -0.5),

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from camgeo.figures import breadth_of
 from camgeo.linkage import mechanism_of
@@ -103,7 +104,7 @@ def compute_one(recipe, given, **how):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(
     st.sampled_from(list(PATHS)),
     st.integers(-2100, 2100).map(lambda n: n / 100),

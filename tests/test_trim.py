@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 from support.heavy import shapely
 from support.shapes import PEAR, STAR, Moved, booth, waves
 
@@ -135,7 +136,7 @@ def test_three_corners_in_closed_form(a):
     st.floats(12.0, 30.0),
     st.lists(st.tuples(st.integers(2, 8), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=3),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_flat_faces_leave_the_body_of_their_half_planes(mean, terms):
     cos = {k: 8.0 * x / k**1.5 for k, x, _ in terms}
     sin = {k: 8.0 * y / k**1.5 for k, _, y in terms}
@@ -199,7 +200,7 @@ def test_a_bulb_too_small_for_the_roller_goes_with_its_neck(e):
     st.lists(st.tuples(st.integers(2, 6), st.floats(-1.0, 1.0), st.floats(0.0, 6.28)), min_size=1, max_size=3),
     st.floats(2.0, 18.0),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_any_star_is_eroded_or_refused(terms, e):
     shape = waves(30.0, *((k, 10.0 * a / k, b) for k, a, b in terms))
     whole = roller(shape, e)

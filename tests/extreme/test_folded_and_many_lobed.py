@@ -338,6 +338,7 @@ def test_a_small_roller_meets_every_corner(radius):
     assert np.abs(found[0] - psi[0]).max() < 1e-9 + 1e-2 * radius
 
 
+@pytest.mark.slow
 def test_a_hair_too_large_a_roller_on_many_lobes():
     """168 hollows and crests, each crest with a swallowtail of its own, far below what any point could show."""
     pitch = PitchShape(from_delta(8, 5, 60.0, {21: 1.408}, {}))
