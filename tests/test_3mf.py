@@ -264,6 +264,7 @@ def test_a_part_turned_and_shifted_on_the_plate_is_the_same_part(plain):
         assert failures(rewritten(path, placed(numbers)), recipe, design) == set()
 
 
+@pytest.mark.slow
 def test_a_wrong_hub_is_told_by_name(full, tmp_path):
     recipe, design, _, _ = full
     _, _, path, _ = made(FULL.replace("height: 6}", "height: 6.03}"), tmp_path)

@@ -265,6 +265,7 @@ def test_screw_and_bolts_through_the_hub_of_a_shaped_bore(tmp_path, bore):
     assert len(bolts.discrete) == 5  # hub, bore, three holes
 
 
+@pytest.mark.slow
 def test_solids_have_the_same_bytes_each_time(tmp_path):
     written = []
     for name in ("a", "b"):

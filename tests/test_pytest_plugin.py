@@ -448,6 +448,7 @@ def test_with_several_processes(project: Pytester) -> None:
     result.stdout.fnmatch_lines(["motion of poor.dxf: *", "  would do *"])
 
 
+@pytest.mark.slow
 def test_several_processes_do_not_write_one_folder(project: Pytester) -> None:
     result = run_two(project, "--camgeo-out", "kept")
     assert result.ret == pytest.ExitCode.USAGE_ERROR

@@ -403,6 +403,7 @@ def test_killed_at_any_step(tmp_path):
     assert mixed >= 5  # the moments between commit and last rename were met
 
 
+@pytest.mark.slow
 def test_killed_at_random_moments(tmp_path):
     """A process that writes one set after another is killed again and again, and goes on where it was."""
     chance = random.Random(1984)

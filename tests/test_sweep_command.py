@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from support.cases import few
 from support.sweepers import FOUR_BAR, MEANS
 
 from camgeo.cli import main
@@ -175,7 +176,7 @@ def test_a_missing_extra_exits_3_and_is_named_before_anything_is_computed(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("jobs", ["1", "2"])
+@pytest.mark.parametrize("jobs", few(["1", "2"], 2))
 def test_an_interrupted_sweep_exits_130_and_goes_on_later(jobs: str, tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)

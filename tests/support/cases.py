@@ -16,7 +16,7 @@ FULL = 100  # examples of a property test that names no number, in a full run
 
 
 def few(cases: Iterable[object], every: int = 2, *, first: int = 0) -> list[ParameterSet]:
-    """Cases for parametrisation: of `every` in a row one is run each time, at first number `first`; the others are slow."""
+    """Cases for parametrisation: of `every` in a row, number `first` runs each time and the others are slow."""
     taken = [case if isinstance(case, tuple) else (case,) for case in cases]
     return [pytest.param(*c, marks=() if i % every == first else pytest.mark.slow) for i, c in enumerate(taken)]
 
