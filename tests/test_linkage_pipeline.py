@@ -10,14 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from support.cases import few
-from support.places import RECIPES
 
 from camgeo import pipeline
 from camgeo.design import designed
-from camgeo.foreseen import foreseen
 from camgeo.recipe.errors import RecipeErrors
-from camgeo.recipe.load import load, read
+from camgeo.recipe.load import read
 from camgeo.report.document import summary
 from kin.mechanism import Mechanism
 from kin.monotone import RoughError
@@ -253,17 +250,6 @@ def test_what_cannot_be_is_refused(old: str, new: str, words: str, tmp_path: Pat
         pipeline.export(recipe(old, new), tmp_path)
     assert words in str(caught.value)
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    "name", few(["as-figure-9-2a", "six-bar", "slider-crank", "oscillating-yoke", "as-figure-13-2a"], 5, first=2)
-)
-def test_checks_are_foreseen(name: str, tmp_path: Path) -> None:
-    made = load(RECIPES / f"{name}.yaml")
-    outcome = pipeline.export(made, tmp_path)
-    assert outcome.ok
-    found = [(check["name"], check.get("file")) for check in outcome.report["checks"]]
-    assert sorted(map(str, found)) == sorted(str((item.name, item.file)) for item in foreseen(made))
 
 
 def test_an_inch_recipe_says_the_same_in_inches(tmp_path: Path) -> None:

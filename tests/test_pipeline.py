@@ -16,6 +16,7 @@ from support.places import SHIPPED as RECIPES
 
 from camgeo import pipeline
 from camgeo.design import Clock, designed
+from camgeo.foreseen import foreseen
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load, read
 from camgeo.recipe.model import FileRequest
@@ -56,6 +57,8 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
         ["report.json", *(file["path"] for file in report["files"])]
     )
     assert {"radius-of-curvature", "undercut-local", "contour", "motion", "wall"} <= set(names(report))
+    made = [(check["name"], check.get("file")) for check in report["checks"]]
+    assert sorted(map(str, made)) == sorted(str((item.name, item.file)) for item in foreseen(recipe))
     for file in report["files"]:
         data = (folder / file["path"]).read_bytes()
         assert file["bytes"] == len(data)

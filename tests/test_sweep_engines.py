@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from support.cases import few
 from support.heavy import distributed
 from support.sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
 
@@ -67,7 +68,7 @@ def hasty(scene, values):
 # --- equality ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("engine", ["processes", "as many as pay", "dask"])
+@pytest.mark.parametrize("engine", few(["processes", "as many as pay", "dask"], 3))
 def test_every_engine_writes_the_same_files(
     engine: str, cluster: LocalCluster, plain: dict[str, bytes], tmp_path: Path
 ) -> None:
@@ -338,6 +339,7 @@ def test_workers_end_with_the_run_that_is_killed(tmp_path: Path) -> None:
     assert len(calls(told)) == count < GRID.chunks
 
 
+@pytest.mark.slow
 def test_two_sweeps_at_once_do_not_disturb_each_other(plain: dict[str, bytes], tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)
@@ -349,6 +351,7 @@ def test_two_sweeps_at_once_do_not_disturb_each_other(plain: dict[str, bytes], t
     assert tree(out) == plain
 
 
+@pytest.mark.slow
 def test_a_sweep_that_grows_does_not_take_the_old_ones_chunks(tmp_path: Path) -> None:
     short = job(Plan((Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0)), "random", 640))
     long = job(Plan(short.plan.axes, "random", 1280))
