@@ -220,7 +220,7 @@ def test_fault_of_a_solid(solid, tmp_path, name):
     recipe, design, _ = solid
     was, becomes, caught = VARIANTS[name]
     assert was in SOLID
-    _, files = files_of(recipe_of(SOLID.replace(was, becomes, 1)), tmp_path)
+    _, files = files_of(recipe_of(SOLID.replace(was, becomes, 1), files="stl"), tmp_path)
     found = failures(files["stl"][0], recipe, design)
     if caught is None:
         assert found
