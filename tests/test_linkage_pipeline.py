@@ -186,6 +186,7 @@ def test_an_acceleration_that_jumps_is_no_obstacle(text: str, tmp_path: Path) ->
     assert 0.5 * error["limit"] < error["max"] <= error["limit"]
 
 
+@pytest.mark.slow
 def test_an_error_lost_in_rounding_fails_the_file_and_says_so(tmp_path: Path) -> None:
     # the block passes its pivot at a nanometre: within the tolerance it may take either side
     text = FOUR_BAR.replace("dwell: {band: 0.1, at_least: 36}\n", "")

@@ -321,6 +321,7 @@ def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
     assert tree(out) == plain
 
 
+@pytest.mark.slow
 def test_workers_end_with_the_run_that_is_killed(tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)
