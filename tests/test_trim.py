@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from support.cases import examples
+from support.cases import examples, few
 from support.heavy import shapely
 from support.shapes import PEAR, STAR, Moved, booth, waves
 
@@ -167,7 +167,7 @@ def test_swallowtails_that_run_into_each_other(mean, cos, sin, backwards, left):
     check_same(curve, dual_body(whole.shape), 2e-5)
 
 
-@pytest.mark.parametrize("name", ["parabolic", "harmonic", "modified-sine", "polynomial-345"])
+@pytest.mark.parametrize("name", few(["parabolic", "harmonic", "modified-sine", "polynomial-345"], 4))
 def test_curvature_that_jumps(name):
     whole = breadth(1.0, name)
     curve = trimmed(whole)
@@ -366,7 +366,7 @@ def on_spans(spline, count=24):
 FITS = {"polygon": (fit_polygon, on_edges), "arcs": (fit_arcs, on_arcs), "spline": (fit_spline, on_spans)}
 
 
-@pytest.mark.parametrize("form", FITS)
+@pytest.mark.parametrize("form", few(FITS, 3))
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
 def test_fits_keep_the_corners_and_their_promise(case, form, tolerance):
