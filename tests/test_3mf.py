@@ -5,12 +5,13 @@ import re
 import zipfile
 from dataclasses import replace
 
-import lib3mf
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from parts import failures, files_of, recipe_of
+from support.cases import examples
+from support.heavy import lib3mf
+from support.parts import failures, files_of, recipe_of
 
 from camgeo import testing
 from camgeo.cli import main
@@ -126,6 +127,7 @@ def test_titles_of_any_text_come_back(tmp_path):
     assert found == {"Title": 'R&D <"5">', "Description": "line line é", "Application": "camgeo"}
 
 
+@pytest.mark.slow
 def test_a_millionth_of_a_millimetre_at_a_hundred(tmp_path):
     recipe, design, path, checks = made(PLAIN, tmp_path, 1e-6, cam="cam: {kind: support, p: 100 + 3*cos(3*t)}\n")
     assert 0.0 < checks["contour"].value <= checks["contour"].limit == 1e-6
@@ -136,6 +138,7 @@ def test_a_millionth_of_a_millimetre_at_a_hundred(tmp_path):
         files_of(single, tmp_path)
 
 
+@pytest.mark.slow
 def test_a_chamfered_part_finer_than_single_precision(tmp_path):
     recipe, design, path, _ = made("{thickness: 8, bore: 10, chamfer: 0.5}", tmp_path, 2e-6)
     assert failures(path, recipe, design, 2e-6) == set()
@@ -175,7 +178,7 @@ def test_sides_are_exact_for_any_doubles():
     assert sides(a, a, c).tolist() == [0] * 200
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.integers(3, 400), st.floats(0.0, 0.9), st.floats(5.0, 90.0))
 def test_prisms_of_doubles_close_and_have_their_polygons_volume(n, hollow, size):
     t = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
@@ -261,6 +264,7 @@ def test_a_part_turned_and_shifted_on_the_plate_is_the_same_part(plain):
         assert failures(rewritten(path, placed(numbers)), recipe, design) == set()
 
 
+@pytest.mark.slow
 def test_a_wrong_hub_is_told_by_name(full, tmp_path):
     recipe, design, _, _ = full
     _, _, path, _ = made(FULL.replace("height: 6}", "height: 6.03}"), tmp_path)

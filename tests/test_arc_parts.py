@@ -1,9 +1,8 @@
 """Where thousands of arcs begin: near their places, so that few are tried and none twice. Counted, not timed."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support.places import RECIPES
 
 from camgeo.fit import arcs as fitting
 from camgeo.fit import free_arcs
@@ -12,8 +11,6 @@ from camgeo.fit.nodes import rounding
 from camgeo.fit.parts import CONSTANT, Part, refined
 from camgeo.profile.build import intent_of, profile_of
 from camgeo.recipe.load import load
-
-RECIPES = Path(__file__).parents[1] / "recipes"
 
 
 def curve_of(name):
@@ -58,6 +55,7 @@ def test_near_rounding_arcs_are_found_at_once(name, roundings, monkeypatch):
     assert found.count <= 1.01 * seen.free[0]
 
 
+@pytest.mark.slow
 def test_arcs_grow_as_the_third_root_of_the_tolerance_down_to_the_floor():
     curve = curve_of("w-ellipse")
     unit = rounding(curve.size)

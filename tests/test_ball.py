@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin import ball
 from kin.ball import Ball
@@ -118,7 +119,7 @@ def test_a_table_of_powers_holds_every_result(a: float, wa: float, part: float) 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
 @given(parts, widths, parts)
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 def test_functions_hold_every_value(name: str, place: float, width: float, part: float) -> None:
     function, exact, (least, greatest) = FUNCTIONS[name]
     a = inside(least, greatest, place)

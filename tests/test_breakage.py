@@ -8,6 +8,7 @@ import sys
 from typing import TYPE_CHECKING
 
 import pytest
+from support.cases import few
 
 from camgeo.cli import main
 from camgeo.status import SURROUNDINGS, WRONG
@@ -100,7 +101,7 @@ def test_a_number_of_processes_that_is_none_is_refused(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="closes streams as a POSIX shell does")
-@pytest.mark.parametrize(("closed", "status"), [(">&-", 0), ("2>&-", 0), (">&- 2>&-", 0)])
+@pytest.mark.parametrize(("closed", "status"), few([(">&-", 0), ("2>&-", 0), (">&- 2>&-", 0)], 3))
 def test_closed_streams_change_nothing(tmp_path: Path, closed: str, status: int) -> None:
     (tmp_path / "round.yaml").write_text("cam: {kind: support, p: '25'}\n", encoding="utf-8")
     call = f"'{sys.executable}' -m camgeo.cli export round.yaml {closed}"

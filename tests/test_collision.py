@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import affinity
+from support.cases import examples, few
+from support.heavy import shapely
+from support.places import RECIPES
 
 import kin.collision
 import kin.region
@@ -22,8 +22,6 @@ from kin.encounter import Encounter, Relative, rates, see
 from kin.poses import Formula, Sampled, Still, Turning
 from kin.read import read_drawing
 from kin.swept import swept_box, swept_radius
-
-RECIPES = Path(__file__).parents[1] / "recipes"
 
 
 def disc(x, y, r):
@@ -252,6 +250,8 @@ def polygon(contour, holes=()):
 
 
 def placed(shape, pose):
+    from shapely import affinity
+
     return affinity.translate(affinity.rotate(shape, pose[2], origin=(0, 0), use_radians=True), pose[0], pose[1])
 
 
@@ -270,7 +270,7 @@ def brute(one, other):
 
 
 @pytest.mark.slow
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(st.integers(0, 100_000))
 def test_against_brute_force(seed):
     rng = np.random.default_rng(seed)
@@ -296,7 +296,7 @@ def test_against_brute_force(seed):
         assert gap[-1] == pytest.approx(found.least, abs=chords)
 
 
-@pytest.mark.parametrize(("parts", "finest", "few"), [(24, 2, math.inf), (4, 0, 0), (8, 6, math.inf)])
+@pytest.mark.parametrize(("parts", "finest", "few"), few([(24, 2, math.inf), (4, 0, 0), (8, 6, math.inf)], 3, first=1))
 def test_how_finely_outlines_are_cut_decides_nothing_but_the_time(monkeypatch, parts, finest, few):
     def found():
         return [

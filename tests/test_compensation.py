@@ -5,8 +5,8 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-import shapely
-import trimesh
+from support.cases import few
+from support.heavy import shapely, trimesh
 
 from camgeo import pipeline
 from camgeo.cli import main
@@ -55,14 +55,17 @@ def region(path, per_piece=30):
 
 @pytest.mark.parametrize(
     ("cam", "part", "top"),
-    [
-        (SUPPORT, FULL, ""),
-        (ROLLER, PLAIN, "rotation: ccw\n"),
-        (ARC, PLAIN, ""),
-        (PAIR, PLAIN, ""),
-        (SHU_WU, FULL, ""),
-        (TRIMMED, PLAIN, ""),
-    ],
+    few(
+        [
+            (SUPPORT, FULL, ""),
+            (ROLLER, PLAIN, "rotation: ccw\n"),
+            (ARC, PLAIN, ""),
+            (PAIR, PLAIN, ""),
+            (SHU_WU, FULL, ""),
+            (TRIMMED, PLAIN, ""),
+        ],
+        3,
+    ),
 )
 def test_a_kerf_is_drawn_round_all_metal(tmp_path, cam, part, top):
     files = "dxf, {dxf: {kerf: 0.4}}, {svg: {kerf: 0.4}}, {dxf: {clearance: 0.3, version: R2013}}"
@@ -119,7 +122,7 @@ def test_an_exact_spline_of_a_parallel(tmp_path):
     assert report["files"][0]["measured_error"] < 1e-11
 
 
-@pytest.mark.parametrize("cam", [SUPPORT, ROLLER, PAIR, SHU_WU])
+@pytest.mark.parametrize("cam", few([SUPPORT, ROLLER, PAIR, SHU_WU], 2))
 def test_no_file_passes_for_another(tmp_path, cam):
     """A nominal file in the place of a compensated one, and the reverse, fails; so does half of the kerf."""
     _, _, folder = made(tmp_path, "dxf, {dxf: {kerf: 0.4}}", cam=cam)
@@ -224,7 +227,7 @@ def test_from_the_command_line(tmp_path, capsys):
     capsys.readouterr()
 
 
-@pytest.mark.parametrize("cam", [SUPPORT, ROLLER])
+@pytest.mark.parametrize("cam", few([SUPPORT, ROLLER], 2))
 def test_solids_of_other_formats(tmp_path, cam):
     pytest.importorskip("OCP")
     _, report, _ = made(tmp_path, "{step: {kerf: 0.2}}, {3mf: {clearance: 0.2, shrinkage: 1}}", cam=cam)

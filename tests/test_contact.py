@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-import shapely
-from camfiles import arcs_through, circle_points, roller_points, support_points
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.camfiles import arcs_through, circle_points, roller_points, support_points
+from support.cases import examples
+from support.heavy import shapely
 
 from kin.arcs import unit
 from kin.contact import dilated, first_contact
@@ -136,7 +137,7 @@ def test_order_and_turns_of_the_angles_do_not_matter():
 
 
 @given(st.integers(3, 40), st.integers(0, 2**32 - 1), st.floats(0.05, 1.0))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_distances_to_ragged_polygons_against_shapely(count, seed, roughness):
     rng = np.random.default_rng(seed)
     points = circle_points(count) * (20.0 * (1.0 - roughness * rng.random((count, 1)) * 0.9))

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import BSpline
+from support.cases import examples
+from support.heavy import interpolate
 
 from kin.arcs import unit
 from kin.bearing import bearing_of
@@ -223,7 +224,7 @@ def lumpy(draw: st.DrawFn) -> tuple[np.ndarray, np.ndarray]:
 
 
 @given(lumpy())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_support_bounds_every_point_and_is_reached(shape: tuple[np.ndarray, np.ndarray]) -> None:
     contour = Contour.from_bulges(*shape)
     theta = np.linspace(0.0, 2.0 * np.pi, 91)
@@ -236,7 +237,7 @@ def test_support_bounds_every_point_and_is_reached(shape: tuple[np.ndarray, np.n
 
 
 @given(lumpy(), st.integers(0, 11))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 def test_support_does_not_depend_on_how_the_contour_is_cut_or_run_through(
     shape: tuple[np.ndarray, np.ndarray], first: int
 ) -> None:
@@ -311,7 +312,7 @@ def test_ends_that_do_not_meet_are_all_counted() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=1, max_size=60))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_hull_of_points_on_a_grid(points: list[tuple[int, int]]) -> None:
     shapely = pytest.importorskip("shapely")
     given_points = np.array(points, dtype=float)
@@ -361,7 +362,7 @@ def test_spline_spans_are_the_spline(degree: int, clamped: bool) -> None:
     beziers = Beziers.from_spline(degree, knots, control, np.ones(count))
     domain = np.unique(knots[degree : count + 1])
     assert beziers.count == len(domain) - 1
-    curve = BSpline(knots, control, degree)
+    curve = interpolate.BSpline(knots, control, degree)
     for share in (0.0, 0.21, 0.5, 0.83, 1.0):
         at = domain[:-1] + share * np.diff(domain)
         points = beziers.point(np.arange(beziers.count), np.full(beziers.count, share))
@@ -443,14 +444,13 @@ def test_a_cut_into_halves_keeps_area_and_length() -> None:
 
 def rose(size: float = 1.0) -> Contour:
     """The cam of p = 25 + 2 cos 3t as a periodic quintic through 60 points; radius of curvature 9 to 41 mm."""
-    from scipy.interpolate import make_interp_spline
 
     t = np.linspace(0.0, 2.0 * np.pi, 61)
     p, slope = 25.0 + 2.0 * np.cos(3.0 * t), -6.0 * np.sin(3.0 * t)
     points = p[:, None] * unit(t) + slope[:, None] * unit(t + np.pi / 2.0)
     points *= size
     points[-1] = points[0]
-    spline = make_interp_spline(t, points, k=5, bc_type="periodic")
+    spline = interpolate.make_interp_spline(t, points, k=5, bc_type="periodic")
     beziers = Beziers.from_spline(5, spline.t, spline.c, np.ones(len(spline.c)))
     beziers.control[-1, -1] = beziers.control[0, 0]
     return Contour.from_pieces(turning(beziers))
@@ -517,7 +517,7 @@ def test_a_hundred_thousand_pieces() -> None:
     assert contour.is_convex
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(seed=st.integers(0, 10_000), off=st.sampled_from([1e-13, 1e-12, 1e-11, 1e-9]))
 def test_arcs_that_a_file_rounds_bear_one_after_the_other(seed, off):
     """Thirteen digits put an arc's end beside it by more than doubles do; no arc may bear in place of the next one."""

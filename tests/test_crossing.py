@@ -7,7 +7,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from shapes import PEAR
+from support.shapes import PEAR
 
 from camgeo.crossing import all_breaks, displacement, seen_crossings, settled
 from camgeo.curve import Curve

@@ -6,7 +6,8 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-import shapely
+from support.cases import few
+from support.heavy import shapely
 
 from camgeo import pipeline
 from camgeo.causes import UndercutError
@@ -101,7 +102,7 @@ def _all(contour):
     return np.concatenate([np.linspace(run.low, run.high, 8001)[:-1] for run in contour.runs])
 
 
-@pytest.mark.parametrize("radius", [5.2, 9.0, 40.0])
+@pytest.mark.parametrize("radius", few([5.2, 9.0, 40.0], 3))
 def test_what_a_cutter_leaves_in_a_hollow(radius):
     _, design = design_of(DEEP)
     path = cutter_path(design.contour, radius)
@@ -118,7 +119,7 @@ def test_what_a_cutter_leaves_in_a_hollow(radius):
     assert apart.min() == pytest.approx(radius, abs=0.011), "the cutter never cuts into the contour"
 
 
-@pytest.mark.parametrize("top", ["", "rotation: ccw\n"])
+@pytest.mark.parametrize("top", few(["", "rotation: ccw\n"], 2))
 def test_the_path_on_a_layer_of_its_own(tmp_path, top):
     body = top + ROLLER + "name: c\nexport: {files: [dxf, {dxf: {as: spline}}]}\nverify: {angles: 36}\n"
     body += "manufacture: {cutter: 8, layer: true}\n"

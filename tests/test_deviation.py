@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.cases import few
 
 from camgeo.curve import Curve
 from camgeo.fit import deviation
@@ -84,7 +85,7 @@ def test_what_hangs_on_the_proof_is_decided_where_that_is_asked_for(bend: float)
     assert chain_deviation(CURVE, chain, tolerance, decide=True).worst.max() <= tolerance
 
 
-@pytest.mark.parametrize(("count", "decided"), [(FEW, True), (FEW + 1, False)])
+@pytest.mark.parametrize(("count", "decided"), few([(FEW, True), (FEW + 1, False)], 2))
 def test_many_pieces_are_not_decided_one_by_one(count: int, decided: bool) -> None:
     chain = pieces(count)
     tolerance = limit(chain)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin.dwell import Dwell, _Family, dwells
 
@@ -118,7 +119,7 @@ coefficients = st.lists(st.floats(-1, 1), min_size=1, max_size=6)
 
 
 @pytest.mark.slow
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(coefficients, coefficients, st.floats(-3, 0.7))
 def test_random_waves(cos, sin, exponent):
     size = min(len(cos), len(sin))
@@ -131,7 +132,7 @@ def test_random_waves(cos, sin, exponent):
 
 
 @pytest.mark.slow
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     st.lists(st.tuples(st.floats(0.05, 1), st.integers(-4, 4)), min_size=3, max_size=9),
     st.floats(-2, 1),

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 from test_pieces import closed_spline, periodic_spline
 
 from camgeo.files.dxf import APPLICATION, VERSIONS, Circle, Point, Trace, write_dxf
@@ -178,6 +179,7 @@ for version in MODERN:
 """
 
 
+@pytest.mark.slow
 def test_same_bytes_in_any_process_and_time_zone(tmp_path):
     written = []
     for i, zone in zip((1, 4, 9), ("UTC", "Asia/Tokyo", "XYZ+11:30"), strict=True):  # sets of texts in several orders
@@ -235,7 +237,7 @@ def test_r12_is_written_without_a_word(tmp_path, caplog, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(
     st.lists(st.tuples(*[st.floats(-1e6, 1e6)] * 3), min_size=3, max_size=12, unique_by=lambda row: row[:2]),
     st.sampled_from(sorted(VERSIONS)),

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from dynamics_oracle import Cycloid, Oracle, harmonic
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
+from support.dynamics_oracle import Cycloid, Oracle, harmonic
 
 from kin.chebyshev import DEGREE, DERIVATIVE, INTEGRAL, NODES, evaluated, fitted
 from kin.drive import Drive, DriveError, drives
@@ -99,7 +100,7 @@ def test_the_propagator_at_sixty_digits(r, zeta, t):
         assert vz[0] == pytest.approx(at_v, rel=2e-14 * (1.0 + r * t), abs=phase * size * r)
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(
     st.tuples(st.floats(1e-3, 1e4), st.floats(0.0, 5.0)),
     st.tuples(st.floats(0.0, 0.1), st.floats(0.0, 0.1)),

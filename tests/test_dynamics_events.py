@@ -2,11 +2,13 @@
 
 import math
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
-from dynamics_oracle import Cycloid
+from support.cases import few
+from support.dynamics_oracle import Cycloid
+from support.integrated import integrated
+from support.places import ROOT
 from test_dynamics import Harmonic, Saw
 
 from camgeo.design import designed, intended
@@ -18,10 +20,8 @@ from kin.dynamics import DynamicsError, Train, steady
 from kin.floating import float_speed
 from kin.holding import Look, Range
 from kin.instants import FREE, LOWER, UPPER, Work, crossing
-from kin.integrated import integrated
 
 TURN = 2.0 * math.pi
-ROOT = Path(__file__).parents[1]
 
 
 class Still:
@@ -159,7 +159,7 @@ def test_a_touch_between_two_samples_is_met():
 
 @pytest.mark.parametrize(
     ("play", "ratio", "zeta", "impacts", "peak"),
-    [(0.05, 123.3, 0.03, 79, 30.797), (0.02, 400.3, 0.05, 157, 41.34), (0.002, 400.3, 0.05, 57, 11.937)],
+    few([(0.05, 123.3, 0.03, 79, 30.797), (0.02, 400.3, 0.05, 157, 41.34), (0.002, 400.3, 0.05, 57, 11.937)], 3),
 )
 def test_as_many_meetings_as_another_integration_of_the_same_law(play, ratio, zeta, impacts, peak):
     """Pinned figures: flight as a straight line, contact by Duhamel's integral in steps of a sixth of a swing.
@@ -253,7 +253,11 @@ def test_an_instant_is_where_the_search_begins_if_the_state_has_ended_there():
 
 @pytest.mark.parametrize(
     ("rpm", "damping", "play"),
-    [(500.0, 20.0, None), (900.0, 20.0, None), (1300.0, 200.0, None), (600.0, 200.0, 2e-5), (1000.0, 400.0, 5e-5)],
+    few(
+        [(500.0, 20.0, None), (900.0, 20.0, None), (1300.0, 200.0, None), (600.0, 200.0, 2e-5), (1000.0, 400.0, 5e-5)],
+        5,
+        first=3,
+    ),
 )
 def test_an_implicit_solver_sees_the_same_turn(rpm, damping, play):
     pytest.importorskip("scipy")
@@ -308,7 +312,7 @@ def test_too_much_work_for_an_explicit_solver_is_told():
 # --- float ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("zeta", [0.01, 0.3, 0.9, 1.0, 2.0])
+@pytest.mark.parametrize("zeta", few([0.01, 0.3, 0.9, 1.0, 2.0], 2))
 @pytest.mark.parametrize("order", [1, 3])
 def test_float_of_a_harmonic_drive_begins_where_its_amplitude_reaches_the_preload(order, zeta):
     mass, stiffness, preload, size = 0.4, 2e5, 150.0, 2e-3
@@ -375,6 +379,7 @@ def test_no_dip_below_the_speed_at_which_float_begins_is_passed_over(ratio, zeta
     assert min(steady(train, drive, rpm).force.least for rpm in at) > 0.0
 
 
+@pytest.mark.slow
 def test_what_is_said_of_a_range_holds_inside_it():
     """Force at speeds between two looks, at all resonances and damping: never below the bound from both ends."""
     (drive,) = drives([Cycloid(math.radians(120.0), 20e-3)])

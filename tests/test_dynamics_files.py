@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from support.integrated import integrated
 
 from kin.bearing import bearing_of
 from kin.contact import dilated
@@ -20,7 +21,6 @@ from kin.driven import (
 from kin.dynamics import Train, steady
 from kin.follower import DoubleRoller, FlatFace, FlatPair, Roller, Yoke
 from kin.guide import LEADING, TRAILING, Arm
-from kin.integrated import integrated
 from kin.law import Segment, law, programme
 from kin.lift import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 from kin.transmission import from_delta

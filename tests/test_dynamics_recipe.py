@@ -123,6 +123,7 @@ def test_play_makes_impacts() -> None:
     assert 0.018 <= play[1]["value"] <= 0.02
 
 
+@pytest.mark.slow
 def test_turns_that_do_not_settle_are_told_by_their_range() -> None:
     cam = (
         "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}\n"
@@ -151,6 +152,7 @@ def test_a_dwell_that_ends_with_the_turn_ends_at_360() -> None:
     assert [(rest["dwell_from_deg"], rest["dwell_to_deg"]) for rest in rests] == [(120.0, 180.0), (300.0, 360.0)]
 
 
+@pytest.mark.slow
 def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None:
     holds, flies = (section(recipe(TRAIN.replace("600", rpm)))["runs"][0] for rpm in ("600", "900"))
     assert holds["transient"]["turns_to_one_percent"] > 0.0

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-import shapely
-from camfiles import circle_points, pitch_polar, roller_points, support_points
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from scipy.spatial import cKDTree
+from support.camfiles import circle_points, pitch_polar, roller_points, support_points
+from support.cases import examples, few
+from support.heavy import shapely, spatial
 
 from kin.arcs import unit
 from kin.contour import Contour
@@ -192,7 +192,7 @@ def test_deviation_of_convex_polygons_is_the_difference_of_support_functions(nam
     assert reach.greatest == pytest.approx(found.outside, abs=1e-11)
 
 
-@pytest.mark.parametrize("name", ["Booth", "hollow", "arc", "given law"])
+@pytest.mark.parametrize("name", few(["Booth", "hollow", "arc", "given law"], 2))
 def test_deviation_from_a_roller_envelope_by_dense_distances(name):
     transmission, radius = PITCHES[name]
     envelope = RollerEnvelope(TransmissionPitch(transmission), radius)
@@ -201,7 +201,7 @@ def test_deviation_from_a_roller_envelope_by_dense_distances(name):
     found = deviation(contour.as_arcs()[0], envelope)
     exact = samples(envelope, 400_000)
     sample = contour.sample(400)
-    distance, _ = cKDTree(exact).query(sample)
+    distance, _ = spatial.cKDTree(exact).query(sample)
     polygon = shapely.Polygon(exact)
     shapely.prepare(polygon)
     signed = np.where(shapely.contains_xy(polygon, *sample.T), -distance, distance)
@@ -238,7 +238,7 @@ def test_contours_that_go_round_twice_or_turn_back_are_told():
 
 @given(st.integers(0, 2**32 - 1))
 @example(10750996)  # a dent about as deep as the edges hang anyway
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 def test_one_dent_or_bump_anywhere_is_measured(seed):
     rng = np.random.default_rng(seed)
     lift = LIFTS["hypocycloid"]

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples, few
+from support.places import RECIPES
 
 from camgeo.curve import Curve
 from camgeo.design import designed
@@ -31,7 +33,6 @@ from kin.lift import lift_from_fourier, lift_hypocycloid
 from kin.lift_formula import lift_from_formula
 from kin.read_dxf import read_dxf
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 POLYNOMIALS = ["as-figure-1", "as-figure-2a", "as-figure-2b", "as-figure-2d", "fourier", "hypocycloid", "rabinowitz"]
 
 
@@ -87,7 +88,7 @@ def test_the_numbers_stored_are_the_contour_to_rounding(
     assert spline.weights.max() == 1.0
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(
     st.floats(0.1, 1e3),
     st.dictionaries(st.integers(1, 11), st.tuples(st.floats(-1, 1), st.floats(-1, 1)), max_size=4),
@@ -135,7 +136,7 @@ def test_what_is_no_closed_rational_spline(control: np.ndarray, weights: np.ndar
         RationalSpline(2, control, weights, Bound(0.0, 0.0))
 
 
-@pytest.mark.parametrize("name", POLYNOMIALS)
+@pytest.mark.parametrize("name", few(POLYNOMIALS, 3))
 def test_shipped_recipes_through_the_file(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES / f"{name}.yaml")
     request = FileRequest("dxf", "exact", "R2000", 1e-11)
@@ -175,7 +176,7 @@ def second_opinion(path: Path) -> tuple[int, np.ndarray]:
     return degree, np.array([tuple(p) for p in points])[:, :2]
 
 
-@pytest.mark.parametrize("rotation", ["cw", "ccw"])
+@pytest.mark.parametrize("rotation", few(["cw", "ccw"], 3))
 @pytest.mark.parametrize(
     ("text", "order"),
     [

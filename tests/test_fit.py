@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from support.cases import examples, few
 
 from camgeo.curve import Curve
 from camgeo.fit.arcs import FLOOR, arc_density, fit_arcs
@@ -147,7 +148,7 @@ def test_edges_that_would_be_the_worse_for_it_are_not_moved() -> None:
     assert fit_polygon(curve, 1e-5).vertices.shape[0] <= 1.004 * least_vertices(curve, 1e-5)
 
 
-@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_polygon_is_proved_full_and_small(lift: Lift, tolerance: float) -> None:
     curve = Curve.whole(SupportShape(lift))
     polygon = fit_polygon(curve, tolerance)
@@ -159,7 +160,7 @@ def test_polygon_is_proved_full_and_small(lift: Lift, tolerance: float) -> None:
     assert polygon.count <= max(math.ceil(1.01 * least) + 1 + len(lift.breaks), 3)
 
 
-@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_arcs_are_proved_and_few(lift: Lift, tolerance: float) -> None:
     curve = Curve.whole(SupportShape(lift))
     arcs = fit_arcs(curve, tolerance)
@@ -172,7 +173,7 @@ def test_arcs_are_proved_and_few(lift: Lift, tolerance: float) -> None:
     assert arcs.count <= 1.05 * least + 4 * (len(lift.breaks) + extrema) + 2
 
 
-@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_spline_is_proved(lift: Lift, tolerance: float) -> None:
     spline = fit_spline(Curve.whole(SupportShape(lift)), tolerance)
     check_proof(spline_gap(lift, spline), spline, tolerance, 0.03)
@@ -219,7 +220,7 @@ def test_tolerance_below_rounding_is_refused_with_the_figure(fit) -> None:
     assert 1e-14 < caught.value.reached < 1e-11
 
 
-@pytest.mark.parametrize("name", ["fourier", "rabinowitz"])
+@pytest.mark.parametrize("name", few(["fourier", "rabinowitz"], 2))
 def test_arcs_hold_their_floor_and_below_it_are_refused_with_it(name: str) -> None:
     curve = Curve.whole(SupportShape(LIFTS[name]))
     floor = 2.0 * FLOOR * rounding(curve.size)
@@ -254,7 +255,7 @@ def test_a_spline_span_that_is_given_up_cannot_pass() -> None:
     assert HOPELESS * USABLE > 1.0
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @example(1.0, 3, 0.96875, -2.0, (0.0, 0.0))
 @given(
     st.floats(0.05, 1e4),

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import mpmath as mp
 import numpy as np
 import pytest
+from support.cases import few
 
 from camgeo.curve import Curve
 from camgeo.fit.arcs import arc_density, fit_arcs
@@ -169,7 +170,7 @@ def some(count: int) -> int:
     return max(5, min(200, 3_000 // count))
 
 
-@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_polygon_is_proved_full_and_small(case: Case, tolerance: float) -> None:
     curve = Curve.whole(case.shape)
     polygon = fit_polygon(curve, tolerance)
@@ -180,7 +181,7 @@ def test_polygon_is_proved_full_and_small(case: Case, tolerance: float) -> None:
     assert polygon.count <= math.ceil(1.01 * least_vertices(curve, tolerance)) + 1 + case.breaks
 
 
-@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_arcs_are_proved_and_few(case: Case, tolerance: float) -> None:
     curve = Curve.whole(case.shape)
     arcs = fit_arcs(curve, tolerance)
@@ -190,7 +191,7 @@ def test_arcs_are_proved_and_few(case: Case, tolerance: float) -> None:
     assert arcs.count <= 1.05 * least + 4 * (case.breaks + case.extrema)
 
 
-@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_spline_is_proved(case: Case, tolerance: float) -> None:
     spline = fit_spline(Curve.whole(case.shape), tolerance)
     check_proof(case, spline, spline_points(spline, some(spline.spans)), tolerance, 0.05)
@@ -223,6 +224,7 @@ def test_given_arcs_stay_arcs() -> None:
     assert chord[whole] == pytest.approx(chord[whole][0])
 
 
+@pytest.mark.slow
 def test_every_rest_of_a_law_is_one_arc() -> None:
     motion = [
         Segment("rise", math.radians(15), math.radians(2), law("cycloidal")),

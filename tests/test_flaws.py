@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin.arcs import unit
 from kin.bezier import Beziers
@@ -152,7 +153,7 @@ def test_a_scribble_is_told_in_bounded_time_and_memory() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=3, max_size=14, unique=True))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_polygons_on_a_grid_are_simple_when_shapely_says_so(points: list[tuple[int, int]]) -> None:
     shapely = pytest.importorskip("shapely")
     ring = shapely.LinearRing(points)
@@ -161,7 +162,7 @@ def test_polygons_on_a_grid_are_simple_when_shapely_says_so(points: list[tuple[i
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(3, 9))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 def test_every_crossing_lies_on_both_pieces(seed: int, n: int) -> None:
     rng = np.random.default_rng(seed)
     contour = Contour.from_bulges(rng.normal(size=(n, 2)) * 10.0, rng.uniform(-1.2, 1.2, n))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 import tomllib
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[1]
+if TYPE_CHECKING:
+    from pathlib import Path
 
 # Top floor first. A module imports from floors below its own only; neighbours on one floor do not import each other.
 FLOORS = {
@@ -27,7 +29,7 @@ FLOORS = {
         transmission_law
         drawing milled motion_sources.laws motion_sources.motion region svg_path
         floating motion_sources.peaks
-        bearing bouncing bounding flaws holding integrated law linkage nesting parallel roots routes step_face syntax
+        bearing bouncing bounding flaws holding law linkage nesting parallel roots routes step_face syntax
         contour dxf_entities dynamics expression frame_dwell loop motion_sources.functions motion_sources.spline
         piecewise poses step_curve
         stretch

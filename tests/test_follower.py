@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from camfiles import arcs_through, circle_points, roller_points, support_points
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.camfiles import arcs_through, circle_points, roller_points, support_points
+from support.cases import examples, few
 
 from kin.arcs import unit
 from kin.contour import Contour
@@ -110,7 +111,7 @@ def test_extremes_between_the_breaks_are_found():
 
 
 @given(st.integers(5, 60), st.integers(0, 2**32 - 1), st.floats(1e-4, 0.3))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 def test_ragged_polygons_against_every_corner_at_every_angle(count, seed, roughness):
     rng = np.random.default_rng(seed)
     points = support_points(count) * (1.0 + roughness * rng.uniform(-1, 1, (count, 1)))
@@ -174,7 +175,7 @@ def test_dwell_flatness_is_the_sagitta_of_the_edges():
     assert circle.dwell_flatness == pytest.approx(20.0 * (1 - np.cos(np.pi / 8)), abs=1e-12)
 
 
-@pytest.mark.parametrize("count", [50, 400, 4000])
+@pytest.mark.parametrize("count", few([50, 400, 4000], 3))
 def test_arcs_through_points_are_far_better_than_edges(count):
     points = support_points(count)
     lift = lift_from_fourier(25.0, {3: 2.0}, {5: 0.3})
@@ -243,7 +244,7 @@ def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
     assert there[0, 1] - there[1, 1] == pytest.approx(judged.play.most, rel=1e-6)
 
 
-@pytest.mark.parametrize("count", [600, 1600])
+@pytest.mark.parametrize("count", few([600, 1600], 2))
 @pytest.mark.parametrize("out", [1e-4, -1e-4])
 def test_errors_of_a_pair_are_settled_where_the_curvature_jumps(count, out):
     """The worst error, some 1e-6 rad, is at a break: the normal that is meant lies near, but on its other side."""
@@ -335,7 +336,7 @@ DOUBLES = {
 }
 
 
-@pytest.mark.parametrize("name", DOUBLES)
+@pytest.mark.parametrize("name", few(DOUBLES, 2))
 def test_double_roller_follows_ever_finer_polygons_ever_better(name):
     transmission, formula = DOUBLES[name]
     follower = DoubleRoller(transmission, 8.0)
@@ -383,7 +384,7 @@ def test_a_roller_that_meets_nothing():
         follower.judge(polygon(circle_points(8) + np.array([200.0, 0.0])), PHI)
 
 
-@pytest.mark.parametrize("name", DOUBLES)
+@pytest.mark.parametrize("name", few(DOUBLES, 4, first=1))
 def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     """The exact contour moved outward and inward by e all round is the worst that e allows."""
     transmission, _ = DOUBLES[name]
@@ -426,7 +427,7 @@ def test_the_start_vertex_and_the_sense_of_writing_do_not_matter():
 
 
 @given(st.integers(4, 30), st.integers(0, 2**32 - 1))
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 def test_arcs_of_either_sense_under_a_flat_face_against_dense_points(count, seed):
     """Ragged contours of arcs, hollow ones among them: hull corners, arcs and lines that touch twice take turns."""
     rng = np.random.default_rng(seed)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin.expression import Expression
 from kin.formula import Formula, FormulaDomainError, FormulaError
@@ -75,7 +76,7 @@ trees = st.recursive(
 
 
 @given(trees, st.floats(-3, 3))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_random_formulas_agree_with_python(text: str, t: float) -> None:
     try:
         expected = python_value(text, t)
@@ -91,7 +92,7 @@ def test_random_formulas_agree_with_python(text: str, t: float) -> None:
 
 
 @given(st.text(max_size=40))
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 @example("9**9**9")
 @example("\x00")
 @example("t\u0301")
@@ -108,7 +109,7 @@ def test_any_text_is_a_formula_or_an_error_with_its_place(text: str) -> None:
 
 
 @given(st.lists(st.sampled_from([*"t0123456789.+-*/(), e", "**", "pi", *FUNCTIONS.split(", "), "(t)"]), max_size=30))
-@settings(max_examples=600)
+@settings(max_examples=examples(600))
 def test_any_text_out_of_the_signs_is_a_formula_or_an_error_with_its_place(signs: list[str]) -> None:
     check_text("".join(signs))
 
@@ -278,7 +279,7 @@ def test_the_cam_of_figure_2a_and_its_derivatives() -> None:
 
 
 @given(trees, st.floats(-3, 3), st.sampled_from([0.0, 1e-6, 0.1, 1.0]), st.floats(0, 1))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_balls_of_random_formulas_hold_the_jets_inside(text: str, start: float, width: float, part: float) -> None:
     try:
         formula = Formula(text)

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from camfiles import arcs_through, support_points
-from sensitivity import sensitivity
-from square_frame import CENTRED, RESTS, Bars, Bench
+from support.camfiles import arcs_through, support_points
+from support.cases import few
+from support.sensitivity import sensitivity
+from support.square_frame import CENTRED, RESTS, Bars, Bench
 
 from kin.bearing import bearing_of
 from kin.contour import Contour
@@ -53,7 +54,7 @@ def uneven(count=501, depth=0.02):
     return cam(count) + off[:, None] * np.column_stack([np.cos(t), np.sin(t)])
 
 
-@pytest.fixture(params=LINKAGES)
+@pytest.fixture(params=few(LINKAGES, 2))
 def pair(request):
     linkage, bars = LINKAGES[request.param]
     return Mechanism(linkage, LIFT, BREADTH), Bench(bars, BREADTH, p)
@@ -221,7 +222,7 @@ def test_the_limit_is_the_sensitivity_times_the_tolerance(pair, tolerance):
     assert implied_limit(mechanism, tolerance) == pytest.approx(first_order, rel=max(0.2 * tolerance, 1e-6))
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 0.1])
+@pytest.mark.parametrize("tolerance", few([1e-3, 0.1], 2))
 def test_a_parallel_cam_uses_the_whole_limit_and_no_more(pair, tolerance):
     """All round outside by the tolerance: the four ways of resting are the four combinations of signs."""
     mechanism, _ = pair
@@ -296,7 +297,7 @@ def test_the_dwell_of_the_paper_from_a_file(over):
     assert verdict.error.dwell_flatness == pytest.approx(0.1, abs=2 * verdict.error.max)
 
 
-@pytest.mark.parametrize("over", ["shaft", "relative"])
+@pytest.mark.parametrize("over", few(["shaft", "relative"], 2))
 def test_a_dwell_by_sampling(over):
     """On a spoilt cam each way of resting dwells for its own time; the samples' longest window tells how long."""
     vertices, band = uneven(300, 0.01), np.radians(0.1)
@@ -346,7 +347,7 @@ def wavy_range(a, b):
     return tuple(found)
 
 
-@pytest.mark.parametrize("band", [0.02, 0.2, 1.0, 3.0])
+@pytest.mark.parametrize("band", few([0.02, 0.2, 1.0, 3.0], 2))
 @pytest.mark.parametrize("count", [60, 3000])
 def test_the_longest_dwell_wherever_it_starts(band, count):
     for begin in (0.0, 0.4, 3.3):

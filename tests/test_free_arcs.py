@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import mpmath
 import numpy as np
 import pytest
+from support.cases import few
+from support.places import RECIPES
 
 from camgeo.curve import Curve
 from camgeo.fit import arcs as fitting
@@ -33,7 +34,6 @@ from kin.transmission import from_arc, from_delta
 if TYPE_CHECKING:
     from camgeo.fit.pieces import ArcSpline
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 ARM = 60.0
 
@@ -115,7 +115,7 @@ def distance(curve: Curve, points: np.ndarray) -> np.ndarray:
     return across
 
 
-@pytest.mark.parametrize("tolerance", TOLERANCES)
+@pytest.mark.parametrize("tolerance", few(TOLERANCES, 3))
 def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     arcs = fit_arcs(curve, tolerance)
     total, special = foreseen(curve)
@@ -133,7 +133,7 @@ def test_few_proved_and_smooth(curve: Curve, tolerance: float) -> None:
     assert np.abs(gap).max() >= arcs.bound.worst - 0.1 * tolerance
 
 
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
+@pytest.mark.parametrize("tolerance", few([1e-2, 1e-4], 2))
 def test_the_curve_is_near_the_arcs_too(curve: Curve, tolerance: float) -> None:
     """The other half of a two-sided bound: no point of the curve is farther from every arc than promised."""
     arcs = fit_arcs(curve, tolerance)

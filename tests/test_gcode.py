@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from support.cases import examples, few
+from support.heavy import shapely
 
 from camgeo import pipeline
 from camgeo.cli import main
@@ -83,12 +84,15 @@ def swept(path, radius, per_arc=60):
 
 @pytest.mark.parametrize(
     ("cam", "more", "top"),
-    [
-        (SUPPORT, "", ""),
-        (ROLLER, ", direction: conventional, allowance: 0.3", "rotation: ccw\n"),
-        (SHU_WU, ", start: 100, lead_in: 2, allowance: 1.2", ""),
-        (TRIMMED, ", allowance: 0.2", ""),
-    ],
+    few(
+        [
+            (SUPPORT, "", ""),
+            (ROLLER, ", direction: conventional, allowance: 0.3", "rotation: ccw\n"),
+            (SHU_WU, ", start: 100, lead_in: 2, allowance: 1.2", ""),
+            (TRIMMED, ", allowance: 0.2", ""),
+        ],
+        2,
+    ),
 )
 def test_what_is_left_of_a_sheet(tmp_path, cam, more, top):
     recipe, _, path = made(tmp_path, cam=cam, more=f", holes: true{more}", top=top)
@@ -210,7 +214,7 @@ SLIGHT = {
 }
 
 
-@pytest.mark.parametrize("usual", SLIGHT)
+@pytest.mark.parametrize("usual", few(SLIGHT, 2))
 @pytest.mark.parametrize("tolerance", [0.001, 0.1])
 def test_slight_figures_do_not_round_away(tmp_path, usual, tolerance):
     slight, written = SLIGHT[usual]
@@ -547,7 +551,8 @@ def test_a_path_tighter_than_the_cutter(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("part", "more"), [(PLAIN, ", holes: true"), (PLAIN, ""), (FEATURED, ", holes: true"), (FEATURED, ", layer: true")]
+    ("part", "more"),
+    few([(PLAIN, ", holes: true"), (PLAIN, ""), (FEATURED, ", holes: true"), (FEATURED, ", layer: true")], 2),
 )
 def test_the_checks_are_foreseen(part, more):
     recipe = recipe_of(part=part, more=more)
@@ -586,7 +591,7 @@ def test_linuxcnc_reads_the_same_moves(tmp_path, units, more):
         assert one == pytest.approx(other, abs=6e-5), "it tells four decimal places"
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(40), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_a_program_with_anything_changed_is_told_or_refused(program, tmp_path, data):
     recipe, text = program

@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 import pytest
-import trimesh
-from parts import recipe_of
+from support.heavy import trimesh
+from support.parts import recipe_of
 
 from camgeo.cli import main
 from camgeo.design import designed

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin.ball import Ball
 from kin.jet import (
@@ -393,7 +394,7 @@ def test_a_switch_inside_a_ball_keeps_value_and_slope_and_no_more() -> None:
 
 
 @given(st.floats(-2, 2), st.floats(0, 2), st.floats(0, 1))
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_switches_hold_value_and_slope_of_every_point(lower: float, width: float, part: float) -> None:
     point = min(lower + part * width, lower + width)
     balls, jet = BallJet.variable(lower, lower + width, 2), Jet.variable(point, 2)

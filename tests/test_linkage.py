@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from linkage_oracle import judged_linkage, ratio
+from support.linkage_oracle import judged_linkage, ratio
 
 from kin.jet import Jet
 from kin.lift import lift_from_fourier, lift_hypocycloid

@@ -12,7 +12,8 @@ from collections import defaultdict
 
 import numpy as np
 import pytest
-from linkage_oracle import NAMES, discriminant, judged_linkage, ratio
+from support.cases import few
+from support.linkage_oracle import NAMES, discriminant, judged_linkage, ratio
 
 from kin.jet import Jet
 from kin.lift import lift_hypocycloid, lift_reuleaux
@@ -111,7 +112,7 @@ def test_transmission_angle_near_0(assembly, angle):
     hold([posed(rng, assembly, lambda theta4: angle - theta4 + rng.choice([0, math.pi])) for _ in range(8)])
 
 
-@pytest.mark.parametrize("assembly", ASSEMBLIES)
+@pytest.mark.parametrize("assembly", few(ASSEMBLIES, 2))
 @pytest.mark.parametrize("power", range(3, 16))
 def test_discriminant_down_to_1e_15(assembly, power):
     """Over the relative angle nothing is lost near a limit, however ill-conditioned the figures are there."""
@@ -136,7 +137,7 @@ def test_discriminant_down_to_1e_15(assembly, power):
     hold(cases, outright=("output", "velocity", "acceleration"))
 
 
-@pytest.mark.parametrize("assembly", ASSEMBLIES)
+@pytest.mark.parametrize("assembly", few(ASSEMBLIES, 2))
 def test_links_from_a_millionth_to_a_million_breadths(assembly):
     rng = np.random.default_rng(5)
     cases = []

@@ -4,11 +4,10 @@ import json
 import math
 from dataclasses import replace
 
-import lib3mf
 import numpy as np
 import pytest
-import trimesh
-from parts import failures, recipe_of
+from support.heavy import lib3mf, trimesh
+from support.parts import failures, recipe_of
 
 from camgeo.bodies.body import Plate, PrintBody
 from camgeo.design import designed

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from sensitivity import sensitivity
+from support.cases import examples, few
+from support.sensitivity import sensitivity
 
 from kin.dyad import RPR, RRP, RRR
 from kin.extremes import extremes
@@ -220,7 +221,7 @@ def close(of, theta):
     return theta[of.linkage.margin(s, s1, of.breadth) > 1e-3]
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(linkages, pivots)
 def test_the_rate_of_the_shaft_is_the_lever_of_the_force_on_the_output(linkage, pivot):
     """phi' = lever of P / lever of the shaft, whatever the linkage: virtual work, from forces alone."""
@@ -248,7 +249,7 @@ def test_the_rate_of_the_shaft_is_the_lever_of_the_force_on_the_output(linkage, 
 # Mobility
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(linkages, pivots)
 def test_mobility_against_dense_samples(linkage, pivot):
     of = mechanism(linkage, pivot)
@@ -314,7 +315,7 @@ def test_what_does_not_turn_says_where():
         mechanism(InvertedSliderCrank(20.0, 0.0)).relative(0.3)
 
 
-@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-13, 0.0, -1e-13, -1e-9, -1e-6])
+@pytest.mark.parametrize("gap", few([1e-3, 1e-6, 1e-9, 1e-13, 0.0, -1e-13, -1e-9, -1e-6], 2))
 @pytest.mark.parametrize("limit", ["drawn in", "stretched"])
 def test_mobility_close_to_a_limit_position(gap, limit):
     """Links that miss their limit by a gap, or overlap by it: the margin is the gap, and nothing is raised."""
@@ -427,7 +428,8 @@ def test_a_round_cam_about_its_centre_stands_still_and_rests_on_the_dead_centre(
 
 
 @pytest.mark.parametrize(
-    ("kind", "dyads"), [*((kind, ()) for kind in LINKAGES), ("four-bar", SIX_BAR), ("oscillating yoke", SIX_BAR)]
+    ("kind", "dyads"),
+    few([*((kind, ()) for kind in LINKAGES), ("four-bar", SIX_BAR), ("oscillating yoke", SIX_BAR)], 3),
 )
 def test_other_lifts_drive_it_as_perturbed_mechanisms(kind, dyads):
     of = mechanism(LINKAGES[kind], dyads=dyads)

@@ -6,11 +6,11 @@ import math
 from dataclasses import replace
 from functools import cache
 from itertools import combinations, pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from support.cases import few
 
 from camgeo.bodies.assembly import TURN, Assembly, Member
 from camgeo.bodies.body import Plate
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.model import Recipe
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 FIT = 0.002  # mm
 FLATTENED = 0.0005  # mm by which a shapely polygon of an outline is off, about
 PART = "part: {thickness: 8, bore: 8}\nexport: {files: [{3mf: {parts: all}}]}\n"
@@ -98,7 +97,7 @@ def placed(member: Member, phi: float) -> list[tuple[Polygon, float, float]]:
     ]
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str) -> None:
     import shapely
     import trimesh
@@ -118,7 +117,7 @@ def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str)
         assert solid.volume == pytest.approx(volume, rel=2e-3), member.name
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
     """shapely sees no overlap where kin's search has proved that there is none."""
     assembly = made(name)[2]
@@ -151,7 +150,7 @@ def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) 
             assert overlap <= 4 * math.pi * largest * 0.5 * assembly.sizes.press + 1e-3, (one.name, other.name)
 
 
-@pytest.mark.parametrize("name", ["yoke, hubs", "flat pair"])
+@pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair"], 2))
 def test_nothing_meets_at_any_angle(name: str) -> None:
     checks = collision_checks(made(name)[2])
     assert [check.detail for check in checks if not check.ok] == []

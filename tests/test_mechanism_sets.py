@@ -104,6 +104,7 @@ def test_a_collision_fails_the_set_and_tells_who_where_and_when(
     assert (tmp_path / "out" / "wide.rejected" / "wide-frame.stl").exists()
 
 
+@pytest.mark.slow
 def test_the_same_recipe_gives_the_same_bytes(tmp_path: Path, yoke: pipeline.Outcome) -> None:
     again = pipeline.export(load_text(YOKE, "yoke.yaml"), tmp_path)
     assert yoke.folder is not None
@@ -174,6 +175,7 @@ def test_slips_are_told_at_their_field(old: str, new: str, message: str) -> None
     assert any(message in line for line in told), told
 
 
+@pytest.mark.slow
 def test_a_cam_far_from_its_shaft_has_a_yoke_that_reaches_round_it(tmp_path: Path) -> None:
     """Greatest distance from the shaft between the ends of the curve's cells."""
     text = "cam: {kind: support, fourier: {mean: 25}, pivot: [10, 0]}\n" + YOKE.split("\n", 1)[1]

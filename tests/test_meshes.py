@@ -5,7 +5,8 @@ import math
 
 import numpy as np
 import pytest
-import trimesh
+from support.cases import few
+from support.heavy import trimesh
 
 from camgeo.bodies.body import Plate, PrintBody
 from camgeo.bodies.build import assembly_of
@@ -108,7 +109,7 @@ def test_plates_become_one_closed_body_of_their_volume(name, precision):
     assert np.array_equal(again.triangles, mesh.triangles)
 
 
-@pytest.mark.parametrize("precision", [SINGLE, DECIMALS], ids=["stl", "3mf"])
+@pytest.mark.parametrize("precision", few([SINGLE, DECIMALS], 2), ids=["stl", "3mf"])
 def test_crossing_walls_that_go_on_through_storeys_leave_no_slivers(precision):
     """Arms of a base: each storey by itself would round the corners where they cross in its own way."""
     ends = [

@@ -17,7 +17,8 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
-from pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
+from support.cases import few
+from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
 
 from camgeo.cli import main
 from camgeo.design import designed
@@ -76,7 +77,7 @@ def parsed(text: str) -> Elements:
     return elements
 
 
-@pytest.fixture(scope="module", params=SHOWN)
+@pytest.fixture(scope="module", params=few(SHOWN, 3))
 def made(request: pytest.FixtureRequest) -> Made:
     return of(request.param)
 

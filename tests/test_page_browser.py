@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from browser import Browser, executable
-from pages import SHAFT, SHOWN, Made, fetched, of, wait
+from support.browser import Browser, executable
+from support.pages import SHAFT, SHOWN, Made, fetched, of, wait
 
 from camgeo.design import designed
 from camgeo.page.watch import watch

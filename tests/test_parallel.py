@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-import shapely
+from support.heavy import shapely
 
 from camgeo.part.shapes import flattened, keyed, polygonal, slot
 from kin.contour import Contour

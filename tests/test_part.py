@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely import Polygon as Region
+from support.cases import examples
+from support.heavy import shapely
 
 from camgeo.curve import Curve
 from camgeo.fit.pieces import ArcSpline
@@ -120,12 +121,12 @@ def test_wall_between_two_circles(x, y, r, s):
 OUTLINES = [keyed(5, 3, 1.4, 0.4), flattened(5, 9, -1.0), polygonal(4, 8, 0.2), slot(-4, 4, 2)]
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.sampled_from(OUTLINES), st.sampled_from(OUTLINES), st.floats(13.5, 20), st.floats(0, 6.28))
 def test_wall_between_outlines_is_that_of_fine_polygons(one, two, away, angle):
     moved = ArcSpline(two.points + away * np.array([math.cos(angle), math.sin(angle)]), two.bulges, EXACT)
     chains = [Opening("", "HOLES", outline).chain for outline in (one, moved)]
-    regions = [Region(Contour.from_bulges(o.points, o.bulges).sample(200)) for o in (one, moved)]
+    regions = [shapely.Polygon(Contour.from_bulges(o.points, o.bulges).sample(200)) for o in (one, moved)]
     expected = regions[0].distance(regions[1])
     assert outside_gap(*chains).wall == pytest.approx(expected, abs=2e-3)
     assert outside_gap(*chains[::-1]).wall == pytest.approx(outside_gap(*chains).wall, abs=1e-9)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from parts import CAM, found, recipe_of
+from support.parts import CAM, found, recipe_of
 
 from camgeo.foreseen import foreseen
 from camgeo.part.body import body_of
@@ -41,6 +41,7 @@ def test_a_crowded_ring_is_limited_by_its_neighbours():
     assert checks["wall"].ok
 
 
+@pytest.mark.slow
 def test_the_largest_holes_shrink_from_one_to_the_next():
     design, checks = found(recipe_of("{bore: 12, lightening: {largest: 4, wall: 2}, wall: 2}"))
     sizes = [one.circle[1] for one in design.body.openings if one.name.startswith("lightening")]

@@ -7,13 +7,13 @@ import sys
 from pathlib import Path
 
 import ezdxf
-import manifold3d
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from parts import CAM, files_of, found, recipe_of
+from support.cases import examples, few
+from support.heavy import manifold3d, trimesh
+from support.parts import CAM, files_of, found, recipe_of
 
 from camgeo.cli import main
 from camgeo.files.prism import loop_polygon
@@ -127,7 +127,7 @@ import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[2])
 sys.modules["manifold3d"] = None
-from parts import files_of, recipe_of
+from support.parts import files_of, recipe_of
 part = "{thickness: 8, bore: 12, keyway: din6885, bolts: {count: 5, circle: 32, hole: 4}, mark: {as: cut, width: 1}}"
 files_of(recipe_of(part), Path(sys.argv[1]))
 """
@@ -167,7 +167,7 @@ def covers_once(outer, holes):
     assert areas.sum() == pytest.approx(3600 - inner, rel=1e-12)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(st.integers(2, 9), st.integers(3, 9), st.floats(0.02, 0.9), st.randoms(use_true_random=False))
 def test_regions_with_holes_are_covered_once(count, corners, turn, random):
     cells = [(x, y) for x in (-20, 0, 20) for y in (-20, 0, 20)]
@@ -180,7 +180,7 @@ def test_regions_with_holes_are_covered_once(count, corners, turn, random):
     covers_once(SQUARE, holes)
 
 
-@pytest.mark.parametrize("corners", [3, 4, 5, 7, 24])
+@pytest.mark.parametrize("corners", few([3, 4, 5, 7, 24], 3))
 @pytest.mark.parametrize("turn", [0.0, 0.5, math.pi / 4])
 @pytest.mark.parametrize("side", [3, 5, 9])
 def test_rows_of_equal_holes_have_bridges(corners, turn, side):
@@ -265,6 +265,7 @@ def test_screw_and_bolts_through_the_hub_of_a_shaped_bore(tmp_path, bore):
     assert len(bolts.discrete) == 5  # hub, bore, three holes
 
 
+@pytest.mark.slow
 def test_solids_have_the_same_bytes_each_time(tmp_path):
     written = []
     for name in ("a", "b"):
@@ -342,7 +343,7 @@ def part_texts(draw):
     return "{" + ", ".join(keys) + "}"
 
 
-@settings(max_examples=14, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(14), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(part_texts(), st.sampled_from(["cw", "ccw"]))
 def test_a_part_passes_every_check_or_is_refused_by_name(tmp_path, part, rotation):
     recipe = recipe_of(part, more=f"rotation: {rotation}\n")

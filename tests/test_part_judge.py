@@ -6,7 +6,7 @@ from dataclasses import replace
 import ezdxf
 import numpy as np
 import pytest
-from parts import failures, files_of, recipe_of
+from support.parts import failures, files_of, recipe_of
 
 from camgeo.design import intended
 from kin.contour import Contour
@@ -220,7 +220,7 @@ def test_fault_of_a_solid(solid, tmp_path, name):
     recipe, design, _ = solid
     was, becomes, caught = VARIANTS[name]
     assert was in SOLID
-    _, files = files_of(recipe_of(SOLID.replace(was, becomes, 1)), tmp_path)
+    _, files = files_of(recipe_of(SOLID.replace(was, becomes, 1), files="stl"), tmp_path)
     found = failures(files["stl"][0], recipe, design)
     if caught is None:
         assert found

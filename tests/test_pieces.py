@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import BSpline as ScipySpline
-from scipy.interpolate import make_interp_spline
+from support.cases import examples
+from support.heavy import interpolate
 
 from camgeo.fit.pieces import ArcSpline, Bound, BSpline, Polygon
 
@@ -39,7 +39,7 @@ def closed_spline(n=24, centre=(3.0, 4.0)):
     """Clamped cubic through points of an ellipse-like curve, its end on its start."""
     t = np.linspace(0.0, 2.0 * np.pi, n + 1)
     xy = np.column_stack((centre[0] + 9.0 * np.cos(t) + np.cos(3 * t), centre[1] + 6.0 * np.sin(t)))
-    spline = make_interp_spline(t, xy, k=3)
+    spline = interpolate.make_interp_spline(t, xy, k=3)
     control = spline.c.copy()
     control[-1] = control[0]
     spans = int(np.count_nonzero(np.diff(spline.t)))
@@ -167,7 +167,7 @@ class TestSpline:
     )
     def test_beziers_box_and_area_against_scipy(self, spline):
         p, m = spline.degree, len(spline.control)
-        curve = ScipySpline(spline.knots, spline.control, p)
+        curve = interpolate.BSpline(spline.knots, spline.control, p)
         starts = spline.knots[p : m + 1]
         starts = starts[np.append(np.diff(starts) > 0.0, True)]
         pieces = spline.beziers()
@@ -220,7 +220,7 @@ class TestSpline:
             BSpline(**(fields | change))
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(st.floats(max_value=0.0) | st.sampled_from([math.inf, math.nan]))
 def test_scale_must_be_positive(k):
     for outline in (

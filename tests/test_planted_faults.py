@@ -7,7 +7,7 @@ one that contact cannot feel must be seen in the contour.
 import ezdxf
 import numpy as np
 import pytest
-from camfiles import (
+from support.camfiles import (
     arcs_through,
     circle_points,
     roller_points,
@@ -17,6 +17,7 @@ from camfiles import (
     write_lines,
     write_stl,
 )
+from support.cases import few
 
 from kin.follower import DoubleRoller, Yoke
 from kin.lift import lift_from_fourier
@@ -298,7 +299,7 @@ def test_an_empty_drawing(tmp_path, cam):
     assert failures(tmp_path / "cam.dxf", cam[0]) == {"readable"}
 
 
-@pytest.mark.parametrize("depth", [0.002, 0.3])
+@pytest.mark.parametrize("depth", few([0.002, 0.3], 2))
 def test_a_dent_in_a_hollow_that_neither_roller_feels(tmp_path, depth):
     """A scratch narrower than the roller, at the bottom of a hollow: both rollers pass over it."""
     intent, points = CAMS["double roller"]
@@ -309,7 +310,7 @@ def test_a_dent_in_a_hollow_that_neither_roller_feels(tmp_path, depth):
     assert failures(write_dxf(tmp_path / "cam.dxf", vertices), intent) == {"contour"}
 
 
-@pytest.mark.parametrize("depth", [0.0005, 0.002])
+@pytest.mark.parametrize("depth", few([0.0005, 0.002], 2))
 def test_a_dent_that_no_flat_face_feels_counts_with_its_depth(tmp_path, depth):
     """A face passes over a dent of any depth; it is metal missing, measured as such and held against the tolerance."""
     intent, points = CAMS["yoke"]

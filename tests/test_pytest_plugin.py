@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from support.places import RECIPES
 
 from camgeo import pipeline, testing
 from camgeo.foreseen import Foreseen, foreseen
@@ -14,10 +14,10 @@ from camgeo.recipe import load
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     Pytester = pytest.Pytester
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 INI = "[pytest]\ncamgeo_recipes = cams/*.yaml\n"
 SMALL = "cam: {kind: support, p: 9 + cos(3*t)}\nexport: {tolerance: 0.01, files: [dxf]}\n"
 UNDERCUT = SMALL.replace("9 +", "7 +")
@@ -448,6 +448,7 @@ def test_with_several_processes(project: Pytester) -> None:
     result.stdout.fnmatch_lines(["motion of poor.dxf: *", "  would do *"])
 
 
+@pytest.mark.slow
 def test_several_processes_do_not_write_one_folder(project: Pytester) -> None:
     result = run_two(project, "--camgeo-out", "kept")
     assert result.ret == pytest.ExitCode.USAGE_ERROR

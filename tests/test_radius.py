@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from shapes import booth
+from support.cases import examples
+from support.shapes import booth
 
 from camgeo.curve import Curve
 from camgeo.manufacture.cutter import Backwards
@@ -35,7 +36,7 @@ def breadth(base, name):
 
 
 @given(st.floats(1.0, 100.0), st.floats(1e-9, 1.0), st.integers(2, 40))
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_one_harmonic_has_its_least_radius_at_the_crest(mean, share, k):
     b = share * mean / (k * k - 1)
     value, at = least_radius(flat(mean, {k: b}))
@@ -146,7 +147,7 @@ def test_a_narrow_dip_is_not_missed(place):
 
 
 @given(st.floats(-12.0, -1.0), st.sampled_from([2, 3, 5, 8]), st.floats(0.1, 50.0))
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_margins_are_decided_on_both_sides(exponent, k, b):
     size = b * (k * k - 1)
     margin = 10.0**exponent * size

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
-from shapes import PEAR, Polar, booth, waves
+from support.cases import examples, few
+from support.shapes import PEAR, Polar, booth, waves
 
 from camgeo.curve import Bounds, Curve, CurveError, Frame
 from camgeo.offset import Parallel
@@ -95,7 +96,7 @@ def test_alike_necks_are_all_found():
     st.lists(st.tuples(st.integers(2, 7), st.floats(-4.0, 4.0), st.floats(0.0, 6.28)), min_size=1, max_size=3),
     st.floats(1.0, 25.0),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_no_pair_of_points_lies_closer_than_is_proved(terms, below):
     shape = waves(25.0, *terms)
     curve = pitch(shape, 0.5)
@@ -131,7 +132,7 @@ def test_where_newtons_method_has_not_come_to_is_no_neck(monkeypatch, steps):
     assert neck.half == pytest.approx(LENGTH * math.sqrt(0.38), rel=2e-9)
 
 
-@pytest.mark.parametrize("share", [0.98, 0.999, 1.0 - 1e-6])
+@pytest.mark.parametrize("share", few([0.98, 0.999, 1.0 - 1e-6], 2))
 def test_a_waist_almost_folded_is_measured(share):
     # bent on its outer side to a hundredth of its width and less
     waist = LENGTH * math.sqrt(2.0 * (1.0 - share))

@@ -12,6 +12,7 @@ import pytest
 from ezdxf.enums import InsertUnits
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin.arcs import unit
 from kin.chaining import close_pairs
@@ -235,7 +236,7 @@ def test_a_closed_spline_of_one_period(tmp_path: Path, degree: int) -> None:
 
 
 @given(st.permutations(range(4)), st.lists(st.booleans(), min_size=4, max_size=4))
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(25), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_loose_entities_in_any_order_and_direction(tmp_path: Path, order: list[int], backwards: list[bool]) -> None:
     document = new()
     stadium(document.modelspace(), "0", list(order), backwards)
@@ -684,7 +685,7 @@ def outcome(path: Path) -> str:
 
 
 @given(st.floats(0.0, 0.9999))
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(60), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_file_cut_short_is_refused(sample: Path, share: float) -> None:
     raw = sample.read_bytes()
     cut = sample.with_name("cut.dxf")
@@ -694,7 +695,7 @@ def test_a_file_cut_short_is_refused(sample: Path, share: float) -> None:
 
 
 @given(st.lists(st.tuples(st.floats(0.0, 0.9999), st.integers(0, 255)), min_size=1, max_size=6))
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(100), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_flipped_bytes_give_a_contour_or_a_read_error(sample: Path, flips: list[tuple[float, int]]) -> None:
     raw = bytearray(sample.read_bytes())
     begin = raw.index(b"ENTITIES")
@@ -716,7 +717,7 @@ def test_flipped_bytes_give_a_contour_or_a_read_error(sample: Path, flips: list[
         )
     )
 )
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(100), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_replaced_lines_give_a_contour_or_a_read_error(sample: Path, lines: list[tuple[float, str]]) -> None:
     text = sample.read_text().splitlines()
     begin = text.index("ENTITIES")

@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from stepfiles import stadium, swept, washer
+from support.stepfiles import stadium, swept, washer
 
 from camgeo.testing import assert_closed, assert_watertight
 from kin.part21 import exchange

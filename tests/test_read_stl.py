@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin.arcs import unit
 from kin.contour import Contour
@@ -288,7 +289,7 @@ def test_numbers_beyond_measure(tmp_path: Path, value: float) -> None:
 
 
 @given(st.floats(0.0, 1.0))
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(100), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_file_cut_short(tmp_path: Path, share: float) -> None:
     path = binary(tmp_path / "cam.stl", ring())
     raw = path.read_bytes()
@@ -332,7 +333,7 @@ def test_damage_in_the_text_form(tmp_path: Path, old: bytes, new: bytes, words: 
 
 
 @given(st.lists(st.tuples(st.floats(0.0, 0.9999), st.integers(0, 255)), min_size=1, max_size=5), st.booleans())
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(150), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_flipped_bytes_give_a_solid_or_a_read_error(
     tmp_path: Path, flips: list[tuple[float, int]], as_text: bool
 ) -> None:

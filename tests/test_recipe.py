@@ -14,6 +14,7 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from support.places import SHIPPED
 
 from camgeo.profile.build import intent_of, profile_of
 from camgeo.recipe import Recipe, RecipeErrors, load, read
@@ -47,7 +48,6 @@ from kin.motion_sources.laws import named as named_law
 from kin.motion_sources.programme import Dwell, Matched, RiseAndFall, State
 from kin.transmission import Transmission
 
-SHIPPED = sorted((Path(__file__).parents[1] / "recipes").glob("*.yaml"))
 MM = 25.4
 DEG = math.pi / 180
 

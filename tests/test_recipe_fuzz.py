@@ -12,6 +12,7 @@ import pytest
 import yaml
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from camgeo.recipe import Recipe, RecipeErrors, read
 from camgeo.recipe.edit import with_values, without
@@ -81,7 +82,7 @@ def test_there_is_something_to_mutate() -> None:
     assert len(SHIPPED) >= 17
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.binary(max_size=200))
 @example(b"\xff\xfec\x00a\x00m\x00")
 @example(b"\xef\xbb\xbfcam: 1")
@@ -94,7 +95,7 @@ def test_bytes(data: bytes) -> None:
     outcome(data)
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(st.text(alphabet=" \n\t:-[]{},&*!|>'\"#%@`?~<=ak1.", max_size=120))
 @example("? a\n: b")
 @example("? [a, b]\n: c")
@@ -170,7 +171,7 @@ recipes = st.fixed_dictionaries({}, optional={key: known.get(key, structures) fo
 
 
 @pytest.mark.slow
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(recipes | structures)
 def test_structures_near_the_schema(structure: object) -> None:
     outcome(json.dumps(structure).encode())  # a JSON text is a YAML one
@@ -207,14 +208,14 @@ def mutated(draw: st.DrawFn) -> bytes:
     return data
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=examples(500), deadline=None)
 @given(mutated())
 def test_mutated_recipes(data: bytes) -> None:
     outcome(data)
 
 
 @pytest.mark.skipif(not hasattr(yaml, "CSafeLoader"), reason="there is only one reader here to compare")
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 @given(mutated())
 def test_both_readers_of_yaml_agree(data: bytes) -> None:
     with pytest.MonkeyPatch.context() as patch:

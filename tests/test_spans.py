@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapes import booth
+from support.cases import examples, few
+from support.shapes import booth
 
 from camgeo.curve import Curve
 from camgeo.fit import spans
@@ -47,8 +48,8 @@ def distances(curve: Curve, control: np.ndarray, low: float, high: float) -> np.
     return np.sum((points - at.point) * at.normal, axis=1)
 
 
-@pytest.mark.parametrize("name", CURVES)
-@settings(max_examples=12, deadline=None)
+@pytest.mark.parametrize("name", few(CURVES, 2))
+@settings(max_examples=examples(12), deadline=None)
 @given(
     st.floats(0, 1),
     st.floats(-3, -0.5),
@@ -70,7 +71,7 @@ def test_what_is_proved_covers_the_span_at_any_number_of_steps(
         assert bottom[0] >= -true.min() - 1e-12
 
 
-@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("name", few(CURVES, 2))
 @pytest.mark.parametrize("length", [0.5, 0.1, 0.02])
 def test_it_exceeds_the_truth_by_a_fiftieth_at_most(name: str, length: float) -> None:
     curve = CURVES[name]

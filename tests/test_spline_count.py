@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
-from shapes import booth
+from support.cases import few
+from support.places import RECIPES
+from support.shapes import booth
 
 from camgeo import pipeline
 from camgeo.curve import Curve
@@ -24,7 +25,6 @@ from camgeo.recipe.load import load_text
 from camgeo.study.least import least_pieces, least_spline
 from kin.lift import lift_from_fourier, lift_reuleaux
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 # one recipe for each contour that is shipped
 CONTOURS = [
     "as-figure-1", "as-figure-2a", "as-figure-2b", "as-figure-2c", "as-figure-2d", "fourier", "hypocycloid",
@@ -107,7 +107,7 @@ def test_no_span_of_a_right_length_does_better() -> None:
             assert np.abs(gap).max() > 0.98 * worst[0]
 
 
-@pytest.mark.parametrize("name", CONTOURS)
+@pytest.mark.parametrize("name", few(CONTOURS, 4))
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
     contour = designed(load(RECIPES / f"{name}.yaml")).contour
     assert contour is not None
@@ -126,7 +126,7 @@ def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> No
     assert np.mean(ratios) <= 1.16
 
 
-@pytest.mark.parametrize("tolerance", [5e-4, 1.6e-4, 1e-5, 2e-6, 1e-6])
+@pytest.mark.parametrize("tolerance", few([5e-4, 1.6e-4, 1e-5, 2e-6, 1e-6], 2))
 def test_where_sharing_does_not_settle_what_came_nearest_is_halved(tolerance: float) -> None:
     """A double roller in whose contour many places have no nearest cubic, and these move about as nodes are shared."""
     delta = "{cos: {1: 130}, sin: {1: 60, 3: -14}}"
@@ -148,7 +148,7 @@ def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
             assert found.count <= np.ceil(1.02 * totals * 10.0 ** (-exponent / 6)).sum() + 1
 
 
-@pytest.mark.parametrize("share", [0.5, 0.98, 0.999])
+@pytest.mark.parametrize("share", few([0.5, 0.98, 0.999], 4))
 @pytest.mark.parametrize("harmonic", [49, 97, 98, 99])
 def test_high_harmonics_near_undercut_are_held(harmonic: int, share: float) -> None:
     curve = support(50.0, {harmonic: share * 50.0 / (harmonic**2 - 1)})
@@ -179,7 +179,7 @@ def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
     assert abs(first[0] * last[1] - first[1] * last[0]) < 1e-11 * np.hypot(*first) * np.hypot(*last)
 
 
-@pytest.mark.parametrize("name", ["as-figure-2b", "reuleaux", "shu-wu", "w-booth"])
+@pytest.mark.parametrize("name", few(["as-figure-2b", "reuleaux", "shu-wu", "w-booth"], 4))
 @pytest.mark.parametrize("times", [1.0, 2.0, 20.0])
 def test_any_tolerance_above_the_floor_is_held_after_a_few_attempts(
     name: str, times: float, monkeypatch: pytest.MonkeyPatch
@@ -231,11 +231,15 @@ def test_roundings_too_small_for_a_reader_become_corners(sides: int, rounding: f
 
 @pytest.mark.parametrize(
     ("fourier", "pivot", "tolerance"),
-    [
-        ("mean: 74518.6029814693, cos: {199: 1.8817829035705753}", "[74520.48476437287, 0]", 10.0077),
-        ("mean: 25, cos: {3: 3.124999999996875}", "[7.5, -5]", 9.05e-5),
-        ("mean: 25, cos: {33: 0.02297794117644761}", "[0, 0]", 0.0055),
-    ],
+    few(
+        [
+            ("mean: 74518.6029814693, cos: {199: 1.8817829035705753}", "[74520.48476437287, 0]", 10.0077),
+            ("mean: 25, cos: {3: 3.124999999996875}", "[7.5, -5]", 9.05e-5),
+            ("mean: 25, cos: {33: 0.02297794117644761}", "[0, 0]", 0.0055),
+        ],
+        3,
+        first=1,
+    ),
 )
 def test_next_to_cusps_no_span_is_lost_to_the_knots_or_to_a_reader(fourier: str, pivot: str, tolerance: float) -> None:
     """Least radii of curvature of 1e-12 of the size: spans differ in length and in pace by many orders."""

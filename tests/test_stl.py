@@ -4,12 +4,12 @@ import math
 from collections import Counter
 from fractions import Fraction
 
-import manifold3d
 import numpy as np
 import pytest
-import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from support.cases import examples
+from support.heavy import manifold3d, trimesh
 
 from camgeo.files import stl
 from camgeo.files.precision import SINGLE
@@ -169,7 +169,7 @@ def test_faults_are_seen(tmp_path):
     assert "a triangle has no area" in faults(flat)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(
     st.lists(st.tuples(st.floats(5.0, 50.0), st.floats(0.05, 1.0)), min_size=4, max_size=40), st.booleans(), st.data()
 )

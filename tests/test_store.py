@@ -11,8 +11,8 @@ import time
 from contextlib import suppress
 
 import pytest
-import sets
-from sets import NAME, STEPS, export, names_of, write
+from support import sets
+from support.sets import NAME, STEPS, export, names_of, write
 
 from camgeo.store import Run, SurroundingsError
 
@@ -403,6 +403,7 @@ def test_killed_at_any_step(tmp_path):
     assert mixed >= 5  # the moments between commit and last rename were met
 
 
+@pytest.mark.slow
 def test_killed_at_random_moments(tmp_path):
     """A process that writes one set after another is killed again and again, and goes on where it was."""
     chance = random.Random(1984)

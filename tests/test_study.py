@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.places import RECIPES
 
 from camgeo import cli
 from camgeo.design import designed
@@ -15,8 +16,6 @@ from camgeo.recipe.load import load, read
 from camgeo.study.ladder import Ended, Rung, climb
 from camgeo.study.least import least_pieces
 from camgeo.study.margins import Margin, margins
-
-RECIPES = Path(__file__).parents[1] / "recipes"
 
 
 def named(recipe_name: str) -> dict[str, Margin]:
@@ -33,6 +32,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, Path]:
     return json.loads((out / "cam" / "study.json").read_text(encoding="utf-8")), out / "cam"
 
 
+@pytest.mark.slow
 def test_every_form_climbs_until_it_cannot_hold_the_tolerance(study: tuple[dict, Path]) -> None:
     found, folder = study
     assert (folder / "study.png").stat().st_size > 10_000
@@ -55,6 +55,7 @@ def test_every_form_climbs_until_it_cannot_hold_the_tolerance(study: tuple[dict,
         assert [row["pieces"] for row in rows] == sorted(row["pieces"] for row in rows)
 
 
+@pytest.mark.slow
 def test_pieces_against_theory(study: tuple[dict, Path]) -> None:
     rows = {(row["form"], round(-math.log10(row["tolerance"]))): row for row in study[0]["rows"]}
     # 241.25 vertices for p = 25 + 2 cos 3t at 0.001 mm, 242 of them reached (docs/validation.md)
@@ -63,6 +64,7 @@ def test_pieces_against_theory(study: tuple[dict, Path]) -> None:
     assert 1.0 <= rows["spline", 6]["pieces"] / rows["spline", 6]["least_pieces"] <= 1.2
 
 
+@pytest.mark.slow
 def test_an_exact_spline_has_one_rung(study: tuple[dict, Path], tmp_path: Path) -> None:
     found = study[0]
     (row,) = [row for row in found["rows"] if row["form"] == "exact"]

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from parts import CAM, failures
+from support.cases import examples
+from support.parts import CAM, failures
 
 from camgeo.cli import main
 from camgeo.design import designed, intended
@@ -157,7 +158,7 @@ def test_what_svg_does_not_have_is_refused(tmp_path):
 bulges = st.floats(-12, 1.5).map(lambda power: 10.0**power)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(60), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(one=bulges, other=bulges, angle=st.floats(0, 6.3), far=st.floats(0, 100), mirrored=st.booleans())
 def test_arcs_come_back_within_rounding(tmp_path, *, one, other, angle, far, mirrored):
     """Any two arcs over one chord, from next to nothing to all but a circle."""
@@ -350,7 +351,7 @@ def test_an_empty_file_is_told(tmp_path):
         read_svg(tmp_path / "a.svg")
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(150), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.text("MmLlHhVvAaCcZzQ0123456789.-+e ,", max_size=60), st.text("(), 0123.-matrixscletn", max_size=20))
 def test_noise_is_read_or_refused(tmp_path, data, transform):
     body = f'<path d="M0 0 9 0 9 9{data}" transform="scale(1){transform}"/>'

@@ -15,7 +15,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from sweepers import FOUR_BAR, MEANS
+from support.cases import few
+from support.sweepers import FOUR_BAR, MEANS
 
 from camgeo.cli import main
 from camgeo.sweep import command, search
@@ -23,7 +24,7 @@ from camgeo.sweep import command, search
 FIRST = "dwell 49.7 deg, dwell-relative 24.85 deg, margin 3.83333 mm"
 RUN = """\
 import sys
-from sweepers import MEANS
+from support.sweepers import MEANS
 from camgeo.cli import main
 from camgeo.sweep import command
 if __name__ == "__main__":
@@ -177,7 +178,7 @@ def test_a_missing_extra_exits_3_and_is_named_before_anything_is_computed(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("jobs", ["1", "2"])
+@pytest.mark.parametrize("jobs", few(["1", "2"], 2))
 def test_an_interrupted_sweep_exits_130_and_goes_on_later(jobs: str, tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)

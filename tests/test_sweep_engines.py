@@ -13,11 +13,13 @@ import threading
 import time
 from contextlib import suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from distributed import LocalCluster
-from sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
+from support.cases import few
+from support.heavy import distributed
+from support.sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
 
 from camgeo.recipe.load import read
 from camgeo.sweep import engines
@@ -29,10 +31,13 @@ from camgeo.sweep.run import How, chunks_of, compute
 from camgeo.sweep.search import search
 from camgeo.sweep.store import decode
 
+if TYPE_CHECKING:
+    from distributed import LocalCluster
+
 RUN = """\
 import sys
 from pathlib import Path
-from sweepers import MEANS, ask
+from support.sweepers import MEANS, ask
 from camgeo.sweep.run import How
 from camgeo.sweep.search import search
 if __name__ == "__main__":
@@ -42,7 +47,7 @@ if __name__ == "__main__":
 
 @pytest.fixture(scope="module")
 def cluster():
-    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster:
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster:
         yield cluster
 
 
@@ -63,7 +68,7 @@ def hasty(scene, values):
 # --- equality ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("engine", ["processes", "as many as pay", "dask"])
+@pytest.mark.parametrize("engine", few(["processes", "as many as pay", "dask"], 3))
 def test_every_engine_writes_the_same_files(
     engine: str, cluster: LocalCluster, plain: dict[str, bytes], tmp_path: Path
 ) -> None:
@@ -193,7 +198,7 @@ def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(engines, "_PATIENCE", 0.5)
     monkeypatch.setattr(engines, "_WORKERLESS", 2)
     with (
-        LocalCluster(n_workers=0, dashboard_address=":0") as empty,
+        distributed.LocalCluster(n_workers=0, dashboard_address=":0") as empty,
         pytest.raises(engines.EngineError, match="has no workers"),
     ):
         next(engines.dask(job(), [0], empty.scheduler_address))
@@ -316,6 +321,7 @@ def test_a_killed_sweep_goes_on_where_it_was_and_ends_the_same(
     assert tree(out) == plain
 
 
+@pytest.mark.slow
 def test_workers_end_with_the_run_that_is_killed(tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)
@@ -334,6 +340,7 @@ def test_workers_end_with_the_run_that_is_killed(tmp_path: Path) -> None:
     assert len(calls(told)) == count < GRID.chunks
 
 
+@pytest.mark.slow
 def test_two_sweeps_at_once_do_not_disturb_each_other(plain: dict[str, bytes], tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)
@@ -345,6 +352,7 @@ def test_two_sweeps_at_once_do_not_disturb_each_other(plain: dict[str, bytes], t
     assert tree(out) == plain
 
 
+@pytest.mark.slow
 def test_a_sweep_that_grows_does_not_take_the_old_ones_chunks(tmp_path: Path) -> None:
     short = job(Plan((Axis("x", 0.0, 1.0), Axis("y", 0.0, 1.0)), "random", 640))
     long = job(Plan(short.plan.axes, "random", 1280))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from support.cases import examples, few
 
 from camgeo.figures import breadth_of
 from camgeo.linkage import mechanism_of
@@ -80,7 +81,7 @@ def assert_like(figures, wanted, row=0, tolerance=3e-6):
         assert figures[name][row] == pytest.approx(value, rel=tolerance, abs=tolerance), name
 
 
-@pytest.mark.parametrize("assembly", ["open", "crossed"])
+@pytest.mark.parametrize("assembly", few(["open", "crossed"], 3))
 @pytest.mark.parametrize("shape", [CAM_2A, FOURIER, "hypocycloid: {cusps: 3, size: 2, breadth: 50}"])
 @pytest.mark.parametrize("linkage", list(PATHS))
 def test_figures_are_those_of_the_mechanism(linkage, shape, assembly):
@@ -103,7 +104,7 @@ def compute_one(recipe, given, **how):
 
 
 @pytest.mark.slow
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(
     st.sampled_from(list(PATHS)),
     st.integers(-2100, 2100).map(lambda n: n / 100),

@@ -9,11 +9,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyarrow.parquet
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sweepers import GRID, MEANS, ask, hills
+from support.heavy import parquet
+from support.sweepers import GRID, MEANS, ask, hills
 
 from camgeo.recipe.load import load, read
 from camgeo.recipe.model_sweep import Limit
@@ -166,7 +166,7 @@ def test_csv_and_parquet_hold_every_design_kept_to_the_last_bit(swept: Path) -> 
     assert [int(row[0]) for row in rows[1:]] == list(range(1, len(expected) + 1))
     values = GRID.values(0, 825)
     assert all([float(row[2]), float(row[3])] == values[int(row[1])].tolist() for row in rows[1:])
-    table = pyarrow.parquet.read_table(swept / "sweep.parquet")
+    table = parquet.read_table(swept / "sweep.parquet")
     assert table.column_names == rows[0]
     assert [list(map(repr, row.values())) for row in table.to_pylist()] == rows[1:]
     assert table.schema.metadata[b"recipe"] == b"four-bar"

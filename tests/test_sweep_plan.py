@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import qmc
+from support.heavy import qmc
 
 from camgeo.sweep.plan import GREATEST, MOST, SMALLEST, Axis, Plan, steps
 
@@ -45,12 +45,12 @@ def test_sobol_is_scipys_scrambled_sequence(width: int) -> None:
 def test_an_interrupt_while_scipy_reads_its_numbers_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     sobol = qmc.Sobol
 
-    def interrupted(*arguments: object, **named: object) -> qmc.Sobol:
+    def interrupted(*arguments: object, **named: object) -> object:
         with suppress(KeyboardInterrupt):  # as its compiled code does
             signal.raise_signal(signal.SIGINT)
         return sobol(*arguments, **named)
 
-    monkeypatch.setattr(qmc, "Sobol", interrupted)
+    monkeypatch.setattr("scipy.stats.qmc.Sobol", interrupted)
     with pytest.raises(KeyboardInterrupt):
         Plan(AXES, "sobol", 100, 987_654).values(0, 1)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

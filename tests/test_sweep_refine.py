@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
+from support.places import RECIPES
 
 from camgeo.figures import breadth_of
 from camgeo.linkage import mechanism_of
@@ -18,7 +18,6 @@ from camgeo.sweep.figures import evaluate
 from camgeo.sweep.refine import polish
 
 pytest.importorskip("scipy")
-RECIPES = Path(__file__).parents[1] / "recipes"
 
 TEXT = """
 cam:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from sweepers import GRID, ask, calls, fail, hills, job
+from support.sweepers import GRID, ask, calls, fail, hills, job
 
 from camgeo.recipe.load import read
 from camgeo.sweep import job as jobs

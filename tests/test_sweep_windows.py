@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from camgeo.sweep import windows
 from camgeo.sweep.ends import Ends, _Cubic, _passed, cell_bounds, ends, greatest, least, lengths
@@ -50,7 +51,7 @@ def test_the_engines_find_the_same_windows(n, band):
     assert np.array_equal(by_numpy.cells, compiled.cells)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(st.data())
 def test_the_engines_agree_on_values_with_many_ties(data):
     n = data.draw(st.sampled_from([4, 8, 24]))

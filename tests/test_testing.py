@@ -9,7 +9,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-from camfiles import (
+from support.camfiles import (
     arcs_through,
     circle_points,
     roller_points,

@@ -1,6 +1,7 @@
 """Transmission laws: Wunderlich's equations on every route, mpmath as the oracle, and what must be refused."""
 
 import math
+from functools import cache
 from itertools import pairwise
 
 import mpmath as mp
@@ -44,6 +45,7 @@ def leaf(text):
     return Formula(text, ("x",))
 
 
+@cache
 def routes(lam, mu):
     """A law by every route; swings of 2 to 10 degrees."""
     small = 0.1 * min(2 / lam, math.sin(min(math.pi * mu / lam, math.pi - math.pi * mu / lam)))
@@ -60,13 +62,22 @@ def routes(lam, mu):
     }
 
 
-ALL = [(lam, mu, name) for lam, mu in RATIOS for name in routes(3, 1)]
-CACHE = {ratio: routes(*ratio) for ratio in RATIOS}
+ROUTES = (
+    "delta",
+    "delta with sines",
+    "law",
+    "law of a pair",
+    "flatter arc",
+    "arc",
+    "rosette",
+    "rosette with a rest",
+)
+ALL = [(lam, mu, name) for lam, mu in RATIOS for name in ROUTES]
 every_law = pytest.mark.parametrize(("lam", "mu", "name"), ALL)
 
 
 def made(lam, mu, name):
-    return CACHE[lam, mu][name]
+    return routes(lam, mu)[name]
 
 
 def samples(law, count=500):

@@ -7,10 +7,11 @@ import math
 import mpmath
 import numpy as np
 import pytest
-import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from shapes import PEAR, STAR, Moved, booth, waves
+from support.cases import examples, few
+from support.heavy import shapely
+from support.shapes import PEAR, STAR, Moved, booth, waves
 
 from camgeo.causes import UndercutError, causes
 from camgeo.crossing import all_breaks
@@ -135,7 +136,7 @@ def test_three_corners_in_closed_form(a):
     st.floats(12.0, 30.0),
     st.lists(st.tuples(st.integers(2, 8), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=3),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_flat_faces_leave_the_body_of_their_half_planes(mean, terms):
     cos = {k: 8.0 * x / k**1.5 for k, x, _ in terms}
     sin = {k: 8.0 * y / k**1.5 for k, _, y in terms}
@@ -166,7 +167,7 @@ def test_swallowtails_that_run_into_each_other(mean, cos, sin, backwards, left):
     check_same(curve, dual_body(whole.shape), 2e-5)
 
 
-@pytest.mark.parametrize("name", ["parabolic", "harmonic", "modified-sine", "polynomial-345"])
+@pytest.mark.parametrize("name", few(["parabolic", "harmonic", "modified-sine", "polynomial-345"], 4))
 def test_curvature_that_jumps(name):
     whole = breadth(1.0, name)
     curve = trimmed(whole)
@@ -199,7 +200,7 @@ def test_a_bulb_too_small_for_the_roller_goes_with_its_neck(e):
     st.lists(st.tuples(st.integers(2, 6), st.floats(-1.0, 1.0), st.floats(0.0, 6.28)), min_size=1, max_size=3),
     st.floats(2.0, 18.0),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_any_star_is_eroded_or_refused(terms, e):
     shape = waves(30.0, *((k, 10.0 * a / k, b) for k, a, b in terms))
     whole = roller(shape, e)
@@ -365,7 +366,7 @@ def on_spans(spline, count=24):
 FITS = {"polygon": (fit_polygon, on_edges), "arcs": (fit_arcs, on_arcs), "spline": (fit_spline, on_spans)}
 
 
-@pytest.mark.parametrize("form", FITS)
+@pytest.mark.parametrize("form", few(FITS, 3))
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4])
 def test_fits_keep_the_corners_and_their_promise(case, form, tolerance):

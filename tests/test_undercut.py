@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 import pytest
-import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from shapes import PEAR, STAR, Moved, booth, waves
+from support.cases import examples
+from support.heavy import shapely
+from support.shapes import PEAR, STAR, Moved, booth, waves
 
 from camgeo.causes import UndercutError
 from camgeo.curve import Curve
@@ -117,7 +118,7 @@ def test_the_smallest_base_radius():
     st.floats(1.0, 30.0),
     st.lists(st.tuples(st.integers(2, 8), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)), min_size=1, max_size=3),
 )
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=examples(20))
 def test_growing_by_free_at_just_frees_a_flat_face(mean, terms):
     cos = {k: 8.0 * x / k**1.5 for k, x, _ in terms}
     sin = {k: 8.0 * y / k**1.5 for k, _, y in terms}
@@ -246,7 +247,7 @@ def test_a_neck_is_reported_beside_sharper_lobes():
     st.lists(st.tuples(st.integers(2, 6), st.floats(-1.0, 1.0), st.floats(0.0, 6.28)), min_size=1, max_size=3),
     st.floats(2.0, 18.0),
 )
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_the_largest_roller_is_the_least_over_all_pairs(terms, e):
     shape = waves(30.0, *((k, 10.0 * a / k, b) for k, a, b in terms))
     t = np.linspace(0.0, TURN, 700, endpoint=False)

@@ -9,9 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from camfiles import circle_points, roller_points, solid_triangles, support_points, write_stl
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_stl
+from support.cases import examples
 
 from kin.contour import Contour
 from kin.follower import DoubleRoller, Yoke
@@ -152,7 +153,7 @@ def test_every_digit_of_single_precision_tells_no_more_than_that(tmp_path):
 
 
 @given(angle=st.floats(0.0, 6.3), size=st.sampled_from([1e-2, 1.0, 40.0]), seed=st.integers(0, 2**31))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_turned_about_the_shaft_in_single_precision_corner_by_corner(angle, size, seed):
     """Each corner of a wall is turned on its own, and every step of it may be rounded either way."""
     rng = np.random.default_rng(seed)

@@ -3,9 +3,8 @@
 import ezdxf
 import numpy as np
 import pytest
-import shapely
-from camfiles import circle_points, roller_points, solid_triangles, support_points, write_dxf, write_stl
-from scipy.interpolate import CubicHermiteSpline
+from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_dxf, write_stl
+from support.heavy import interpolate, shapely
 
 from kin.arcs import unit
 from kin.check import Check, about, at_most, failed
@@ -69,7 +68,7 @@ def test_a_cubic_spline_in_a_yoke(tmp_path, count, expected):
     t = np.linspace(0.0, 2 * np.pi, count + 1)
     p2 = -18.0 * np.cos(3 * t)
     velocity = (25.0 + 2.0 * np.cos(3 * t) + p2)[:, None] * unit(t + np.pi / 2)
-    fine = CubicHermiteSpline(t, supported(t), velocity)(np.linspace(0.0, 2 * np.pi, 100_001))
+    fine = interpolate.CubicHermiteSpline(t, supported(t), velocity)(np.linspace(0.0, 2 * np.pi, 100_001))
     envelope = yoke.envelope
     seen = np.abs(envelope.feet(fine).excess).max()
     assert verdict.measured_error == pytest.approx(seen, rel=1e-3, abs=3e-9)

@@ -17,6 +17,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+import pytest
 from extreme_oracle import worst
 
 from camgeo import pipeline
@@ -182,9 +183,44 @@ def off_file(contour, oracle, tolerance, angles=ANGLES):
 
 
 @cache
+def measured(topic, name):
+    """Rows of one case of a topic, measured once."""
+    return tuple(import_module(topic).cases()[name]())
+
+
 def rows_of(topic):
-    """Rows of one topic, measured once."""
-    return tuple(import_module(topic).rows())
+    """Rows of one topic, in the order of the page."""
+    return [row for name in import_module(topic).cases() for row in measured(topic, name)]
+
+
+def names(cases, slow):
+    """Names of cases for parametrisation: nothing is measured before its test runs; those in `slow` are marked."""
+    assert set(slow) <= set(cases)
+    return [pytest.param(name, marks=pytest.mark.slow) if name in slow else name for name in cases]
+
+
+def shown_as_measured(topic, name):
+    """Every row of a case holds, and the page has its lines, in their order, with their bounds.
+
+    Figures of rounding differ between machines: of those that the page shows, only their bound is held.
+    """
+    rows = measured(topic, name)
+    assert rows
+    assert [row.line() for row in rows if not row.holds] == []
+    keys = [row.key for row in rows]
+    lines = [line for line in shown(topic) if tuple(line[:2]) in keys]
+    assert [tuple(line[:2]) for line in lines] == keys
+    for line, row in zip(lines, rows, strict=True):
+        written, now = line[2:], cells(row.line())[2:]
+        assert written[1:] == now[1:], line
+        if isinstance(row.reached, str):
+            assert without_figures(written[0]) == without_figures(now[0])
+        else:
+            assert float(written[0]) <= row.most * 1.05, line
+
+
+def without_figures(words):
+    return re.sub(r"-?[0-9.]+(e[-+]?\d+)?", "#", words)
 
 
 def shown(topic):

@@ -1,8 +1,10 @@
 """Formulas in which digits cancel: held to what is left of them, or refused with the figure; roots at their edge."""
 
+from functools import partial
+
 import mpmath as mp
 import pytest
-from accuracy import ANGLES, Row, made, off_file, off_profile, recipe, refused, rows_of
+from accuracy import ANGLES, Row, made, names, off_file, off_profile, recipe, refused, shown_as_measured
 from extreme_oracle import formula, worst
 
 from camgeo.design import designed
@@ -53,12 +55,20 @@ REFUSED = (
 )
 
 
-def rows():
-    for text, exact, why in CANCELLING:
-        yield from case(text, formula(exact), why)
-    for text, words, why in REFUSED:
-        yield Row(f"`p: {text}`".replace("|", "\\|"), "any file", refused(f"kind: support\np: {text}"), words, why)
-    yield below_the_noise()
+SLOW = ("25 + (1 - cos(0.001*(2 + cos(3*t))))/(0.001*(2 + cos(3*t)))**2",)
+
+
+def cases():
+    """What finds the rows of each case, by name, in the order of the page."""
+    return {
+        **{text: partial(case, text, formula(exact), why) for text, exact, why in CANCELLING},
+        **{text: partial(refusal, text, words, why) for text, words, why in REFUSED},
+        "below-the-noise": below_the_noise,
+    }
+
+
+def refusal(text, words, why):
+    yield Row(f"`p: {text}`".replace("|", "\\|"), "any file", refused(f"kind: support\np: {text}"), words, why)
 
 
 def case(text, oracle, why):
@@ -79,12 +89,12 @@ def case(text, oracle, why):
 
 def below_the_noise():
     said = refused("kind: support\np: 25 + (1e9 + cos(3*t)) - 1e9", tolerance=1e-6)
-    return Row("`p: 25 + (1e9 + cos(3*t)) - 1e9`", "a file within 1e-6 mm", said, "at least 2.74e-06 mm", "as told")
+    yield Row("`p: 25 + (1e9 + cos(3*t)) - 1e9`", "a file within 1e-6 mm", said, "at least 2.74e-06 mm", "as told")
 
 
-@pytest.mark.parametrize("row", rows_of(__name__), ids=lambda row: f"{row.case}: {row.asked}")
-def test_it_holds(row):
-    assert row.holds, row
+@pytest.mark.parametrize("name", names(cases(), SLOW))
+def test_it_holds_and_the_page_shows_it(name):
+    shown_as_measured(__name__, name)
 
 
 def test_without_the_formulas_rounding_the_bound_would_be_false():

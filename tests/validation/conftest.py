@@ -2,8 +2,9 @@
 
 import pytest
 from ledger import Workshop
+from support.once import common
 
 
 @pytest.fixture(scope="session")
 def workshop(tmp_path_factory):
-    return Workshop(tmp_path_factory.mktemp("validation"))
+    return Workshop(common(tmp_path_factory) / "validation")

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -21,6 +22,10 @@ from camgeo.recipe.model import FileRequest
 from kin.read_dxf import read_dxf
 
 ROOT = Path(__file__).parents[2]
+sys.path.append(str(ROOT / "tests"))  # where pytest has it; the page is written without pytest
+
+from support.once import once  # noqa: E402
+
 PAGE = ROOT / "docs" / "validation.md"
 TOPICS = (
     "test_support_functions",
@@ -119,7 +124,7 @@ class Made:
 
 
 class Workshop:
-    """Exports each recipe once."""
+    """Exports each recipe once, for all processes of a run of the tests."""
 
     def __init__(self, out):
         self.out = Path(out)
@@ -142,9 +147,13 @@ class Workshop:
     def _export(self, recipe, as_, tolerance, out):
         files = (FileRequest("dxf", as_, "R2010", tolerance), FileRequest("csv"))
         recipe = replace(recipe, export=replace(recipe.export, files=files))
-        outcome = pipeline.export(recipe, out)
-        assert outcome.ok, [c for c in outcome.report["checks"] if not c["ok"]]
-        return Made(recipe, outcome.report, outcome.folder)
+
+        def fill(folder):
+            outcome = pipeline.export(recipe, folder)
+            assert outcome.ok, [c for c in outcome.report["checks"] if not c["ok"]]
+
+        folder = once(out / f"of-{recipe.name}", fill) / recipe.name
+        return Made(recipe, json.loads((folder / "report.json").read_text(encoding="utf-8")), folder)
 
 
 def measured(topic, workshop):
@@ -157,7 +166,6 @@ def misprints(workshop):
 
 
 def main():
-    sys.path.append(str(ROOT / "tests"))  # as pytest has it
     with TemporaryDirectory() as folder:
         workshop = Workshop(folder)
         found = {topic: measured(topic, workshop) for topic in TOPICS}

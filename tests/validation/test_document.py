@@ -5,8 +5,12 @@ import re
 import ledger
 import pytest
 
+LONG = ("test_wunderlich", "test_linkages")  # seconds each
 
-@pytest.mark.parametrize("topic", ledger.TOPICS)
+
+@pytest.mark.parametrize(
+    "topic", [pytest.param(topic, marks=pytest.mark.slow if topic in LONG else ()) for topic in ledger.TOPICS]
+)
 def test_published_values_hold_and_the_page_shows_them(workshop, topic):
     """The same lines in the same order, our figures within what each may differ by or half its last digit."""
     measured, lines = ledger.measured(topic, workshop), ledger.shown(topic)

@@ -12,7 +12,7 @@ import pytest
 from ledger import Row
 from linkage_page import BANDS, DWELLING, Scene
 from linkage_reference import FIGURES, FINE, PI, apart, lift, longest
-from square_frame import CENTRED, Bars, Bench
+from support.square_frame import CENTRED, Bars, Bench
 
 DRAWN = {"9": ("1", "2a", "2c", "2d"), "13": ("1", "2a", "2b", "2d")}
 CURVES = [f"as-figure-{figure}-{cam}" for figure, cams in DRAWN.items() for cam in cams]

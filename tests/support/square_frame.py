@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+
+from support.heavy import optimize
 
 SCAN = 720  # directions between which the roots are looked for
 RESTS = {"1 and 2": (1.0, 1.0), "1 and 4": (1.0, 0.0), "3 and 2": (0.0, 1.0), "3 and 4": (0.0, 0.0)}
@@ -78,12 +79,12 @@ def solve(bars, breadth, reach, near=None):
         grid = np.linspace(-np.pi, np.pi, SCAN + 1)
         values = np.array([miss(x) for x in grid])
         roots = [
-            brentq(miss, a, b, xtol=1e-15, rtol=1e-15)
+            optimize.brentq(miss, a, b, xtol=1e-15, rtol=1e-15)
             for a, b, va, vb in zip(grid[:-1], grid[1:], values[:-1], values[1:], strict=True)
             if (va < 0) != (vb < 0)
         ]
     else:
-        roots = [brentq(miss, near - 0.03, near + 0.03, xtol=1e-15, rtol=1e-15)]
+        roots = [optimize.brentq(miss, near - 0.03, near + 0.03, xtol=1e-15, rtol=1e-15)]
     found = []
     for th3 in roots:
         joint = placed(bars, breadth, *reach(th3), th3)

@@ -7,7 +7,6 @@ import math
 import re
 import time
 import urllib.request
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,13 +16,14 @@ from camgeo.page.page import page
 from camgeo.page.scene import STEPS
 from camgeo.pipeline import shown
 from camgeo.recipe.load import load
+from support.places import RECIPES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from camgeo.recipe.model import Recipe
 
-RECIPES = Path(__file__).parents[1] / "recipes"
 SHOWN = ("shu-wu", "as-figure-9-2a", "six-bar", "slider-crank", "oscillating-yoke", "w-law", "w-ellipse")
 SHAFT = 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
 

@@ -16,8 +16,8 @@ CAM = "cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}\n"
 EXPORT = "export: {{tolerance: 0.01, files: [{}]}}\nverify: {{angles: 36}}\n"
 
 
-def recipe_of(part, *, cam=CAM, more=""):
-    files = "dxf, stl" if "thickness" in part else "dxf"
+def recipe_of(part, *, cam=CAM, more="", files=None):
+    files = files or ("dxf, stl" if "thickness" in part else "dxf")
     return read(f"{cam}part: {part}\n{EXPORT.format(files)}{more}".encode(), Path("part.yaml"))
 
 
