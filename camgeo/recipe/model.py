@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_manufacture import Compensation, Manufacture
     from camgeo.recipe.model_mechanism import MechanismAsked
     from camgeo.recipe.model_part import Part
-    from camgeo.recipe.model_sweep import Sweep
+    from camgeo.recipe.model_sweep import Limit, Sweep
 
 Undercut: TypeAlias = Literal["refuse", "trim"]
 Harmonics: TypeAlias = tuple[tuple[int, float], ...]  # (harmonic, coefficient), rising
@@ -361,6 +361,7 @@ class Recipe:
     dynamics: Dynamics | None = None
     manufacture: Manufacture | None = None
     mechanism: MechanismAsked | None = None
+    limits: tuple[Limit, ...] = ()
     marks: Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
 
