@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.checks.declared import BREADTH, CLOSING, FACE, PRESSURE, TRANSMISSION
 from kin.check import Check, degrees
 from kin.distinct import distinct
 from kin.possible import steepest
@@ -53,12 +54,12 @@ def flat_face_checks(lift: Lift, breadth: tuple[float, float, float] | None) -> 
     if breadth is not None:
         mean, deviation, at = breadth
         limit = SAME_BREADTH * abs(mean)
-        checks.append(Check("constant-breadth", deviation <= limit, deviation, limit, "mm", degrees(at)))
+        checks.append(Check(BREADTH.name, deviation <= limit, deviation, limit, "mm", degrees(at)))
     t = _angles(lift.breaks, 2.0 * math.pi)
     slope = lift.derivatives(t, 1)[1]  # continuous too
     worst = float(t[int(np.argmax(np.abs(slope)))])
     length = float(slope.max() - slope.min())
-    checks.append(Check("face-length", True, length, None, "mm", degrees(worst), "at_least"))
+    checks.append(Check(FACE.name, True, length, None, "mm", degrees(worst), "at_least"))
     return checks
 
 
@@ -75,7 +76,7 @@ def transmission_checks(law: Transmission) -> list[Check]:
     gap = law.arm * np.abs(image + psi[0])
     worst = int(np.argmax(gap))
     closing = Check(
-        "closing-equation",
+        CLOSING.name,
         bool(gap[worst] <= EXACT * law.arm),
         float(gap[worst]),
         EXACT * law.arm,
@@ -83,7 +84,7 @@ def transmission_checks(law: Transmission) -> list[Check]:
         degrees(float(phi[0, worst])),
     )
     at, value = steepest(law)
-    return [closing, Check("transmission", value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))]
+    return [closing, Check(TRANSMISSION.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))]
 
 
 def pressure_angle(profile: Profile, law: Transmission) -> Check:
@@ -115,7 +116,7 @@ def pressure_angle(profile: Profile, law: Transmission) -> Check:
         if seen[worst] > value:
             at, value = float(t[worst]), float(seen[worst])
         low, high = max(low, t[worst] - (high - low) / ZOOM), min(high, t[worst] + (high - low) / ZOOM)
-    return Check("pressure-angle", value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
+    return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
 
 
 def _angles(breaks: Array, end: float) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from camgeo.checks.declared import CHECKS
 from camgeo.report.document import pieces_word
 
 if TYPE_CHECKING:
@@ -12,8 +13,6 @@ if TYPE_CHECKING:
 
     _Row = tuple[str, float | None, str, float | None]
 
-# With a linkage these concern the cam in its frame alone, and their place is the relative angle (docs/report.md).
-OVER_RELATIVE = frozenset({"contour", "motion", "constant-breadth", "breadth-max"})
 NONE = "–"
 MANY = 40  # checks, beyond which those of files that hold are folded up
 
@@ -50,7 +49,7 @@ def checks(report: dict[str, Any]) -> str:
 def _check(check: dict[str, Any], *, linked: bool) -> str:
     sign = "≥" if check["sense"] == "at_least" else "≤"
     limit = NONE if check["limit"] is None else f"{sign} {number(check['limit'])}"
-    over = "relative" if linked and check["name"] in OVER_RELATIVE else "shaft"
+    over = "relative" if linked and _is_in_frame(check) else "shaft"
     detail = f'<div class="detail">{escape(check["detail"])}</div>' if check.get("detail") else ""
     return (
         f'<tr class="{"ok" if check["ok"] else "failed"}">'
@@ -60,6 +59,11 @@ def _check(check: dict[str, Any], *, linked: bool) -> str:
         f"<td>{escape(_unit(check['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
         f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
     )
+
+
+def _is_in_frame(check: dict[str, Any]) -> bool:
+    """Whether a check concerns the cam in its frame alone: its place is the relative angle then (docs/report.md)."""
+    return check["name"] in CHECKS and CHECKS[check["name"]].in_frame
 
 
 def written(report: dict[str, Any]) -> str:

@@ -19,10 +19,10 @@ from camgeo.recipe.spec import (
     length,
 )
 from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_figures import FIGURES, bounds
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
 from camgeo.recipe.table_part import STANDARD
 from camgeo.recipe.table_sweep import RANGE
-from camgeo.recipe.table_figures import FIGURES, bounds
 from camgeo.recipe.tables import FILES, RECIPE
 
 Schema: TypeAlias = dict[str, Any]

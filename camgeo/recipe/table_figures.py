@@ -70,9 +70,13 @@ FIGURES: dict[str, Figure] = {
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
     "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
-    "shaft-rate": Figure("least turn of the shaft per turn of the cam against the frame", Kind.NUMBER, "most", "linkage"),
+    "shaft-rate": Figure(
+        "least turn of the shaft per turn of the cam against the frame", Kind.NUMBER, "most", "linkage"
+    ),
     RADIUS: Figure("least radius of curvature of the contour", Kind.LENGTH, "most"),
-    "hollow-radius": Figure("least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", "roller"),
+    "hollow-radius": Figure(
+        "least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", "roller"
+    ),
     "pitch-radius": Figure("least radius of curvature of the pitch curve", Kind.LENGTH, "most", "roller"),
     SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
     "wall": Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from camgeo.recipe.spec import MOST, MOST_DESIGNS, MOST_STEPS, Field, Kind, Table
 from camgeo.recipe.table_figures import FIGURES as EVERY
 
-
 FIGURES = {name: figure for name, figure in EVERY.items() if figure.swept}
 """The figures that a sweep knows."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from camgeo.checks.declared import CURVATURE
 from camgeo.recipe.edit import with_values
 from camgeo.recipe.errors import RecipeErrors
 from camgeo.recipe.load import load_text
@@ -73,7 +74,7 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array) -> tuple[Array, A
         if contour is None:
             fault[i] = UNDERCUT
             continue
-        bent = next(check.value for check in design.checks if check.name == "radius-of-curvature")
+        bent = next(check.value for check in design.checks if check.name == CURVATURE.name)
         t = np.concatenate([np.linspace(run.low, run.high, _POINTS) for run in contour.runs])
         points = contour.sample(t).point
         # what is checked is bent as the roller's centre runs; the contour lies within by the roller's radius

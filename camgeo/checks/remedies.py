@@ -1,0 +1,131 @@
+"""What would let a check hold: one function for each that knows, empty text where nothing would do.
+
+Each takes the check as the report has it, the report and the recipe. Figures are in the recipe's unit, rounded to the
+side on which the text is true.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, SupportCam
+from camgeo.rounded import downward, upward
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.recipe.model import Recipe
+
+Remedy: TypeAlias = "Callable[[dict[str, Any], dict[str, Any], Recipe], str]"
+SMALLER_SWING = "a smaller swing, or the same over a wider angle"
+
+
+def smaller_swing(_check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+    """Tell of a motion that is too steep."""
+    return SMALLER_SWING
+
+
+def rounder(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell what would make the least radius of curvature large enough."""
+    value, limit, unit = check["value"], check["limit"], check["unit"]
+    if value is None or limit is None:
+        return ""
+    if isinstance(recipe.cam, DoubleRollerCam):
+        return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
+    return _larger(recipe, limit - value, unit)
+
+
+def _larger(recipe: Recipe, by: float, unit: str) -> str:
+    """Tell of the base of a plate's cam: what it grows by, every radius of curvature and every distance grows by."""
+    if isinstance(recipe.cam, ConstantBreadthCam):
+        return f"a base radius larger by more than {upward(by)} {unit}"
+    if isinstance(recipe.cam, SupportCam):
+        return f"a support function larger by more than {upward(by)} {unit}"
+    return ""
+
+
+def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+    """Tell which chamfer the contour has room for; nothing of the chamfer in a file."""
+    value = check["value"]
+    if value is None or check["limit"] is None or "file" in check:
+        return ""
+    return f"a chamfer below {downward(value)} {check['unit']}" if value > 0.0 else NO_CHAMFER
+
+
+NO_CHAMFER = "no chamfer, or a contour without corners"
+
+
+def smaller_bore(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell which bore leaves the wall; where the part has more than a bore the check itself names the edges."""
+    value, limit, part = check["value"], check["limit"], recipe.part
+    if value is None or limit is None or not part.plain or part.bore is None:
+        return ""
+    less = 2.0 * (limit - value)
+    return f"a bore smaller by more than {upward(less)} {check['unit']}" if less * recipe.mm < part.bore else ""
+
+
+def nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell what would bring the motion error, or its limit, to where it holds."""
+    value = check["value"]
+    if value is None or check["limit"] is None or recipe.verify.motion_error is None or value <= 0.0:
+        return ""
+    return f"{_tighter(check, report, recipe)}verify.motion_error above {upward(value)}"
+
+
+def _tighter(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell of the tolerance that would bring a motion error to its limit, and that there is another way."""
+    value, limit = check["value"], check["limit"]
+    if limit <= 0.0:
+        return ""
+    if isinstance(recipe.cam, ConstantBreadthCam | SupportCam):  # a flat face is off by no more than the contour
+        return f"a tolerance of {limit:.6g}, or "
+    tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
+    return "" if tolerance is None else f"a tolerance of about {tolerance * limit / value:.2g}, or "
+
+
+def of_limit(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell what would keep a limit of the recipe's own: of the cam where that is known, and of the limit itself."""
+    value, limit, name = check["value"], check["limit"], check["name"].partition(":")[2]
+    if value is None or limit is None:
+        return f"no limits.{name}"
+    field = f"limits.{name}.{check['sense']}"
+    if check["sense"] == "at_most":
+        own = _to_lower(name, check, report, recipe)
+        return f"{own}{field} of {_outward(value, up=True)}"
+    own = _to_raise(name, limit - value, check, recipe)
+    return f"{own}{field} of {_outward(value, up=False)}"
+
+
+def _to_lower(name: str, check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+    if name in {"pressure-angle", "transmission", "peak-velocity", "peak-acceleration", "peak-jerk", "face-length"}:
+        programme = isinstance(recipe.cam, ConstantBreadthCam | DoubleRollerCam)
+        return f"{SMALLER_SWING}, or " if programme and recipe.linkage is None else ""
+    return _tighter(check, report, recipe) if name == "motion-error" else ""
+
+
+def _to_raise(name: str, by: float, check: dict[str, Any], recipe: Recipe) -> str:
+    """Tell what would raise a figure by more than so much."""
+    unit, own = check["unit"], ""
+    if name in {"radius-of-curvature", "hollow-radius"} and isinstance(recipe.cam, DoubleRollerCam):
+        # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
+        roller, hollow = recipe.cam.roller_radius / recipe.mm, name == "hollow-radius"
+        if hollow or by < roller:
+            own = f"a roller radius of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
+    elif name == "radius-of-curvature":
+        own = _larger(recipe, by, unit)
+    elif (
+        name == "wall"
+        and recipe.part.plain
+        and recipe.part.bore is not None
+        and 2.0 * by * recipe.mm < recipe.part.bore
+    ):
+        own = f"a bore smaller by more than {upward(2.0 * by)} {unit}"
+    return f"{own}, or " if own else ""
+
+
+def _outward(value: float, *, up: bool) -> str:
+    """Round a limit so that the value keeps it, whatever its sign."""
+    if value == 0.0:
+        return "0"
+    text = upward(abs(value)) if up == (value > 0.0) else downward(abs(value))
+    return text if value > 0.0 else f"-{text}"
