@@ -163,6 +163,17 @@ class FlatPairCam:
 
 
 Cam: TypeAlias = SupportCam | ConstantBreadthCam | DoubleRollerCam | FlatPairCam
+CAM_KINDS: dict[type[Cam], str] = {
+    SupportCam: "support",
+    ConstantBreadthCam: "constant-breadth",
+    DoubleRollerCam: "double-roller",
+    FlatPairCam: "flat-pair",
+}
+
+
+def cam_kind(cam: Cam) -> str:
+    """Name the kind of a cam as recipes do."""
+    return CAM_KINDS[type(cam)]
 
 
 Assembly: TypeAlias = Literal["open", "crossed"]

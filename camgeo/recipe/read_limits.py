@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.errors import suggestion
-from camgeo.recipe.source import Mapping, described, entries, join, keys
+from camgeo.recipe.source import Mapping, described, entries, join, keys, scalars
 from camgeo.recipe.spec import Field, Kind, either
-from camgeo.recipe.table_figures import FIGURES, LIMITS, NEEDS, bounds, there
+from camgeo.recipe.table_figures import ALL, FIGURES, LIMITS, NEEDS, bounds, there
 
 if TYPE_CHECKING:
     from camgeo.recipe.reader import Reader, Values
@@ -47,6 +47,8 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
 def of_recipe(reader: Reader) -> tuple[str, ...]:
     """Name the figures that the recipe being read has."""
     given = set(reader.marks)
+    if any(path.endswith(".parts") and scalar.text == "all" for path, scalar in scalars(reader.source.root)):
+        given.add(ALL)
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, reader.cam_kind, given))
 
 

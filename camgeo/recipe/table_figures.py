@@ -94,10 +94,7 @@ FIGURES: dict[str, Figure] = {
     "peak-force": Figure(
         "greatest contact force, N; N m where it turns", Kind.NUMBER, "least", "preload", of="dynamics", swept=False
     ),
-    "float-speed": Figure(
-        "speed from which contact is lost, turns a minute", Kind.NUMBER, "most", "preload", of="dynamics", swept=False
-    ),
-    "play": Figure("least play between the faces", Kind.PLAY, "most", "play", of="dynamics", swept=False),
+    "play": Figure("least play between the faces", Kind.ERROR, "most", "play", of="dynamics", swept=False),
 }
 
 
@@ -111,6 +108,7 @@ def bounds(figure: Figure) -> Table:
     )
 
 
+ALL = "parts: all"
 LIMITS = Field(
     "limits",
     Kind.LIMITS,
@@ -121,7 +119,10 @@ LIMITS = Field(
 
 
 def there(needs: Needs, cam_kind: str, given: frozenset[str] | set[str]) -> bool:
-    """Tell whether a recipe has what a figure needs, by its kind of cam and the paths of the fields given."""
+    """Tell whether a recipe has what a figure needs, by its kind of cam and the paths of the fields given.
+
+    `ALL` is given where a file shows every body.
+    """
     match needs:
         case "linkage" | "play" | "preload" | "dwell":
             return (needs if needs in {"linkage", "dwell"} else f"dynamics.{needs}") in given
@@ -136,5 +137,5 @@ def there(needs: Needs, cam_kind: str, given: frozenset[str] | set[str]) -> bool
         case "wall":
             return any(f"part.{name}" in given for name in _OPENINGS)
         case "all":
-            return any(path.startswith("export.files[") and path.endswith(".parts") for path in given)
+            return ALL in given
     return True
