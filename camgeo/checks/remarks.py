@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.checks.declared import PRESSURE, Scene
 from camgeo.recipe.model import NO_CONTOUR
+from camgeo.report.document import Remark
 from kin.check import degrees
 
 if TYPE_CHECKING:
@@ -23,18 +23,6 @@ STILL = 1e-9  # of the cam's size: a motion that is none
 LOOKS = 1440  # places of a turn at which the stroke is looked at
 INCH, STEP, HALF = 25.4, 64.0, 0.5  # sizes by the inch are whole 64ths, metric ones whole or half mm
 _SAME = 1e-6
-
-
-@dataclass(frozen=True)
-class Remark:
-    """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
-
-    name: str
-    value: float | None
-    rule: float | None
-    unit: str
-    sentence: str
-    at_deg: float | None = None
 
 
 def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:

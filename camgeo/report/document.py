@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.checks.remarks import Remark
     from camgeo.fit.pieces import Bound
     from camgeo.recipe.model import FileRequest, Recipe
     from kin.check import Check
@@ -46,6 +45,18 @@ class FileResult:
     def shows_cam(self) -> bool:
         """Whether the file has the nominal cam's contour, and not another body's or none."""
         return self.body == "cam" and self.request.kind not in NO_PART and self.request.compensation is None
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
+
+    name: str
+    value: float | None
+    rule: float | None
+    unit: str
+    sentence: str
+    at_deg: float | None = None
 
 
 @dataclass(frozen=True)
