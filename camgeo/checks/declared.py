@@ -14,7 +14,8 @@ from camgeo.checks import remedies
 from camgeo.recipe.model import NO_CONTOUR, NO_PART, SOLIDS, DoubleRollerCam, FlatPairCam
 from camgeo.recipe.table_figures import DWELL as LONGEST_DWELL
 from camgeo.recipe.table_figures import FACE_LENGTH as TRAVEL
-from camgeo.recipe.table_figures import FIGURES, RADIUS
+from camgeo.recipe.table_figures import FIGURES, LEAST_WALL, PRESSURE_ANGLE, RADIUS
+from camgeo.recipe.table_figures import TRANSMISSION as STEEPEST
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -252,11 +253,9 @@ UNDERCUT_GLOBAL = Declared(
     "undercut-global", ("mm",), lambda scene: scene.roller, why_not=_convex, field="cam.roller_radius"
 )
 CLOSING = Declared("closing-equation", ("mm",), lambda scene: scene.swings, why_not=_no_swing)
-TRANSMISSION = Declared(
-    "transmission", ("",), lambda scene: scene.swings, why_not=_no_swing, remedy=remedies.smaller_swing
-)
+TRANSMISSION = Declared(STEEPEST, ("",), lambda scene: scene.swings, why_not=_no_swing, remedy=remedies.smaller_swing)
 PRESSURE = Declared(
-    "pressure-angle", ("deg",), lambda scene: scene.roller, why_not=_no_roller, remedy=remedies.smaller_swing
+    PRESSURE_ANGLE, ("deg",), lambda scene: scene.roller, why_not=_no_roller, remedy=remedies.smaller_swing
 )
 BREADTH = Declared(
     "constant-breadth",
@@ -271,7 +270,7 @@ FACE = Declared(TRAVEL, ("mm",), lambda scene: not scene.swings, why_not=_no_pla
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
 DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")
-WALL = Declared("wall", ("mm",), _walled, field="part.bore", remedy=remedies.smaller_bore)
+WALL = Declared(LEAST_WALL, ("mm",), _walled, field="part.bore", remedy=remedies.smaller_bore)
 LIGHTENING = Declared(
     "lightening", ("holes",), lambda scene: scene.recipe.part.lightening is not None, field="part.lightening"
 )
@@ -354,7 +353,7 @@ def _of_figure(name: str, figure: Figure) -> Declared:
             return _driven(scene, file) if figure.needs == "linkage" else _contour(scene, file)
         return False
 
-    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", remedy=remedies.of_limit)
+    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}")  # the check itself tells what would do
 
 
 LIMITS: dict[str, Declared] = {LIMIT + name: _of_figure(name, figure) for name, figure in FIGURES.items()}

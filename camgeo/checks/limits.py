@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import EVERY, LIMIT, Scene
 from camgeo.checks.measured import Measured, of_design, of_dynamics, of_file
+from camgeo.checks.remedies import Missed, of_limit
 from camgeo.recipe.table_figures import FIGURES
 from kin.check import Check
 
@@ -40,20 +41,23 @@ def limit_checks(
     for limit in recipe.limits:
         name, of = limit.figure, FIGURES[limit.figure].of
         if name in measured:
-            found += _held(limit, measured[name])
+            found += _held(recipe, limit, measured[name])
         elif of == "dynamics" and dynamics is not None:
             for run, value in of_dynamics(name, dynamics, checks).items():
-                found += _held(limit, value, run)
+                found += _held(recipe, limit, value, run)
         elif of == "file":
             declared = EVERY[LIMIT + name].of_file
             for file in files:
                 if file.body == "cam" and declared is not None and declared(scene, file.request):
-                    found += _held(limit, of_file(name, file, checks), file.path.name)
+                    value = of_file(name, file, checks)
+                    found += _held(recipe, limit, value, file.path.name, file.tolerance)
     return found
 
 
-def _held(limit: Limit, measured: Measured, file: str | None = None) -> list[Check]:
-    """Hold a figure against each bound that is given."""
+def _held(
+    recipe: Recipe, limit: Limit, measured: Measured, file: str | None = None, tolerance: float | None = None
+) -> list[Check]:
+    """Hold a figure against each bound that is given; `tolerance` is the file's. What fails tells what would do."""
     found = []
     bounds: tuple[tuple[Sense, float | None], ...] = (("at_least", limit.at_least), ("at_most", limit.at_most))
     for sense, bound in bounds:
@@ -61,6 +65,8 @@ def _held(limit: Limit, measured: Measured, file: str | None = None) -> list[Che
             continue
         value, slack = measured.value, ROUNDING * abs(bound)
         ok = value is not None and (value >= bound - slack if sense == "at_least" else value <= bound + slack)
-        name, detail = LIMIT + limit.figure, measured.detail if value is None or math.isinf(value) else ""
-        found.append(Check(name, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail))
+        detail = measured.detail if value is None or math.isinf(value) else ""
+        if value is not None and not ok:
+            detail = f"{of_limit(recipe, limit.figure, Missed(value, bound, measured.unit, tolerance))} would do"
+        found.append(Check(LIMIT + limit.figure, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail))
     return found

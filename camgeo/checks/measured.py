@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.checks.declared import CHECKS, CLEARANCE, COLLISION, CURVATURE, FACE, PLAY, PRESSURE, STANDS, WALL
 from camgeo.checks.declared import TRANSMISSION as STEEPEST
-from camgeo.recipe.table_figures import FIGURES, RADIUS, SIZE
+from camgeo.recipe.table_figures import DWELL, FIGURES, HOLLOW_RADIUS, PEAKS, PITCH_RADIUS, RADIUS, SIZE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -26,7 +26,7 @@ TURN = 2.0 * math.pi
 POINTS = 4096  # of each run of a contour, among which the farthest from the shaft is sought
 _CLOSER = 64  # points about the farthest, once more
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
-_ORDERS = {"swing": 0, "peak-velocity": 1, "peak-acceleration": 2, "peak-jerk": 3}
+_ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
 _OF_CHECKS = {one.name: one for one in (PRESSURE, STEEPEST, FACE, WALL, CLEARANCE, COLLISION)}
 
 
@@ -133,8 +133,8 @@ def farthest(contour: Curve) -> tuple[float, float]:
 
 _OF_CURVE: dict[str, Callable[[Design], Measured]] = {
     RADIUS: _radius,
-    "pitch-radius": _pitch_radius,
-    "hollow-radius": _hollow_radius,
+    PITCH_RADIUS: _pitch_radius,
+    HOLLOW_RADIUS: _hollow_radius,
     SIZE: _size,
 }
 
@@ -216,12 +216,12 @@ def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:
     made, turn = driven.figures, math.degrees(1.0)
     found |= {
         "swing": Measured(made.swing * scale, unit),
-        "peak-velocity": placed(made.velocity, scale, f"{unit}/rad"),
-        "peak-acceleration": placed(made.acceleration, scale, f"{unit}/rad^2"),
+        PEAKS[0]: placed(made.velocity, scale, f"{unit}/rad"),
+        PEAKS[1]: placed(made.acceleration, scale, f"{unit}/rad^2"),
         "transmission-angle": placed(made.transmission_least, turn, "deg"),
         "force-angle": placed(made.force_least, turn, "deg"),
     }
-    for name, over in (("dwell", "shaft"), ("dwell-relative", "relative")):
+    for name, over in ((DWELL, "shaft"), ("dwell-relative", "relative")):
         longest = [dwell for key, dwells in driven.dwells.items() if key == over for dwell in dwells[:1]]
         for dwell in longest:
             at = math.degrees(dwell.start) % 360.0 if over == "shaft" else None

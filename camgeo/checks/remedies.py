@@ -6,9 +6,10 @@ side on which the text is true.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, SupportCam
+from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from camgeo.recipe.table_figures import HOLLOW_RADIUS, LEAST_WALL, MOTION_ERROR, PRESSURE_ANGLE, RADIUS, STEEP
 from camgeo.rounded import downward, upward
 
 if TYPE_CHECKING:
@@ -74,52 +75,70 @@ def nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str
 
 def _tighter(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
     """Tell of the tolerance that would bring a motion error to its limit, and that there is another way."""
-    value, limit = check["value"], check["limit"]
+    tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
+    return _tolerance(recipe, check["value"], check["limit"], tolerance)
+
+
+def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | None) -> str:
     if limit <= 0.0:
         return ""
     if isinstance(recipe.cam, ConstantBreadthCam | SupportCam):  # a flat face is off by no more than the contour
         return f"a tolerance of {limit:.6g}, or "
-    tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
     return "" if tolerance is None else f"a tolerance of about {tolerance * limit / value:.2g}, or "
 
 
-def of_limit(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
-    """Tell what would keep a limit of the recipe's own: of the cam where that is known, and of the limit itself."""
-    value, limit, name = check["value"], check["limit"], check["name"].partition(":")[2]
-    if value is None or limit is None:
-        return f"no limits.{name}"
-    field = f"limits.{name}.{check['sense']}"
-    if check["sense"] == "at_most":
-        own = _to_lower(name, check, report, recipe)
-        return f"{own}{field} of {_outward(value, up=True)}"
-    own = _to_raise(name, limit - value, check, recipe)
-    return f"{own}{field} of {_outward(value, up=False)}"
+# --- limits of a recipe's own -----------------------------------------------------------------------------------------
 
 
-def _to_lower(name: str, check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
-    if name in {"pressure-angle", "transmission", "peak-velocity", "peak-acceleration", "peak-jerk", "face-length"}:
-        programme = isinstance(recipe.cam, ConstantBreadthCam | DoubleRollerCam)
-        return f"{SMALLER_SWING}, or " if programme and recipe.linkage is None else ""
-    return _tighter(check, report, recipe) if name == "motion-error" else ""
+class Missed(NamedTuple):
+    """A figure that misses its bound, in mm and degrees; `tolerance` is that of the file, mm, None without one."""
+
+    value: float
+    bound: float
+    unit: str
+    tolerance: float | None = None
 
 
-def _to_raise(name: str, by: float, check: dict[str, Any], recipe: Recipe) -> str:
-    """Tell what would raise a figure by more than so much."""
-    unit, own = check["unit"], ""
-    if name in {"radius-of-curvature", "hollow-radius"} and isinstance(recipe.cam, DoubleRollerCam):
+def of_limit(recipe: Recipe, figure: str, missed: Missed) -> str:
+    """Tell what would keep a limit: of the cam where that is known, and of the limit itself; in the recipe's unit."""
+    divisor = recipe.mm if missed.unit.partition("/")[0] == "mm" else 1.0
+    value, bound = missed.value / divisor, missed.bound / divisor
+    field = f"limits.{figure}"
+    if value > bound:
+        own = _to_lower(recipe, figure, missed)
+        return f"{own}{field}.at_most of {_outward(value, up=True)}"
+    return f"{_to_raise(recipe, figure, bound - value)}{field}.at_least of {_outward(value, up=False)}"
+
+
+def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
+    if figure == MOTION_ERROR:
+        tolerance = None if missed.tolerance is None else missed.tolerance / recipe.mm
+        return _tolerance(recipe, missed.value / recipe.mm, missed.bound / recipe.mm, tolerance)
+    if figure not in STEEP or recipe.linkage is not None:
+        return ""
+    if figure == PRESSURE_ANGLE and isinstance(recipe.cam, DoubleRollerCam):
+        # without a swing the normal points to the shaft, and the arm stands at alpha/2 to it, alpha = 180 mu/lambda
+        floor = 90.0 * (1.0 - recipe.cam.mu / recipe.cam.lam)
+        if 0.0 < missed.bound <= floor:
+            return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg), or "
+    swung = isinstance(recipe.cam, ConstantBreadthCam | DoubleRollerCam | FlatPairCam)
+    return f"{SMALLER_SWING}, or " if swung and missed.bound > 0.0 else ""
+
+
+def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
+    """Tell what would raise a figure by so much, in the recipe's unit."""
+    unit, own = "in" if recipe.units == "inch" else "mm", ""
+    if figure in {RADIUS, HOLLOW_RADIUS} and isinstance(recipe.cam, DoubleRollerCam):
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
-        roller, hollow = recipe.cam.roller_radius / recipe.mm, name == "hollow-radius"
+        roller, hollow = recipe.cam.roller_radius / recipe.mm, figure == HOLLOW_RADIUS
         if hollow or by < roller:
             own = f"a roller radius of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
-    elif name == "radius-of-curvature":
+    elif figure == RADIUS:
         own = _larger(recipe, by, unit)
-    elif (
-        name == "wall"
-        and recipe.part.plain
-        and recipe.part.bore is not None
-        and 2.0 * by * recipe.mm < recipe.part.bore
-    ):
-        own = f"a bore smaller by more than {upward(2.0 * by)} {unit}"
+    elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
+        own = (
+            f"a bore smaller by more than {upward(2.0 * by)} {unit}" if 2.0 * by * recipe.mm < recipe.part.bore else ""
+        )
     return f"{own}, or " if own else ""
 
 

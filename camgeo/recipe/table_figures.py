@@ -24,7 +24,11 @@ NEEDS: dict[Needs, str] = {
 _OPENINGS = ("bore", "hub", "bolts", "dowel", "lightening", "mark")
 
 # Names that stand in programs too.
-RADIUS, DWELL, SIZE, FACE_LENGTH = "radius-of-curvature", "dwell", "size", "face-length"
+DWELL, SIZE, FACE_LENGTH, LEAST_WALL = "dwell", "size", "face-length", "wall"
+RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "pitch-radius"
+PRESSURE_ANGLE, TRANSMISSION, MOTION_ERROR = "pressure-angle", "transmission", "motion-error"
+PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
+STEEP = frozenset({PRESSURE_ANGLE, TRANSMISSION, FACE_LENGTH, *PEAKS})  # the less the smaller the motion
 
 
 @dataclass(frozen=True)
@@ -54,18 +58,16 @@ FIGURES: dict[str, Figure] = {
     DWELL: Figure("longest dwell over the shaft angle, at the band of `dwell`", Kind.ANGLE, "most", "dwell"),
     "dwell-relative": Figure("longest dwell over the relative angle, at that band", Kind.ANGLE, "most", "dwell"),
     "swing": Figure("swing or stroke of the output, without a linkage of the follower", Kind.MOTION, "most"),
-    "peak-velocity": Figure("its greatest velocity, per radian of shaft angle", Kind.MOTION, "least", per="/rad"),
-    "peak-acceleration": Figure("its greatest acceleration, per radian squared", Kind.MOTION, "least", per="/rad^2"),
-    "peak-jerk": Figure(
-        "the follower's greatest jerk, per radian cubed", Kind.MOTION, "least", "follower", per="/rad^3"
-    ),
-    "pressure-angle": Figure(
+    PEAKS[0]: Figure("its greatest velocity, per radian of shaft angle", Kind.MOTION, "least", per="/rad"),
+    PEAKS[1]: Figure("its greatest acceleration, per radian squared", Kind.MOTION, "least", per="/rad^2"),
+    PEAKS[2]: Figure("the follower's greatest jerk, per radian cubed", Kind.MOTION, "least", "follower", per="/rad^3"),
+    PRESSURE_ANGLE: Figure(
         "greatest angle between the contact's normal and the follower's way; 0 of a flat face",
         Kind.ANGLE,
         "least",
         "follower",
     ),
-    "transmission": Figure("greatest swing of the arm per turn of the shaft", Kind.NUMBER, "least", "swings"),
+    TRANSMISSION: Figure("greatest swing of the arm per turn of the shaft", Kind.NUMBER, "least", "swings"),
     FACE_LENGTH: Figure("length of the face along which the contact travels", Kind.LENGTH, "least", "plate"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
@@ -74,16 +76,14 @@ FIGURES: dict[str, Figure] = {
         "least turn of the shaft per turn of the cam against the frame", Kind.NUMBER, "most", "linkage"
     ),
     RADIUS: Figure("least radius of curvature of the contour", Kind.LENGTH, "most"),
-    "hollow-radius": Figure(
-        "least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", "roller"
-    ),
-    "pitch-radius": Figure("least radius of curvature of the pitch curve", Kind.LENGTH, "most", "roller"),
+    HOLLOW_RADIUS: Figure("least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", "roller"),
+    PITCH_RADIUS: Figure("least radius of curvature of the pitch curve", Kind.LENGTH, "most", "roller"),
     SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
-    "wall": Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
+    LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
     "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", "all", swept=False),
     "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", "all", swept=False),
     "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
-    "motion-error": _of_file("greatest motion error of a file", Kind.ERROR),
+    MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
     "backlash": _of_file("greatest play or interference of a follower that is held twice, of a file", Kind.PLAY),
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
