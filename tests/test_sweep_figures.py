@@ -32,9 +32,7 @@ PATHS = {
     INVERTED: ("linkage.ground", "linkage.rocker"),
     SLIDER: ("linkage.coupler", "linkage.offset"),
 }
-OF_LINKAGES = tuple(
-    name for name, figure in FIGURES.items() if figure.needs not in {"follower", "roller", "swings"}
-)
+OF_LINKAGES = tuple(name for name, figure in FIGURES.items() if figure.needs not in {"follower", "roller", "swings"})
 PIVOT = ("cam.pivot[0]", "cam.pivot[1]")
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from camgeo.recipe.spec import Kind
 from camgeo.recipe.table_cam import CAMS
-from camgeo.recipe.table_linkage import DYADS, LINKAGES
 from camgeo.recipe.table_figures import FIGURES, NEEDS, bounds
+from camgeo.recipe.table_linkage import DYADS, LINKAGES
 from camgeo.recipe.table_sweep import RANGE
 from camgeo.recipe.tables import FILES, RECIPE
 
