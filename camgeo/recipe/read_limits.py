@@ -25,7 +25,7 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
     for name, key in keys(node).items():
         below = join(path, name)
         if name not in field.choices:
-            known = field.choices if field is not LIMITS else of_recipe(reader)
+            known = tuple(here for here in of_recipe(reader) if here in field.choices)
             remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
             reader.fault(key.mark, below, "no such figure", None, remedy)
             continue
