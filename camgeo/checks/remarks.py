@@ -21,6 +21,7 @@ SHARE = 0.1  # of the stroke: an error as great as that is no small one
 THICKEST, THINNEST = 2.0, 0.01  # of the cam's greatest radius
 STILL = 1e-9  # of the cam's size: a motion that is none
 LOOKS = 1440  # places of a turn at which the stroke is looked at
+CLEAR = 0.05  # of the cam's size
 INCH, STEP, HALF = 25.4, 64.0, 0.5  # sizes by the inch are whole 64ths, metric ones whole or half mm
 _SAME = 1e-6
 
@@ -106,8 +107,12 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     """With a bore the wall is a check."""
     if recipe.part.bore is not None or design.contour is None:
         return None
-    from camgeo.part.wall import distance_inside
+    from camgeo.part.wall import distance_inside, winds
 
+    runs = [np.linspace(run.low, run.high, LOOKS) for run in design.contour.runs]
+    ring = design.contour.sample(np.concatenate(runs)).point
+    if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * design.profile.curve.size:
+        return None  # by far; what is nearer is looked at closely
     distance, at = distance_inside(design.contour, (0.0, 0.0))
     if distance > 0.0:
         return None

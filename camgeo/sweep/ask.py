@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from camgeo.recipe.model import DoubleRollerCam, Export, FlatPairCam, Recipe, Verify, cam_kind, output_slides
 from camgeo.recipe.model_part import Part
 from camgeo.recipe.spec import Kind
-from camgeo.recipe.table_figures import FACE_LENGTH
+from camgeo.recipe.table_figures import FACE_LENGTH, HOLLOW_RADIUS, PEAKS
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.recipe.tables import field_at
 from camgeo.sweep.figures import Evaluator, Scene, asked_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_sweep import Sweep
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
-_DEAR = ("dwell-relative", "peak-velocity", "peak-acceleration", "force-angle", FACE_LENGTH)
+_DEAR = ("dwell-relative", *PEAKS, "force-angle", FACE_LENGTH, HOLLOW_RADIUS)
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 
@@ -65,12 +65,12 @@ class Ask:
     def figures(self) -> tuple[str, ...]:
         """The figures that every design is given: those that cost little, and the others where they rank or limit.
 
-        Limits on the cheap ones so leave what is computed as it is. Designs that are made one by one get all, which
-        then cost next to nothing.
+        Limits on the cheap ones so leave what is computed as it is. Designs with a linkage that are made one by one
+        get all, which then cost next to nothing.
         """
         paths = tuple(axis.path for axis in self.sweep.vary)
         asked = {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
-        if Evaluator.of(self.recipe, paths).slow:
+        if self.recipe.linkage is not None and Evaluator.of(self.recipe, paths).slow:
             return self.all_figures
         return tuple(name for name in self.all_figures if name in asked or name not in _DEAR)
 
