@@ -13,6 +13,8 @@ from kin.distinct import distinct
 from kin.possible import steepest
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.curve import Array
     from camgeo.profile.build import Profile
     from kin.lift import Lift
@@ -56,10 +58,9 @@ def flat_face_checks(lift: Lift, breadth: tuple[float, float, float] | None) -> 
         limit = SAME_BREADTH * abs(mean)
         checks.append(Check(BREADTH.name, deviation <= limit, deviation, limit, "mm", degrees(at)))
     t = _angles(lift.breaks, 2.0 * math.pi)
-    slope = lift.derivatives(t, 1)[1]  # continuous too
-    worst = float(t[int(np.argmax(np.abs(slope)))])
-    length = float(slope.max() - slope.min())
-    checks.append(Check(FACE.name, True, length, None, "mm", degrees(worst), "at_least"))
+    low = _greatest(lambda u: -lift.derivatives(u, 1)[1], t)  # continuous too
+    high = _greatest(lambda u: lift.derivatives(u, 1)[1], t)
+    checks.append(Check(FACE.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least"))
     return checks
 
 
@@ -103,20 +104,25 @@ def pressure_angle(profile: Profile, law: Transmission) -> Check:
         found: Array = np.degrees(np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across))
         return found
 
-    t = _angles(law.breaks, 2.0 * math.pi)
-    seen = angle(t)
+    value, at = _greatest(angle, _angles(law.breaks, 2.0 * math.pi))
+    return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
+
+
+def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
+    """Greatest value of a continuous function of period 2 pi, looked at at t (n,) and closely about the best; where."""
+    seen = of(t)
     around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
     worst = int(np.argmax(seen))
     at, value = float(t[worst]), float(seen[worst])
     low, high = float(around[worst]), float(around[worst + 2])
     for _ in range(ZOOMS):
         t = np.linspace(low, high, ZOOM + 1)
-        seen = angle(t)
+        seen = of(t)
         worst = int(np.argmax(seen))
         if seen[worst] > value:
             at, value = float(t[worst]), float(seen[worst])
         low, high = max(low, t[worst] - (high - low) / ZOOM), min(high, t[worst] + (high - low) / ZOOM)
-    return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
+    return value, at
 
 
 def _angles(breaks: Array, end: float) -> Array:

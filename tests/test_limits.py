@@ -10,9 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from camgeo import pipeline
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
+from camgeo.checks.limits import limit_checks
+from camgeo.checks.measured import of_design
 from camgeo.cli import main
 from camgeo.design import designed
 from camgeo.foreseen import Foreseen, foreseen
@@ -375,3 +379,35 @@ def test_a_sweep_has_the_figures_of_its_limits() -> None:
 
 def test_every_limit_is_declared() -> None:
     assert set(EVERY) == {*CHECKS, *(LIMIT + name for name in FIGURES)}
+
+
+COEFFICIENTS = st.lists(st.integers(-30, 30), min_size=3, max_size=3)
+
+
+@settings(deadline=None, max_examples=10)
+@given(COEFFICIENTS, COEFFICIENTS, st.floats(-2, 2), st.sampled_from(["at_least", "at_most"]))
+def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int], share: float, sense: str) -> None:
+    """Figures against dense samples of the support function, and each limit held as plain arithmetic has it."""
+    both = enumerate(zip(cos, sin, strict=True), 1)
+    terms = [f"{c / 100}*cos({k}*t) + {s / 100}*sin({k}*t)" for k, (c, s) in both]
+    text = f"cam: {{kind: support, p: 30 + {' + '.join(terms)}}}\n".replace("+ -", "- ")
+    names = ["swing", "peak-velocity", "peak-acceleration", "peak-jerk", "face-length", "radius-of-curvature", "size"]
+    recipe = loaded(text)
+    design = designed(recipe)
+    t = np.linspace(0, 2 * math.pi, 20_001)
+    p = intent_of(recipe.cam).derivatives(t, 3)
+    peaks = np.abs(p[1:]).max(axis=1)
+    wanted = [np.ptp(p[0]), *peaks, np.ptp(p[1]), (p[0] + p[2]).min(), np.hypot(p[0], p[1]).max()]
+    figures = of_design(design, design.checks, names)
+    for name, value in zip(names, wanted, strict=True):
+        assert figures[name].value == pytest.approx(value, rel=1e-5, abs=1e-9), name
+    bounds = {name: float(value) * (1 + share) + 1e-3 * share for name, value in zip(names, wanted, strict=True)}
+    said = "{" + ", ".join(f"{name}: {{{sense}: {bound!r}}}" for name, bound in bounds.items()) + "}"
+    checks = limit_checks(loaded(text, said), design, design.checks, [], None)
+    assert [check.name for check in checks] == [LIMIT + name for name in names]
+    values = [figures[name].value or 0.0 for name in names]
+    sign = 1.0 if sense == "at_least" else -1.0
+    if abs(share) > 1e-4:  # else rounding decides
+        assert [check.ok for check in checks] == [
+            sign * (v - bounds[n]) >= 0.0 for n, v in zip(names, values, strict=True)
+        ]
