@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, cast
 
+from camgeo.checks.declared import CURVATURE, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
 from camgeo.curve import CurveError
 from camgeo.profile.build import Profile, intent_of, profile_of
 from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, output_slides
@@ -125,11 +126,12 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
     from camgeo.undercut import undercuts
 
     trim = recipe.cam.undercut == "trim"
+    of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     least = enclosed_least_radius(profile.curve)
     radius = least.radius + profile.roller_radius
     roomy, at_deg = radius > profile.roller_radius, shaft_deg(intent, least.at)
-    bent = Check("radius-of-curvature", roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
+    bent = Check(CURVATURE.name, roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
     if least.room and roomy:
         lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
         bent = replace(bent, detail=lower)
@@ -138,7 +140,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
     except UndercutError as error:
         kind = "global" if roomy else "local"
         free = "" if error.free_at is None else f"; {_free(recipe, profile, error.free_at)}"
-        return [bent, Check(f"undercut-{kind}", False, None, 0.0, "mm", None, detail=f"{error}{free}")], None
+        return [bent, Check(of_kind[kind].name, False, None, 0.0, "mm", None, detail=f"{error}{free}")], None
     outcome, contour = "", None if found else profile.curve
     if trim and found:
         try:
@@ -158,13 +160,13 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
         if kind == "global" and profile.roller_radius == 0.0 and not cuts:
             continue
         if not cuts:
-            checks.append(Check(f"undercut-{kind}", True, 0.0, 0.0, "mm"))
+            checks.append(Check(of_kind[kind].name, True, 0.0, 0.0, "mm"))
             continue
         worst = max(cuts, key=lambda cut: cut.depth)
         detail = f"{_extent(profile, intent, worst)}; {free}{outcome}"
         depth = worst.depth if math.isfinite(worst.depth) else None
         ok, at_deg, limit = contour is not None, shaft_deg(intent, worst.at), None if cut_off else 0.0
-        checks.append(Check(f"undercut-{kind}", ok, depth, limit, "mm", at_deg, detail=detail))
+        checks.append(Check(of_kind[kind].name, ok, depth, limit, "mm", at_deg, detail=detail))
     return checks, contour
 
 
@@ -244,7 +246,9 @@ def _part(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> tuple[
         wall, at = least_wall(contour, part.bore)
         ok = wall > 0.0 if part.wall is None else wall >= part.wall
         told = "" if ok else "bore and contour" if wall > -0.5 * part.bore else "the shaft lies outside the contour"
-        return None, [Check("wall", ok, wall, part.wall or 0.0, "mm", shaft_deg(intent, at), "at_least", detail=told)]
+        return None, [
+            Check(WALL.name, ok, wall, part.wall or 0.0, "mm", shaft_deg(intent, at), "at_least", detail=told)
+        ]
     from camgeo.part.body import body_of
     from camgeo.part.check import part_checks
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from camgeo.checks.declared import FLOAT, PLAY
 from kin.check import Check, about, degrees, failed
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
             if path is None:
                 raise recipe.error("dynamics", str(error)) from error
             entry = {"from": path.name}
-            check = failed("float" if asked.play is None else "play", str(error), unit="N", limit=0.0)
+            check = failed((FLOAT if asked.play is None else PLAY).name, str(error), unit="N", limit=0.0)
         entries.append(entry)
         checks.append(check if path is None else about(check, path.name))
     train = scene.train
@@ -213,7 +214,7 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
     detail = f"greatest {found.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
     unit = "N m" if scene.name == "deg" else "N"
     at_deg = degrees(found.force.least_at)
-    return entry, Check("float", least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
+    return entry, Check(FLOAT.name, least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
 
 
 def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
@@ -235,7 +236,7 @@ def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive)
             detail = "the follower touches neither face: the play is more than the cam moves"
     swings = scene.name == "deg"
     value, unit = (math.degrees(least), "deg") if swings else (1e3 * least, "mm")
-    return entry, Check("play", least > 0.0, value, 0.0, unit, degrees(at), "at_least", detail=detail)
+    return entry, Check(PLAY.name, least > 0.0, value, 0.0, unit, degrees(at), "at_least", detail=detail)
 
 
 def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:

@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.checks.declared import BREADTH, CLOSING, FACE, PRESSURE, TRANSMISSION
 from kin.check import Check, degrees
 from kin.distinct import distinct
 from kin.possible import steepest
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.curve import Array
     from camgeo.profile.build import Profile
     from kin.lift import Lift
@@ -53,12 +56,11 @@ def flat_face_checks(lift: Lift, breadth: tuple[float, float, float] | None) -> 
     if breadth is not None:
         mean, deviation, at = breadth
         limit = SAME_BREADTH * abs(mean)
-        checks.append(Check("constant-breadth", deviation <= limit, deviation, limit, "mm", degrees(at)))
+        checks.append(Check(BREADTH.name, deviation <= limit, deviation, limit, "mm", degrees(at)))
     t = _angles(lift.breaks, 2.0 * math.pi)
-    slope = lift.derivatives(t, 1)[1]  # continuous too
-    worst = float(t[int(np.argmax(np.abs(slope)))])
-    length = float(slope.max() - slope.min())
-    checks.append(Check("face-length", True, length, None, "mm", degrees(worst), "at_least"))
+    low = _greatest(lambda u: -lift.derivatives(u, 1)[1], t)  # continuous too
+    high = _greatest(lambda u: lift.derivatives(u, 1)[1], t)
+    checks.append(Check(FACE.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least"))
     return checks
 
 
@@ -75,7 +77,7 @@ def transmission_checks(law: Transmission) -> list[Check]:
     gap = law.arm * np.abs(image + psi[0])
     worst = int(np.argmax(gap))
     closing = Check(
-        "closing-equation",
+        CLOSING.name,
         bool(gap[worst] <= EXACT * law.arm),
         float(gap[worst]),
         EXACT * law.arm,
@@ -83,7 +85,7 @@ def transmission_checks(law: Transmission) -> list[Check]:
         degrees(float(phi[0, worst])),
     )
     at, value = steepest(law)
-    return [closing, Check("transmission", value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))]
+    return [closing, Check(TRANSMISSION.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))]
 
 
 def pressure_angle(profile: Profile, law: Transmission) -> Check:
@@ -102,20 +104,25 @@ def pressure_angle(profile: Profile, law: Transmission) -> Check:
         found: Array = np.degrees(np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across))
         return found
 
-    t = _angles(law.breaks, 2.0 * math.pi)
-    seen = angle(t)
+    value, at = _greatest(angle, _angles(law.breaks, 2.0 * math.pi))
+    return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
+
+
+def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
+    """Greatest value of a continuous function of period 2 pi, looked at at t (n,) and closely about the best; where."""
+    seen = of(t)
     around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
     worst = int(np.argmax(seen))
     at, value = float(t[worst]), float(seen[worst])
     low, high = float(around[worst]), float(around[worst + 2])
     for _ in range(ZOOMS):
         t = np.linspace(low, high, ZOOM + 1)
-        seen = angle(t)
+        seen = of(t)
         worst = int(np.argmax(seen))
         if seen[worst] > value:
             at, value = float(t[worst]), float(seen[worst])
         low, high = max(low, t[worst] - (high - low) / ZOOM), min(high, t[worst] + (high - low) / ZOOM)
-    return Check("pressure-angle", value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
+    return value, at
 
 
 def _angles(breaks: Array, end: float) -> Array:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
+from camgeo.checks.declared import DWELL, MOBILITY, REVERSAL
 from camgeo.recipe.model import FourBarLinkage, InvertedSliderCrankLinkage, RPRDyad, RRPDyad, RRRDyad
 from kin.check import Check, degrees, failed
 from kin.monotone import RoughError
@@ -97,8 +98,8 @@ def mobility_checks(mechanism: Mechanism) -> list[Check]:
 
     rate = None if math.isnan(found.least_rate) else found.least_rate
     return [
-        above_zero("mobility", found.margin, "mm", found.margin_at, where),
-        above_zero("reversal", rate, "", found.rate_at, back or (where if rate is None else "")),
+        above_zero(MOBILITY.name, found.margin, "mm", found.margin_at, where),
+        above_zero(REVERSAL.name, rate, "", found.rate_at, back or (where if rate is None else "")),
     ]
 
 
@@ -114,7 +115,7 @@ def _dwell_check(asked: DwellAsked, longest: Dwell) -> list[Check]:
     start = degrees(longest.start)
     detail = f"from {start:.6g} over {length:.6g} deg of the {asked.over} angle"
     at = start if asked.over == "shaft" else None
-    return [Check("dwell", length >= wanted, length, wanted, "deg", at, "at_least", detail=detail)]
+    return [Check(DWELL.name, length >= wanted, length, wanted, "deg", at, "at_least", detail=detail)]
 
 
 # --- the whole of it --------------------------------------------------------------------------------------------------
@@ -176,7 +177,7 @@ def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
             raise recipe.error("dwell.band", f"{error} {unit}", None, "give a wider band") from error
         checks += _dwell_check(asked, found[asked.over][0])
     elif asked is not None and asked.at_least is not None:
-        checks.append(failed("dwell", "the mechanism does not turn", unit="deg", limit=math.degrees(asked.at_least)))
+        checks.append(failed(DWELL.name, "the mechanism does not turn", unit="deg", limit=math.degrees(asked.at_least)))
     figures = mechanism.figures() if mechanism.mobility().turns else None
     return Driven(mechanism, tuple(checks), found, figures)
 

@@ -191,6 +191,16 @@ def _findings(
         with clock.stage("dynamics"):
             train = dynamics_of(recipe, design, [file.path for file in files if file.shows_cam], units)
         checks = [*checks, *train.checks]
+    if recipe.limits:
+        from camgeo.checks.limits import limit_checks
+
+        with clock.stage("limits"):
+            section = None if train is None else train.section
+            checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
+    from camgeo.checks.remarks import remarks_of
+
+    with clock.stage("remarks"):
+        remarks = remarks_of(recipe, design)
     return Findings(
         tuple(checks),
         tuple(files),
@@ -199,4 +209,5 @@ def _findings(
         design.follower,
         linkage=linkage,
         dynamics=None if train is None else train.section,
+        remarks=remarks,
     )

@@ -288,7 +288,8 @@ class CheckItem(pytest.Item):
 
     def _missing(self, wanted: Foreseen, report: dict[str, Any]) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
-        from camgeo.foreseen import PLAY, Foreseen
+        from camgeo.checks.declared import CHECKS, MOTION
+        from camgeo.foreseen import Foreseen
         from camgeo.report.failure import headline
 
         assert self.run.recipe is not None
@@ -296,7 +297,9 @@ class CheckItem(pytest.Item):
         if cause:
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
             return
-        if self.run.recipe.cam.undercut == "trim" and wanted.name in {"motion", *PLAY}:
+        if self.run.recipe.cam.undercut == "trim" and (
+            wanted.name == MOTION.name or (wanted.name in CHECKS and CHECKS[wanted.name].play)
+        ):
             reason = "an undercut is trimmed: what motion is lost is told, and judged against verify.motion_error alone"
             pytest.skip(f"{self.run.shown}: {reason}")
         _fail(f"{wanted} is not among the checks that were made")

@@ -13,6 +13,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from camgeo.checks.declared import (
+    CHECKS,
+    CLOSED,
+    CONTOUR,
+    CURVATURE,
+    MOTION,
+    READABLE,
+    UNDERCUT_GLOBAL,
+    UNDERCUT_LOCAL,
+    WATERTIGHT,
+)
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from os import PathLike
@@ -38,8 +50,10 @@ __all__ = [
 
 GAP = 1e-6  # mm
 MOST_NAMED = 5  # faults named in a message
-UNREAD = frozenset({"closed", "readable", "watertight"})  # one of them alone stands for a file that is no contour
-PLAY = frozenset({"constant-breadth", "breadth-max", "form-closure"})
+UNREAD = frozenset(
+    {CLOSED.name, READABLE.name, WATERTIGHT.name}
+)  # one of them alone stands for a file that is no contour
+PLAY = frozenset(one.name for one in CHECKS.values() if one.play)
 
 
 @dataclass(frozen=True)
@@ -156,7 +170,7 @@ def assert_motion(
     name, else `export.tolerance`. `angles` takes the place of `verify.angles`. Returns the motion error.
     """
     __tracebackhide__ = True
-    motion = _judged(recipe, path, {"motion", *PLAY}, limit=limit, tolerance=tolerance, angles=angles)["motion"]
+    motion = _judged(recipe, path, {MOTION.name, *PLAY}, limit=limit, tolerance=tolerance, angles=angles)["motion"]
     if motion is None:
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
@@ -169,7 +183,7 @@ def assert_contour(recipe: AnyRecipe, path: AnyPath, *, tolerance: float | None 
     greatest distance between the two, in the recipe's units.
     """
     __tracebackhide__ = True
-    error: float = _judged(recipe, path, {"contour"}, tolerance=tolerance)["measured_error"]
+    error: float = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance)["measured_error"]
     return error
 
 
@@ -242,9 +256,10 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     recipe = replace(recipe, cam=replace(recipe.cam, undercut="refuse"))
     design = designed(recipe)
     report = document(recipe, Findings(design.checks, (), (), (), design.follower))
-    checks = [c for c in report["checks"] if c["name"] == "radius-of-curvature" or c["name"].startswith("undercut-")]
+    names = {CURVATURE.name, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
+    checks = [check for check in report["checks"] if check["name"] in names]
     _all_hold(checks, report, recipe, recipe.name)
-    radius: float = next(check["value"] for check in checks if check["name"] == "radius-of-curvature")
+    radius: float = next(check["value"] for check in checks if check["name"] == CURVATURE.name)
     return radius
 
 

@@ -55,6 +55,8 @@ FLOORS = {
         sweep.ends sweep.linkages
         sweep.windows
         pipeline recipe
+        checks.limits checks.remarks
+        checks.measured
         making.left_out making.make
         making.mechanism
         making.drawing making.gcode making.parts making.step making.view making.table
@@ -80,16 +82,18 @@ FLOORS = {
         causes files.precision fit.exact fit.handles fit.free_arcs report.document report.failure
         bodies.places bodies.linked_places reach
         bodies.forms bodies.assembly fit.cubic fit.spans fit.trigonometric pairs recipe.check_sweep
-        recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
+        recipe.read_limits recipe.read_linkage recipe.read_list recipe.read_scalar recipe.read_sweep
         bodies.body files.dxf fit.deviation fit.nodes fit.parts fit.staircase offset profile.support profile.wunderlich
         radius turning
-        files.gcode part.shapes remedies recipe.edit recipe.reader recipe.schema recipe.starter
+        checks.declared
+        checks.remedies files.gcode part.shapes recipe.edit recipe.reader recipe.schema recipe.starter
         bodies.sizes manufacture.toolpath recipe.model recipe.scalars recipe.source recipe.tables
         recipe.model_dynamics recipe.model_manufacture recipe.model_mechanism recipe.model_sweep recipe.table_part
         recipe.table_cam recipe.table_dynamics recipe.table_linkage recipe.table_manufacture recipe.table_mechanism
         recipe.table_sweep
-        curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors
-        recipe.spec report report.bound rounded status store
+        recipe.table_figures
+        checks curve files files.markup files.table files.triangulate fit fit.pieces profile progress recipe.errors
+        recipe.spec report rounded status store
         page.followers page.pack page.svg
         page.scene
         bodies files.missing making manufacture page fit.rational part recipe.din6885 recipe.model_part study

@@ -16,7 +16,7 @@ from kin.motion_sources.laws import NAMES
 
 SUPPORT = "cam: {kind: support, p: 9}\n"
 KEYS = (
-    "name, about, units, rotation, cam, linkage, part, export, verify, mechanism, dwell, sweep, dynamics "
+    "name, about, units, rotation, cam, linkage, part, export, verify, limits, mechanism, dwell, sweep, dynamics "
     "and manufacture"
 )
 PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark and wall"

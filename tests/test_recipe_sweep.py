@@ -11,8 +11,11 @@ from camgeo.recipe.edit import with_values
 from camgeo.recipe.model_sweep import Axis, Limit, Sweep
 from camgeo.recipe.source import join
 from camgeo.recipe.spec import MOST_AXES, MOST_VALUES
+from camgeo.recipe.table_figures import NEEDS
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.recipe.tables import is_known
+
+HERE = {"", "linkage", "dwell", "plate"}  # what a recipe with a linkage and a dwell has
 
 BASE = """\
 cam: {kind: support, fourier: {mean: 25, cos: {3: 1.5}}, pivot: [10, 4]}
@@ -334,7 +337,7 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
             ROCKER + "  limits: {weight: {at_most: 4}, shaft-rate: {at_lest: 0}, size: {at_most: x}}\n" + RANK,
             [
                 "2:12: sweep.limits.weight: no such figure; the figures are "
-                + ", ".join([*FIGURES][:-1])
+                + ", ".join([name for name, one in FIGURES.items() if one.needs in HERE][:-1])
                 + " and size",
                 "2:47: sweep.limits.shaft-rate.at_lest: unknown key; did you mean at_least?",
                 "2:76: sweep.limits.size.at_most: not a number, given 'x'; give a number in mm",
@@ -361,13 +364,15 @@ def test_a_bound_on_the_number_of_axes() -> None:
 @pytest.mark.parametrize(("name", "figure"), FIGURES.items())
 def test_a_figure_needs_what_it_is_taken_from(name: str, figure: object) -> None:
     needs = FIGURES[name].needs
+    if needs and needs not in HERE:
+        return  # BASE has a linkage: see test_a_figure_that_a_linkage_has_not
     lines = BASE.splitlines(keepends=True)
     vary = "  vary: {cam.fourier.mean: [25]}\n"
     bodies = {
         "dwell": "".join(line for line in lines if not line.startswith("dwell")),
         "linkage": "".join(line for line in lines if not line.startswith(("dwell", "linkage"))),
     }
-    section = "dwell.band" if needs == "dwell" else "a linkage"
+    section = NEEDS.get(needs, "")
     remedy = f"{name} needs {section}; give {section}, or take another figure"
     for missing, base in bodies.items():
         for body, at in (
@@ -377,11 +382,20 @@ def test_a_figure_needs_what_it_is_taken_from(name: str, figure: object) -> None
                 f"2:{14 + len(name)}: sweep.limits.{name}: {remedy}",
             ),
         ):
-            if needs and (missing in (needs, "linkage")):
+            if needs in {"linkage", "dwell"} and (missing in (needs, "linkage")):
                 assert told(body, base) == [at]
             else:
                 assert sweep(body, base)
     assert figure is FIGURES[name]
+
+
+@pytest.mark.parametrize(
+    "name", [name for name, one in FIGURES.items() if one.needs in {"follower", "roller", "swings"}]
+)
+def test_a_figure_that_a_linkage_has_not(name: str) -> None:
+    section = NEEDS[FIGURES[name].needs]
+    body = f"  vary: {{cam.fourier.mean: [25]}}\n  rank: {name}\n"
+    assert told(body) == [f"2:9: sweep.rank: {name} needs {section}; give {section}, or take another figure"]
 
 
 def test_a_sweep_may_stand_before_what_it_varies() -> None:

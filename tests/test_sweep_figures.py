@@ -33,6 +33,7 @@ PATHS = {
     INVERTED: ("linkage.ground", "linkage.rocker"),
     SLIDER: ("linkage.coupler", "linkage.offset"),
 }
+OF_LINKAGES = tuple(name for name, figure in FIGURES.items() if figure.needs not in {"follower", "roller", "swings"})
 PIVOT = ("cam.pivot[0]", "cam.pivot[1]")
 
 
@@ -65,6 +66,7 @@ def exact(recipe):
         "shaft-rate": mobility.least_rate,
         "radius-of-curvature": (p[0] + p[2]).min(),
         "size": np.hypot(p[0], p[1]).max(),
+        "face-length": np.ptp(p[1]),
     }
 
 
@@ -95,7 +97,7 @@ def test_the_papers_dwell():
     found = compute_one(recipe(), {})
     assert found["dwell-relative"] == pytest.approx(45.174019358, abs=2e-6)
     assert found["dwell"] == pytest.approx(37.049100772, abs=2e-6)
-    assert set(found) == set(FIGURES)
+    assert set(found) == set(OF_LINKAGES)
 
 
 def compute_one(recipe, given, **how):
@@ -230,9 +232,9 @@ def swept(limits):
 @pytest.mark.parametrize(
     ("rank", "limits", "without"),
     [
-        ("dwell", "", {"dwell-relative", "peak-velocity", "peak-acceleration", "force-angle"}),
-        ("force-angle", "peak-velocity: {at_least: 0}", {"dwell-relative", "peak-acceleration"}),
-        ("dwell-relative", "", {"peak-velocity", "peak-acceleration", "force-angle"}),
+        ("dwell", "", {"dwell-relative", "peak-velocity", "peak-acceleration", "force-angle", "face-length"}),
+        ("force-angle", "peak-velocity: {at_least: 0}", {"dwell-relative", "peak-acceleration", "face-length"}),
+        ("dwell-relative", "", {"peak-velocity", "peak-acceleration", "force-angle", "face-length"}),
     ],
 )
 def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank, limits, without):
@@ -240,9 +242,9 @@ def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank,
     asked = Ask.of(load_text(one.text.replace("rank: dwell", f"rank: {rank}"), "a.yaml"))
     values = asked.plan.values(0, 21)
     cheap, whole = means.figures(asked.scene(asked.figures), values), means.measure(asked, values)
-    assert set(FIGURES) - set(cheap) == without
-    assert set(whole) == set(FIGURES)
-    for name in set(FIGURES) - without:
+    assert set(OF_LINKAGES) - set(cheap) == without
+    assert set(whole) == set(OF_LINKAGES)
+    for name in set(OF_LINKAGES) - without:
         assert np.array_equal(cheap[name], whole[name], equal_nan=True), name
 
 
@@ -261,7 +263,7 @@ def test_designs_made_one_by_one_get_all_figures():
     dyads = ", dyads: [{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
     base = recipe(more=dyads)
     asked = Ask.of(load_text(base.text + SWEPT.replace("LIMITS", ""), "a.yaml"))
-    assert asked.figures == asked.all_figures == tuple(FIGURES)
+    assert asked.figures == asked.all_figures == OF_LINKAGES
 
 
 def test_what_breaks_a_limit_is_computed_no_further():
@@ -310,7 +312,15 @@ def test_dyads_are_figured_design_by_design():
 def test_a_recipe_without_a_linkage():
     one = recipe(linkage="")
     found = evaluate(one, ("cam.pivot[0]",), np.array([[18.0], [0.0]]))
-    assert set(found.figures) == {"radius-of-curvature", "size"}
+    own = {"swing", "peak-velocity", "peak-acceleration", "peak-jerk", "pressure-angle", "face-length"}
+    assert set(found.figures) == {"radius-of-curvature", "size", *own}
+    assert (found.figures["pressure-angle"] == 0).all()
+    t = np.linspace(0, 2 * math.pi, 20_001)
+    p = intent_of(one.cam).derivatives(t, 3)
+    for row, name in ((1, "peak-velocity"), (2, "peak-acceleration"), (3, "peak-jerk")):
+        assert found.figures[name][0] == pytest.approx(np.abs(p[row]).max(), rel=1e-6)
+    assert found.figures["swing"][0] == pytest.approx(np.ptp(p[0]), rel=1e-6)
+    assert found.figures["face-length"][0] == pytest.approx(np.ptp(p[1]), rel=1e-5)
     assert found.figures["radius-of-curvature"] == pytest.approx(7.815923456997, abs=1e-9)
     assert found.figures["size"][0] == pytest.approx(compute_one(recipe(), {})["size"], rel=1e-6)
     roller = recipe(

@@ -10,6 +10,7 @@ import numpy as np
 
 from camgeo.bodies.assembly import TURN
 from camgeo.bodies.places import Turning
+from camgeo.checks.declared import CLEARANCE, COLLISION
 from camgeo.fit.pieces import Polygon
 from kin.check import Check
 from kin.collision import Allowed, Mover, Slab, clearances
@@ -59,7 +60,7 @@ def clearance_check(assembly: Assembly, bodies: Sequence[Mover]) -> Check:
     thin = f"thinnest wall {wall:.3g} mm: {where}"
     room = "takes up " + " by ".join(f"{length:.0f}" for length in swept_room(bodies)) + " mm as it turns"
     detail = "; ".join([f"mm wider by construction: {', '.join(told)}", *held, thin, room, *assembly.remarks])
-    return Check("clearance", least > 0.0, least, 0.0, "mm", None, "at_least", detail=detail)
+    return Check(CLEARANCE.name, least > 0.0, least, 0.0, "mm", None, "at_least", detail=detail)
 
 
 def thinnest(assembly: Assembly) -> tuple[float, str]:
@@ -137,4 +138,4 @@ def _checked(pair: Clearance) -> Check:
         detail = f"{pair.a} and {pair.b} meet, near ({x:.4g}, {y:.4g}) mm"
     else:
         detail = f"{pair.a} and {pair.b}: no clearance is proved, {pair.least:.4g} mm was found"
-    return Check("collision", pair.holds, least, 0.0, "mm", pair.at_deg, "at_least", detail=detail)
+    return Check(COLLISION.name, pair.holds, least, 0.0, "mm", pair.at_deg, "at_least", detail=detail)

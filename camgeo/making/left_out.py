@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.checks.declared import CHECKS, OUTPUT, STANDS, Scene
 from camgeo.recipe.model import KINDS
 
 if TYPE_CHECKING:
@@ -16,19 +17,17 @@ Skipped = tuple[str, str]
 def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> tuple[Skipped, ...]:
     """Name what was left out of a run that was asked for these files, and say why."""
     found = [*_files(recipe, requests, design), *_harmonics(recipe, requests, design)]
-    if recipe.part.bore is None:
-        found.append(("bore", "part.bore is not given"))
     if recipe.dynamics is None:
         found.append(("dynamics", "dynamics is not given"))
     if not any(request.parts == "all" for request in requests):
         found.append(("mechanism", "no file is asked for with parts: all"))
-    found += [*_checks(design), *_of_linkage(recipe, design)]
+    found += _of_linkage(recipe, design)
+    scene = scene_of(recipe, design)
+    found += [(one.name, why) for one in CHECKS.values() if one.why_not is not None and (why := one.why_not(scene))]
     if recipe.linkage is not None:
         files = recipe.export.files
         names = [request.filename(recipe.name, files) for request in requests if request.compensation is not None]
-        found += [("linkage-error", f"{name}: the part is not the nominal one") for name in names]
-    if design.trimmed and recipe.verify.motion_error is None:
-        found.append(("motion", "the contour is trimmed and verify.motion_error is not given: told, not judged"))
+        found += [(OUTPUT.name, f"{name}: the part is not the nominal one") for name in names]
     return tuple(found)
 
 
@@ -65,30 +64,18 @@ def _harmonics(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design
     return [(what, f"{request.filename(recipe.name, recipe.export.files)}: {why}") for request in exact]
 
 
-def _checks(design: Design) -> list[Skipped]:
-    found: list[Skipped] = []
-    if design.follower == "flat face":
-        found.append(("constant-breadth", "the breadth is not constant: a single flat face follows"))
-    if design.follower != "double roller":
-        found.append(("pressure-angle", "a flat face is pushed along its normal"))
-        found.append(("undercut-global", "a convex profile meets itself nowhere else"))
-    if design.follower in {"double roller", "flat pair"}:
-        found.append(("face-length", "the follower has no plate that moves along its normal"))
-    else:
-        found += [(name, "the follower does not swing") for name in ("closing-equation", "transmission")]
-    return found
+def scene_of(recipe: Recipe, design: Design) -> Scene:
+    """What of a run decides which checks are made."""
+    turns = design.driven is None or design.driven.turns
+    return Scene(recipe, design.yoke_breadth is not None, design.trimmed, turns)
 
 
 def _of_linkage(recipe: Recipe, design: Design) -> list[Skipped]:
     if design.driven is None:
         return [("linkage", "linkage is not given")]
-    if not design.driven.turns:
-        why = "the mechanism does not turn: it has no motion over the shaft angle"
-        files = recipe.export.files
-        asked = ["csv"] if any(request.kind == "csv" for request in files) else []
-        asked += ["mechanism"] if any(request.parts == "all" for request in files) else []
-        return [(what, why) for what in ("linkage-error", *asked)]
-    found = [("dwell", "dwell is not given")] if recipe.dwell is None else []
-    if design.trimmed and recipe.verify.output_error is None:
-        found.append(("linkage-error", "the contour is trimmed and verify.output_error is not given: told, not judged"))
-    return found
+    if design.driven.turns:
+        return []
+    files = recipe.export.files
+    asked = ["csv"] if any(request.kind == "csv" for request in files) else []
+    asked += ["mechanism"] if any(request.parts == "all" for request in files) else []
+    return [(what, STANDS) for what in asked]

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.causes import UndercutError
+from camgeo.checks.declared import LEAST_ROOM, REACH
 from camgeo.design import intended, shaft_deg
-from camgeo.foreseen import LEAST_ROOM
 from camgeo.manufacture.cutter import cutter_path, is_convex, least_hollow
 from camgeo.part.meant import holes_of
 from kin.check import Check, failed
@@ -55,9 +55,9 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
     try:
         path = path_of(recipe, design)
     except UndercutError as error:
-        return failed("cutter-reach", f"{error}; {told}", unit="mm", limit=asked.unreached), None
+        return failed(REACH.name, f"{error}; {told}", unit="mm", limit=asked.unreached), None
     if not path.lost:
-        return Check("cutter-reach", True, 0.0, asked.unreached, "mm", detail=told), path
+        return Check(REACH.name, True, 0.0, asked.unreached, "mm", detail=told), path
     deepest = max(cut.depth for cut in path.lost)
     worst = next(cut for cut in path.lost if cut.depth >= (1.0 - ALIKE) * deepest)
     first, last = shaft_deg(design.intent, worst.start), shaft_deg(design.intent, worst.end)
@@ -65,7 +65,7 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
     detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
     at_deg = shaft_deg(design.intent, worst.at)
     return Check(
-        "cutter-reach", worst.depth <= asked.unreached, worst.depth, asked.unreached, "mm", at_deg, detail=detail
+        REACH.name, worst.depth <= asked.unreached, worst.depth, asked.unreached, "mm", at_deg, detail=detail
     ), path
 
 

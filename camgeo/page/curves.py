@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
+from camgeo.checks.declared import CURVATURE
 from camgeo.page.followers import SHAFT
 from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
 
@@ -119,7 +120,7 @@ def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
 def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
     """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature."""
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
-    found = next((check for check in design.checks if check.name == "radius-of-curvature"), None)
+    found = next((check for check in design.checks if check.name == CURVATURE.name), None)
     unit = length_unit(recipe)
     margin = ""
     if found is not None and found.value is not None and math.isfinite(found.value):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from camgeo.checks.declared import CHECKS
 from camgeo.report.bound import sign
 from camgeo.report.document import pieces_word
 
@@ -13,8 +14,6 @@ if TYPE_CHECKING:
 
     _Row = tuple[str, float | None, str, float | None]
 
-# With a linkage these concern the cam in its frame alone, and their place is the relative angle (docs/report.md).
-OVER_RELATIVE = frozenset({"contour", "motion", "constant-breadth", "breadth-max"})
 NONE = "–"
 MANY = 40  # checks, beyond which those of files that hold are folded up
 
@@ -38,8 +37,11 @@ def checks(report: dict[str, Any]) -> str:
                 folded.setdefault(check["file"], []).append(check)
         shown = [check for check in shown if not check["ok"] or not check.get("file")]
     linked = "linkage" in report
+    noted = [_remark(remark) for remark in report.get("remarks", ())]
     head = ("", "check", "value", "unit", "limit", "at", "file")
-    text = _table("Checks", head, [_check(check, linked=linked) for check in shown], "checks")
+    failing_first = sum(not check["ok"] for check in shown)
+    rows = [_check(check, linked=linked) for check in shown]
+    text = _table("Checks", head, [*rows[:failing_first], *noted, *rows[failing_first:]], "checks")
     for file, held in folded.items():
         rows = [_check(check, linked=linked) for check in held]
         told = f"{len(held)} check{'s' * (len(held) != 1)} of {escape(file)} hold{'s' * (len(held) == 1)}"
@@ -51,16 +53,32 @@ def checks(report: dict[str, Any]) -> str:
 def _check(check: dict[str, Any], *, linked: bool) -> str:
     side = {">=": "≥", "<=": "≤"}.get(sign(check), sign(check))
     limit = NONE if check["limit"] is None else f"{escape(side)} {number(check['limit'])}"
-    over = "relative" if linked and check["name"] in OVER_RELATIVE else "shaft"
-    detail = f'<div class="detail">{escape(check["detail"])}</div>' if check.get("detail") else ""
+    over = "relative" if linked and _is_in_frame(check) else "shaft"
+    state = ("ok", "holds") if check["ok"] else ("failed", "fails")
+    return _row(state, check, limit, over, check.get("detail", ""))
+
+
+def _remark(remark: dict[str, Any]) -> str:
+    rule = remark["rule"]
+    usual = NONE if rule is None else f"{'≥' if remark['value'] < rule else '≤'} {number(rule)}"
+    return _row(("remark", "remark"), remark, usual, "shaft", remark["sentence"])
+
+
+def _row(state: tuple[str, str], one: dict[str, Any], limit: str, over: str, told: str) -> str:
+    """Return the row of a check or a remark; `state` is its class and its word."""
+    detail = f'<div class="detail">{escape(told)}</div>' if told else ""
     return (
-        f'<tr class="{"ok" if check["ok"] else "failed"}">'
-        f'<td class="state">{"holds" if check["ok"] else "fails"}</td>'
-        f'<th scope="row">{escape(check["name"])}{detail}</th>'
-        f'<td class="number">{number(check["value"])}</td>'
-        f"<td>{escape(_unit(check['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(check['at_deg'], over))}"
-        f"{_cell(escape(check.get('file', '')), 'file')}</tr>"
+        f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
+        f'<th scope="row">{escape(one["name"])}{detail}</th>'
+        f'<td class="number">{number(one["value"])}</td>'
+        f"<td>{escape(_unit(one['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(one['at_deg'], over))}"
+        f"{_cell(escape(one.get('file', '')), 'file')}</tr>"
     )
+
+
+def _is_in_frame(check: dict[str, Any]) -> bool:
+    """Whether a check concerns the cam in its frame alone: its place is the relative angle then (docs/report.md)."""
+    return check["name"] in CHECKS and CHECKS[check["name"]].in_frame
 
 
 def written(report: dict[str, Any]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from camgeo.checks.declared import CHAMFER, LIGHTENING, WALL
 from camgeo.part.shapes import Opening, disc, strip
 from camgeo.part.wall import Gap, contour_gap, inside_gap, outside_gap
 from camgeo.radius import least_radius
@@ -50,7 +51,7 @@ def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Call
         more = f"; and {len(thin) - MOST_NAMED} more pairs" if len(thin) > MOST_NAMED else ""
         worst = pairs[0].gap
         at_deg = None if worst.parameter is None else shaft_deg(worst.parameter)
-        checks.append(Check("wall", not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told + more))
+        checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told + more))
     if body.chamfer is not None:
         checks.append(_chamfer_check(body, contour, shaft_deg))
     if body.placed is not None:
@@ -60,7 +61,7 @@ def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Call
         detail = f"{count} of {placed.asked} holes{sizes}, {placed.wall:.6g} mm from every edge, {placed.area:.4g} mm^2"
         least_count = placed.asked if placed.exactly else 1
         checks.append(
-            Check("lightening", count >= least_count, count, least_count, "holes", None, "at_least", detail=detail)
+            Check(LIGHTENING.name, count >= least_count, count, least_count, "holes", None, "at_least", detail=detail)
         )
     return checks
 
@@ -70,10 +71,10 @@ def _chamfer_check(body: Body, contour: Curve, shaft_deg: Callable[[float], floa
     chamfer = body.chamfer or 0.0
     if not contour.closed:
         detail = "a trimmed contour has corners, along which no chamfer runs"
-        return Check("chamfer", ok=False, value=0.0, limit=chamfer, unit="mm", sense="at_least", detail=detail)
+        return Check(CHAMFER.name, ok=False, value=0.0, limit=chamfer, unit="mm", sense="at_least", detail=detail)
     radius, at = least_radius(contour)
     sharp = "the contour's least radius of curvature must be above the chamfer"
-    return Check("chamfer", radius > chamfer, radius, chamfer, "mm", shaft_deg(at), "at_least", detail=sharp)
+    return Check(CHAMFER.name, radius > chamfer, radius, chamfer, "mm", shaft_deg(at), "at_least", detail=sharp)
 
 
 def _holds(wall: float, least: float | None) -> bool:

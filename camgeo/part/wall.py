@@ -59,7 +59,7 @@ def distance_inside(contour: Curve, place: tuple[float, float]) -> tuple[float, 
     point = contour.sample(nodes).point - origin
     distance = np.hypot(point[:, 0], point[:, 1])
     nearest_node = int(np.argmin(distance))
-    side = 1.0 if _winds(first.point - origin) else -1.0
+    side = 1.0 if winds(first.point - origin) else -1.0
     return side * float(distance[nearest_node]), float(nodes[nearest_node])
 
 
@@ -79,7 +79,7 @@ def contour_gap(contour: Curve, chain: Arcs) -> Gap:
     distance = signed_distance(chain, point)
     least = int(np.argmin(distance))
     wall = float(distance[least])
-    if wall > 0.0 and not _winds(first.point - chain.start[0]):
+    if wall > 0.0 and not winds(first.point - chain.start[0]):
         wall = -wall
     return Gap(wall, _place(point[least]), float(nodes[least]))
 
@@ -153,7 +153,7 @@ def intervals(contour: Curve) -> tuple[Array, Array]:
     return low, high
 
 
-def _winds(ring: Array) -> bool:
+def winds(ring: Array) -> bool:
     """Whether a closed ring of points (n, 2) runs round the origin."""
     around = np.append(ring, ring[:1], axis=0)
     turned = np.arctan2(

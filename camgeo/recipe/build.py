@@ -82,6 +82,7 @@ def build(values: Values, path: Path, marks: Mapping[str, Mark], text: str) -> R
         dynamics=Dynamics(**values["dynamics"]) if "dynamics" in values else None,
         manufacture=Manufacture(**values["manufacture"]) if "manufacture" in values else None,
         mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,
+        limits=_limits(values.get("limits", [])),
         marks=marks,
         text=text,
     )
@@ -191,9 +192,7 @@ def _sweep(sweep: Values) -> Sweep:
         method=sweep.get("method", "grid"),
         count=sweep.get("count"),
         seed=sweep.get("seed", 0),
-        limits=tuple(
-            Limit(limit["figure"], limit.get("at_least"), limit.get("at_most")) for limit in sweep.get("limits", [])
-        ),
+        limits=_limits(sweep.get("limits", [])),
         rank=sweep["rank"],
         keep=sweep.get("keep", KEEP),
         angles=sweep.get("angles", SAMPLES),
@@ -205,3 +204,7 @@ def _axis(axis: Values) -> Axis:
     if "values" in axis:
         return Axis(axis["path"], values=axis["values"])
     return Axis(axis["path"], axis["from"], axis["to"], axis.get("steps"))
+
+
+def _limits(limits: list[Values]) -> tuple[Limit, ...]:
+    return tuple(Limit(limit["figure"], limit.get("at_least"), limit.get("at_most")) for limit in limits)

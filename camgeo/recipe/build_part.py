@@ -42,4 +42,4 @@ def _keyway(keyway: Values | None, bore: float | None) -> Keyway | None:
     if keyway is None or "width" in keyway:
         return None if keyway is None else Keyway(**keyway)
     row = None if bore is None else key_for(bore)
-    return None if row is None else Keyway(row.width, row.hub, keyway.get("at", 0.0))
+    return None if row is None else Keyway(row.width, row.hub, keyway.get("at", 0.0), standard=True)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from camgeo.recipe.errors import shown, suggestion
 from camgeo.recipe.source import scalars
 from camgeo.recipe.spec import MOST_DESIGNS, Kind
-from camgeo.recipe.table_sweep import FIGURES, RANGE
+from camgeo.recipe.table_figures import FIGURES, NEEDS, there
+from camgeo.recipe.table_sweep import RANGE
 from camgeo.recipe.tables import is_known
 
 if TYPE_CHECKING:
@@ -43,13 +44,9 @@ def _figures(sweep: Values, reader: Reader) -> None:
         asked.append(("sweep.rank", sweep["rank"]))
     for path, name in asked:
         needs = FIGURES[name].needs
-        if needs and needs not in reader.marks:
-            section = "a linkage" if needs == "linkage" else "dwell.band"
-            remedy = f"give {section}, or take another figure"
-            reader.fault_at(path, f"{name} needs {section}", None, remedy)
-    for limit in limits:
-        if "at_least" in limit and "at_most" in limit and limit["at_least"] > limit["at_most"]:
-            reader.fault_at(f"{limit['at']}.at_most", "below at_least, so no design will do", None, "exchange them")
+        if not there(needs, reader.cam_kind, set(reader.marks)):
+            remedy = f"give {NEEDS[needs]}, or take another figure"
+            reader.fault_at(path, f"{name} needs {NEEDS[needs]}", None, remedy)
 
 
 def _no_number(axis: Values, design: list[str], reader: Reader) -> None:

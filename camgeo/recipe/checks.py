@@ -13,6 +13,7 @@ from camgeo.recipe.build import requests
 from camgeo.recipe.check_part import check_part
 from camgeo.recipe.check_sweep import check_sweep
 from camgeo.recipe.model import SOLIDS
+from camgeo.recipe.read_limits import check_limits
 from camgeo.recipe.spec import either
 from camgeo.recipe.table_cam import SWINGING
 from camgeo.recipe.table_manufacture import LEAST_TOLD, NEEDED, SHORTEST
@@ -42,6 +43,7 @@ def check(values: Values, reader: Reader) -> None:
     _files(values, reader)
     _train(values.get("dynamics", {}), reader)
     _allowance(values.get("manufacture", {}), reader)
+    check_limits(values.get("limits", []), reader)
     if "sweep" in values:
         check_sweep(values["sweep"], reader)
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_manufacture import Compensation, Manufacture
     from camgeo.recipe.model_mechanism import MechanismAsked
     from camgeo.recipe.model_part import Part
-    from camgeo.recipe.model_sweep import Sweep
+    from camgeo.recipe.model_sweep import Limit, Sweep
     from kin.motion_sources.programme import Step
 
 Undercut: TypeAlias = Literal["refuse", "trim"]
@@ -211,6 +211,17 @@ class FlatPairCam:
 
 
 Cam: TypeAlias = SupportCam | ConstantBreadthCam | DoubleRollerCam | FlatPairCam
+CAM_KINDS: dict[type[Cam], str] = {
+    SupportCam: "support",
+    ConstantBreadthCam: "constant-breadth",
+    DoubleRollerCam: "double-roller",
+    FlatPairCam: "flat-pair",
+}
+
+
+def cam_kind(cam: Cam) -> str:
+    """Name the kind of a cam as recipes do."""
+    return CAM_KINDS[type(cam)]
 
 
 Assembly: TypeAlias = Literal["open", "crossed"]
@@ -409,6 +420,7 @@ class Recipe:
     dynamics: Dynamics | None = None
     manufacture: Manufacture | None = None
     mechanism: MechanismAsked | None = None
+    limits: tuple[Limit, ...] = ()
     marks: Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
 

@@ -13,11 +13,15 @@ from typing import Literal
 
 @dataclass(frozen=True)
 class Keyway:
-    """A keyway in a round bore: `depth` is t2 of DIN 6885, from the bore's circle to the floor; `at` its middle."""
+    """A keyway in a round bore: `depth` is t2 of DIN 6885, from the bore's circle to the floor; `at` its middle.
+
+    `standard` is whether width and depth are those of that standard by the bore.
+    """
 
     width: float
     depth: float
     at: float = 0.0
+    standard: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,12 @@
-"""Reading what a sweep varies and the limits that its designs keep."""
+"""Reading what a sweep varies."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.errors import suggestion
-from camgeo.recipe.source import Mapping, Sequence, described, entries, join, keys
-from camgeo.recipe.spec import MOST_AXES, MOST_VALUES, Field, Kind, either
-from camgeo.recipe.table_sweep import FIGURES, RANGE, bounds
+from camgeo.recipe.source import Mapping, Sequence, described, entries, join
+from camgeo.recipe.spec import MOST_AXES, MOST_VALUES, Field, Kind
+from camgeo.recipe.table_sweep import RANGE
 
 if TYPE_CHECKING:
     from camgeo.recipe.reader import Reader, Values
@@ -50,28 +49,3 @@ def _axis(reader: Reader, node: Node, path: str) -> Values | None:
         return None
     read = reader.table(RANGE, node, path)
     return read if {"from", "to"} <= read.keys() else None
-
-
-def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Read the limits of a sweep by the figures that they bound; lengths in mm, angles in degrees."""
-    if not isinstance(node, Mapping):
-        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
-        return None
-    given = entries(node)
-    limits = []
-    for name, key in keys(node).items():
-        below = join(path, name)
-        if name not in FIGURES:
-            remedy = suggestion(name, FIGURES) or f"the figures are {either(tuple(FIGURES), 'and')}"
-            reader.fault(key.mark, below, "no such figure", None, remedy)
-            continue
-        table = Field("", Kind.TABLE, "", table=bounds(FIGURES[name]))
-        found = len(reader.errors)
-        values = reader.field(table, given[name], below)
-        if values is None or len(reader.errors) > found:
-            continue
-        if not values:
-            reader.fault(given[name].mark, below, "no bound", None, "give at_least, at_most or both")
-        factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
-        limits.append({"figure": name, "at": below, **{bound: factor * value for bound, value in values.items()}})
-    return limits

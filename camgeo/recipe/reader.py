@@ -23,6 +23,7 @@ Values: TypeAlias = dict[str, Any]
 # How each kind of field is read; a reader of a kind gives None for what is faulty, and has noted the fault.
 Readers: TypeAlias = "collections.abc.Mapping[Kind, Callable[[Reader, Field, Node, str], Any]]"
 
+_LENGTHS = (Kind.LENGTH, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.PLAY)  # unless it is an angle
 _MM = {"mm": 1.0, "inch": 25.4}
 
 
@@ -67,20 +68,22 @@ class Reader:
             return "degrees"
         if kind is Kind.AREA:
             return f"square {self.units}"
-        return self.units if kind in {Kind.LENGTH, Kind.POINT, Kind.PAIR, Kind.ERROR, Kind.OUTPUT} else ""
+        return self.units if kind in {Kind.POINT, Kind.PAIR, *_LENGTHS} else ""
 
     def scale(self, kind: Kind) -> float:
         """Factor from a number as written to mm, mm^2 or radians."""
         if self._is_angle(kind):
             return math.pi / 180
-        lengths = {Kind.LENGTH: self.mm, Kind.ERROR: self.mm, Kind.OUTPUT: self.mm, Kind.AREA: self.mm**2}
-        return lengths.get(kind, 1.0)
+        return {**dict.fromkeys(_LENGTHS, self.mm), Kind.AREA: self.mm**2}.get(kind, 1.0)
 
     def _is_angle(self, kind: Kind) -> bool:
+        if kind is Kind.MOTION:
+            kind = Kind.OUTPUT if self.linkage_kind else Kind.ERROR
         return (
             kind is Kind.ANGLE
             or (kind is Kind.ERROR and self.cam_kind in SWINGING)
             or (kind is Kind.OUTPUT and not self.slides)
+            or (kind is Kind.PLAY and self.cam_kind == "flat-pair")
         )
 
     # --- tables ------------------------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.recipe.read_limits import read_limits
 from camgeo.recipe.read_linkage import read_cam, read_dyads, read_linkage
 from camgeo.recipe.read_list import (
     read_files,
@@ -16,7 +17,7 @@ from camgeo.recipe.read_list import (
 )
 from camgeo.recipe.read_part import read_bore, read_keyway
 from camgeo.recipe.read_scalar import read_choice, read_formula, read_numeric, read_text, read_truth
-from camgeo.recipe.read_sweep import read_limits, read_vary
+from camgeo.recipe.read_sweep import read_vary
 from camgeo.recipe.reader import Reader
 from camgeo.recipe.spec import Kind
 

@@ -20,9 +20,10 @@ from camgeo.recipe.spec import (
     length,
 )
 from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_figures import FIGURES, bounds
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
 from camgeo.recipe.table_part import STANDARD
-from camgeo.recipe.table_sweep import FIGURES, RANGE, bounds
+from camgeo.recipe.table_sweep import RANGE
 from camgeo.recipe.tables import FILES, RECIPE
 
 Schema: TypeAlias = dict[str, Any]
@@ -118,7 +119,7 @@ def _kind(field: Field) -> Schema:
             axis = {"anyOf": [_table(RANGE), values]}
             return {"type": "object", "additionalProperties": axis, "minProperties": 1, "maxProperties": MOST_AXES}
         case Kind.LIMITS:
-            limits = {name: {**_table(bounds(figure)), "minProperties": 1} for name, figure in FIGURES.items()}
+            limits = {name: {**_table(bounds(FIGURES[name])), "minProperties": 1} for name in field.choices}
             return {"type": "object", "properties": limits, "additionalProperties": False}
         case _:
             return _number(field)

@@ -44,6 +44,8 @@ class Kind(Enum):
     INTEGER = "a whole number"
     ERROR = "a motion error"  # a length, or an angle where the follower swings
     OUTPUT = "a change of the output"  # of a linkage: an angle, or a length where its last link slides
+    MOTION = "a motion"  # of the output, or without a linkage of the follower
+    PLAY = "a backlash"  # an angle of a flat pair, else a length
     TRUTH = "true or false"
     RATIO = "a ratio"
     FORMULA = "a formula"

@@ -7,6 +7,7 @@ import re
 from camgeo.recipe.spec import MOST, Field, Kind, Table, either, length, mapping
 from camgeo.recipe.table_cam import CAMS
 from camgeo.recipe.table_dynamics import DYNAMICS
+from camgeo.recipe.table_figures import LIMITS
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
 from camgeo.recipe.table_manufacture import COMPENSATION, MANUFACTURE
 from camgeo.recipe.table_mechanism import MECHANISM
@@ -124,6 +125,7 @@ RECIPE = Table(
                 at_most=MOST,
             ),
         ),
+        LIMITS,
         mapping("mechanism", "sizes of the printable bodies round the cam, for files with `parts: all`", *MECHANISM),
         mapping("dwell", "dwells of the linkage's output", *DWELL),
         mapping("sweep", "a search among designs", *SWEEP),

@@ -52,6 +52,18 @@ class FileResult:
 
 
 @dataclass(frozen=True)
+class Remark:
+    """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
+
+    name: str
+    value: float | None
+    rule: float | None
+    unit: str
+    sentence: str
+    at_deg: float | None = None
+
+
+@dataclass(frozen=True)
 class Findings:
     """Everything a run found, before it is put in the recipe's units; `linkage` and `dynamics` already are."""
 
@@ -63,6 +75,7 @@ class Findings:
     kept: tuple[str, ...] = ()
     linkage: dict[str, Any] | None = None
     dynamics: dict[str, Any] | None = None
+    remarks: tuple[Remark, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -84,6 +97,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "ok": found.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
         "checks": [_check(recipe, check) for check in found.checks],
+        "remarks": [_remark(recipe, remark) for remark in found.remarks],
         "files": [_file(recipe, file) for file in found.files] + [{"path": name, "stale": True} for name in found.kept],
         **linkage,
         **dynamics,
@@ -98,9 +112,9 @@ def encoded(report: object) -> str:
 
 
 def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | None, str]:
-    """A figure in mm, mm^2 or mm^3 in the recipe's unit, with that unit's name; other units stay."""
+    """A figure in mm, mm^2, mm^3 or mm by radian in the recipe's unit, with that unit's name; other units stay."""
     name = UNIT_NAMES[recipe.units]
-    power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit)
+    power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit.partition("/")[0])
     if power is None:
         return value, unit
     return (None if value is None else value / recipe.mm**power), name + unit[2:]
@@ -123,6 +137,19 @@ def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
     if check.detail:
         entry["detail"] = check.detail
     return entry
+
+
+def _remark(recipe: Recipe, remark: Remark) -> dict[str, Any]:
+    value, unit = in_units(recipe, remark.value, remark.unit)
+    rule, _ = in_units(recipe, remark.rule, remark.unit)
+    return {
+        "name": remark.name,
+        "value": value,
+        "rule": rule,
+        "unit": unit,
+        "at_deg": remark.at_deg,
+        "sentence": remark.sentence,
+    }
 
 
 def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
@@ -195,6 +222,7 @@ def summary(report: dict[str, Any]) -> str:
                 text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
     parts += _of_linkage(report.get("linkage"))
+    parts += [f"remark: {remark['sentence']}" for remark in report.get("remarks", ())]
     failed = [_told(check) for check in report["checks"] if not check["ok"]]
     verdict = "ok" if report["ok"] else "FAILED"
     line = f"{report['recipe']}: {verdict}"
@@ -243,7 +271,15 @@ def table(report: dict[str, Any]) -> str:
         )
         for check in report["checks"]
     ]
+    for remark in report.get("remarks", ()):
+        rule, place = remark["rule"], remark["at_deg"]
+        side = "" if rule is None else ">=" if remark["value"] < rule else "<="
+        at = "" if place is None else f"{place:.2f} deg"
+        value, usual = _number(remark["value"]), f"{side} {_number(rule)}".strip()
+        rows.append((remark["name"], "remark", value, usual, remark["unit"], at, ""))
     text = aligned(rows)
+    if report.get("remarks"):
+        text += "\n\n" + "\n".join(f"remark {remark['name']}: {remark['sentence']}" for remark in report["remarks"])
     rows = [("file", "bytes", "pieces", "tolerance", "proved", "measured", "motion max", "rms", "at")]
     for file in report["files"]:
         motion = file.get("motion") or {}

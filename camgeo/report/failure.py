@@ -4,33 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, SupportCam
-from camgeo.remedies import larger
+from camgeo.checks.declared import EVERY, LIMITS, Declared
 from camgeo.report.bound import words
-from camgeo.rounded import downward, upward
 
 if TYPE_CHECKING:
     from camgeo.recipe.model import Recipe
 
-FIELDS = {
-    "undercut-global": "cam.roller_radius",
-    "wall": "part.bore",
-    "bore": "part.bore",
-    "holes": "part",
-    "mark": "part.mark",
-    "hub": "part.hub",
-    "chamfer": "part.chamfer",
-    "set-screw": "part.set_screw",
-    "lightening": "part.lightening",
-    "thickness": "part.thickness",
-    "units": "units",
-    "contour": "export.tolerance",
-    "mobility": "linkage",
-    "reversal": "linkage",
-    "dwell": "dwell.at_least",
-}
-"""The recipe's field that a check hangs on most; of the others it is the cam as a whole."""
 INDENT = "\n  "
+UNKNOWN = Declared("", ())  # of a check that none declares
 
 
 def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown: str | None = None) -> str:
@@ -63,48 +44,14 @@ def headline(check: dict[str, Any]) -> str:
 
 def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
     """Tell what would let the check hold; empty where nothing would, or where the check itself tells it."""
-    name, value, limit, unit = check["name"], check["value"], check["limit"], check["unit"]
-    if name in {"transmission", "pressure-angle"}:
-        return "a smaller swing, or the same over a wider angle"
-    if value is None or limit is None:
-        return ""
-    if name == "radius-of-curvature":
-        return _rounder(recipe, value, limit, unit)
-    if name == "chamfer" and "file" not in check:
-        return (
-            f"a chamfer below {downward(value)} {unit}" if value > 0.0 else "no chamfer, or a contour without corners"
-        )
-    if name == "wall" and recipe.part.plain and recipe.part.bore is not None:  # else the check names the edges
-        less = 2.0 * (limit - value)
-        return f"a bore smaller by more than {upward(less)} {unit}" if less * recipe.mm < recipe.part.bore else ""
-    if name == "motion" and recipe.verify.motion_error is not None and value > 0.0:
-        return _nearer(check, report, recipe)
-    return ""
-
-
-def _nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
-    """Tell what would bring the motion error, or its limit, to where it holds."""
-    value, limit = check["value"], check["limit"]
-    looser = f"verify.motion_error above {upward(value)}"
-    if isinstance(recipe.cam, ConstantBreadthCam | SupportCam):  # a flat face is off by no more than the contour
-        return f"a tolerance of {limit:.6g}, or {looser}"
-    tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
-    return looser if tolerance is None else f"a tolerance of about {tolerance * limit / value:.2g}, or {looser}"
-
-
-def _rounder(recipe: Recipe, value: float, limit: float, unit: str) -> str:
-    """Tell what would make the least radius of curvature, `value`, large enough."""
-    if isinstance(recipe.cam, DoubleRollerCam):
-        return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
-    return larger(recipe.cam, limit - value, unit)
+    declared = EVERY.get(check["name"])
+    return "" if declared is None or declared.remedy is None else declared.remedy(check, report, recipe)
 
 
 def _field(check: dict[str, Any], recipe: Recipe) -> str:
-    if check["name"] == "motion":
-        return "export.tolerance" if recipe.verify.motion_error is None else "verify.motion_error"
-    if check["name"] == "linkage-error":
-        return "export.tolerance" if recipe.verify.output_error is None else "verify.output_error"
-    return FIELDS.get(check["name"], "export.files" if check.get("file") else "cam")
+    declared = EVERY.get(check["name"], UNKNOWN)
+    field = declared.place(recipe, check.get("file"))
+    return f"{field}.{check['sense']}" if check["name"] in LIMITS else field
 
 
 def _value(check: dict[str, Any]) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from camgeo.checks.declared import CURVATURE, PRESSURE, REVERSAL, WALL
 from camgeo.design import intended
 from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
 from kin.possible import steepest
@@ -43,10 +44,10 @@ def margins(recipe: Recipe, design: Design) -> list[Margin]:
     if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
         found += _swinging(recipe.cam, cast("Transmission", design.intent))
     for check in design.checks:
-        if check.name == "pressure-angle" and check.value is not None:
-            found.append(Margin("pressure-angle", 90.0 - check.value, "deg", "the cam cannot drive the roller"))
-        if check.name == "wall" and check.value is not None:
-            found.append(Margin("wall", check.value, "mm", "the bore breaks through the contour"))
+        if check.name == PRESSURE.name and check.value is not None:
+            found.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", "the cam cannot drive the roller"))
+        if check.name == WALL.name and check.value is not None:
+            found.append(Margin(WALL.name, check.value, "mm", "the bore breaks through the contour"))
     found += _linkage(design)
     if design.contour is not None:
         found += _conditions(recipe, design, design.contour)
@@ -54,7 +55,7 @@ def margins(recipe: Recipe, design: Design) -> list[Margin]:
 
 
 def _undercut(design: Design) -> list[Margin]:
-    check = next(check for check in design.checks if check.name == "radius-of-curvature")
+    check = next(check for check in design.checks if check.name == CURVATURE.name)
     if check.value is None:
         return []
     roller = design.profile.roller_radius
@@ -87,7 +88,7 @@ def _linkage(design: Design) -> list[Margin]:
     mobility = mechanism.mobility()
     found = [Margin("binding", mobility.margin, "mm", "a loop of the linkage binds: its square root's edge")]
     if not math.isnan(mobility.least_rate):
-        found.append(Margin("reversal", mobility.least_rate, "", "the shaft would have to turn back"))
+        found.append(Margin(REVERSAL.name, mobility.least_rate, "", "the shaft would have to turn back"))
     if design.driven.figures is None:
         return found
     force = math.degrees(design.driven.figures.force_least.value)

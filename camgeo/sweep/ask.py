@@ -7,21 +7,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.model import (
-    ConstantBreadthCam,
-    DoubleRollerCam,
-    Export,
-    FlatPairCam,
-    FourBarLinkage,
-    InvertedSliderCrankLinkage,
-    Recipe,
-    SliderCrankLinkage,
-    SupportCam,
-    Verify,
-    output_slides,
-)
+from camgeo.recipe.model import DoubleRollerCam, Export, FlatPairCam, Recipe, Verify, cam_kind, output_slides
 from camgeo.recipe.model_part import Part
 from camgeo.recipe.spec import Kind
+from camgeo.recipe.table_figures import FACE_LENGTH, HOLLOW_RADIUS, PEAKS
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.recipe.tables import field_at
 from camgeo.sweep.figures import Evaluator, Scene, asked_of
@@ -35,18 +24,9 @@ if TYPE_CHECKING:
     from camgeo.recipe.model_sweep import Sweep
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
-_DEAR = ("dwell-relative", "peak-velocity", "peak-acceleration", "force-angle")
+_DEAR = ("dwell-relative", *PEAKS, "force-angle", FACE_LENGTH, HOLLOW_RADIUS)
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
-_KINDS = {
-    SupportCam: "support",
-    ConstantBreadthCam: "constant-breadth",
-    DoubleRollerCam: "double-roller",
-    FlatPairCam: "flat-pair",
-    FourBarLinkage: "four-bar",
-    InvertedSliderCrankLinkage: "inverted-slider-crank",
-    SliderCrankLinkage: "slider-crank",
-}
 
 
 @dataclass(frozen=True)
@@ -85,12 +65,12 @@ class Ask:
     def figures(self) -> tuple[str, ...]:
         """The figures that every design is given: those that cost little, and the others where they rank or limit.
 
-        Limits on the cheap ones so leave what is computed as it is. Designs that are made one by one get all, which
-        then cost next to nothing.
+        Limits on the cheap ones so leave what is computed as it is. Designs with a linkage that are made one by one
+        get all, which then cost next to nothing.
         """
         paths = tuple(axis.path for axis in self.sweep.vary)
         asked = {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
-        if Evaluator.of(self.recipe, paths).slow:
+        if self.recipe.linkage is not None and Evaluator.of(self.recipe, paths).slow:
             return self.all_figures
         return tuple(name for name in self.all_figures if name in asked or name not in _DEAR)
 
@@ -122,24 +102,24 @@ class Ask:
     def units(self, figures: Iterable[str]) -> dict[str, Unit]:
         """Unit of each figure, lengths in that of the recipe."""
         length = Unit(_LENGTH[self.recipe.units], self.recipe.mm)
-        slides = self.recipe.linkage is not None and output_slides(self.recipe.linkage)
+        linkage, swings = self.recipe.linkage, isinstance(self.recipe.cam, DoubleRollerCam | FlatPairCam)
+        slides = not swings if linkage is None else output_slides(linkage)
         by_kind = {
             Kind.ANGLE: Unit("deg"),
             Kind.LENGTH: length,
-            Kind.OUTPUT: length if slides else Unit("deg"),
+            Kind.MOTION: length if slides else Unit("deg"),
             Kind.NUMBER: Unit(""),
         }
-        over = {"peak-velocity": "/rad", "peak-acceleration": "/rad^2"}
         found = {}
         for name in figures:
             unit = by_kind[FIGURES[name].kind]
-            found[name] = replace(unit, name=unit.name + over.get(name, ""))
+            found[name] = replace(unit, name=unit.name + FIGURES[name].per)
         return found
 
     def axis_unit(self, path: str) -> str:
         """Unit in which the recipe writes a field that is varied; empty for a plain number."""
-        linkage = "" if self.recipe.linkage is None else _KINDS[type(self.recipe.linkage)]
-        field = field_at(path, _KINDS[type(self.recipe.cam)], linkage)
+        linkage = "" if self.recipe.linkage is None else self.recipe.linkage.kind
+        field = field_at(path, cam_kind(self.recipe.cam), linkage)
         length = _LENGTH[self.recipe.units]
         if field is None:
             return ""

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camgeo.recipe.edit import with_values
-from camgeo.recipe.model import FourBarLinkage, InvertedSliderCrankLinkage, output_slides
+from camgeo.recipe.model import FourBarLinkage, InvertedSliderCrankLinkage, cam_kind, output_slides
+from camgeo.recipe.table_figures import DWELL, FACE_LENGTH, RADIUS, SIZE, there
 from camgeo.recipe.table_sweep import FIGURES
 from camgeo.sweep import rebuilt
 from camgeo.sweep.cams import BINDS, BROKEN, FINE, REVERSES, Cams
@@ -43,8 +44,7 @@ REASONS = ("", "impossible", "undercut", "shaft-outside", "binds", "reverses", "
 BLOCK = 11_520  # samples of a block: a dozen arrays of them stay in a cache of 1 MB
 _SAMPLES = 360
 _LENGTHS = ("ground", "coupler", "rocker", "offset")
-_CAM = ("radius-of-curvature", "size")
-_DWELLS = ("dwell", "dwell-relative")
+_DWELLS = (DWELL, "dwell-relative")
 
 
 class Found(NamedTuple):
@@ -79,8 +79,8 @@ def compute(recipe: Recipe, values: Array) -> dict[str, Array]:
 
 def asked_of(recipe: Recipe) -> tuple[str, ...]:
     """Names of the figures that a recipe's designs have."""
-    has = {"": True, "linkage": recipe.linkage is not None, "dwell": recipe.dwell is not None}
-    return tuple(name for name, figure in FIGURES.items() if has[figure.needs])
+    given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
+    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, cam_kind(recipe.cam), given))
 
 
 def evaluate(
@@ -175,8 +175,8 @@ class Evaluator:
         figures = {name: np.full(m, np.nan) for name in self.wanted}
         reason = np.zeros(m, dtype=np.uint8)
         if self.recipe.linkage is None:
-            radius, size, reason[:] = rebuilt.plain(self.recipe, self.paths, values)
-            figures.update({name: row for name, row in zip(_CAM, (radius, size), strict=True) if name in figures})
+            found, reason[:] = rebuilt.plain(self.recipe, self.paths, values, tuple(figures))
+            figures.update(found)
             reason[(reason == FINE) & self._broken(figures)] = BROKEN
             return Found(figures, reason)
         rows = max(1, BLOCK // self.count)
@@ -224,12 +224,14 @@ class Evaluator:
         cams = self.cams.sampled(values)
         reason[:] = cams.fault
         alive = reason == FINE
-        if "radius-of-curvature" in figures:
-            figures["radius-of-curvature"][:] = cams.radius
-        if "size" in figures:
+        if RADIUS in figures:
+            figures[RADIUS][:] = cams.radius
+        if FACE_LENGTH in figures:
+            figures[FACE_LENGTH][:] = greatest(cams.support.dp, cams.smooth) - least(cams.support.dp, cams.smooth)
+        if SIZE in figures:
             square = cams.support.p * cams.support.p
             square += cams.support.dp * cams.support.dp
-            figures["size"][:] = np.sqrt(greatest(square, cams.smooth))
+            figures[SIZE][:] = np.sqrt(greatest(square, cams.smooth))
         alive = self._keep(alive, figures, reason)
         index = np.flatnonzero(alive)
         if not index.size:
@@ -305,7 +307,7 @@ class Evaluator:
         bounds = cell_bounds(*output)
         theta = np.broadcast_to(angles(self.count), output[0].shape)
         over = {
-            "dwell": (theta - motion.frame, 1.0 - motion.frame_rate),
+            DWELL: (theta - motion.frame, 1.0 - motion.frame_rate),
             "dwell-relative": (theta, np.ones_like(theta)),
         }
         abscissae = np.stack([over[name][0] for name in names])

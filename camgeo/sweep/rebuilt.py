@@ -25,7 +25,6 @@ Array: TypeAlias = NDArray[np.float64]
 Codes: TypeAlias = NDArray[np.uint8]
 
 _ROUND = 720  # angles at which faces are held against the shaft
-_POINTS = 4096  # of each run of a contour, among which the farthest from the shaft is taken
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,15 +51,16 @@ def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | 
     return load_text(with_values(recipe.text, given), recipe.path)
 
 
-def plain(recipe: Recipe, paths: Sequence[str], values: Array) -> tuple[Array, Array, Codes]:
-    """Least radius of curvature and greatest distance of a contour from the shaft, mm, and what is wrong, (m,) each.
+def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[str]) -> tuple[dict[str, Array], Codes]:
+    """Figures by name, (m,) each, lengths in mm and angles in degrees, and what is wrong (m,).
 
     Of the part there is nothing but the contour: a bore has no bearing on these.
     """
+    from camgeo.checks.measured import of_design
     from camgeo.design import designed
 
     m = len(values)
-    radius, size, fault = np.full(m, np.nan), np.full(m, np.nan), np.full(m, IMPOSSIBLE, dtype=np.uint8)
+    figures, fault = {name: np.full(m, np.nan) for name in names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
     for i, row in enumerate(values):
         try:
             design = designed(replace(recipe_with(recipe, paths, row), part=Part(), dynamics=None))
@@ -69,18 +69,13 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array) -> tuple[Array, A
         if isinstance(design.intent, Lift) and _outside(design.intent):
             fault[i] = OUTSIDE
             continue
-        contour = design.contour
-        if contour is None:
+        if design.contour is None:
             fault[i] = UNDERCUT
             continue
-        bent = next(check.value for check in design.checks if check.name == "radius-of-curvature")
-        t = np.concatenate([np.linspace(run.low, run.high, _POINTS) for run in contour.runs])
-        points = contour.sample(t).point
-        # what is checked is bent as the roller's centre runs; the contour lies within by the roller's radius
-        radius[i] = np.nan if bent is None else bent - design.profile.roller_radius
-        size[i] = np.hypot(points[:, 0], points[:, 1]).max()
+        for name, measured in of_design(design, design.checks, names).items():
+            figures[name][i] = np.nan if measured.value is None else measured.value
         fault[i] = FINE
-    return radius, size, fault
+    return figures, fault
 
 
 def _outside(lift: Lift) -> bool:

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from camgeo.recipe.spec import Kind
 from camgeo.recipe.table_cam import CAMS
+from camgeo.recipe.table_figures import FIGURES, NEEDS, bounds
 from camgeo.recipe.table_linkage import DYADS, LINKAGES
-from camgeo.recipe.table_sweep import FIGURES, RANGE, bounds
+from camgeo.recipe.table_sweep import RANGE
 from camgeo.recipe.tables import FILES, RECIPE
 
 ROOT = Path(__file__).parents[2]
@@ -22,6 +23,8 @@ UNITS = {
     Kind.ANGLE: "deg",
     Kind.ERROR: "length; deg",
     Kind.OUTPUT: "deg; length",
+    Kind.MOTION: "deg; length",
+    Kind.PLAY: "length; deg",
     Kind.BORE: "length",
 }
 
@@ -55,17 +58,18 @@ def below(found, path):
 
 
 def figures():
-    lines = ["| figure | unit | best | needs | meaning |", "| --- | --- | --- | --- | --- |"]
+    lines = ["| figure | unit | best | needs | sweep | meaning |", "| --- | --- | --- | --- | --- | --- |"]
     for name, figure in FIGURES.items():
-        row = f"| `{name}` | {UNITS.get(figure.kind, '')} | {figure.best} | {figure.needs} | {figure.about} |"
-        lines.append(row.replace("  ", " "))
+        needs, swept = NEEDS.get(figure.needs, ""), "yes" if figure.swept else ""
+        row = f"| `{name}` | {UNITS.get(figure.kind, '')} | {figure.best} | {needs} | {swept} | {figure.about} |"
+        lines.append(row.replace("  ", " ").replace("  ", " "))
     return "\n".join(lines)
 
 
 def tables():
     """Every table of the schema, written out, by the name that marks its place in the page."""
     found = {"recipe": RECIPE, **dict(below(RECIPE, "")), "sweep.vary": RANGE}
-    found["sweep.limits"] = bounds(next(iter(FIGURES.values())))
+    found["limits"] = bounds(next(iter(FIGURES.values())))
     for noun, kinds in (("cam", CAMS), ("linkage", LINKAGES), ("dyad", DYADS)):
         for kind, one in kinds.items():
             found[f"{noun} {kind}"] = one

@@ -1,0 +1,360 @@
+"""Every check, declared once: name, unit, when it applies, the recipe's field it hangs on, and what would do.
+
+The list of checks to come (`camgeo.foreseen`), that of what a run leaves out (`camgeo.making.left_out`) and the texts
+of failures (`camgeo.report.failure`) are read from here, and what makes a check takes its name from here. The judge
+(kin) knows nothing of recipes: the checks of files that it makes are declared here by the same names.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+from camgeo.checks import remedies
+from camgeo.recipe.model import NO_CONTOUR, NO_PART, SOLIDS, DoubleRollerCam, FlatPairCam
+from camgeo.recipe.table_figures import DWELL as LONGEST_DWELL
+from camgeo.recipe.table_figures import FACE_LENGTH as TRAVEL
+from camgeo.recipe.table_figures import FIGURES, LEAST_WALL, PRESSURE_ANGLE, RADIUS
+from camgeo.recipe.table_figures import TRANSMISSION as STEEPEST
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.recipe.model import FileRequest, Recipe
+    from camgeo.recipe.table_figures import Figure
+
+LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
+STANDS = "the mechanism does not turn: it has no motion over the shaft angle"
+LIMIT = "limit:"  # before the name of the figure that a recipe limits
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What decides which checks are made: the recipe, and whether two parallel faces hold the cam.
+
+    Of a run further whether its contour is trimmed, and whether its linkage turns right round.
+    """
+
+    recipe: Recipe
+    yoke: bool
+    trimmed: bool = False
+    turns: bool = True
+
+    @property
+    def roller(self) -> bool:
+        """Whether rollers follow."""
+        return isinstance(self.recipe.cam, DoubleRollerCam)
+
+    @property
+    def swings(self) -> bool:
+        """Whether the follower swings."""
+        return isinstance(self.recipe.cam, DoubleRollerCam | FlatPairCam)
+
+    @property
+    def linked(self) -> bool:
+        """Whether there is a linkage."""
+        return self.recipe.linkage is not None
+
+
+Exact: TypeAlias = "Callable[[Scene], bool]"
+OfFile: TypeAlias = "Callable[[Scene, FileRequest], bool]"
+
+
+@dataclass(frozen=True)
+class Declared:
+    """One check.
+
+    `units` are those it may have, lengths as mm. `exact` tells whether it is made of the exact cam, its motion and
+    mechanism, `of_file` whether of a file; `why_not` why it is not made, empty where that needs no words. `field` is
+    the recipe's field that it hangs on most, `own_field` the one that takes its place where the recipe gives it.
+    `remedy` tells what would let it hold, empty where nothing would or where the check itself tells it. `play` is
+    whether it concerns what is left between contour and follower; `in_frame` whether under a linkage it concerns the
+    cam in its frame alone, its place being the relative angle then.
+    """
+
+    name: str
+    units: tuple[str, ...]
+    exact: Exact | None = None
+    of_file: OfFile | None = None
+    why_not: Callable[[Scene], str] | None = None
+    field: str = ""
+    own_field: str = ""
+    remedy: remedies.Remedy | None = None
+    play: bool = False
+    in_frame: bool = False
+
+    def place(self, recipe: Recipe, file: str | None) -> str:
+        """Give the recipe's field on which it hangs most."""
+        section, _, name = self.own_field.partition(".")
+        if name and getattr(getattr(recipe, section), name) is not None:
+            return self.own_field
+        return self.field or ("export.files" if file else "cam")
+
+
+# --- conditions -------------------------------------------------------------------------------------------------------
+
+
+def _always(_: Scene) -> bool:
+    return True
+
+
+def _parts(scene: Scene) -> bool:
+    return any(request.parts == "all" for request in scene.recipe.export.files)
+
+
+def _dwells(scene: Scene) -> bool:
+    asked = scene.recipe.dwell
+    return scene.linked and asked is not None and asked.at_least is not None
+
+
+def _walled(scene: Scene) -> bool:
+    part = scene.recipe.part
+    drilled = part.bolts is not None or part.dowel is not None or part.lightening is not None
+    return part.bore is not None or part.hub is not None or drilled or part.mark is not None
+
+
+def _contour(_: Scene, file: FileRequest) -> bool:
+    return file.kind not in NO_CONTOUR
+
+
+def _drawing(_: Scene, file: FileRequest) -> bool:
+    return file.kind not in NO_CONTOUR | SOLIDS
+
+
+def _plain(scene: Scene, file: FileRequest) -> bool:
+    return _drawing(scene, file) and file.kind != "gcode"
+
+
+def _solid(scene: Scene, file: FileRequest) -> bool:
+    return _contour(scene, file) and file.kind in SOLIDS
+
+
+def _program(_: Scene, file: FileRequest) -> bool:
+    return file.kind == "gcode"
+
+
+def _reached(scene: Scene, file: FileRequest) -> bool:
+    asked = scene.recipe.manufacture
+    drawn = file.kind == "dxf" and file.compensation is None and asked is not None and asked.layer
+    return drawn or file.kind == "gcode"
+
+
+def _bored(scene: Scene, file: FileRequest) -> bool:
+    part, asked = scene.recipe.part, scene.recipe.manufacture
+    if part.bore is None or file.kind in NO_CONTOUR:
+        return False
+    if file.kind != "gcode":
+        return True
+    if asked is None or not asked.holes or part.sides or part.keyway or part.flat or part.hub:
+        return False
+    return part.bore >= asked.cutter + 2.0 * LEAST_ROOM
+
+
+def _drilled(scene: Scene, file: FileRequest) -> bool:
+    """Of a program: where lightening holes find their place is not known beforehand."""
+    part, asked = scene.recipe.part, scene.recipe.manufacture
+    if file.kind in NO_CONTOUR:
+        return False
+    holes = [one for one in (part.bolts, part.dowel) if one is not None]
+    if file.kind != "gcode":
+        return bool(holes) or part.lightening is not None
+    hub = 0.0 if part.hub is None else part.hub.diameter
+    least = None if asked is None or not asked.holes else asked.cutter + 2.0 * LEAST_ROOM
+    return least is not None and any(one.circle >= hub and one.hole >= least for one in holes)
+
+
+def _with(name: str) -> OfFile:
+    """Of solids, a feature of the part."""
+    return lambda scene, file: _solid(scene, file) and getattr(scene.recipe.part, name) is not None
+
+
+def _marked(scene: Scene, file: FileRequest) -> bool:
+    return _contour(scene, file) and file.kind != "gcode" and scene.recipe.part.mark is not None
+
+
+def _in_a_yoke(scene: Scene, file: FileRequest) -> bool:
+    return scene.yoke and _contour(scene, file)
+
+
+def _swung(scene: Scene, file: FileRequest) -> bool:
+    return scene.swings and _contour(scene, file)
+
+
+def _driven(scene: Scene, file: FileRequest) -> bool:
+    return scene.linked and _contour(scene, file) and file.compensation is None
+
+
+def _dwelling(scene: Scene, file: FileRequest) -> bool:
+    return _dwells(scene) and _driven(scene, file)
+
+
+def _sprung(scene: Scene) -> bool:
+    return scene.recipe.dynamics is not None and scene.recipe.dynamics.play is None
+
+
+def _loose(scene: Scene) -> bool:
+    return scene.recipe.dynamics is not None and scene.recipe.dynamics.play is not None
+
+
+def _run_with(scene: Scene, file: FileRequest) -> bool:
+    """Whether dynamics are found with a file: of a linkage the intended output alone drives."""
+    return not scene.linked and file.kind not in NO_PART and file.compensation is None
+
+
+# --- why a check is not made ------------------------------------------------------------------------------------------
+
+
+def _no_swing(scene: Scene) -> str:
+    return "" if scene.swings else "the follower does not swing"
+
+
+def _no_roller(scene: Scene) -> str:
+    return "" if scene.roller else "a flat face is pushed along its normal"
+
+
+def _convex(scene: Scene) -> str:
+    return "" if scene.roller else "a convex profile meets itself nowhere else"
+
+
+def _one_face(scene: Scene) -> str:
+    single = not (scene.yoke or scene.swings)
+    return "the breadth is not constant: a single flat face follows" if single else ""
+
+
+def _no_plate(scene: Scene) -> str:
+    return "the follower has no plate that moves along its normal" if scene.swings else ""
+
+
+def _no_bore(scene: Scene) -> str:
+    return "part.bore is not given" if scene.recipe.part.bore is None else ""
+
+
+def _no_dwell(scene: Scene) -> str:
+    return "dwell is not given" if scene.linked and scene.turns and scene.recipe.dwell is None else ""
+
+
+def _output_lost(scene: Scene) -> str:
+    if scene.linked and not scene.turns:
+        return STANDS
+    lost = scene.linked and scene.trimmed and scene.recipe.verify.output_error is None
+    return "the contour is trimmed and verify.output_error is not given: told, not judged" if lost else ""
+
+
+def _motion_lost(scene: Scene) -> str:
+    lost = scene.trimmed and scene.recipe.verify.motion_error is None
+    return "the contour is trimmed and verify.motion_error is not given: told, not judged" if lost else ""
+
+
+# --- the checks: of the motion and the curve --------------------------------------------------------------------------
+
+CURVATURE = Declared(RADIUS, ("mm",), _always, remedy=remedies.rounder)
+UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), _always)
+UNDERCUT_GLOBAL = Declared(
+    "undercut-global", ("mm",), lambda scene: scene.roller, why_not=_convex, field="cam.roller_radius"
+)
+CLOSING = Declared("closing-equation", ("mm",), lambda scene: scene.swings, why_not=_no_swing)
+TRANSMISSION = Declared(STEEPEST, ("",), lambda scene: scene.swings, why_not=_no_swing, remedy=remedies.smaller_swing)
+PRESSURE = Declared(
+    PRESSURE_ANGLE, ("deg",), lambda scene: scene.roller, why_not=_no_roller, remedy=remedies.smaller_swing
+)
+BREADTH = Declared(
+    "constant-breadth",
+    ("mm",),
+    lambda scene: scene.yoke,
+    _in_a_yoke,
+    why_not=_one_face,
+    play=True,
+    in_frame=True,
+)
+FACE = Declared(TRAVEL, ("mm",), lambda scene: not scene.swings, why_not=_no_plate)
+MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
+REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
+DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")
+WALL = Declared(LEAST_WALL, ("mm",), _walled, field="part.bore", remedy=remedies.smaller_bore)
+LIGHTENING = Declared(
+    "lightening", ("holes",), lambda scene: scene.recipe.part.lightening is not None, field="part.lightening"
+)
+CLEARANCE = Declared("clearance", ("mm",), _parts)
+COLLISION = Declared("collision", ("mm",), _parts)
+
+# --- of files ---------------------------------------------------------------------------------------------------------
+
+READABLE = Declared("readable", ("",))  # made only where it fails
+OUTLINE = Declared("outline", ("mm",))  # of the other bodies of a mechanism, whose files are not foreseen
+REACH = Declared("cutter-reach", ("mm",), of_file=_reached)
+UNITS = Declared("units", ("",), of_file=_drawing, field="units")
+CLOSED = Declared("closed", ("", "faults"), of_file=_drawing)
+WATERTIGHT = Declared("watertight", ("", "faults"), of_file=_solid)
+CUTTER = Declared("cutter", ("mm",), of_file=_program)
+ARCS = Declared("arcs", ("mm",), of_file=_program)
+RAPID = Declared("rapid", ("", "faults"), of_file=_program)
+DEPTH = Declared("depth", ("mm",), of_file=_program)
+DIRECTION = Declared("direction", ("", "faults"), of_file=_program)
+ENTRY = Declared("entry", ("deg",), of_file=_program)
+GOUGE = Declared("gouge", ("mm",), of_file=_program)
+BORE = Declared("bore", ("mm",), of_file=_bored, why_not=_no_bore, field="part.bore")
+HOLES = Declared("holes", ("mm",), of_file=_drilled, field="part")
+MARK = Declared("mark", ("mm",), of_file=_marked, field="part.mark")
+THICKNESS = Declared("thickness", ("mm",), of_file=_solid, field="part.thickness")
+HUB = Declared("hub", ("mm",), of_file=_with("hub"), field="part.hub")
+CHAMFER = Declared(
+    "chamfer",
+    ("mm",),
+    lambda scene: scene.recipe.part.chamfer is not None,
+    _with("chamfer"),
+    field="part.chamfer",
+    remedy=remedies.smaller_chamfer,
+)
+SET_SCREW = Declared("set-screw", ("mm",), of_file=_with("set_screw"), field="part.set_screw")
+VOLUME = Declared("volume", ("mm^3",), of_file=_solid)
+CONTOUR = Declared("contour", ("mm",), of_file=_contour, field="export.tolerance", in_frame=True)
+MOTION = Declared(
+    "motion",
+    ("mm", "deg"),
+    of_file=_contour,
+    why_not=_motion_lost,
+    field="export.tolerance",
+    own_field="verify.motion_error",
+    remedy=remedies.nearer,
+    in_frame=True,
+)
+BREADTH_MAX = Declared("breadth-max", ("mm",), of_file=_in_a_yoke, play=True, in_frame=True)
+FORM_CLOSURE = Declared("form-closure", ("mm", "deg"), of_file=_swung, play=True)
+OUTPUT = Declared(
+    "linkage-error",
+    ("mm", "deg"),
+    of_file=_driven,
+    why_not=_output_lost,
+    field="export.tolerance",
+    own_field="verify.output_error",
+)
+FLOAT = Declared("float", ("N", "N m"), _sprung, lambda scene, file: _sprung(scene) and _run_with(scene, file))
+PLAY = Declared("play", ("mm", "deg", "N"), _loose, lambda scene, file: _loose(scene) and _run_with(scene, file))
+
+CHECKS: dict[str, Declared] = {one.name: one for one in globals().values() if isinstance(one, Declared)}
+"""Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""
+
+
+# --- limits -----------------------------------------------------------------------------------------------------------
+
+
+def _of_figure(name: str, figure: Figure) -> Declared:
+    """Declare the limit of a figure: it applies where the recipe gives it."""
+
+    def given(scene: Scene) -> bool:
+        return figure.of != "file" and any(limit.figure == name for limit in scene.recipe.limits)
+
+    def of_file(scene: Scene, file: FileRequest) -> bool:
+        if not any(limit.figure == name for limit in scene.recipe.limits):
+            return False
+        if figure.of == "dynamics":
+            return _run_with(scene, file)
+        if figure.of == "file":
+            return _driven(scene, file) if figure.needs == "linkage" else _contour(scene, file)
+        return False
+
+    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}")  # the check itself tells what would do
+
+
+LIMITS: dict[str, Declared] = {LIMIT + name: _of_figure(name, figure) for name, figure in FIGURES.items()}
+EVERY: dict[str, Declared] = {**CHECKS, **LIMITS}

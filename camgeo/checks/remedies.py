@@ -1,0 +1,142 @@
+"""What would let a check hold: one function for each that knows, empty text where nothing would do.
+
+Each takes the check as the report has it, the report and the recipe. Figures are in the recipe's unit, rounded to the
+side on which the text is true.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from camgeo.recipe.table_figures import HOLLOW_RADIUS, LEAST_WALL, MOTION_ERROR, PRESSURE_ANGLE, RADIUS, STEEP
+from camgeo.remedies import larger
+from camgeo.rounded import downward, upward
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.recipe.model import Recipe
+
+Remedy: TypeAlias = "Callable[[dict[str, Any], dict[str, Any], Recipe], str]"
+SMALLER_SWING = "a smaller swing, or the same over a wider angle"
+
+
+def smaller_swing(_check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+    """Tell of a motion that is too steep."""
+    return SMALLER_SWING
+
+
+def rounder(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell what would make the least radius of curvature large enough."""
+    value, limit, unit = check["value"], check["limit"], check["unit"]
+    if value is None or limit is None:
+        return ""
+    if isinstance(recipe.cam, DoubleRollerCam):
+        return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
+    return larger(recipe.cam, limit - value, unit)
+
+
+def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+    """Tell which chamfer the contour has room for; nothing of the chamfer in a file."""
+    value = check["value"]
+    if value is None or check["limit"] is None or "file" in check:
+        return ""
+    return f"a chamfer below {downward(value)} {check['unit']}" if value > 0.0 else NO_CHAMFER
+
+
+NO_CHAMFER = "no chamfer, or a contour without corners"
+
+
+def smaller_bore(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell which bore leaves the wall; where the part has more than a bore the check itself names the edges."""
+    value, limit, part = check["value"], check["limit"], recipe.part
+    if value is None or limit is None or not part.plain or part.bore is None:
+        return ""
+    less = 2.0 * (limit - value)
+    return f"a bore smaller by more than {upward(less)} {check['unit']}" if less * recipe.mm < part.bore else ""
+
+
+def nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell what would bring the motion error, or its limit, to where it holds."""
+    value = check["value"]
+    if value is None or check["limit"] is None or recipe.verify.motion_error is None or value <= 0.0:
+        return ""
+    return f"{_tighter(check, report, recipe)}verify.motion_error above {upward(value)}"
+
+
+def _tighter(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell of the tolerance that would bring a motion error to its limit, and that there is another way."""
+    tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
+    return _tolerance(recipe, check["value"], check["limit"], tolerance)
+
+
+def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | None) -> str:
+    if limit <= 0.0:
+        return ""
+    if isinstance(recipe.cam, ConstantBreadthCam | SupportCam):  # a flat face is off by no more than the contour
+        return f"a tolerance of {limit:.6g}, or "
+    return "" if tolerance is None else f"a tolerance of about {tolerance * limit / value:.2g}, or "
+
+
+# --- limits of a recipe's own -----------------------------------------------------------------------------------------
+
+
+class Missed(NamedTuple):
+    """A figure that misses its bound, in mm and degrees; `tolerance` is that of the file, mm, None without one."""
+
+    value: float
+    bound: float
+    unit: str
+    tolerance: float | None = None
+
+
+def of_limit(recipe: Recipe, figure: str, missed: Missed) -> str:
+    """Tell what would keep a limit: of the cam where that is known, and of the limit itself; in the recipe's unit."""
+    divisor = recipe.mm if missed.unit.partition("/")[0] == "mm" else 1.0
+    value, bound = missed.value / divisor, missed.bound / divisor
+    field = f"limits.{figure}"
+    if value > bound:
+        own = _to_lower(recipe, figure, missed)
+        return f"{own}{field}.at_most of {_outward(value, up=True)}"
+    return f"{_to_raise(recipe, figure, bound - value)}{field}.at_least of {_outward(value, up=False)}"
+
+
+def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
+    if figure == MOTION_ERROR:
+        tolerance = None if missed.tolerance is None else missed.tolerance / recipe.mm
+        return _tolerance(recipe, missed.value / recipe.mm, missed.bound / recipe.mm, tolerance)
+    if figure not in STEEP or recipe.linkage is not None:
+        return ""
+    if figure == PRESSURE_ANGLE and isinstance(recipe.cam, DoubleRollerCam):
+        # without a swing the normal points to the shaft, and the arm stands at alpha/2 to it, alpha = 180 mu/lambda
+        floor = 90.0 * (1.0 - recipe.cam.mu / recipe.cam.lam)
+        if 0.0 < missed.bound <= floor:
+            return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg), or "
+    swung = isinstance(recipe.cam, ConstantBreadthCam | DoubleRollerCam | FlatPairCam)
+    return f"{SMALLER_SWING}, or " if swung and missed.bound > 0.0 else ""
+
+
+def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
+    """Tell what would raise a figure by so much, in the recipe's unit."""
+    unit, own = "in" if recipe.units == "inch" else "mm", ""
+    if figure in {RADIUS, HOLLOW_RADIUS} and isinstance(recipe.cam, DoubleRollerCam):
+        # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
+        roller, hollow = recipe.cam.roller_radius / recipe.mm, figure == HOLLOW_RADIUS
+        if hollow or by < roller:
+            own = f"a roller radius of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
+    elif figure == RADIUS:
+        own = larger(recipe.cam, by, unit)
+    elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
+        own = (
+            f"a bore smaller by more than {upward(2.0 * by)} {unit}" if 2.0 * by * recipe.mm < recipe.part.bore else ""
+        )
+    return f"{own}, or " if own else ""
+
+
+def _outward(value: float, *, up: bool) -> str:
+    """Round a limit so that the value keeps it, whatever its sign."""
+    if value == 0.0:
+        return "0"
+    text = upward(abs(value)) if up == (value > 0.0) else downward(abs(value))
+    return text if value > 0.0 else f"-{text}"
