@@ -24,9 +24,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from support.places import ROOT
 
-from kin.drive import drives
-from kin.oscillator import Oscillator
-from kin.response import Forcing, Samples, response
+from kin.dynamics.drive import drives
+from kin.dynamics.oscillator import Oscillator
+from kin.dynamics.response import Forcing, Samples, response
 
 sys.path.insert(0, str(ROOT / "tests"))
 

@@ -13,10 +13,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from camgeo import pipeline
-from camgeo.design import designed, intended
+from camgeo.output import pipeline
 from camgeo.recipe.load import read
-from kin.verify import Limits, verify
+from camgeo.synthesis.design import designed, intended
+from kin.judge.verify import Limits, verify
 
 RECIPE = b"""\
 cam:

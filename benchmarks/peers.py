@@ -1,7 +1,7 @@
 """Error over run time and size against what a user would pick instead: `python benchmarks/peers.py [--python PYTHON]`.
 
 Every peer (`benchmarks/peer.py`) and camgeo make the same two cams at a ladder of point counts or tolerances, and every
-file is judged by the same judge, `kin.verify`, in the same run. Warm seconds are the least of repeats within one
+file is judged by the same judge, `kin.judge.verify`, in the same run. Warm seconds are the least of repeats within one
 process, cold seconds those of the whole process. PYTHON runs the peers, and may have CadQuery; a peer that cannot run
 is told. Writes docs/pictures/peers.png (matplotlib) and prints the tables of docs/performance.md.
 """
@@ -23,10 +23,10 @@ import numpy as np
 import yaml
 from peer import PEERS
 
-from camgeo.design import designed, intended
 from camgeo.recipe.load import load
-from camgeo.study.ladder import Rung, climb
-from kin.verify import Limits, verify
+from camgeo.sweep.study.tolerance_ladder import Rung, climb
+from camgeo.synthesis.design import designed, intended
+from kin.judge.verify import Limits, verify
 
 ROOT = Path(__file__).parents[1]
 CAMS = {"yoke": "as-figure-2a", "roller": "w-figure-9"}

@@ -21,9 +21,9 @@ from xml.parsers import expat
 
 import numpy as np
 
-from kin.read import kind_of, read_drawing, read_solid
-from kin.read_error import ReadError
-from kin.read_gcode import read_gcode
+from kin.read.errors import ReadError
+from kin.read.files import kind_of, read_drawing, read_solid
+from kin.read.gcode import read_gcode
 
 if TYPE_CHECKING:
     from collections.abc import Callable

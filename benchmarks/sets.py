@@ -9,11 +9,11 @@ import argparse
 import time
 from pathlib import Path
 
-from camgeo.bodies.build import assembly_of
-from camgeo.bodies.collide import collision_checks
-from camgeo.design import designed
-from camgeo.making.job import Job
+from camgeo.assembly.build import assembly_of
+from camgeo.assembly.interference import collision_checks
+from camgeo.output.job import Job
 from camgeo.recipe.load import load
+from camgeo.synthesis.design import designed
 
 RECIPES = Path(__file__).parents[1] / "recipes"
 TOLERANCE = 0.001  # mm

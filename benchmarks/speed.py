@@ -27,18 +27,18 @@ from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
-from camgeo.profile.build import intent_of, profile_of
 from camgeo.recipe.load import load
-from kin.contour import Contour
-from kin.flat import FlatPair, Yoke
-from kin.lift import lift_from_fourier
-from kin.roller import DoubleRoller
-from kin.transmission import from_delta
+from camgeo.synthesis.profile import intent_of, profile_of
+from kin.contour.contour import Contour
+from kin.follower.flat import FlatPair, Yoke
+from kin.follower.roller import DoubleRoller
+from kin.law.support_function import lift_from_fourier
+from kin.law.transmission import from_delta
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.curve import Curve
+    from camgeo.curve.curve import Curve
 
 ROOT = Path(__file__).parents[1]
 MICROMETRE = 1e-3
@@ -169,7 +169,7 @@ def cold() -> None:
         for files, imports in (("stl", "numpy"), ("dxf, stl", "numpy, ezdxf")):
             recipe = Path(folder) / "cam.yaml"
             recipe.write_text(text.format(files=files), encoding="utf-8")
-            command = ["-m", "camgeo.cli", "export", str(recipe), "--out", str(Path(folder) / "out")]
+            command = ["-m", "camgeo", "export", str(recipe), "--out", str(Path(folder) / "out")]
             best = [(math.inf, 0.0)] * 2
             for _ in range(2 if SMALL else 10):  # the first of them compiles
                 for i, arguments in enumerate((command, ["-c", f"import {imports}"])):

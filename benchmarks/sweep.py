@@ -23,13 +23,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.figures import breadth_of
-from camgeo.linkage import mechanism_of
-from camgeo.profile.build import intent_of
+from camgeo.recipe.figures import Limit
 from camgeo.recipe.load import load_text
-from camgeo.recipe.model_sweep import Limit
-from camgeo.sweep.figures import Evaluator
-from camgeo.sweep.rebuilt import recipe_with
+from camgeo.sweep.search.figures import Evaluator
+from camgeo.sweep.search.rebuilt import recipe_with
+from camgeo.synthesis.checks import breadth_of
+from camgeo.synthesis.linkage import mechanism_of
+from camgeo.synthesis.profile import intent_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -126,8 +126,8 @@ RUN = """
 import sys, time
 if sys.argv[1] == "numpy":
     sys.modules["numba"] = None
-from camgeo.cli import main
-from camgeo.sweep import search
+from camgeo.cli.main import main
+from camgeo.sweep.search import search
 spent = []
 def timed(*arguments, compute=search.compute, **named):
     begun = time.process_time()
@@ -165,7 +165,10 @@ SOME = ("dwell", "margin", "shaft-rate", "transmission-angle", "swing")
 
 
 def accuracy() -> None:
-    print("\ndwell over the shaft and other figures of some four-bars against kin.dwell and kin.mechanism")
+    print(
+        "\ndwell over the shaft and other figures of some four-bars against "
+        "kin.numeric.longest_window and kin.linkage.mechanism"
+    )
     values = drawn(PLACES, 4 if SMALL else 60)
     wanted: dict[str, list[float]] = {}
     for row in values:

@@ -16,7 +16,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from camgeo import pipeline
+from camgeo.output import pipeline
 from camgeo.recipe import read
 
 ROOT = Path(__file__).parents[1]

@@ -75,7 +75,7 @@ def main() -> NoReturn:
 
 
 def _status() -> int:
-    from camgeo.cli import main as run
+    from camgeo.cli.main import main as run
 
     try:
         return run()

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from _pytest._code.code import TerminalRepr, TracebackStyle
 
-    from camgeo.foreseen import Foreseen
-    from camgeo.recipe.errors import RecipeErrors
-    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.synthesis.expected_checks import Foreseen
 
 INI = "camgeo_recipes"
 WHOLE = "recipe"  # name of the item that stands for a recipe as a whole
@@ -170,9 +170,9 @@ class Run:
         return self._report
 
     def _run(self) -> None:
-        from camgeo import pipeline
+        from camgeo.output import pipeline
+        from camgeo.output.output_folder import SurroundingsError
         from camgeo.recipe import RecipeErrors
-        from camgeo.store import SurroundingsError
 
         assert self.recipe is not None
         # what the items that follow say, should an exception end this one
@@ -216,8 +216,8 @@ class RecipeFile(pytest.File):
 
 def _foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     """Tell the checks to come; none where there is no such motion, which the recipe's own item then tells."""
-    from camgeo.foreseen import foreseen
-    from kin.law import IntentError
+    from camgeo.synthesis.expected_checks import foreseen
+    from kin.law.programme import IntentError
 
     try:
         return foreseen(recipe)
@@ -289,8 +289,8 @@ class CheckItem(pytest.Item):
     def _missing(self, wanted: Foreseen, report: dict[str, Any]) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
         from camgeo.checks.declared import CHECKS, MOTION
-        from camgeo.foreseen import Foreseen
         from camgeo.report.failure import headline
+        from camgeo.synthesis.expected_checks import Foreseen
 
         assert self.run.recipe is not None
         cause = [check for check in report["checks"] if not check["ok"] and check.get("file") in (None, wanted.file)]

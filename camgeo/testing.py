@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from os import PathLike
 
-    from camgeo.recipe.model import Recipe
-    from kin.contour import Contour
-    from kin.read import AnySolid, Drawing
+    from camgeo.recipe.recipe import Recipe
+    from kin.contour.contour import Contour
+    from kin.read.files import AnySolid, Drawing
 
     AnyPath: TypeAlias = str | PathLike[str]
     AnyRecipe: TypeAlias = Recipe | str | PathLike[str]
@@ -142,8 +142,8 @@ def _breadth(contour: Contour) -> Breadth:
     """Extremes of the breadth: the play of the contour in a yoke, over the whole turn."""
     import numpy as np
 
-    from kin.follower import Yoke
-    from kin.lift import lift_from_fourier
+    from kin.follower.follower import Yoke
+    from kin.law.support_function import lift_from_fourier
 
     # any breadth of the yoke and any intended motion would do, as only the play is asked for
     frame = float(contour.support(np.array([0.0, math.pi])).q.sum())
@@ -198,8 +198,8 @@ def _judged(
 ) -> dict[str, Any]:
     """Judge a file and assert the checks of those names; its entry in the report."""
     __tracebackhide__ = True
-    from camgeo.pipeline import judged
-    from camgeo.recipe.model import DoubleRollerCam, FlatPairCam
+    from camgeo.output.pipeline import judged
+    from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 
     path, recipe = Path(path), _loaded(recipe)
     swings = isinstance(recipe.cam, DoubleRollerCam | FlatPairCam)
@@ -230,7 +230,7 @@ def assert_recipe(recipe: AnyRecipe) -> dict[str, Any]:
     Makes and judges the files in a temporary folder. Returns the report, as report.json has it.
     """
     __tracebackhide__ = True
-    from camgeo import pipeline
+    from camgeo.output import pipeline
     from camgeo.recipe import RecipeErrors
 
     try:
@@ -249,8 +249,8 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     a roller.
     """
     __tracebackhide__ = True
-    from camgeo.design import designed
     from camgeo.report.document import Findings, document
+    from camgeo.synthesis.design import designed
 
     recipe = _loaded(recipe)
     recipe = replace(recipe, cam=replace(recipe.cam, undercut="refuse"))
@@ -289,7 +289,7 @@ def _no_faults(path: Path, faults: list[str]) -> None:
 
 
 def _crossings(contour: Contour) -> list[str]:
-    from kin.flaws import crossings
+    from kin.contour.intersections import crossings
 
     return [f"the contour crosses or touches itself at ({x:.6g}, {y:.6g}) mm" for x, y in crossings(contour).point]
 
@@ -309,7 +309,7 @@ def _contour(path: Path, mm: float | None) -> Contour:
 
 def _drawing(path: Path, gap: float) -> Drawing:
     __tracebackhide__ = True
-    from kin.read import ReadError, read_drawing
+    from kin.read.files import ReadError, read_drawing
 
     try:
         return read_drawing(path, gap)
@@ -319,7 +319,7 @@ def _drawing(path: Path, gap: float) -> Drawing:
 
 def _solid(path: Path) -> AnySolid:
     __tracebackhide__ = True
-    from kin.read import ReadError, read_solid
+    from kin.read.files import ReadError, read_solid
 
     try:
         return read_solid(path)
@@ -328,6 +328,6 @@ def _solid(path: Path) -> AnySolid:
 
 
 def _is_solid(path: Path) -> bool:
-    from kin.read import SOLIDS, kind_of
+    from kin.read.files import SOLIDS, kind_of
 
     return kind_of(path) in SOLIDS

@@ -9,15 +9,15 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from kin.contour import Contour
-from kin.drive import drives
-from kin.driven import intended_faces, measured_faces
-from kin.dynamics import Steady, Train, steady
-from kin.floating import float_speed
-from kin.follower import FlatFace
-from kin.law import Segment, law, programme
-from kin.lift import lift_constant_breadth
-from kin.response import Samples
+from kin.contour.contour import Contour
+from kin.dynamics.drive import drives
+from kin.dynamics.excitation import intended_faces, measured_faces
+from kin.dynamics.response import Samples
+from kin.dynamics.separation import float_speed
+from kin.dynamics.train import Steady, Train, steady
+from kin.follower.follower import FlatFace
+from kin.law.programme import Segment, law, programme
+from kin.law.support_function import lift_constant_breadth
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt  # the backend must be chosen first

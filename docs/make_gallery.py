@@ -6,13 +6,17 @@ import argparse
 import re
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from camgeo.page.page import asset
-from camgeo.page.scene import STEPS
-from camgeo.page.svg import still
-from camgeo.pipeline import shown
+from camgeo.output.pipeline import shown
+from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from camgeo.recipe.load import load
-from camgeo.recipe.model import DoubleRollerCam, FlatPairCam, Recipe
+from camgeo.report.page.page import asset
+from camgeo.report.page.scene import STEPS
+from camgeo.report.page.svg import still
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
 
 ROOT = Path(__file__).parents[1]
 FAMILIES = ("Flat faces and yokes", "Linkages", "Double rollers", "Flat pairs")

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, cast
 import matplotlib as mpl
 import numpy as np
 
-from camgeo.design import designed
 from camgeo.recipe.load import load
-from kin.linkage import InvertedSliderCrank, SliderCrank
+from camgeo.synthesis.design import designed
+from kin.linkage.four_bar import InvertedSliderCrank, SliderCrank
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt  # the backend must be chosen first
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from kin.dyad import RRR
-    from kin.lift import Lift
-    from kin.linkage import FourBar
-    from kin.mechanism import Mechanism, Motion
+    from kin.law.support_function import Lift
+    from kin.linkage.dyad import RRR
+    from kin.linkage.four_bar import FourBar
+    from kin.linkage.mechanism import Mechanism, Motion
 
     Array = NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
-from camgeo import pipeline
+from camgeo.output import pipeline
 from camgeo.recipe import read
-from kin.milled import Milling, milled
-from kin.read_gcode import arcs_of, read_gcode
+from kin.judge.milling import Milling, milled
+from kin.read.gcode import arcs_of, read_gcode
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt  # the backend must be chosen first

@@ -10,9 +10,9 @@ import matplotlib as mpl
 import numpy as np
 from make_part_pictures import LIGHT, raster
 
-from camgeo import pipeline
+from camgeo.output import pipeline
 from camgeo.recipe.load import load
-from kin.read_3mf import read_placed
+from kin.read.mesh.threemf import read_placed
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt  # the backend must be chosen first
@@ -32,7 +32,7 @@ COLOURS = {
     "roller": "#8a6fb0",
     "rocker": "#8a6fb0",
 }
-TURN, TILT = np.radians(-20.0), np.radians(42.0)
+SPIN, TILT = np.radians(-20.0), np.radians(42.0)
 
 
 def main(names: list[str]) -> None:
@@ -70,7 +70,7 @@ def drawn(path: Path) -> np.ndarray:
 
 def seen(corners: np.ndarray) -> np.ndarray:
     """Triangles turned as they are looked at, from above and in front."""
-    c, s = np.cos(TURN), np.sin(TURN)
+    c, s = np.cos(SPIN), np.sin(SPIN)
     turned = corners @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     c, s = np.cos(TILT), np.sin(TILT)
     return turned @ np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])

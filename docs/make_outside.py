@@ -18,17 +18,21 @@ import subprocess
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import trimesh
 
-from camgeo import pipeline
-from camgeo.design import designed, intended
+from camgeo.output import pipeline
+from camgeo.recipe.export import FileRequest
 from camgeo.recipe.load import load
-from camgeo.recipe.model import FileRequest, Recipe
-from kin.judge import exact_area
-from kin.layers import volume
-from kin.read import read_drawing
+from camgeo.synthesis.design import designed, intended
+from kin.judge.contour_checks import exact_area
+from kin.judge.layers import volume
+from kin.read.files import read_drawing
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
 
 ROOT = Path(__file__).parents[1]
 RECIPES = ("reuleaux", "shu-wu", "as-figure-9-1", "w-figure-9")

@@ -12,9 +12,9 @@ import matplotlib as mpl
 import numpy as np
 from ezdxf import path as drawn
 
-from camgeo import pipeline
+from camgeo.output import pipeline
 from camgeo.recipe.load import load
-from kin.read_stl import triangles_of
+from kin.read.mesh.stl import triangles_of
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt  # the backend must be chosen first

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import matplotlib as mpl
 import numpy as np
 
-from camgeo import pipeline
-from camgeo.design import designed, intended
+from camgeo.output import pipeline
 from camgeo.recipe.load import load
-from kin.read_dxf import read_dxf
+from camgeo.synthesis.design import designed, intended
+from kin.read.drawing.dxf import read_dxf
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt  # the backend must be chosen first
@@ -22,8 +22,8 @@ import matplotlib.pyplot as plt  # the backend must be chosen first
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from kin.follower import Follower
-    from kin.read_dxf import Drawing
+    from kin.follower.follower import Follower
+    from kin.read.drawing.dxf import Drawing
 
 ROOT = Path(__file__).parents[1]
 INK, METAL, ACCENT = "#26323f", "#cfd8e3", "#c8442c"

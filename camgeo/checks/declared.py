@@ -1,8 +1,9 @@
 """Every check, declared once: name, unit, when it applies, the recipe's field it hangs on, and what would do.
 
-The list of checks to come (`camgeo.foreseen`), that of what a run leaves out (`camgeo.making.left_out`) and the texts
-of failures (`camgeo.report.failure`) are read from here, and what makes a check takes its name from here. The judge
-(kin) knows nothing of recipes: the checks of files that it makes are declared here by the same names.
+The list of checks to come (`camgeo.synthesis.expected_checks`), that of what a run leaves out
+(`camgeo.output.skipped`) and the texts of failures (`camgeo.report.failure`) are read from here, and what makes a
+check takes its name from here. The judge (kin) knows nothing of recipes: the checks of files that it makes are
+declared here by the same names.
 """
 
 from __future__ import annotations
@@ -11,17 +12,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.checks import remedies
-from camgeo.recipe.model import NO_CONTOUR, NO_PART, SOLIDS, DoubleRollerCam, FlatPairCam
-from camgeo.recipe.table_figures import DWELL as LONGEST_DWELL
-from camgeo.recipe.table_figures import FACE_LENGTH as TRAVEL
-from camgeo.recipe.table_figures import FIGURES, LEAST_WALL, PRESSURE_ANGLE, RADIUS
-from camgeo.recipe.table_figures import TRANSMISSION as STEEPEST
+from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
+from camgeo.recipe.export import NO_CONTOUR, NO_PART, SOLIDS
+from camgeo.recipe.figures import DWELL as LONGEST_DWELL
+from camgeo.recipe.figures import FACE_LENGTH as TRAVEL
+from camgeo.recipe.figures import FIGURES, LEAST_WALL, PRESSURE_ANGLE, RADIUS
+from camgeo.recipe.figures import TRANSMISSION as STEEPEST
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.recipe.model import FileRequest, Recipe
-    from camgeo.recipe.table_figures import Figure
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.figures import Figure
+    from camgeo.recipe.recipe import Recipe
 
 LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
 STANDS = "the mechanism does not turn: it has no motion over the shaft angle"

@@ -8,15 +8,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from camgeo.recipe.model import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
-from camgeo.recipe.table_figures import HOLLOW_RADIUS, LEAST_WALL, MOTION_ERROR, PRESSURE_ANGLE, RADIUS, STEEP
-from camgeo.remedies import larger
-from camgeo.rounded import downward, upward
+from camgeo.checks.advice import larger
+from camgeo.common.rounding import downward, upward
+from camgeo.recipe.cam import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from camgeo.recipe.figures import HOLLOW_RADIUS, LEAST_WALL, MOTION_ERROR, PRESSURE_ANGLE, RADIUS, STEEP
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.recipe import Recipe
 
 Remedy: TypeAlias = "Callable[[dict[str, Any], dict[str, Any], Recipe], str]"
 SMALLER_SWING = "a smaller swing, or the same over a wider angle"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from camgeo.files.curves import CONFUSION, centre_of, curves_of, inset, measures, point
-from camgeo.files.missing import MissingExtraError, install
+from camgeo.files.errors import MissingExtraError, install
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import ArcSpline, Bound
 

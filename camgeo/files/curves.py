@@ -13,7 +13,7 @@ from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon, RationalSpli
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.fit.pieces import Array
+    from kin.numeric.arrays import Array
 
 CONFUSION = 1e-7  # mm: points this close are one to the kernel
 SHORTEST = 1e-6  # mm, of a piece of an outline

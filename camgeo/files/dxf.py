@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon, RationalSpline
-from kin.home import prepare_home
+from kin.read.home import prepare_home
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from camgeo.fit.bound import Box
-    from camgeo.fit.pieces import Array
+    from kin.numeric.arrays import Array
 
 VERSIONS = {"R12": "AC1009", "R2000": "AC1015", "R2010": "AC1024", "R2013": "AC1027"}
 UNITS = {1.0: ("mm", 4, 1), 25.4: ("inch", 1, 0)}  # mm a unit: name, $INSUNITS, $MEASUREMENT

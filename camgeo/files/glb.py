@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from camgeo.files.mesh import Mesh
-    from camgeo.files.triangulate import Array
+    from kin.numeric.arrays import Array
 
-TURN = 4.0  # seconds
+PERIOD = 4.0  # seconds
 _METRE = 1e-3  # of a mm
 _FLOAT, _INDEX = 5126, 5125  # single precision, unsigned whole numbers of 32 bits
 _POINTS, _TRIANGLES = 34962, 34963  # what a part of the buffer is for
@@ -63,7 +63,7 @@ def write_glb(path: Path, actors: Sequence[Actor], *, title: str) -> None:
         if steps == 1:
             continue
         if steps not in times:
-            clock = np.linspace(0.0, TURN, steps).astype("<f4").reshape(-1, 1)
+            clock = np.linspace(0.0, PERIOD, steps).astype("<f4").reshape(-1, 1)
             times[steps] = buffer.added(clock, "SCALAR", None, bounds=True)
         for what, values, shape in (("translation", shift, "VEC3"), ("rotation", turn, "VEC4")):
             channels.append({"sampler": len(samplers), "target": {"node": k, "path": what}})

@@ -11,8 +11,9 @@ from camgeo.files.triangulate import RegionError
 
 if TYPE_CHECKING:
     from camgeo.files.precision import Precision
-    from camgeo.files.triangulate import Array, Triangles
+    from camgeo.files.triangulate import Triangles
     from camgeo.fit.bound import Bound
+    from kin.numeric.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

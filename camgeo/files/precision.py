@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.common.rounding import upward
 from camgeo.fit.nodes import ToleranceError
-from camgeo.rounded import upward
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from kin.numeric.arrays import Array
 
 # Least tolerance that is accepted, in worst displacements of a vertex. The quarter that is left to the fit makes the
 # sagitta over two edges (8 e) twice the displacement, which rounding cannot turn into a dent.

@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.files.precision import Precision
-    from camgeo.files.triangulate import Array, Triangles
+    from camgeo.files.triangulate import Triangles
     from camgeo.fit.pieces import ArcSpline
+    from kin.numeric.arrays import Array
 
 
 def extruded(

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.files.errors import MissingExtraError, install
 from camgeo.files.mesh import MeshFacts, settled
-from camgeo.files.missing import MissingExtraError, install
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import RegionError, disc
 from camgeo.fit.pieces import Bound, Polygon
@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
-    from camgeo.files.triangulate import Array, Triangles
+    from camgeo.files.triangulate import Triangles
     from camgeo.fit.pieces import ArcSpline
+    from kin.numeric.arrays import Array
 
 BEYOND = 1.0  # mm by which what cuts reaches out of what is cut
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from camgeo.files.dxf import Cutout
     from camgeo.fit.bound import Box
-    from camgeo.fit.pieces import Array
+    from kin.numeric.arrays import Array
 
 _PAGE_UNIT = {"mm": "mm", "inch": "in"}
 _COLOURS = {"CUT": "#000000", "BORE": "#0000ff", "HOLES": "#0000ff", "MARK": "#ff0000", "ENGRAVE": "#00aa00"}

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.files.mesh import Mesh
-    from camgeo.files.triangulate import Array
+    from kin.numeric.arrays import Array
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _XML = '<?xml version="1.0" encoding="UTF-8"?>\n'

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from kin.numeric.arrays import Array
+
     Triangles = NDArray[np.int64]
 
 

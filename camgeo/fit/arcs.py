@@ -14,16 +14,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.common.rounding import upward
 from camgeo.fit import free_arcs
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, seen_deviation
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.parts import CONSTANT as FREE
 from camgeo.fit.parts import Part
 from camgeo.fit.pieces import ArcSpline, Bound
-from camgeo.rounded import upward
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array, Curve, Frame
+    from camgeo.curve.curve import Curve, Frame
+    from kin.numeric.arrays import Array
 
 CONSTANT = 40.5  # error of a biarc of arcs of length s: |kappa'| s^3 / 40.5
 RATIO = math.cbrt(CONSTANT / FREE)  # of arcs with free joints to arcs in biarcs

@@ -20,10 +20,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.fit.nodes import Density
-from kin.jet import Jet
+from kin.numeric.elementary import Jet
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array, Curve
+    from camgeo.curve.curve import Curve
+    from kin.numeric.arrays import Array
 
 ORDER = 6.0  # power of a span's length with which its error falls
 LEAST = 864.0  # a span of length h errs by c h^6/864 at least

@@ -16,7 +16,8 @@ foot runs forward along the piece from where it starts to where it ends. So, whe
 beginning and the last its end, every point of the curve has its foot on the piece and every point of the piece has a
 point of the curve over it: the range of f bounds both distances, from the curve to the piece and back.
 
-The curve is taken to run forward, sigma > 0; `camgeo.radius.reversals` proves that of a contour before it is fitted.
+The curve is taken to run forward, sigma > 0; `camgeo.curve.curvature.reversals` proves that of a contour before it is
+fitted.
 """
 
 from __future__ import annotations
@@ -27,16 +28,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from camgeo.curve import Array, Bounds, Curve
-
-    Mask = NDArray[np.bool_]
+    from camgeo.curve.curve import Bounds, Curve
+    from kin.numeric.arrays import Array, Mask
 
 SLACK = 0.004  # nodes are doubled until the proof exceeds what the nodes show by less than this share of the tolerance
 FIRST_NODES = 4
 FOOT_STEPS = 25
-TURN = 1.5  # radians, below a right angle: as long as beta stays below it the foot moves forward along the piece
+FORWARD = 1.5  # radians, below a right angle: as long as beta stays below it the foot moves forward along the piece
 MOST_NODES = 512
 BLOCK = 16_384  # places at a time: what they need then stays in a processor's cache
 FEW = 1000  # pieces, up to which a proof is sharpened further where the tolerance hangs on it
@@ -209,7 +207,7 @@ def _bends(seen: _Seen, bounds: Bounds, k: Array) -> tuple[Array, Array, Mask]:
     kf = size * (furthest + 0.5 * step * speed * beta_room)
     with np.errstate(divide="ignore", invalid="ignore"):
         extra = size * speed * (0.5 * beta_room**2 + kf) / (1.0 - kf)
-        confirmed = (kf < 0.5) & (extra <= 2.0 * lag + 1e-15) & (beta_room < TURN)
+        confirmed = (kf < 0.5) & (extra <= 2.0 * lag + 1e-15) & (beta_room < FORWARD)
     # f'' = -sigma m up to `correction`; sigma m itself by its end values and its second derivative
     product_bend = bounds.speed_bend * m + 2.0 * bounds.speed_slope * m_slope + speed * m_bend
     correction = bounds.speed_slope * beta_room + speed * (extra + 0.5 * m * beta_room**2) + square * product_bend

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve import columns
+from camgeo.curve.curve import columns
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation
-from kin.distinct import distinct
+from kin.numeric.distinct import distinct
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve import Array, Curve, Frame, Run
+    from camgeo.curve.curve import Curve, Frame, Run
+    from kin.numeric.arrays import Array
 
 EVEN = 0.02  # change of curvature over an edge, of itself, up to which one look in the middle is enough
 LOOKS = (1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0, 5.0 / 6.0)  # the other places

@@ -23,7 +23,7 @@ from camgeo.fit.trigonometric import UNIT, polynomial_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve import Curve
+    from camgeo.curve.curve import Curve
     from camgeo.fit.trigonometric import Polynomial
 
     Complex = NDArray[np.complex128]

@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from camgeo.curve import Array, Curve, Frame
+    from camgeo.curve.curve import Curve, Frame
     from camgeo.fit.parts import Part
+    from kin.numeric.arrays import Array
 
 LEVEL = 1.02  # times the level foreseen: a part so near to it has settled
 ALONG = 0.03  # of an arc's length that a joint has moved when its neighbours' deviations change by about the tolerance

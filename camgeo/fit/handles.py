@@ -16,8 +16,9 @@ from camgeo.fit.spans import plane
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve import Array, Curve
+    from camgeo.curve.curve import Curve
     from camgeo.fit.spans import Complex
+    from kin.numeric.arrays import Array
 
 PLACES = np.array([0.1, 0.26, 0.5, 0.74, 0.9])  # of a span: least squares there make its error equal to both sides
 MOST_LEAN = 0.6  # by which the handles of the first guess differ

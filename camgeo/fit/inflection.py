@@ -16,8 +16,9 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.curve import Array, Curve
+    from camgeo.curve.curve import Curve
     from camgeo.fit.nodes import Density
+    from kin.numeric.arrays import Array
 
 REACH = math.sqrt(24.0) / 6.0
 _ROOT_STEPS = 4  # of Newton's method; a crossing edge is far wider than what is left

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve import CurveError
-from camgeo.rounded import upward
+from camgeo.common.rounding import upward
+from camgeo.curve.curve import CurveError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from camgeo.curve import Array, Curve, Frame
+    from camgeo.curve.curve import Curve, Frame
+    from kin.numeric.arrays import Array
 
 STEPS_PER_CELL = 8  # of the grid on which a density is integrated
 MOST_PIECES = 1_000_000  # beyond this a contour is no hand-off; a tolerance that needs more is refused

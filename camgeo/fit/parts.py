@@ -11,7 +11,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.curve import Array, Curve
+    from camgeo.curve.curve import Curve
+    from kin.numeric.arrays import Array
 
 CONSTANT = 124.7  # error of an arc of length s with free joints: |kappa'| s^3 / 124.7 (12 sqrt 108)
 END = 0.687  # length, in those of the others, of the arc that touches the curve at its part's end: 3 (1.5/124.7)^(1/3)

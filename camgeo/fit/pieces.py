@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from camgeo.fit.bound import Box
-
-    Array = NDArray[np.float64]
+    from kin.numeric.arrays import Array
 
 __all__ = ["ArcSpline", "BSpline", "Bound", "Outline", "Polygon", "RationalSpline"]
 

@@ -19,7 +19,8 @@ from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precisi
 from camgeo.fit.pieces import Bound, Polygon
 
 if TYPE_CHECKING:
-    from camgeo.curve import Array, Curve, Frame, Run
+    from camgeo.curve.curve import Curve, Frame, Run
+    from kin.numeric.arrays import Array
 
 USABLE = 0.9995  # of the tolerance; the rest covers the second order at the vertices
 BALANCED = 1e-3  # of the tolerance: how far the two sides may differ before the vertices are moved once more

@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from camgeo.fit.bound import Bound, Box
-
-    Array = NDArray[np.float64]
+    from kin.numeric.arrays import Array
 
 HALVINGS = 60  # of a span in the search for its extremes: each quarters what the control points leave open
 EXTREME = 4.0 * float(np.finfo(np.float64).eps)  # relative to the size: extremes are found to this

@@ -27,12 +27,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.deviation import TURN, peak
+from camgeo.fit.deviation import peak
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve import Array, Bounds, Curve
+    from camgeo.curve.curve import Bounds, Curve
+    from kin.numeric.arrays import Array
 
     Complex = NDArray[np.complex128]
 

@@ -25,7 +25,8 @@ from camgeo.fit.spans import plane, spans_deviation
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve import Array, Curve
+    from camgeo.curve.curve import Curve
+    from kin.numeric.arrays import Array
 
 FLOOR = 4.0  # times the least tolerance of points and distances: below it a spline's handles are lost in rounding
 USABLE = 0.985  # of the limit, that errors seen may use; the rest is left to the proof

@@ -14,7 +14,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve import Array
+    from kin.numeric.arrays import Array
 
 UNKNOWNS = 3  # of a joint
 

@@ -15,19 +15,18 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
+from camgeo.curve.support import SupportShape
 from camgeo.fit.bound import FormError
-from camgeo.profile.support import SupportShape
-from kin.expression import Expression
-from kin.stretch import Harmonics, Round
+from kin.law.formula.expression import Expression
+from kin.law.segment import Harmonics, Round
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from camgeo.curve import Curve
-    from kin.expression import Instruction
-    from kin.stretch import Stretch
-
-    Array = NDArray[np.float64]
+    from camgeo.curve.curve import Curve
+    from kin.law.formula.expression import Instruction
+    from kin.law.segment import Stretch
+    from kin.numeric.arrays import Array
 
 UNIT = 2.0**-53  # of rounding
 WIDEST_DENOMINATOR = 64  # of a frequency inside a formula, such as the 3/2 of cos(3*t/2)**2

@@ -6,18 +6,17 @@ import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.build import build
-from camgeo.recipe.checks import check
-from camgeo.recipe.errors import RecipeError, RecipeErrors
-from camgeo.recipe.reader import Reader
-from camgeo.recipe.readers import READERS
-from camgeo.recipe.scalars import NAME_RULE, Complaint, read_name
-from camgeo.recipe.source import MAX_BYTES, read_source
+from camgeo.recipe.recipe import RECIPE, build, read_values
+from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
+from camgeo.recipe.schema.reader import Reader
+from camgeo.recipe.schema.readers import READERS
+from camgeo.recipe.schema.scalars import NAME_RULE, Complaint, read_name
+from camgeo.recipe.schema.yaml_source import MAX_BYTES, read_source
 
 if TYPE_CHECKING:
     from os import PathLike
 
-    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.recipe import Recipe
 
 
 def load(path: str | PathLike[str]) -> Recipe:
@@ -40,9 +39,8 @@ def load(path: str | PathLike[str]) -> Recipe:
 def read(data: bytes, path: str | PathLike[str]) -> Recipe:
     """Read a recipe from bytes; `path` names it in errors and gives its default name. Raises RecipeErrors."""
     source = read_source(data, str(path))
-    reader = Reader(source, READERS)
-    values = reader.recipe()
-    check(values, reader)
+    reader = Reader(source, READERS, RECIPE)
+    values = read_values(reader)
     if "name" not in reader.marks:
         stem = Path(path).stem
         try:

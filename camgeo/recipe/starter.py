@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, TypeAlias
 
-from camgeo.recipe.errors import suggestion
-from camgeo.recipe.spec import Field, Kind, Table, either
-from camgeo.recipe.table_cam import CAMS, SWINGING
-from camgeo.recipe.table_linkage import LINKAGES
-from camgeo.recipe.tables import RECIPE
+from camgeo.recipe.cam import CAMS, SWINGING
+from camgeo.recipe.linkage import LINKAGES
+from camgeo.recipe.recipe import RECIPE
+from camgeo.recipe.schema.errors import suggestion
+from camgeo.recipe.schema.fields import Field, Kind, Table, either
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -8,20 +8,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from camgeo import __version__
-from camgeo.mixture import listed
-from camgeo.recipe.model import NO_CONTOUR, NO_PART
+from camgeo.common.terminal import escaped
+from camgeo.recipe.export import NO_CONTOUR, NO_PART
 from camgeo.report.bound import is_strict, sign, words
-from camgeo.terminal import escaped
+from camgeo.report.listed import listed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from camgeo.fit.pieces import Bound
-    from camgeo.recipe.model import FileRequest, Recipe
-    from kin.check import Check
-    from kin.frame import LinkageVerdict
-    from kin.motion import MotionError
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from kin.follower.frame import LinkageVerdict
+    from kin.follower.motion_error import MotionError
+    from kin.judge.check import Check
 
 ROUNDING = 1e-11  # mm, in or degrees: what sums of doubles of some hundred leave, and no machine makes
 DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part"})  # stages of the exact cam

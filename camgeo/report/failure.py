@@ -8,7 +8,7 @@ from camgeo.checks.declared import EVERY, LIMITS, Declared
 from camgeo.report.bound import words
 
 if TYPE_CHECKING:
-    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.recipe import Recipe
 
 INDENT = "\n  "
 UNKNOWN = Declared("", ())  # of a check that none declares

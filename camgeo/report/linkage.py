@@ -9,18 +9,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from camgeo.linkage import OVER
 from camgeo.report.document import in_units
+from camgeo.synthesis.linkage import OVER
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.linkage import Driven
-    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.recipe import Recipe
     from camgeo.report.document import FileResult
-    from kin.figures import Figures, Place
-    from kin.frame import LinkageVerdict
-    from kin.motion import MotionError, Play
+    from camgeo.synthesis.linkage import Driven
+    from kin.follower.frame import LinkageVerdict
+    from kin.follower.motion_error import MotionError, Play
+    from kin.linkage.extremes import Figures, Place
 
 
 def linkage_section(recipe: Recipe, driven: Driven, files: Sequence[FileResult]) -> dict[str, Any]:

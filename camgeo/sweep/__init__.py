@@ -1,1 +1,1 @@
-"""The search: many designs of one recipe, computed in chunks, kept by limits, ranked."""
+"""Search among designs, and study of one."""

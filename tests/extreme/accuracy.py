@@ -20,12 +20,12 @@ import numpy as np
 import pytest
 from extreme_oracle import worst
 
-from camgeo import pipeline
-from camgeo.design import designed
+from camgeo.output import pipeline
 from camgeo.recipe import read
-from camgeo.recipe.errors import RecipeErrors
-from kin.read_dxf import read_dxf
-from kin.read_stl import read_stl
+from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.synthesis.design import designed
+from kin.read.drawing.dxf import read_dxf
+from kin.read.mesh.stl import read_stl
 
 PAGE = Path(__file__).parents[2] / "docs" / "accuracy.md"
 TOPICS = (

@@ -7,7 +7,7 @@ import pytest
 from accuracy import ANGLES, Row, made, names, off_file, off_profile, recipe, refused, shown_as_measured
 from extreme_oracle import formula, worst
 
-from camgeo.design import designed
+from camgeo.synthesis.design import designed
 
 # text, the same in mpmath, why
 CANCELLING = (

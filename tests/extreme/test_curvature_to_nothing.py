@@ -8,10 +8,10 @@ import pytest
 from accuracy import Row, made, names, off_file, off_motion, off_profile, recipe, shown_as_measured
 from extreme_oracle import fourier, reuleaux
 
-from camgeo.design import designed
-from kin.bearing import bearing_of
-from kin.flat import error_extremes
-from kin.lift import lift_reuleaux
+from camgeo.synthesis.design import designed
+from kin.follower.flat import error_extremes
+from kin.follower.support import bearing_of
+from kin.law.support_function import lift_reuleaux
 
 FORMS = "{dxf: {as: arcs}}, {dxf: {as: polyline}}, stl"
 

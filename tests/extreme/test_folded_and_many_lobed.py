@@ -9,21 +9,21 @@ import pytest
 from accuracy import Row, in_time, made, names, off_profile, recipe, refused, shown_as_measured
 from extreme_oracle import Pitch, worst
 
-from camgeo.causes import causes
-from camgeo.curve import Curve
-from camgeo.design import designed
-from camgeo.offset import Parallel
-from camgeo.pairs import Pitch as PitchCurve
-from camgeo.profile.build import intent_of, profile_of
-from camgeo.profile.wunderlich import PitchShape
-from camgeo.radius import least_radius
-from camgeo.reach import narrowest_necks
-from camgeo.trim import remains
-from camgeo.undercut import undercuts
-from kin.contour import Contour
-from kin.envelope import RollerEnvelope, TransmissionPitch
-from kin.roller import DoubleRoller
-from kin.transmission import from_delta
+from camgeo.curve.curvature import least_radius
+from camgeo.curve.curve import Curve
+from camgeo.curve.parallel import Parallel
+from camgeo.curve.undercut.bottleneck import narrowest_necks
+from camgeo.curve.undercut.causes import causes
+from camgeo.curve.undercut.pairs import Pitch as PitchCurve
+from camgeo.curve.undercut.trim import remains
+from camgeo.curve.undercut.undercut import undercuts
+from camgeo.curve.wunderlich import PitchShape
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.profile import intent_of, profile_of
+from kin.contour.contour import Contour
+from kin.follower.envelope import RollerEnvelope, TransmissionPitch
+from kin.follower.roller import DoubleRoller
+from kin.law.transmission import from_delta
 
 ARCS = "{dxf: {as: arcs}}"
 ANGLES = 2.0 * np.pi * np.mod(0.1234 + 0.6180339887498949 * np.arange(12), 1.0)

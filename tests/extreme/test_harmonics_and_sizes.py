@@ -7,7 +7,7 @@ import pytest
 from accuracy import Row, made, names, off_file, off_motion, off_profile, recipe, refused, shown_as_measured
 from extreme_oracle import fourier
 
-from camgeo.design import designed
+from camgeo.synthesis.design import designed
 
 FORMS = "{dxf: {as: arcs}}, {dxf: {as: polyline}}, stl"
 SPLINE = "{dxf: {as: spline}}"

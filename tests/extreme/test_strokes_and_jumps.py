@@ -8,8 +8,8 @@ import pytest
 from accuracy import ANGLES, Row, made, names, off_file, off_motion, off_profile, recipe, shown_as_measured
 from extreme_oracle import constant_breadth
 
-from camgeo.design import designed
-from kin.lift import Circle
+from camgeo.synthesis.design import designed
+from kin.law.support_function import Circle
 
 FORMS = "{dxf: {as: arcs}}, {dxf: {as: polyline}}, stl"
 

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from kin.dynamics import DynamicsError, Train
+from kin.dynamics.train import DynamicsError, Train
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.drive import Motion
+    from kin.dynamics.drive import Motion
 
 Array = NDArray[np.float64]
 Method = Literal["Radau", "BDF", "LSODA", "RK45", "DOP853"]

@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.page.pack import unpacked
-from camgeo.page.page import page
-from camgeo.page.scene import STEPS
-from camgeo.pipeline import shown
+from camgeo.output.pipeline import shown
 from camgeo.recipe.load import load
+from camgeo.report.page.pack import unpacked
+from camgeo.report.page.page import page
+from camgeo.report.page.scene import STEPS
 from support.places import RECIPES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from camgeo.recipe.model import Recipe
+    from camgeo.recipe.recipe import Recipe
 
 SHOWN = ("shu-wu", "as-figure-9-2a", "six-bar", "slider-crank", "oscillating-yoke", "w-law", "w-ellipse")
 SHAFT = 2.0 * math.pi * np.arange(STEPS + 1) / STEPS

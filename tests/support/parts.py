@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from camgeo.design import designed, intended
-from camgeo.making.job import Job
-from camgeo.making.make import make
+from camgeo.output.dispatch import make
+from camgeo.output.job import Job
 from camgeo.recipe import read
-from kin.judge import Limits
-from kin.verify import verify
+from camgeo.synthesis.design import designed, intended
+from kin.judge.contour_checks import Limits
+from kin.judge.verify import verify
 
 CAM = "cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}\n"
 EXPORT = "export: {{tolerance: 0.01, files: [{}]}}\nverify: {{angles: 36}}\n"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kin.jet import Jet
+from kin.numeric.elementary import Jet
 
 
 def sensitivity(mechanism, theta):

@@ -6,7 +6,7 @@ import sys
 from itertools import count
 from pathlib import Path
 
-from camgeo.store import Run
+from camgeo.output.output_folder import Run
 
 NAME = "cam"
 STEPS = ("rename", "replace", "unlink", "link", "mkdir", "rmdir")

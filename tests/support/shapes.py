@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve import Bounds, Frame, Shape
-from kin import jet
-from kin.jet import BallJet, Jet
+from camgeo.curve.curve import Bounds, Frame, Shape
+from kin.numeric import elementary
+from kin.numeric.elementary import BallJet, Jet
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,7 +42,7 @@ class Polar:
         bend = slope.derivative()
         r, slope = (cut(x, bend.order) for x in (r, slope))
         square = r * r + slope * slope
-        return jet.sqrt(square), (square + slope * slope - r * bend) / square
+        return elementary.sqrt(square), (square + slope * slope - r * bend) / square
 
     def sample(self, t, side=1):  # noqa: ARG002
         r, slope = self.radius(Jet.variable(t, 1)).derivatives()
@@ -100,7 +100,7 @@ def cut(x, order):
 
 def booth(length, m):
     """Booth's lemniscate r^2 = 2 (l^2 + m^2 cos 2t) (W section 6): a waist at t = pi/2 where 3 m^2 > l^2."""
-    return Polar(lambda t: jet.sqrt((jet.cos(t * 2.0) * m**2 + length**2) * 2.0))
+    return Polar(lambda t: elementary.sqrt((elementary.cos(t * 2.0) * m**2 + length**2) * 2.0))
 
 
 def waves(mean, *terms):
@@ -109,13 +109,16 @@ def waves(mean, *terms):
     def radius(t):
         total = t.constant(mean)
         for k, a, b in terms:
-            total = total + jet.cos(t * float(k) - b) * a
+            total = total + elementary.cos(t * float(k) - b) * a
         return total
 
     return Polar(radius)
 
 
 # a bulb on a body, the shaft in the body: the neck between them is 27.885 mm wide
-PEAR = Moved(Polar(lambda t: jet.sqrt((jet.cos(t * 2.0) * 300.0 + 400.0) * 2.0 + jet.cos(t) * 150.0)), (15.0, 0.0))
+PEAR = Moved(
+    Polar(lambda t: elementary.sqrt((elementary.cos(t * 2.0) * 300.0 + 400.0) * 2.0 + elementary.cos(t) * 150.0)),
+    (15.0, 0.0),
+)
 # radius 4.42 to 3.80 mm at its five lobes
 STAR = waves(20.0, (5, 5.0, 0.0), (2, 2.0, np.pi / 2))

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.recipe.load import read
-from camgeo.sweep.ask import Ask
-from camgeo.sweep.gather import REASON
-from camgeo.sweep.job import Job
-from camgeo.sweep.plan import Axis, Plan, steps
-from camgeo.sweep.search import Means
+from camgeo.sweep.search.ask import Ask
+from camgeo.sweep.search.gather import REASON
+from camgeo.sweep.search.job import Job
+from camgeo.sweep.search.plan import Axis, Plan, steps
+from camgeo.sweep.search.search import Means
 
 if TYPE_CHECKING:
     from pathlib import Path

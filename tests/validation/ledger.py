@@ -15,11 +15,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from camgeo import pipeline
-from camgeo.design import designed
+from camgeo.output import pipeline
 from camgeo.recipe import load, read
-from camgeo.recipe.model import FileRequest
-from kin.read_dxf import read_dxf
+from camgeo.recipe.export import FileRequest
+from camgeo.synthesis.design import designed
+from kin.read.drawing.dxf import read_dxf
 
 ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "tests"))  # where pytest has it; the page is written without pytest

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from ledger import ROOT, Workshop
 
-from camgeo.design import designed
 from camgeo.recipe import load
+from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
-    from kin.mechanism import Mechanism
+    from kin.linkage.mechanism import Mechanism
 
 PAGE = ROOT / "docs" / "linkages.md"
 BANDS = (0.05, 0.1, 0.2, 0.5)

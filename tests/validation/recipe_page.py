@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from camgeo.recipe.spec import Kind
-from camgeo.recipe.table_cam import CAMS
-from camgeo.recipe.table_figures import FIGURES, NEEDS, bounds
-from camgeo.recipe.table_linkage import DYADS, LINKAGES
-from camgeo.recipe.table_sweep import RANGE
-from camgeo.recipe.tables import FILES, RECIPE
+from camgeo.recipe.cam import CAMS
+from camgeo.recipe.export import FILES
+from camgeo.recipe.figures import FIGURES, NEEDS, bounds
+from camgeo.recipe.linkage import DYADS, LINKAGES
+from camgeo.recipe.recipe import RECIPE
+from camgeo.recipe.schema.fields import Kind
+from camgeo.recipe.sweep import RANGE
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "recipe.md"

@@ -9,8 +9,8 @@ import pytest
 from linkage_page import Scene
 from linkage_reference import FIGURES, FINE, PI, Figure, apart, inverted, lift
 
-from kin.linkage import FourBar, InvertedSliderCrank
-from kin.mechanism import Mechanism
+from kin.linkage.four_bar import FourBar, InvertedSliderCrank
+from kin.linkage.mechanism import Mechanism
 
 
 def four_bar_parts(name):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from ledger import Row
 
-from kin.law import LAWS
+from kin.law.programme import LAWS
 
 PI = mp.pi
 INFINITE = float("inf")

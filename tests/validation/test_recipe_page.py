@@ -7,11 +7,11 @@ import pytest
 import recipe_page
 from support.cases import few
 
-from camgeo import pipeline
-from camgeo.cli import main
+from camgeo.cli.main import main
+from camgeo.output import pipeline
 from camgeo.recipe import read
-from kin.expression import FUNCTIONS
-from kin.motion_sources.laws import NAMES
+from kin.law.formula.expression import FUNCTIONS
+from kin.law.sources.laws import NAMES
 
 PAGES = ("README.md", *(f"docs/{name}.md" for name in ("recipe", "linkages", "manufacture", "mechanism", "sweep")))
 

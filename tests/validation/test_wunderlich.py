@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from ledger import Row
 
-from camgeo.design import designed, intended
-from camgeo.profile.build import intent_of
 from camgeo.recipe import RecipeErrors, read
-from kin.law import IntentError
+from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.profile import intent_of
+from kin.law.programme import IntentError
 
 PI = np.pi
 DOUBLE_ROLLERS = ("w-booth", "w-figure-5", "w-figure-9", "w-law", "w-rosette")

@@ -1,0 +1,168 @@
+"""A cam in a square frame that is the coupler of a linkage: frame, rocker, block or slide, and the base with pivots.
+
+Bodies that cross in plan lie one above another: the cam in its frame, the rocker above it, then whatever dyads hang on
+them, each with room for the retainers below it. A slide runs under the frame, which then stands as much higher.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.assembly.assembly import Assembly, Fit
+from camgeo.assembly.base import BLOCK, BLOCK_COLOUR, FRAME_COLOUR, Carrier, Site, block, slotted
+from camgeo.assembly.body import Plate
+from camgeo.assembly.dyads import hang
+from camgeo.assembly.link_poses import Links
+from camgeo.assembly.poses import Turning
+from camgeo.assembly.shaft import base, base_radius, bearing, shaft_fits, turned
+from camgeo.assembly.shapes import bar, bars, box, disc, eye, moved, pin
+from camgeo.assembly.sizes import BodyError
+from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from camgeo.assembly.assembly import Place
+    from camgeo.assembly.shaft import Drive
+    from camgeo.assembly.sizes import Sizes
+    from kin.linkage.mechanism import Mechanism
+
+
+def linked(mechanism: Mechanism, drive: Drive) -> Assembly:
+    """Return the bodies of a mechanism that turns. Raises BodyError where one of them finds no room."""
+    s, disk = drive.sizes, drive.disk
+    linkage = mechanism.linkage
+    low = s.plate + s.gap + (s.link + s.gap if isinstance(linkage, SliderCrank) else 0.0)
+    low = max(low, s.plate + s.gap - disk.bottom)
+    high = low + disk.thickness
+    links = Links(mechanism)
+    site = Site(s, links, high + s.gap, 2.0 * max(s.bar, base_radius(drive)))
+    frame = site.add(Carrier("frame", _frame(mechanism.breadth, s, low, high), links.place(links.frame), low, high))
+    frame.colour = FRAME_COLOUR
+    if isinstance(linkage, FourBar):
+        carriers = _four_bar(site, frame, linkage)
+    elif isinstance(linkage, SliderCrank):
+        carriers = _slider_crank(site, frame, linkage)
+    else:
+        carriers = _inverted(site, frame, linkage)
+    hang(site, carriers)
+    beneath = max(base_radius(drive), 0.5 * mechanism.breadth + s.wall)
+    foot = bearing(drive, [disc(beneath), *site.pads], low + disk.bottom - s.gap)
+    ground = base((*foot, *_support(beneath, drive, low - s.gap), *site.ground))
+    fits = (
+        Fit("the frame's faces about the cam", s.clearance),
+        *shaft_fits(drive),
+        *site.fits,
+        Fit("retainers on pins", s.press, pressed=True),
+    )
+    members = (*site.closed(), ground)
+    place = Turning(mechanism.start + 0.25 * TURN)
+    return Assembly((*turned(drive, low, place, members), *members), fits, s)
+
+
+def _frame(breadth: float, s: Sizes, low: float, high: float) -> list[Plate]:
+    """The square about its middle, each face half the clearance farther out than half the breadth."""
+    inner = 0.5 * breadth + s.play
+    outer = inner + s.wall
+    return [Plate(box(-outer, -outer, outer, outer), (box(-inner, -inner, inner, inner),), low, high)]
+
+
+def _support(radius: float, drive: Drive, high: float) -> list[Plate]:
+    """A ring on the base that the frame lies on, where the base itself is too low; a lower hub stands in it."""
+    disk, shaft, s = drive.disk, drive.shaft, drive.sizes
+    if high - s.plate < 0.5 * s.gap:
+        return []
+    inner = max(disk.hub if disk.bottom < 0.0 else 0.0, shaft.journal + s.play + 0.5 * s.wall) + s.space
+    return [Plate(disc(radius), (disc(inner),), s.plate, high)]
+
+
+def _coupler(frame: Carrier, coupler: float, site: Site) -> None:
+    """Add the bar from the frame to D, in which its own axes then have their origin."""
+    s, half = site.s, 0.5 * site.links.mechanism.breadth
+    start, end = half + s.play + 0.5 * s.bar, half + coupler
+    if end < start:
+        least = s.play + 0.5 * s.bar
+        raise BodyError("linkage.coupler", "ends within the frame's side", "give at least {least}", least=least)
+    frame.origin = (end, 0.0)
+    frame.plates.append(Plate(bar((start, 0.0), frame.origin, s.bar), (), frame.low, frame.high))
+
+
+def _four_bar(site: Site, frame: Carrier, linkage: FourBar) -> dict[str, Carrier]:
+    s, links = site.s, site.links
+    _coupler(frame, linkage.coupler, site)
+    low, high = site.level()
+    frame.plates += pin(s, frame.origin, frame.high, low, high)
+    site.hold("d", frame.name, frame.origin, high, frame.place)
+    return {"coupler": frame, "output": _rocker(site, linkage, links, low, high)}
+
+
+def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, links: Links, low: float, high: float) -> Carrier:
+    """Add the rocker from its post B to D."""
+    s = site.s
+    holes = ((0.0, 0.0), (linkage.rocker, 0.0))
+    if linkage.rocker < s.bar:
+        remedy = "give at least {least}, or a smaller mechanism.bar"
+        raise BodyError("linkage.rocker", "too short for two pins", remedy, least=s.bar)
+    site.post("b", (linkage.ground, 0.0), low, high)
+    site.fits += [Fit("rocker on the pivot B", s.clearance), Fit("rocker on the joint D", s.clearance)]
+    plates = bars(s, [holes], holes, low, high)
+    return site.add(Carrier("rocker", plates, links.link(links.output), low, high, holes=holes))
+
+
+def _slider_crank(site: Site, frame: Carrier, linkage: SliderCrank) -> dict[str, Carrier]:
+    s, links = site.s, site.links
+    _coupler(frame, linkage.coupler, site)
+    last = frame.plates.pop()
+    frame.plates.append(Plate(last.outline, (eye(s, *frame.origin),), last.low, last.high))
+    frame.holes = (frame.origin,)
+    place = links.link(links.output)
+    slide = Carrier("slide", site.slide(frame.low, frame.high), place, 0.0, 0.0, BLOCK_COLOUR)
+    site.add(slide)
+    site.rails(place, (0.0, linkage.offset), 0.0)
+    site.hold("d", slide.name, (0.0, 0.0), frame.high, place)
+    site.floor += s.gap + s.clip
+    site.fits += [Fit("slide between its rails", s.clearance), Fit("coupler on the joint D", s.clearance)]
+    return {"coupler": frame}
+
+
+def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> dict[str, Carrier]:
+    """The block slides in a slot of the frame's bar; it turns on the post B, or carries the end of a rocker."""
+    s, links, half = site.s, site.links, 0.5 * site.links.mechanism.breadth
+    place = links.block()
+    _slot(site, frame, place, half)
+    plates = [Plate(block(s), () if linkage.rocker else (eye(s),), frame.low, frame.high)]
+    site.fits.append(Fit("block in the frame's slot", s.clearance))
+    if linkage.rocker == 0.0:
+        over = 0.5 * s.bar + s.play + s.wall  # nothing else holds the frame down: out to the slot's outer edges
+        site.post("b", (linkage.ground, 0.0), frame.low, frame.high, radius=over)
+        site.floor += s.gap + s.clip
+        site.fits.append(Fit("block on the pivot B", s.clearance))
+        site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))
+        return {}
+    low, high = site.level()
+    plates += pin(s, (0.0, 0.0), frame.high, low, high)
+    site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))
+    site.hold("d", "block", (0.0, 0.0), high, place)
+    return {"output": _rocker(site, linkage, links, low, high)}
+
+
+def _slot(site: Site, frame: Carrier, block_place: Place, half: float) -> None:
+    """Add the slotted bar on the side of the frame where the block is."""
+    s = site.s
+    found, middle = site.sampled(block_place), site.sampled(frame.place)
+    c, n = np.cos(middle[:, 2]), np.sin(middle[:, 2])
+    x = (found[:, 0] - middle[:, 0]) * c + (found[:, 1] - middle[:, 1]) * n
+    side = 1.0 if x.mean() > 0.0 else -1.0
+    first, last = float((side * x).min()), float((side * x).max())
+    least = half + s.play + s.wall + s.space + 0.5 * BLOCK * s.bar
+    if first < least:
+        message, remedy = (
+            "the block would run into the frame, by {short}",
+            "give a longer ground, or a smaller mechanism.bar",
+        )
+        raise BodyError("linkage.ground", message, remedy, short=least - first)
+    outer, slot = slotted(first, last, 0.0, s)
+    tie = box(half + s.play, -0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, 0.5 * s.bar)
+    outer, slot, tie = (moved(outline, 0.0, 0.0, 0.0 if side > 0.0 else 0.5 * TURN) for outline in (outer, slot, tie))
+    frame.plates += [Plate(outer, (slot,), frame.low, frame.high), Plate(tie, (), frame.low, frame.high)]

@@ -1,0 +1,52 @@
+"""Exact places over the shaft angle of what turns, slides and swings by itself; linkages have `linked_places`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from camgeo.assembly.assembly import Place
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+
+@dataclass(frozen=True)
+class Turning:
+    """The place of the cam and its shaft: turned clockwise by the shaft angle from the angle `start`."""
+
+    start: float = 0.0
+
+    def __call__(self, phi: Array, order: int) -> Array:
+        """Give x, y and angle with their derivatives."""
+        found = np.zeros((3, order + 1, len(phi)))
+        found[2, 0] = self.start - phi
+        if order:
+            found[2, 1] = -1.0
+        return found
+
+
+def sliding(lift: Lift) -> Place:
+    """Give the place of a plate that slides along x: the face whose lift is told stands at its origin."""
+
+    def place(phi: Array, order: int) -> Array:
+        found = np.zeros((3, order + 1, len(phi)))
+        found[0] = lift.derivatives(phi, order)
+        return found
+
+    return place
+
+
+def swinging(law: Transmission, away: float, share: float = 1.0) -> Place:
+    """Give the place of an arm about a pivot `away` from the shaft: turned clockwise by a share of psi."""
+
+    def place(phi: Array, order: int) -> Array:
+        found = np.zeros((3, order + 1, len(phi)))
+        found[0, 0] = away
+        found[2] = -share * law.psi_of_shaft(phi, order)
+        return found
+
+    return place

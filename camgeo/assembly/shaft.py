@@ -1,0 +1,257 @@
+"""The cam as plates, the shaft that drives it, and its bearing in the base.
+
+The shaft goes down through the cam and the base, thinner from section to section, so that it is printed standing on
+its knob; under the base it is held by a disc that turns in a sink.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.assembly.assembly import GROUND, Fit, Member
+from camgeo.assembly.body import Plate
+from camgeo.assembly.shapes import disc, retainer
+from camgeo.assembly.sizes import THIN, BodyError, thick
+from camgeo.fit.pieces import ArcSpline
+from camgeo.synthesis.part.shapes import disc as opening_disc
+from camgeo.synthesis.part.shapes import flattened, keyed, polygonal
+from kin.contour.contour import Contour
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.assembly.assembly import Place
+    from camgeo.assembly.sizes import Sizes
+    from camgeo.fit.pieces import Polygon
+    from camgeo.recipe.part import Part
+    from camgeo.synthesis.part.body import Body
+
+CAM = "cam"
+KNOB_SIDES = 8
+HELD = 0.1  # mm by which a shaft is at least too wide to turn in the bore, whatever the files are off
+LOOKS = 180  # places of a turn at which it is looked whether something passes under the knob
+CAM_COLOUR, SHAFT_COLOUR, CLIP_COLOUR, GROUND_COLOUR = "#d08a3c", "#5b6b7f", "#33404f", "#a9b4c0"
+
+
+@dataclass(frozen=True, eq=False)
+class Disk:
+    """The cam as plates that stand on z = 0 of its disc; `bottom` and `top` are those of its hubs, `hub` the radius."""
+
+    plates: tuple[Plate, ...]
+    thickness: float
+    bottom: float
+    top: float
+    hub: float = 0.0
+
+    def raised(self, z: float) -> tuple[Plate, ...]:
+        """Return the plates with the lower face of the disc at z."""
+        return tuple(Plate(p.outline, p.holes, p.low + z, p.high + z) for p in self.plates)
+
+
+def disk_of(part: Part, body: Body | None, contour: ArcSpline | Polygon) -> Disk:
+    """Make plates of a cam: disc and hubs with what goes right through them.
+
+    A chamfer, a set screw and an engraved mark are left out: the plates are the metal they are cut from.
+    """
+    if part.thickness is None or part.bore is None:
+        raise ValueError("a cam for a mechanism needs thickness and bore")
+    thick("part.thickness", part.thickness)
+    openings = body.openings if body is not None else (opening_disc("bore", "BORE", (0.0, 0.0), 0.5 * part.bore),)
+    through = tuple(opening for opening in openings if opening.depth is None)
+    plates = [Plate(contour, tuple(opening.outline for opening in through), 0.0, part.thickness)]
+    if body is None or part.hub is None:
+        return Disk(tuple(plates), part.thickness, 0.0, part.thickness)
+    radius = 0.5 * part.hub.diameter
+    inside = tuple(opening.outline for opening in through if math.hypot(*opening.middle) < radius)
+    if body.bottom < 0.0:
+        plates.append(Plate(disc(radius), inside, body.bottom, 0.0))
+    if body.top > part.thickness:
+        plates.append(Plate(disc(radius), inside, part.thickness, body.top))
+    return Disk(tuple(plates), part.thickness, body.bottom, body.top, radius)
+
+
+@dataclass(frozen=True, eq=False)
+class Shaft:
+    """Sections of a shaft: `drive` in the cam's bore, round `journal` (a radius) in the base.
+
+    `across` is the greatest radius of the drive, `held` by how much it is too wide to turn in the bore. One for a round
+    bore alone is pressed into it, and `held` is None.
+    """
+
+    drive: ArcSpline
+    across: float
+    journal: float
+    held: float | None
+
+    @property
+    def pressed(self) -> bool:
+        """Whether nothing but the press turns the cam."""
+        return self.held is None
+
+
+def shaft_of(part: Part, s: Sizes) -> Shaft:
+    """Make the sections that fit a bore: with its flat, key or sides, half the clearance inside it all round.
+
+    Raises BodyError where the bore is too narrow for a shaft.
+    """
+    bore = part.bore or 0.0
+    radius = 0.5 * bore - s.play
+    journal, across = radius, radius
+    if part.sides:
+        drive = polygonal(part.sides, bore - s.clearance, part.bore_at)
+        across = radius / math.cos(math.pi / part.sides)
+    elif part.keyway is not None:
+        key = part.keyway
+        drive = keyed(radius, key.width - s.clearance, key.depth, key.at)
+        across = math.hypot(radius + key.depth, 0.5 * key.width)
+    elif part.flat is not None:
+        drive = flattened(radius, part.flat.across - s.clearance, part.flat.at)
+        journal = part.flat.across - s.clearance - radius
+    else:
+        across = 0.5 * (bore + s.press)
+        drive = disc(across)
+    if journal < 1.0:
+        message, remedy = "leaves a journal of {thick} in the base", "give a bore of {such} or more"
+        raise BodyError(
+            "part.bore", message, remedy, thick=max(2.0 * journal, 0.0), such=max(4.0, bore + 2.0 * (1.0 - journal))
+        )
+    turned = _turned_round(part, s.clearance)
+    return Shaft(drive, across, journal, turned and turned[0] - turned[1])
+
+
+def drives(part: Part, clearance: float, off: float) -> None:
+    """Refuse a bore in which the shaft would turn by itself, drawn by files within `off` mm of what is meant.
+
+    Each of the four sides of bore and shaft may be off by that. Raises BodyError.
+    """
+    turned = _turned_round(part, clearance)
+    if turned is None:
+        return
+    if part.keyway is not None:
+        key = part.keyway.width - clearance
+        if key < THIN:
+            message, remedy = "leaves a key of {key} on the shaft", "give a width of {least} or more"
+            lengths = {"key": max(key, 0.0), "least": clearance + THIN}
+            raise BodyError("part.keyway.width", message, remedy, **lengths)
+    wide, room = turned
+    least = HELD + 4.0 * off
+    if wide - room >= least:
+        return
+    bore = part.bore or 0.0
+    if part.sides:
+        corner = 1.0 / math.cos(math.pi / part.sides)
+        such = (least + clearance * corner) / (corner - 1.0)
+        field, remedy, most = "part.bore", "give a bore of {such} or more", bore - (bore + least) / corner
+    elif part.keyway is not None:
+        radius = 0.5 * (bore - clearance)
+        such = math.sqrt((bore + least - radius) ** 2 - 0.25 * (part.keyway.width - clearance) ** 2) - radius
+        field, remedy, most = "part.keyway.depth", "give a depth of {such} or more", part.keyway.depth - least
+    else:
+        field, remedy, such = "part.flat.across", "give at most {such}", bore - clearance - least
+        most = bore - room - least
+        if such <= 0.5 * bore:
+            remedy = "give a larger bore"
+    if most > 0.0:
+        remedy += ", or a mechanism.clearance of at most {most}"
+    message = (
+        "the shaft slips in it: {wide} wide where it would have to turn through {room}, which has to be {least} less"
+    )
+    raise BodyError(field, message, remedy, wide=wide, room=room, least=least, such=such, most=most)
+
+
+def _turned_round(part: Part, clearance: float) -> tuple[float, float] | None:
+    """Width of the shaft where it is greatest, and that of the bore where this would have to pass; None if pressed."""
+    bore = part.bore or 0.0
+    if part.sides:
+        return (bore - clearance) / math.cos(math.pi / part.sides), bore
+    if part.keyway is not None:
+        radius = 0.5 * (bore - clearance)
+        return radius + math.hypot(radius + part.keyway.depth, 0.5 * (part.keyway.width - clearance)), bore
+    if part.flat is not None:
+        return bore - clearance, part.flat.across
+    return None
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """What every mechanism has: the cam and how far it reaches from the shaft, the shaft, and the sizes."""
+
+    disk: Disk
+    reach: float
+    shaft: Shaft
+    sizes: Sizes
+
+
+def bearing(drive: Drive, pads: Sequence[ArcSpline], high: float) -> tuple[Plate, ...]:
+    """Return plates of the base about the shaft: pads that all hold the sink, and a boss up to z = `high`."""
+    shaft, s = drive.shaft, drive.sizes
+    sink, hole = disc(_sink(drive)), disc(shaft.journal + s.play)
+    found = [Plate(pad, (sink,), 0.0, s.sunk) for pad in pads]
+    found += [Plate(pad, (hole,), s.sunk, s.plate) for pad in pads]
+    if high - s.plate > 0.5 * s.gap:
+        found.append(Plate(disc(shaft.journal + s.play + s.wall), (hole,), s.plate, high))
+    return tuple(found)
+
+
+def base_radius(drive: Drive) -> float:
+    """Least radius of a pad about the shaft."""
+    return _sink(drive) + drive.sizes.wall
+
+
+def _sink(drive: Drive) -> float:
+    shaft, s = drive.shaft, drive.sizes
+    return max(0.5 * s.bar, shaft.journal + s.wall) + s.space
+
+
+def turned(drive: Drive, z: float, place: Place, others: Sequence[Member]) -> tuple[Member, Member, Member]:
+    """Return cam, shaft and the shaft's retainer: the disc's lower face at z, the knob above what passes under it."""
+    disk, shaft, s = drive.disk, drive.shaft, drive.sizes
+    foot, head = z + disk.bottom, z + disk.top + s.gap
+    plates = [Plate(disc(shaft.journal), (), s.gap, foot), Plate(shaft.drive, (), foot, head)]
+    within = 0.5 * s.knob / math.cos(math.pi / KNOB_SIDES) + s.space
+    knob = max((top for member in others for top in _passing(member, head, within)), default=head)
+    knob = head if knob == head else knob + s.gap
+    if knob > head:
+        plates.append(Plate(disc(shaft.across + s.wall), (), head, knob))
+        head = knob
+    plates.append(Plate(polygonal(KNOB_SIDES, s.knob, 0.0), (), head, head + s.link))
+    held = retainer(s, (0.0, 0.0), 0.0, 2.0 * shaft.journal)
+    return (
+        Member(CAM, disk.raised(z), CAM, place, CAM_COLOUR),
+        Member("shaft", tuple(plates), CAM, place, SHAFT_COLOUR, flipped=True),
+        Member("retainer-shaft", held, CAM, place, CLIP_COLOUR),
+    )
+
+
+def _passing(member: Member, low: float, within: float) -> list[float]:
+    """Upper faces of the plates of a member above z = `low` that come `within` of the shaft at some angle."""
+    poses = member.poses(LOOKS)
+    found = []
+    for plate in member.plates:
+        if plate.high <= low:
+            continue
+        if not isinstance(plate.outline, ArcSpline):
+            raise TypeError(f"{member.name}: a body is made of arcs and lines")
+        chain = Contour.from_bulges(plate.outline.points, plate.outline.bulges)
+        c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
+        x, y = poses[:, 0], poses[:, 1]
+        shaft = np.column_stack([-x * c - y * s, x * s - y * c])  # where it stands in the member's axes
+        if float(chain.distance(shaft).min()) < within:
+            found.append(plate.high)
+    return found
+
+
+def shaft_fits(drive: Drive) -> tuple[Fit, ...]:
+    """Fits of the shaft in base, cam and retainer."""
+    s, name = drive.sizes, "shaft in the cam's bore"
+    held = Fit(name, s.press, pressed=True) if drive.shaft.pressed else Fit(name, s.clearance, held=drive.shaft.held)
+    return (Fit("shaft in the base", s.clearance), held, Fit("retainer on the shaft", s.press, pressed=True))
+
+
+def base(plates: Sequence[Plate]) -> Member:
+    """Return the base."""
+    return Member("base", tuple(plates), GROUND, colour=GROUND_COLOUR)

@@ -1,0 +1,106 @@
+"""Outlines of bodies: discs, boxes and bars, closed and counter-clockwise; pins and what holds bodies on them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.assembly.body import Plate
+from camgeo.curve import ring
+from camgeo.fit.pieces import ArcSpline, Bound
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.assembly.sizes import Sizes
+
+EXACT = Bound(0.0, 0.0)
+Point = tuple[float, float]
+
+
+def _outline(ring: ring.Ring) -> ArcSpline:
+    return ArcSpline(ring.points, ring.bulges, EXACT)
+
+
+def disc(radius: float, x: float = 0.0, y: float = 0.0) -> ArcSpline:
+    """Return a circle."""
+    return _outline(ring.disc(x, y, radius))
+
+
+def box(x0: float, y0: float, x1: float, y1: float) -> ArcSpline:
+    """Return a rectangle."""
+    return _outline(ring.box(x0, y0, x1, y1))
+
+
+def bar(a: Point, b: Point, width: float) -> ArcSpline:
+    """Return a bar with round ends about two points; a disc where these are one."""
+    return _outline(ring.bar(a, b, width))
+
+
+def moved(outline: ArcSpline, x: float, y: float, angle: float) -> ArcSpline:
+    """Turn an outline about the origin, then shift it."""
+    c, s = math.cos(angle), math.sin(angle)
+    return ArcSpline(outline.points @ np.array([[c, s], [-s, c]]) + (x, y), outline.bulges, outline.bound)
+
+
+def eye(s: Sizes, x: float = 0.0, y: float = 0.0) -> ArcSpline:
+    """Return the hole that turns on a pin."""
+    return disc(0.5 * s.hole, x, y)
+
+
+def bars(s: Sizes, ends: Sequence[tuple[Point, Point]], holes: Sequence[Point], low: float, high: float) -> list[Plate]:
+    """Return one plate for each bar between two points, all with those holes for pins that lie in them.
+
+    Raises ValueError where a bar would close a part of a hole.
+    """
+    found = []
+    for a, b in ends:
+        inside = []
+        for hole in holes:
+            away = _from_segment(hole, a, b)
+            if away <= 0.5 * (s.bar - s.hole):
+                inside.append(eye(s, *hole))
+            elif away < 0.5 * (s.bar + s.hole):
+                raise ValueError("the bar to it cuts a pin's hole")
+        found.append(Plate(bar(a, b, s.bar), tuple(inside), low, high))
+    return found
+
+
+def _from_segment(point: Point, a: Point, b: Point) -> float:
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    px, py = point[0] - a[0], point[1] - a[1]
+    length = dx * dx + dy * dy
+    share = min(max((px * dx + py * dy) / length, 0.0), 1.0) if length else 0.0
+    return math.hypot(px - share * dx, py - share * dy)
+
+
+def pin(s: Sizes, at: Point, foot: float, low: float, high: float, *, crowned: bool = True) -> tuple[Plate, ...]:
+    """Return a pin that stands on z = `foot` and holds a body between `low` and `high`.
+
+    A `crowned` one reaches through the retainer above that, any other ends with the body.
+
+    Below the body it is wider, so that the body rests on a shoulder.
+    """
+    x, y = at
+    shoulder = low - s.gap
+    plates = [Plate(disc(0.5 * s.pin, x, y), (), max(foot, shoulder), high + s.gap + s.clip if crowned else high)]
+    if shoulder - foot > 0.5 * s.gap:
+        plates.insert(0, Plate(disc(s.boss, x, y), (), foot, shoulder))
+    else:
+        plates[0] = Plate(plates[0].outline, (), foot, plates[0].high)
+    return tuple(plates)
+
+
+def retainer(s: Sizes, at: Point, high: float, diameter: float | None = None, radius: float = 0.0) -> tuple[Plate, ...]:
+    """Return the disc pressed on a pin, of its own `diameter` if it is no common one, above a body that ends at `high`.
+
+    A disc wider than a bar by nothing holds the bar, and passes wherever the bar's end does; `radius` is the least that
+    holds something wider.
+    """
+    x, y = at
+    across = s.pin if diameter is None else diameter
+    radius = max(0.5 * s.bar, 0.5 * across + s.wall, radius)
+    low = high + s.gap
+    return (Plate(disc(radius, x, y), (disc(0.5 * (across - s.press), x, y),), low, low + s.clip),)

@@ -1,0 +1,87 @@
+"""The recipes of one call, one after another or several at once; of each its report, a message, an exit status."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.progress import Progress
+from camgeo.common import workers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from camgeo.recipe.recipe import Recipe
+
+PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is done with each recipe: files of the kinds `only`, or of all, into `out`; without `out` only checks."""
+
+    out: Path | None
+    only: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Result:
+    """What became of one recipe: its report, None where it came to none; a message for standard error; the status."""
+
+    report: dict[str, Any] | None
+    message: str
+    status: int
+
+
+def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Result]:
+    """Give the result of each recipe in their order; `jobs` processes at once, None for as many as pay."""
+    count = workers.needed(jobs or (workers.available() if len(recipes) >= PARALLEL_FROM else 1), len(recipes))
+    if count == 1:
+        for recipe in recipes:
+            yield result(recipe, task, Progress(recipe.name))
+        return
+    from concurrent.futures.process import BrokenProcessPool
+
+    progress = Progress(f"{len(recipes)} recipes")
+    # forked: the recipes were loaded with most of what is needed, and nothing has started a thread yet
+    with workers.pool(count, fork=True) as pool:
+        try:
+            futures = [pool.submit(partial(result, task=task), recipe) for recipe in recipes]
+            for number, future in enumerate(futures):
+                progress(f"{number} of {len(futures)} done")
+                try:
+                    found = future.result()
+                except BrokenProcessPool:
+                    # one process was killed, and takes with it what the others had in hand
+                    text = f"camgeo: {recipes[number].name}: {workers.KILLED.format('this recipe')}"
+                    found = Result(None, text, SURROUNDINGS)
+                progress.clear()
+                yield found
+        finally:
+            progress.clear()
+
+
+def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Result:
+    """Run one recipe; a wrong recipe, the disk and a missing package are told in the result, not raised."""
+    from camgeo.output import pipeline
+    from camgeo.output.output_folder import SurroundingsError
+    from camgeo.recipe.schema.errors import RecipeErrors
+
+    try:
+        if task.out is None:
+            outcome = pipeline.check(recipe, told=progress)
+        else:
+            outcome = pipeline.export(recipe, task.out, only=task.only, told=progress)
+    except RecipeErrors as errors:
+        return Result(None, str(errors), WRONG)
+    except (SurroundingsError, OSError) as error:
+        return Result(None, f"camgeo: {recipe.name}: {error}", SURROUNDINGS)
+    except ModuleNotFoundError as error:
+        return Result(None, f"camgeo: {recipe.name}: the package {error.name} is missing", SURROUNDINGS)
+    finally:
+        if progress is not None:
+            progress.clear()
+    return Result(outcome.report, "", OK if outcome.ok else FAILED)

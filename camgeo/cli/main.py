@@ -1,0 +1,373 @@
+"""The command line: commands, exit status, progress. No mathematics."""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import sys
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from camgeo.cli import laws as laws_command
+from camgeo.cli import report as page_command
+from camgeo.cli import study as study_command
+from camgeo.cli import sweep as sweep_command
+from camgeo.cli.batch import Task, result, results
+from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
+from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
+from camgeo.output.mixture import mixtures
+from camgeo.recipe.export import KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from _typeshed import SupportsWrite
+
+    from camgeo.recipe.recipe import Recipe
+
+UNIT_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4, "foot": 304.8}
+COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status (0 every check holds, 1 a check fails, 2 wrong, 3 surroundings, 130)."""
+    open_streams()
+    try:
+        arguments = _parser().parse_args(argv)
+        command: Callable[[argparse.Namespace], int] = arguments.run
+        with _rare_collections():
+            status = command(arguments)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        _complain("interrupted")
+        return INTERRUPTED
+    except OSError as error:
+        # Files are seen to where they are written, so this is our own output. Where its reader went away nothing more
+        # can be said; nothing is wrong with the recipe.
+        if not isinstance(error, BrokenPipeError):
+            _complain(f"{error.filename or 'the output cannot be written'}: {error.strerror}")
+        silence("stdout")
+        return SURROUNDINGS
+    return status
+
+
+@contextmanager
+def _rare_collections() -> Iterator[None]:
+    """Let Python's search for cycles wait until there is something to find.
+
+    By default it goes again and again over what the imports make, ezdxf's above all: a tenth of a short run.
+    """
+    usual = gc.get_threshold()
+    gc.set_threshold(COLLECT_AFTER)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*usual)
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose help and complaints go the way of all others."""
+
+    def _print_message(self, message: str, file: SupportsWrite[str] | None = None) -> None:
+        if file is sys.stderr:
+            complain(message.removesuffix("\n"))
+        else:
+            say(message.removesuffix("\n"))
+
+
+def _parser() -> argparse.ArgumentParser:
+    from camgeo import __version__
+
+    parser = _Parser(
+        prog="camgeo",
+        description="Disc cams from a short recipe to drawings, solids and milling programs, their motion judged from "
+        "the files.",
+        epilog="Exit status: 0 all checks hold; 1 a check fails; 2 the recipe or the call is wrong; 3 the surroundings "
+        "(disk, missing extra); 130 interrupted.",
+    )
+    parser.add_argument("--version", action="version", version=f"camgeo {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    def command(name: str, run: Callable[[argparse.Namespace], int], text: str) -> argparse.ArgumentParser:
+        added = commands.add_parser(name, help=text, description=text)
+        added.set_defaults(run=run)
+        return added
+
+    export = command("export", _export, "Write a recipe's files and judge them from what lies on disk.")
+    _add_recipes(export)
+    export.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    export.add_argument(
+        "--only", action="append", default=[], choices=KINDS, help="only files of this kind; repeatable"
+    )
+    export.add_argument("--watch", action="store_true", help="export again at each saving; a page reloads itself")
+    check = command("check", _check, "Every check of a recipe; nothing is written.")
+    _add_recipes(check)
+    text = "folder of earlier results, whose files are held against their reports (default: out)"
+    check.add_argument("--out", default="out", metavar="DIR", help=text)
+    verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
+    verify.add_argument("recipe", metavar="RECIPE")
+    verify.add_argument("files", nargs="+", metavar="FILE")
+    _add_options(verify, "to which all the files are held, in the recipe's unit")
+    verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
+    sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
+    sweep_command.add_arguments(sweep, _jobs)
+    new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, which there are.")
+    new.add_argument("kind", nargs="?", metavar="KIND")
+    new.add_argument("file", nargs="?", metavar="FILE")
+    study = command("study", study_command.run, "Error against run time of each output form; a recipe's margins.")
+    study_command.add_arguments(study)
+    report = command("report", page_command.run, "A page to look at: the mechanism turning, its curves, its checks.")
+    page_command.add_arguments(report)
+    laws = command("laws", laws_command.run, "The motion laws with their peak velocity, acceleration and jerk.")
+    laws_command.add_arguments(laws)
+    command("schema", _schema, "The recipe's JSON schema.")
+    return parser
+
+
+def _add_recipes(command: argparse.ArgumentParser) -> None:
+    """Give a command of several recipes what all such take."""
+    command.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
+    _add_options(command, "in place of export.tolerance, in the recipe's unit")
+    command.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
+
+
+def _add_options(command: argparse.ArgumentParser, tolerance: str) -> None:
+    """Give a command that makes reports its options; `tolerance` is what it does with that."""
+    command.add_argument("--tolerance", type=_length, metavar="E", help=tolerance)
+    command.add_argument("-v", "--verbose", action="store_true", help="every check and file as a table")
+    command.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
+
+
+def _length(text: str) -> float:
+    from camgeo.recipe.schema.fields import MOST
+
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value <= MOST:
+        raise argparse.ArgumentTypeError(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {text}")
+    return value
+
+
+def _jobs(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and int(text[:9]) > 0):
+        raise argparse.ArgumentTypeError(f"a number of processes is a whole number from 1, not {text}")
+    return int(text[:9])
+
+
+def _complain(text: str) -> None:
+    complain(f"camgeo: {text}")
+
+
+# --- export and check -------------------------------------------------------------------------------------------------
+
+
+def _export(arguments: argparse.Namespace) -> int:
+    if arguments.watch:
+        return _watch(arguments)
+    recipes, status = _loaded(arguments.recipes, arguments.tolerance, arguments.only)
+    names = [recipe.name.casefold() for recipe in recipes]
+    twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
+    for recipe in twice:
+        text = f"the name {recipe.name} is used by several recipes of this call; give each its own `name:`"
+        _complain(f"{escaped(str(recipe.path))}: {text}")
+    if twice:
+        return WRONG
+    return max(status, _told(recipes, Task(Path(arguments.out), tuple(arguments.only)), arguments))
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    recipes, status = _loaded(arguments.recipes, arguments.tolerance, ())
+    return max(status, _told(recipes, Task(None), arguments))
+
+
+def _watch(arguments: argparse.Namespace) -> int:
+    """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
+    from camgeo.cli.watch import watch
+    from camgeo.output.output_folder import REJECTED
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.load import load
+    from camgeo.recipe.schema.errors import RecipeErrors
+
+    if len(arguments.recipes) != 1 or arguments.json:
+        _complain("--watch takes one recipe, and no --json")
+        return WRONG
+    path, out = Path(arguments.recipes[0]), Path(arguments.out)
+    only = (*arguments.only, "html") if arguments.only else ()
+
+    def exported() -> tuple[str | None, str]:
+        try:
+            recipe = load(path)
+        except RecipeErrors as errors:
+            complain(str(errors))
+            return None, str(errors)
+        asked = [request for request in recipe.export.files if request.kind != "html"]
+        page = FileRequest("html")
+        recipe = replace(recipe, export=replace(recipe.export, files=(*asked, page)))
+        found = result(_at(recipe, arguments.tolerance), Task(out, only))
+        if found.report is None:
+            complain(found.message)
+            return None, found.message
+        _show(found.report, verbose=arguments.verbose)
+        folder = out / (recipe.name if found.report["ok"] else f"{recipe.name}{REJECTED}")
+        return (folder / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
+
+    watch(path, exported, lambda address: say(f"watching {escaped(str(path))}: {address}  (ctrl-c ends)", at_once=True))
+    return OK
+
+
+def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) -> tuple[list[Recipe], int]:
+    """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong."""
+    from camgeo.recipe.load import load
+    from camgeo.recipe.schema.errors import RecipeErrors
+
+    recipes: list[Recipe] = []
+    for path in paths:
+        try:
+            recipe = load(path)
+        except RecipeErrors as errors:
+            complain(str(errors))
+            continue
+        if only and not any(request.kind in only for request in recipe.export.files):
+            line, column = recipe.locate("export.files")
+            _complain(
+                f"{escaped(path)}:{line}:{column}: export.files lists no {' or '.join(only)}, which --only asks for"
+            )
+            continue
+        recipes.append(_at(recipe, tolerance))
+    return recipes, OK if len(recipes) == len(paths) else WRONG
+
+
+def _at(recipe: Recipe, tolerance: float | None) -> Recipe:
+    """Give the recipe with the tolerance of the call, in its own unit, if there is one."""
+    if tolerance is None:
+        return recipe
+    return replace(recipe, export=replace(recipe.export, tolerance=tolerance * recipe.mm))
+
+
+def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> int:
+    """Run recipes and print what came of each; the highest status."""
+    status = OK
+    reports: list[dict[str, Any]] = []
+    for found in results(recipes, task, arguments.jobs):
+        status = max(status, found.status)
+        if found.report is not None:
+            if task.out is None:
+                _mention(found.report, mixtures(Path(arguments.out) / found.report["recipe"]))
+            reports.append(found.report)
+            if not arguments.json:
+                if arguments.verbose and len(reports) > 1:
+                    say("")
+                _show(found.report, verbose=arguments.verbose)
+        if found.message:
+            complain(found.message)
+    if arguments.json:
+        from camgeo.report.document import encoded
+
+        say_json(encoded(reports))
+    return status
+
+
+def _mention(report: dict[str, Any], mixed: Sequence[str]) -> None:
+    """Say where files and reports do not belong together; the verdict is of what was judged, whatever that is."""
+    if mixed:
+        report["mixed"] = [*report.get("mixed", ()), *mixed]
+    for text in mixed:
+        _complain(text)
+
+
+def _show(report: dict[str, Any], *, verbose: bool) -> None:
+    from camgeo.report.document import summary, table, verdict
+
+    say(f"{table(report)}\n\n{verdict(report)}" if verbose else summary(report))
+
+
+# --- the other commands -----------------------------------------------------------------------------------------------
+
+
+def _verify(arguments: argparse.Namespace) -> int:
+    """Judge files of any origin by a recipe's motion."""
+    from camgeo.output import pipeline
+    from camgeo.recipe.load import load
+    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.report.document import encoded
+    from kin.judge.verify import UnitsError
+    from kin.read.files import SUFFIXES
+
+    try:
+        recipe = _at(load(arguments.recipe), arguments.tolerance)
+        paths = [Path(name) for name in arguments.files]
+        files = [path for path in paths if path.is_file()]
+        faults = [f"{escaped(str(p))}: {_no_file(p)}" for p in paths if p not in files]
+        known = ", ".join(SUFFIXES)
+        faults += [f"{escaped(str(p))}: none of {known}" for p in files if p.suffix.lower() not in SUFFIXES]
+        if faults:
+            for fault in faults:
+                _complain(fault)
+            return WRONG
+        given = arguments.tolerance
+        units = None if arguments.units is None else UNIT_MM[arguments.units]
+        report = pipeline.judged(recipe, paths, tolerance=None if given is None else given * recipe.mm, units=units)
+        for folder in dict.fromkeys(path.parent for path in paths):
+            _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
+    except UnitsError as error:
+        _complain(f"{error}; leave --units out")
+        return WRONG
+    except RecipeErrors as errors:
+        complain(str(errors))
+        return WRONG
+    if arguments.json:
+        say_json(encoded(report))
+    else:
+        _show(report, verbose=arguments.verbose)
+    return OK if report["ok"] else FAILED
+
+
+def _no_file(path: Path) -> str:
+    if path.is_dir():
+        return "a folder; name the files in it"
+    return "not a regular file" if path.exists() else "there is no such file"
+
+
+def _new(arguments: argparse.Namespace) -> int:
+    """Print a starter recipe, or write it where no file is yet; without a kind, print the kinds."""
+    from camgeo.recipe.starter import KINDS as STARTERS
+    from camgeo.recipe.starter import starter
+
+    if arguments.kind is None:
+        print("\n".join(STARTERS))
+        return OK
+    if arguments.kind not in STARTERS:
+        _complain(f"no recipe is called {arguments.kind}; there are: {', '.join(STARTERS)}")
+        return WRONG
+    text = starter(arguments.kind)
+    if arguments.file is None:
+        print(text, end="")
+        return OK
+    try:
+        with open(arguments.file, "x", encoding="utf-8", newline="\n") as stream:  # noqa: PTH123 - pathlib has no mode "x" on 3.11
+            stream.write(text)
+    except FileExistsError:
+        _complain(f"{escaped(arguments.file)} exists already and is left as it is")
+        return WRONG
+    except OSError as error:
+        _complain(f"{escaped(arguments.file)}: {error.strerror}")
+        return SURROUNDINGS
+    return OK
+
+
+def _schema(_arguments: argparse.Namespace) -> int:
+    """Print the JSON schema."""
+    from camgeo.recipe.recipe import RECIPE
+    from camgeo.recipe.schema.json_schema import json_schema
+    from camgeo.report.document import encoded
+
+    say_json(encoded(json_schema(RECIPE)))
+    return OK
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,118 @@
+"""The command `camgeo report`: its options, what it prints, its exit status."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.progress import Progress
+from camgeo.common.terminal import complain, say, say_json
+from camgeo.files.errors import install
+
+if TYPE_CHECKING:
+    import argparse
+
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.report.page.content import Content
+
+REPORT, PAGE, PICTURE = "page.json", "page.html", "page"
+FORMS = ("svg", "png")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Give the command its options."""
+    parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file")
+    parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    parser.add_argument(
+        "--picture", action="append", default=[], choices=FORMS, help="a still picture as well; repeatable"
+    )
+    text = "shaft angle of the picture, degrees (default: %(default)g)"
+    parser.add_argument("--at", type=_angle, default=0.0, metavar="DEG", help=text)
+    parser.add_argument("--json", action="store_true", help="page.json, for machines")
+
+
+def _angle(text: str) -> float:
+    import argparse
+    import math
+
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not abs(value) <= 1e6:
+        raise argparse.ArgumentTypeError(f"a shaft angle is a number of degrees, not {text}")
+    return value
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the page of one recipe: 0 every check holds, 1 one fails, which the page shows, 2 wrong, 3 surroundings."""
+    from camgeo.output.output_folder import SurroundingsError
+    from camgeo.output.pipeline import shown
+    from camgeo.recipe.load import load
+    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.report.page.page import page
+
+    progress = Progress(Path(arguments.recipe).name)
+    try:
+        recipe = load(arguments.recipe)
+        outcome, found = shown(recipe, told=progress)
+        files = {PAGE: page(recipe, found, outcome.report).encode("utf-8")}
+        files |= _pictures(recipe, found, arguments.picture, arguments.at)
+        report = _written(recipe, files, Path(arguments.out), ok=outcome.ok)
+    except RecipeErrors as errors:
+        progress.clear()
+        complain(str(errors))
+        return WRONG
+    except ModuleNotFoundError as error:
+        progress.clear()
+        complain(f"camgeo: the package {error.name} is missing: {install('picture')}")
+        return SURROUNDINGS
+    except (SurroundingsError, OSError) as error:
+        progress.clear()
+        complain(f"camgeo: {error}")
+        return SURROUNDINGS
+    progress.clear()
+    if arguments.json:
+        from camgeo.report.document import encoded
+
+        say_json(encoded(report))
+    else:
+        folder = Path(arguments.out) / recipe.name
+        verdict = "ok" if outcome.ok else "FAILED"
+        told = ", ".join(f"{folder / file['path']} {file['bytes'] / 1000:.0f} kB" for file in report["files"])
+        say(f"{recipe.name}: {verdict}  {told}")
+    return OK if outcome.ok else FAILED
+
+
+def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -> dict[str, bytes]:
+    """Return the pictures that are asked for, at the step of the turn nearest to an angle."""
+    from camgeo.report.page import svg
+    from camgeo.report.page.page import asset
+    from camgeo.report.page.scene import STEPS
+
+    step = round(at_deg / 360.0 * STEPS) % STEPS
+    made = {}
+    if "svg" in forms:
+        made[f"{PICTURE}.svg"] = svg.still(found.scene, step, asset("drawing.css"), recipe.name).encode("utf-8")
+    if "png" in forms:
+        from camgeo.report.page.png import png
+
+        made[f"{PICTURE}.png"] = png(found.scene, step)
+    return made
+
+
+def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> dict[str, Any]:
+    """Write page and pictures beside the recipe's files, all or none; return the report that names them."""
+    from camgeo.output.output_folder import Family, Run
+    from camgeo.report.document import encoded
+    from camgeo.report.listed import listed
+
+    entries = [listed(name, data) for name, data in files.items()]
+    report = {"recipe": recipe.name, "ok": ok, "files": entries}
+    with Run(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
+        for name, data in files.items():
+            (run_.folder / name).write_bytes(data)
+        (run_.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
+        run_.commit(list(files))
+    return report

@@ -1,0 +1,177 @@
+"""The command `camgeo sweep`: its options, what it prints, its exit status."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
+from camgeo.cli.progress import Progress
+from camgeo.common.terminal import complain, say, say_json
+from camgeo.files.errors import install
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Callable
+
+    from camgeo.sweep.search.ask import Ask
+    from camgeo.sweep.search.run import Told
+    from camgeo.sweep.search.search import Means, Outcome
+
+_EXTRAS = {"distributed": "dask", "numba": "fast"}  # of packages that are not in the extra `sweep`
+_SAID = 5  # best designs that -v tells
+
+
+def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -> None:
+    """Give the command its options; `jobs` reads a number of processes."""
+    parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `sweep`")
+    parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    engine = parser.add_mutually_exclusive_group()
+    engine.add_argument("--jobs", type=jobs, metavar="N", help="processes at once (default: as many as pay)")
+    engine.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
+    parser.add_argument("--fresh", action="store_true", help="compute again what earlier runs have computed")
+    parser.add_argument("-v", "--verbose", action="store_true", help="the best designs and the counts")
+    parser.add_argument("--json", action="store_true", help="sweep.json, for machines")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
+    from camgeo.recipe.load import load
+    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.sweep.search.ask import Ask
+
+    try:
+        ask = Ask.of(load(arguments.recipe))
+        outcome, problem, status = _searched(ask, arguments)
+    except RecipeErrors as errors:
+        complain(str(errors))
+        return WRONG
+    if outcome is None:
+        _complain(ask, problem)
+        return status
+    report = outcome.report
+    if outcome.work.damaged:
+        _complain(ask, f"{outcome.work.damaged} damaged chunks were computed again")
+    for left_out in report["skipped"]:
+        _complain(ask, f"without {left_out['what']}: {left_out['why']}")
+    if arguments.json:
+        from camgeo.report.document import encoded
+
+        say_json(encoded(report))
+    else:
+        say(_summary(report, outcome.folder))
+        if arguments.verbose:
+            say(_table(report))
+    return status
+
+
+def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
+    """Outcome, or what went wrong, and the exit status."""
+    from camgeo.output.output_folder import SurroundingsError
+    from camgeo.sweep.search.engines import EngineError
+    from camgeo.sweep.search.job import VersionsError
+    from camgeo.sweep.search.run import How
+    from camgeo.sweep.search.search import search
+
+    progress = Progress(ask.recipe.name)
+    how = How(arguments.jobs, arguments.scheduler)
+    resume = "what was computed is kept, and the same command goes on from there"
+    try:
+        outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, told=_teller(progress))
+    except KeyboardInterrupt:
+        return None, f"interrupted; {resume}", INTERRUPTED
+    except ModuleNotFoundError as error:
+        extra = _EXTRAS.get(error.name or "", "sweep")
+        return None, f"the package {error.name} is missing: {install(extra)}", SURROUNDINGS
+    except (EngineError, VersionsError) as error:
+        return None, f"{error}; {resume}", SURROUNDINGS
+    except SurroundingsError as error:
+        return None, str(error), SURROUNDINGS
+    except OSError as error:
+        where = error.filename or Path(arguments.out) / ask.recipe.name
+        return None, f"{where}: {error.strerror or error}; {resume}", SURROUNDINGS
+    finally:
+        progress.clear()
+    return outcome, "", OK if outcome.report["ok"] else FAILED
+
+
+def _means() -> Means:
+    from camgeo.sweep.search.evaluator import REASONS, figures, measure
+    from camgeo.sweep.search.refine import polish
+    from camgeo.sweep.search.search import Means
+
+    return Means(figures, measure, polish, REASONS)
+
+
+def _complain(ask: Ask, text: str) -> None:
+    complain(f"camgeo: {ask.recipe.name}: {text}")
+
+
+def _teller(progress: Progress) -> Told:
+    """Progress with the time left, from the speed so far."""
+
+    def tell(what: str, done: int, wanted: int, seconds: float) -> None:
+        left = f", {duration(seconds / done * (wanted - done))} left" if done else ""
+        speed = f", {done / seconds:,.0f} a second" if done > seconds > 0.0 else ""
+        progress(f"{done:,} of {wanted:,} {what}{speed}{left}")
+
+    return tell
+
+
+def duration(seconds: float) -> str:
+    """Time left, as coarse as it is uncertain: 40 s, 12 min, 3 h 20 min."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def _summary(report: dict[str, Any], folder: Path) -> str:
+    """What was found, or why nothing was, in a line; `failing` overlap, as a design may break several limits."""
+    counts, rank, run = report["counts"], report["sweep"]["rank"], report["run"]
+    speed = f", {run['designs_per_second']:,.0f} a second" if run["designs_per_second"] else ""
+    looked = f"{counts['computed']:,} designs{speed}"
+    if report["ok"]:
+        best = report["best"][0]
+        value = _value(report, rank, best["figures"][rank])
+        return f"{report['recipe']}: {rank} {value}, the best of {counts['kept']:,} kept of {looked}; {folder}"
+    reasons = [_stuck(report)] if counts["not_turning"] else []
+    reasons += [f"{number:,} break the limit of {figure}" for figure, number in counts["failing"].items() if number]
+    near = _nearest(report) if report["nearest"] is not None else ""
+    return f"{report['recipe']}: no design will do, of {looked}: {', '.join(reasons)}{near}; {folder}"
+
+
+def _nearest(report: dict[str, Any]) -> str:
+    """The design that misses the limits by least, as a share of each, and what it misses."""
+    near = report["nearest"]
+    bounds = report["sweep"]["limits"][near["breaks"]]
+    least = "at_least" in bounds and near["value"] < bounds["at_least"]
+    asked = f"at least {bounds['at_least']:.6g}" if least else f"at most {bounds['at_most']:.6g}"
+    values = ", ".join(f"{path} {value:.6g}" for path, value in near["values"].items())
+    figure = f"{near['breaks']} {near['value']:.6g} {near['unit']}".rstrip()
+    return f"; nearest: {values}, with {figure} where {asked} is asked"
+
+
+def _stuck(report: dict[str, Any]) -> str:
+    """How many designs have no figures, and why."""
+    counts = report["counts"]
+    why = ", ".join(f"{reason} {number:,}" for reason, number in counts["reasons"].items())
+    return f"{counts['not_turning']:,} do not turn" + (f" ({why})" if why else "")
+
+
+def _value(report: dict[str, Any], figure: str, value: float) -> str:
+    return f"{value:.6g} {report['figures'][figure]['unit']}".rstrip()
+
+
+def _table(report: dict[str, Any]) -> str:
+    """The counts and the first of the best designs."""
+    counts = report["counts"]
+    lines = [f"  {_stuck(report)}"]
+    lines += [f"  {number:,} break the limit of {figure}" for figure, number in counts["failing"].items()]
+    if counts["rows"] < counts["kept"]:
+        lines.append(f"  the table holds the best {counts['rows']:,} of {counts['kept']:,}")
+    for design in report["best"][:_SAID]:
+        values = ", ".join(f"{path} {value:.6g}" for path, value in design["values"].items())
+        figures = ", ".join(f"{name} {_value(report, name, value)}" for name, value in design["figures"].items())
+        lines.append(f"  {design['file']}: {values}\n    {figures}")
+    return "\n".join(lines)

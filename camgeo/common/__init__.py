@@ -1,0 +1,1 @@
+"""What every room uses: rounding, the clock of a run."""

@@ -1,0 +1,168 @@
+"""Processes that work for a run: how many, deaf to interrupts, and gone with the run that started them.
+
+An interrupt at the terminal reaches every process of a run. Only the run itself hears it; it lets go of its workers,
+and each of them leaves what it has in hand as an interrupt would make it, clearing up behind itself.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import contextmanager
+from functools import partial
+from typing import TYPE_CHECKING, TypeVar, cast
+
+from camgeo.common.system import uninterrupted
+from kin.read.home import prepare_home
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator
+    from concurrent.futures import Future, ProcessPoolExecutor
+    from multiprocessing.connection import Connection
+    from types import FrameType
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+AHEAD = 2  # items handed out for each worker: one at work, one waiting
+MOST_ON_WINDOWS = 61  # processes that one wait of Windows can wait for, less two
+_TO_CLEAR_UP = 2.0  # seconds after which a worker whose run is over ends in any case
+FORKS = sys.platform == "linux"  # macOS has it too, and its libraries do not bear it
+KILLED = "a process was killed before {} was done, for want of memory perhaps; see --jobs"
+
+
+class _OverError(BaseException):
+    """The run is over: nobody would fetch the result of what is at work."""
+
+
+class _State:
+    """Of a worker's process: whether it is at work on an item, and whether its run is over."""
+
+    busy = False
+    over = False
+
+
+class Pool:
+    """Processes of one run; made by `pool`."""
+
+    def __init__(self, executor: ProcessPoolExecutor) -> None:
+        self._executor = executor
+
+    def submit(self, function: Callable[[T], R], item: T) -> Future[R]:
+        """Hand an item to a function of a module; raises BrokenProcessPool where a process was killed."""
+        with uninterrupted():  # this may start processes
+            return self._executor.submit(cast("Callable[[T], R]", partial(_called, function)), item)
+
+
+def available() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
+
+
+def needed(wanted: int, items: int) -> int:
+    """Processes that are started where so many are wanted: no more than there are items, nor than the system allows."""
+    return max(1, min(wanted, items, MOST_ON_WINDOWS if sys.platform == "win32" else wanted))
+
+
+@contextmanager
+def pool(workers: int, *, fork: bool = False) -> Iterator[Pool]:
+    """Processes for a run, `fork`: with all that this one has imported, where the system is sure to do that well.
+
+    Left by an exception, or before all is done, what is still at work is given up.
+    """
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    prepare_home()  # once, and not by each process
+    # not fork in general: this process may have threads, of a linear algebra library or a compiler
+    clean = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+    method = "fork" if fork and FORKS else clean
+    context = multiprocessing.get_context(method)
+    if method == "forkserver":
+        _start_server()
+    theirs, ours = context.Pipe(duplex=False)
+    inherited = ours if method == "fork" else None
+    with theirs, ours, ProcessPoolExecutor(workers, context, _be_a_worker, (theirs, inherited)) as executor:
+        try:
+            yield Pool(executor)
+        except BaseException:
+            ours.close()  # nobody waits for what is still at work
+            raise
+        finally:
+            # waited for, since a pool that is still ending when the interpreter exits may print a traceback
+            executor.shutdown(cancel_futures=True)
+
+
+def at_once(function: Callable[[T], R], items: Iterable[T], workers: int) -> Generator[tuple[T, R], None, None]:
+    """Give each item, as it is done, with what a function of a module makes of it, `workers` at once.
+
+    Raises BrokenProcessPool where a process was killed.
+    """
+    from concurrent.futures import FIRST_COMPLETED, wait
+
+    left = list(items)[::-1]
+    workers = needed(workers, len(left))
+    with pool(workers) as processes:
+        running: dict[Future[R], T] = {}
+        while left or running:
+            while left and len(running) < AHEAD * workers:
+                item = left.pop()
+                running[processes.submit(function, item)] = item
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield running.pop(future), future.result()
+
+
+def _start_server() -> None:
+    """Start the process that workers are forked from, as deaf as they are."""
+    from multiprocessing import forkserver, resource_tracker
+
+    resource_tracker.ensure_running()  # first: it is deaf by itself, and leaves this process hearing
+    with uninterrupted():
+        forkserver.ensure_running()
+
+
+def _be_a_worker(run: Connection, inherited: Connection | None) -> None:
+    """Leave interrupts to the run that started this process, and end with it, however it ends.
+
+    `run` is a pipe that is closed when the run ends or lets go of its workers; `inherited` its other end, which a
+    forked process has too.
+    """
+    import signal
+    import threading
+    import time
+    from _thread import interrupt_main
+    from multiprocessing.connection import wait
+
+    if inherited is not None:
+        inherited.close()
+    signal.signal(signal.SIGINT, _interrupted)
+
+    def watch() -> None:
+        wait([run])
+        _State.over = True
+        interrupt_main()
+        time.sleep(_TO_CLEAR_UP)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def _interrupted(_number: int, _frame: FrameType | None) -> None:
+    """Of a worker: stop what is at work if the run is over; an interrupt of the terminal is not for us."""
+    if _State.over and _State.busy:
+        _State.busy = False
+        raise _OverError
+
+
+def _called(function: Callable[[T], R], item: T) -> R | None:
+    """Work on one item; None where nobody waits for it any more."""
+    if _State.over:
+        return None
+    try:
+        _State.busy = True
+        return function(item)
+    except _OverError:
+        return None
+    finally:
+        _State.busy = False

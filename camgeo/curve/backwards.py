@@ -1,0 +1,84 @@
+"""A curve run through the other way: its hollows are the outside there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.curvature import least_radius
+from camgeo.curve.curve import Bounds, Curve, Frame, Run, Shape
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from camgeo.curve.curve import Side
+    from kin.numeric.arrays import Array
+
+
+@dataclass(frozen=True)
+class Backwards:
+    """A shape run through the other way, its parameter negated: what was outside lies on its inner side."""
+
+    base: Shape
+
+    @property
+    def period(self) -> float:
+        """Length of the parameter's turn."""
+        return self.base.period
+
+    @property
+    def breaks(self) -> Array:
+        """Breaks of the base."""
+        return np.sort(np.mod(-np.asarray(self.base.breaks, dtype=np.float64), self.period))
+
+    @property
+    def repeats(self) -> int:
+        """Equal parts of the base."""
+        return self.base.repeats
+
+    def _stretches(self) -> NDArray[np.intp]:
+        """Which stretch of the base each one is (m,)."""
+        count = max(len(self.base.breaks), 1)
+        order = np.arange(count)[::-1]
+        at_zero = len(self.base.breaks) > 0 and float(self.base.breaks[0]) == 0.0
+        # a break at 0 stays the first one, any other first break becomes the last
+        return order if at_zero or count == 1 else np.roll(order, -1)
+
+    @property
+    def steady(self) -> Array:
+        """Stretches of constant speed and turn (m, 2)."""
+        table: Array = self.base.steady[self._stretches()] * np.array([1.0, -1.0])
+        return table
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,)."""
+        radii: Array = -self.base.radii[self._stretches()]
+        return radii
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,)."""
+        at = self.base.sample(-t, -side)
+        return Frame(at.point, -at.tangent, at.speed, -at.turn, -at.speed_slope, at.turn_slope)
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
+        speed, turn = self.base.series(-t, order, -side)
+        sign = (-1.0) ** np.arange(order + 1)[:, None]
+        return sign * speed, -sign * turn
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over intervals (n,)."""
+        b = self.base.bounds(-high, -low)
+        return replace(b, turn_low=-b.turn_high, turn_high=-b.turn_low)
+
+
+def least_hollow(contour: Curve) -> tuple[float, float]:
+    """Least radius of the hollow stretches of a contour, mm, and its parameter; infinite without a hollow."""
+    runs = tuple(
+        Run(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), run.closed) for run in reversed(contour.runs)
+    )
+    radius, at = least_radius(Curve(Backwards(contour.shape), runs))
+    return radius, -at

@@ -1,0 +1,391 @@
+"""Closed plane curves as moving frames: a point that runs along its tangent while the tangent turns.
+
+Every profile is described by the same few numbers at a parameter `t`: the point, the unit tangent, the speed
+``sigma`` with which the point moves along the tangent and the rate ``omega`` at which the tangent turns,
+
+    c'(t) = sigma(t) T(t),    T'(t) = omega(t) (left normal of T),    curvature = omega / sigma.
+
+For a support function p the parameter is the direction of the normal, ``omega = 1`` and ``sigma = rho = p + p''``
+(AS eqs. 2, 3, 6). The parallel curve at distance e inside has ``sigma - e omega`` for its speed and everything else
+unchanged, so offsets, cusps (sigma = 0), dwells and inflections (omega = 0) need no division and no special case.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array
+
+    Side = int | NDArray[np.intp]
+
+CELLS_PER_TURN = 96  # proved bounds are kept for about this many stretches; more cost time, fewer cost sharpness
+CELLS_PER_STRETCH = 6  # and for at least this many between two breaks
+SHARP_ENOUGH = 4.0  # a cell is halved while its bound is this many times what its own ends and middle show
+HALVINGS = 24
+MOST_CELLS = 20_000  # of the whole curve, where halving does not help: bounds stay loose, or the curve is refused
+SHIFT = 1e-12  # relative and rad: far above the rounding by which parts of a turn are moved onto each other
+
+
+class CurveError(ValueError):
+    """A curve for which no finite bound can be proved, with the parameter near which the proof fails."""
+
+    def __init__(self, message: str, parameter: float) -> None:
+        super().__init__(message)
+        self.parameter = parameter
+
+
+def columns(x: Array, y: Array) -> Array:
+    """Two rows (n,) as points (n, 2): what np.column_stack does, in a third of its time where n is small."""
+    out = np.empty((x.size, 2))
+    out[:, 0], out[:, 1] = x, y
+    return out
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The moving frame at n parameters: point and tangent (n, 2); speed, turn and their derivatives (n,)."""
+
+    point: Array
+    tangent: Array
+    speed: Array
+    turn: Array
+    speed_slope: Array
+    turn_slope: Array
+
+    @property
+    def rows(self) -> tuple[Array, ...]:
+        """All six, in the order of the fields."""
+        return self.point, self.tangent, self.speed, self.turn, self.speed_slope, self.turn_slope
+
+    def split(self, count: int) -> tuple[Frame, Frame]:
+        """Frames at the first `count` parameters, and at the others."""
+        return Frame(*(row[:count] for row in self.rows)), Frame(*(row[count:] for row in self.rows))
+
+    def joined(self, other: Frame) -> Frame:
+        """These frames, and then the others."""
+        return Frame(*(np.concatenate(both) for both in zip(self.rows, other.rows, strict=True)))
+
+    @property
+    def normal(self) -> Array:
+        """Outward unit normal (n, 2): the tangent turned clockwise, the curve running counter-clockwise."""
+        return columns(self.tangent[:, 1], -self.tangent[:, 0])
+
+    @property
+    def curvature(self) -> Array:
+        """Signed curvature (n,), positive where the curve is convex; infinite at a cusp."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return self.turn / self.speed
+
+    @property
+    def curvature_slope(self) -> Array:
+        """Derivative of the curvature by arc length (n,)."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return (self.turn_slope * self.speed - self.turn * self.speed_slope) / self.speed**3
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What is proved of a frame over n parameter intervals; all (n,).
+
+    `speed` and `turn` lie in [low, high]; the others are upper bounds of absolute values: `speed_slope` of sigma',
+    `speed_bend` of sigma'', and likewise for the turn.
+    """
+
+    speed_low: Array
+    speed_high: Array
+    turn_low: Array
+    turn_high: Array
+    speed_slope: Array
+    turn_slope: Array
+    speed_bend: Array
+    turn_bend: Array
+
+    def rows(self) -> Array:
+        """All eight as one (8, n) array, in the order of the fields."""
+        return np.stack(
+            [
+                self.speed_low,
+                self.speed_high,
+                self.turn_low,
+                self.turn_high,
+                self.speed_slope,
+                self.turn_slope,
+                self.speed_bend,
+                self.turn_bend,
+            ]
+        )
+
+
+class Shape(Protocol):
+    """What a family of profiles provides; `Curve` adds everything that follows from it."""
+
+    @property
+    def period(self) -> float:
+        """Length of the parameter's turn."""
+        ...
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters in [0, period) at which speed or turn, or their derivatives, jump."""
+        ...
+
+    @property
+    def repeats(self) -> int:
+        """Equal parts that the turn is known to consist of, each the one before turned about the shaft."""
+        ...
+
+    @property
+    def steady(self) -> Array:
+        """For each stretch between breaks, (m, 2): speed and turn where both are exactly constant, else nan."""
+        ...
+
+    @property
+    def radii(self) -> Array:
+        """For each stretch between breaks, (m,): the signed radius of curvature if exactly constant, else nan."""
+        ...
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,); at a break the limit from above (side 1) or from below (side -1).
+
+        The side may differ from one parameter to the next (n,).
+        """
+        ...
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,); at a break as `sample`."""
+        ...
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over the intervals [low, high] (n,), none of which spans a break."""
+        ...
+
+
+@dataclass(frozen=True)
+class Run:
+    """Part of a curve without corners: parameters from `low` to `high`, and the breaks of curvature inside.
+
+    A closed run is the whole curve, its end is its beginning.
+    """
+
+    low: float
+    high: float
+    breaks: tuple[float, ...]
+    closed: bool
+
+    @property
+    def stretches(self) -> Array:
+        """Smooth stretches (m, 2) in order."""
+        knots = np.array([self.low, *self.breaks, self.high])
+        return np.column_stack([knots[:-1], knots[1:]])
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A closed counter-clockwise curve: a shape, and the runs of it that are kept.
+
+    One closed run is the ordinary case. Several open runs are a contour trimmed where it would undercut: they meet in
+    corners, the end of each run in the beginning of the next.
+    """
+
+    shape: Shape
+    runs: tuple[Run, ...]
+
+    @staticmethod
+    def whole(shape: Shape) -> Curve:
+        """Curve of the whole turn, begun at a break so that no stretch runs across the seam.
+
+        A break at which a convex stretch meets a concave one is no place to begin; where all are such, the curve begins
+        in the middle of a stretch.
+        """
+        breaks = np.asarray(shape.breaks, dtype=np.float64)
+        if not breaks.size:
+            return Curve(shape, (Run(0.0, shape.period, (), closed=True),))
+        side = np.repeat([1, -1], breaks.size)
+        after, before = shape.sample(np.tile(breaks, 2), side).split(breaks.size)
+        alike = after.turn * before.turn > 0.0
+        if alike.any():
+            first = int(np.argmax(alike))
+            low = float(breaks[first])
+            others = np.concatenate([breaks[first + 1 :], breaks[:first] + shape.period])
+        else:
+            low = 0.5 * float(breaks[-1] - shape.period + breaks[0])
+            others = breaks
+        return Curve(shape, (Run(low, low + shape.period, tuple(float(b) for b in others), closed=True),))
+
+    @property
+    def closed(self) -> bool:
+        """True where the curve is one run without a corner."""
+        return len(self.runs) == 1 and self.runs[0].closed
+
+    @cached_property
+    def size(self) -> float:
+        """How far the curve reaches from the shaft, as far as the ends of its cells show."""
+        point = self.sample(np.append(self.cells.low, self.cells.high[-1])).point
+        return float(np.hypot(point[:, 0], point[:, 1]).max())
+
+    @cached_property
+    def cells(self) -> Cells:
+        """Proved bounds over the whole curve, computed when first asked for."""
+        return Cells.of(self)
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,); see `Shape.sample`."""
+        return self.shape.sample(t, side)
+
+    def stretch_of(self, t: Array) -> NDArray[np.intp]:
+        """Index of the shape's stretch in which each parameter (n,) lies, as `Shape.steady` counts them."""
+        breaks = np.asarray(self.shape.breaks, dtype=np.float64)
+        if breaks.size == 0:
+            return np.zeros(t.shape, dtype=np.intp)
+        return (np.searchsorted(breaks, t % self.shape.period, side="right") - 1) % breaks.size
+
+    def span(self, low: Array, high: Array) -> tuple[Frame, Frame]:
+        """Frames at the two ends of intervals that span no break, each taken from inside its interval."""
+        side = np.repeat([1, -1], [low.size, high.size])
+        return self.shape.sample(np.concatenate([low, high]), side).split(low.size)
+
+    @cached_property
+    def _steady(self) -> Array:
+        return self.shape.steady
+
+    @cached_property
+    def _radii(self) -> Array:
+        return self.shape.radii
+
+    def _index(self, stretch: Sequence[float] | Array) -> int:
+        """Which of the shape's stretches between breaks holds this one."""
+        breaks = np.asarray(self.shape.breaks, dtype=np.float64)
+        middle = (0.5 * (stretch[0] + stretch[1])) % self.shape.period
+        return (int(np.searchsorted(breaks, middle, side="right")) - 1) % breaks.size if breaks.size else 0
+
+    def steady(self, stretch: Sequence[float] | Array) -> tuple[float, float] | None:
+        """Speed and turn where both are exactly constant over a stretch (a dwell, a Reuleaux arc), else None."""
+        speed, turn = self._steady[self._index(stretch)]
+        return None if np.isnan(speed) else (float(speed), float(turn))
+
+    def radius(self, stretch: Sequence[float] | Array) -> float | None:
+        """Signed radius of curvature, in mm, where a stretch is exactly a circular arc, else None."""
+        radius = float(self._radii[self._index(stretch)])
+        return None if np.isnan(radius) else radius
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Proved bounds on a partition of the curve: `low`, `high` (m,) in order of the parameter, `rows` (8, m)."""
+
+    low: Array
+    high: Array
+    rows: Array
+
+    @staticmethod
+    def of(curve: Curve) -> Cells:
+        """Partition a curve, halving cells whose bounds are far from what the curve does in them.
+
+        Raises CurveError where no finite bound is found after `HALVINGS` halvings, or with about `MOST_CELLS` cells.
+        """
+        stretches = [stretch for run in curve.runs for stretch in run.stretches]
+        period, repeats = curve.shape.period, curve.shape.repeats
+        if repeats > 1 and curve.closed:
+            if len(stretches) == 1:
+                knots = np.linspace(stretches[0][0], stretches[0][1], repeats + 1)
+                stretches = list(pairwise(knots))
+            if len(stretches) % repeats == 0:
+                part = stretches[: len(stretches) // repeats]
+                first = _sharpened(curve, part, 2 * CELLS_PER_TURN / period, MOST_CELLS // repeats)
+                return _repeated(first, np.array(stretches).reshape(repeats, -1, 2))
+        return _sharpened(curve, stretches, CELLS_PER_TURN / period, MOST_CELLS)
+
+    def over(self, low: Array, high: Array) -> Bounds:
+        """Bounds over intervals (n,) that lie between two breaks: the worst of the cells each one touches."""
+        first = np.clip(np.searchsorted(self.low, low, side="right") - 1, 0, self.low.size - 1)
+        last = np.clip(np.searchsorted(self.low, high, side="left") - 1, first, self.low.size - 1)
+        worst = self.rows[:, first]
+        for step in range(1, int(np.max(last - first, initial=0)) + 1):
+            other = self.rows[:, np.minimum(first + step, last)]
+            worst[0:4:2] = np.minimum(worst[0:4:2], other[0:4:2])
+            worst[1:4:2] = np.maximum(worst[1:4:2], other[1:4:2])
+            worst[4:] = np.maximum(worst[4:], other[4:])
+        return Bounds(*worst)
+
+
+def _sharpened(curve: Curve, stretches: Sequence[tuple[float, float] | Array], density: float, most: int) -> Cells:
+    """Cells of some stretches that join, at first about `density` for each unit of parameter, none halved above `most`.
+
+    A bound that is loose at the end is still a bound: it costs sharpness. One that is not finite is refused.
+    """
+    lows, highs = [], []
+    for low, high in stretches:
+        count = 1 if curve.steady((low, high)) else max(CELLS_PER_STRETCH, int(np.ceil(density * (high - low))))
+        knots = np.linspace(low, high, count + 1)
+        lows.append(knots[:-1])
+        highs.append(knots[1:])
+    low, high = np.concatenate(lows), np.concatenate(highs)
+    rows = curve.shape.bounds(low, high).rows()
+    for _ in range(HALVINGS):
+        loose = _loose(curve, low, high, rows)
+        if not loose.any() or low.size > most:
+            break
+        middle = 0.5 * (low[loose] + high[loose])
+        new_low = np.concatenate([low[loose], middle])
+        new_high = np.concatenate([middle, high[loose]])
+        new_rows = curve.shape.bounds(new_low, new_high).rows()
+        low = np.concatenate([low[~loose], new_low])
+        high = np.concatenate([high[~loose], new_high])
+        rows = np.concatenate([rows[:, ~loose], new_rows], axis=1)
+        order = np.argsort(low, kind="stable")
+        low, high, rows = low[order], high[order], rows[:, order]
+    bad = ~np.isfinite(rows).all(axis=0)
+    if bad.any():
+        where, narrowest = float(low[bad][0]), float((high - low)[bad].min())
+        raise CurveError(
+            f"no finite bound on the curvature can be proved near parameter {where:.9g}: {int(bad.sum())} of "
+            f"{bad.size} intervals have none, though divided down to {narrowest:.3g}",
+            where,
+        )
+    return Cells(low, high, rows)
+
+
+def _repeated(part: Cells, stretches: Array) -> Cells:
+    """Cells of the whole turn from those of its first part, and the stretches (parts, m, 2) of all parts."""
+    owner = np.searchsorted(stretches[0, :, 0], part.low, side="right") - 1
+    low = part.low + (stretches[:, owner, 0] - stretches[0, owner, 0])
+    opens = np.flatnonzero(np.diff(owner, prepend=-1))
+    low[:, opens] = stretches[:, :, 0]
+    # the parts are one function folded, but their parameters are each rounded
+    rows = part.rows.copy()
+    rows[6:] *= 1.0 + SHIFT
+    rows[4:6] += SHIFT * rows[6:]
+    rows[0:4:2] -= SHIFT * rows[4:6]
+    rows[1:4:2] += SHIFT * rows[4:6]
+    low = low.ravel()
+    return Cells(low, np.append(low[1:], stretches[-1, -1, 1]), np.tile(rows, len(stretches)))
+
+
+def _loose(curve: Curve, low: Array, high: Array, rows: Array) -> NDArray[np.bool_]:
+    """Cells whose bounds on the second derivatives are not finite or far above what the ends show (n,)."""
+    at_low, at_high = curve.span(low, high)
+    width = high - low
+    bends = rows[6:8]
+    seen = np.stack(
+        [
+            np.abs(at_high.speed_slope - at_low.speed_slope) / width,
+            np.abs(at_high.turn_slope - at_low.turn_slope) / width,
+        ]
+    )
+    scale = np.stack([rows[1], np.maximum(np.abs(rows[2]), np.abs(rows[3]))])
+    with np.errstate(invalid="ignore"):
+        # A bound that moves nothing by more than a thousandth over the cell need not be sharp.
+        matters = bends * width**2 > 8e-3 * np.abs(scale)
+        around = np.maximum(seen, np.maximum(np.roll(seen, 1, axis=1), np.roll(seen, -1, axis=1)))
+        loose: NDArray[np.bool_] = (~np.isfinite(bends) | (matters & (bends > SHARP_ENOUGH * around))).any(axis=0)
+    return loose

@@ -1,0 +1,85 @@
+"""Parallel curves: the contour a roller of given radius rolls on, or a cutter's centre follows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.curve import Bounds, Frame, Shape
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Side
+    from kin.numeric.arrays import Array
+
+
+@dataclass(frozen=True)
+class Parallel:
+    """Parallel curve of `base` at `distance` inside it (negative: outside), along the normal (docs/theory.md 7).
+
+    The tangent turns as on the base, so the speed is ``sigma - distance * omega`` exactly: it changes sign where the
+    curve undercuts, which `camgeo.curve.undercut.undercut` reports.
+    """
+
+    base: Shape
+    distance: float
+
+    @property
+    def period(self) -> float:
+        """Length of the parameter's turn."""
+        return self.base.period
+
+    @property
+    def breaks(self) -> Array:
+        """Breaks of the base curve."""
+        return self.base.breaks
+
+    @property
+    def repeats(self) -> int:
+        """Equal parts of the base curve."""
+        return self.base.repeats
+
+    @property
+    def steady(self) -> Array:
+        """Stretches of constant speed and turn (m, 2)."""
+        table = self.base.steady
+        return np.column_stack([table[:, 0] - self.distance * table[:, 1], table[:, 1]])
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,)."""
+        return self.base.radii - self.distance
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,)."""
+        at = self.base.sample(t, side)
+        return Frame(
+            at.point - self.distance * at.normal,
+            at.tangent,
+            at.speed - self.distance * at.turn,
+            at.turn,
+            at.speed_slope - self.distance * at.turn_slope,
+            at.turn_slope,
+        )
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
+        speed, turn = self.base.series(t, order, side)
+        return speed - self.distance * turn, turn
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over intervals (n,)."""
+        b = self.base.bounds(low, high)
+        d = self.distance
+        near, far = (b.turn_low, b.turn_high) if d >= 0 else (b.turn_high, b.turn_low)
+        return Bounds(
+            b.speed_low - d * far,
+            b.speed_high - d * near,
+            b.turn_low,
+            b.turn_high,
+            b.speed_slope + abs(d) * b.turn_slope,
+            b.turn_slope,
+            b.speed_bend + abs(d) * b.turn_bend,
+            b.turn_bend,
+        )

@@ -1,0 +1,75 @@
+"""Profiles of flat-faced followers: the envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.curve import Bounds, Frame, columns
+from kin.numeric.taylor import factorials
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Side
+    from kin.law.support_function import Lift
+    from kin.numeric.arrays import Array
+
+
+@dataclass(frozen=True)
+class SupportShape:
+    """The curve whose support function is a face's lift: ``c = p u + p' n``, ``sigma = p + p''``, ``omega = 1``.
+
+    The parameter is the direction of the outward normal, which is the shaft angle. SW's second half turn with the
+    sign of [d - L] put right is the same formula (docs/validation.md).
+    """
+
+    lift: Lift
+
+    @property
+    def period(self) -> float:
+        """A full turn."""
+        return 2.0 * np.pi
+
+    @property
+    def breaks(self) -> Array:
+        """Where the radius of curvature or its derivatives jump."""
+        return self.lift.breaks
+
+    @property
+    def repeats(self) -> int:
+        """No equal parts are made use of."""
+        return 1
+
+    @property
+    def steady(self) -> Array:
+        """Radius of curvature and turn, (m, 2), on stretches that are circular arcs; nan on the others."""
+        radius = self.lift.radius
+        return np.column_stack([radius, np.where(np.isnan(radius), np.nan, 1.0)])
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,)."""
+        return self.lift.radius
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at normal directions t (n,)."""
+        p = self.lift.derivatives(t, 3, side)
+        cosine, sine = np.cos(t), np.sin(t)
+        point = columns(p[0] * cosine - p[1] * sine, p[0] * sine + p[1] * cosine)
+        return Frame(point, columns(-sine, cosine), p[0] + p[2], np.ones_like(t), p[1] + p[3], np.zeros_like(t))
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at normal directions t (n,)."""
+        p = self.lift.derivatives(t, order + 2, side)
+        speed = (p[:-2] + p[2:]) / factorials(order)
+        turn = np.zeros_like(speed)
+        turn[0] = 1.0
+        return speed, turn
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds of the radius of curvature over intervals (n,)."""
+        mid, rad = self.lift.radius_enclosure(low, high, 2)
+        one, none = np.ones_like(low), np.zeros_like(low)
+        size = np.abs(mid) + rad
+        return Bounds(mid[0] - rad[0], mid[0] + rad[0], one, one, size[1], none, size[2], none)

@@ -1,0 +1,1 @@
+"""Undercut, local and global: where, why, and trimmed if the recipe says so."""

@@ -1,0 +1,292 @@
+"""How large a disc can roll all round inside a pitch curve: necks between far-apart stretches (docs/theory.md 7).
+
+The disc that touches the curve from inside at x and passes through y has the radius
+
+    R(x, y) = |x - y|^2 / (2 (x - y).N(x)),    N the outward normal;
+
+the least of it over all pairs is the inner reach of the curve (Federer, Curvature measures, 1959, 4.18): the least
+radius of curvature, or half of the narrowest double normal, whichever is less. Three facts make the search certain:
+
+- while the tangent stays within a right angle of that at x, an arc of curvature at most 1/R does not enter the disc
+  of radius R that touches it at x (the slope ``sin theta`` of the arc as a graph over the tangent is at most s/R); on
+  a convex arc this holds up to a half turn (Blaschke's rolling theorem), and a concave one leaves the tangent for the
+  outer side. Such pairs are near and need no search (`camgeo.curve.undercut.tangents` tells the directions);
+- the others are kept in boxes, pairs of intervals, with proved lower bounds of R from the bounds of speed and turn;
+- where |x - y|^2 is proved convex over a box, in arc length, its least value is at the double normal itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.curve import SHIFT, CurveError
+from camgeo.curve.undercut.pairs import Boxes, Pairs, Pitch
+from camgeo.curve.undercut.tangents import Turning
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from camgeo.curve.curve import Curve
+    from kin.numeric.arrays import Array
+
+    _Least = tuple[float, tuple[float, float] | None]  # least R seen, mm, and the parameters at which
+
+NECK_SHARPNESS = 1e-9  # relative: no neck is narrower than the narrowest one found by more than this
+LINKS = 96  # about as many intervals make the first boxes
+LINKS_PER_PART = 8  # and at least so many of each part that the curve repeats
+LEVELS = 60
+MOST_BOXES = 40_000
+NEWTON = 30  # steps towards a double normal; what they leave off it is measured
+HALVINGS = 50  # of the radius for which what was left open is free, and as many to tell it sharply
+
+
+@dataclass(frozen=True)
+class Neck:
+    """A double normal of the pitch curve across its inside: parameters of its ends, and half its length in mm."""
+
+    first: float
+    second: float
+    half: float
+
+
+class OpenNeckError(CurveError):
+    """What was left open: every disc of radius `least` rolls all round, none above `most`; `pair` is where, parameters.
+
+    Both in mm. `seen` tells whether a pair of points was found that no larger disc than `most` passes; otherwise `most`
+    is the radius that was asked for.
+    """
+
+    def __init__(self, least: float, most: float, pair: tuple[float, float], seen: bool) -> None:
+        super().__init__(
+            f"whether a radius of {most:.9g} mm passes between parameters {pair[0]:.9g} and {pair[1]:.9g} cannot be "
+            f"proved; {least:.9g} mm is proved to pass",
+            pair[0],
+        )
+        self.least, self.most, self.pair, self.seen = least, most, pair, seen
+
+
+def narrowest_necks(pitch: Pitch, below: float) -> tuple[Neck, ...]:
+    """Narrowest necks of a pitch curve, alike within `NECK_SHARPNESS`, if they are narrower than 2 `below` mm.
+
+    `below` must not exceed the curve's least radius of curvature. With nothing found it is proved that R(x, y) is at
+    least `below` for all pairs of points (within `NECK_SHARPNESS`; up to rounding of the samples). Raises OpenNeckError
+    where the proof does not end, as for two concentric arcs that leave exactly a roller's diameter between them.
+    """
+    if bool((pitch.curve.cells.rows[2] >= 0.0).all()):
+        return ()  # a convex curve: every pair is near
+    search = _Search.of(pitch)
+    boxes = search.boxes()
+    found: list[Neck] = []
+    least: _Least = (below, None)
+    for _ in range(LEVELS):
+        boxes, least = search.sifted(boxes, least, found)
+        if boxes.low.shape[0] == 0 and (found or least[1] is None):
+            return _distinct(search.turned(n for n in found if n.half < below), least[0], pitch.curve.shape.period)
+        if not 0 < boxes.low.shape[0] <= MOST_BOXES:
+            break
+    raise search.left_open(boxes, least)
+
+
+def neck_from(pitch: Pitch, first: float, second: float) -> Neck | None:
+    """Double normal across the inside that Newton's method finds from two parameters, None if it finds none."""
+    ends = _double_normals(pitch, np.array([[first, second]]))
+    neck, inside, _ = _measured(pitch, ends)
+    return Neck(float(ends[0, 0]), float(ends[0, 1]), float(neck[0])) if inside[0] else None
+
+
+def rolling_radius(pitch: Pitch, t: Array, s: Array) -> Array:
+    """R(x(t), y(s)) for all pairs, (n, m): infinite where y lies on the outer side of the tangent at x."""
+    x, y = pitch.at(t), pitch.at(s)
+    d = x.point[:, None] - y.point[None]
+    across = np.einsum("nmi,ni->nm", d, x.normal)
+    square = np.einsum("nmi,nmi->nm", d, d)
+    radius = np.full(across.shape, np.inf)
+    np.divide(square, 2.0 * across, out=radius, where=across > 0.0)
+    return radius
+
+
+# --- which pairs need a search ----------------------------------------------------------------------------------------
+
+
+def _links(curve: Curve) -> tuple[Array, Array]:
+    """Divide the curve into intervals, each a small share of its length and turning: low and high ends (n,)."""
+    cells = curve.cells
+    width = cells.high - cells.low
+    length = cells.rows[1] * width
+    turning = np.maximum(np.abs(cells.rows[2]), np.abs(cells.rows[3])) * width
+    count = max(LINKS, LINKS_PER_PART * curve.shape.repeats)
+    weight = 0.5 * count * (length / length.sum() + turning / turning.sum())
+    parts = np.maximum(1, np.ceil(weight)).astype(np.intp)
+    share = np.concatenate([np.arange(n) / n for n in parts.tolist()])
+    owner = np.repeat(np.arange(parts.size), parts)
+    low = cells.low[owner] + share * width[owner]
+    total = np.cumsum(np.append(0.0, (weight / parts)[owner]))[:-1]
+    first = np.flatnonzero(np.diff(np.floor(total), prepend=-1.0))
+    low = low[first]
+    return low, np.append(low[1:], cells.high[-1])
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Pairs of a pitch curve, up to the turns that lead it into itself: the first point lies in its first part."""
+
+    pitch: Pitch
+    turning: Turning
+
+    @staticmethod
+    def of(pitch: Pitch) -> _Search:
+        return _Search(pitch, Turning.of(pitch.curve))
+
+    def boxes(self) -> Boxes:
+        """Boxes that hold every pair, or its image by a turn."""
+        low, high = _links(self.pitch.curve)
+        period = self.pitch.curve.shape.period
+        own = np.flatnonzero(low < low[0] + (period / self.pitch.curve.shape.repeats) * (1.0 - SHIFT))
+        # one of two points is no more than half a turn behind the other
+        apart = (low[None] - high[own, None]) % period <= 0.5 * period
+        apart |= (high[None] - low[own, None]) % period <= 0.5 * period
+        apart[np.arange(own.size), own] = True
+        first, second = np.nonzero(apart)
+        first = own[first]
+        return Boxes(np.column_stack([low[first], low[second]]), np.column_stack([high[first], high[second]]))
+
+    def turned(self, found: Iterable[Neck]) -> list[Neck]:
+        """Necks with their images by all turns that lead the curve into itself."""
+        shape = self.pitch.curve.shape
+        by = [shape.period / shape.repeats * k for k in range(shape.repeats)]
+        return [Neck(n.first + turn, n.second + turn, n.half) for n in found for turn in by]
+
+    def far(self, boxes: Boxes) -> Boxes:
+        """Boxes of which the pairs are not all near, one way round or the other."""
+        period = self.pitch.curve.shape.period
+        near = np.zeros(boxes.low.shape[0], dtype=bool)
+        for one, other in ((0, 1), (1, 0)):
+            before = boxes.low[:, other] < boxes.low[:, one]
+            near |= self.turning.near(boxes.low[:, one], boxes.high[:, other] + np.where(before, period, 0.0))
+        return Boxes(boxes.low[~near], boxes.high[~near])
+
+    def sifted(self, boxes: Boxes, least: _Least, found: list[Neck]) -> tuple[Boxes, _Least]:
+        """Boxes, divided, in which R may still fall below the least seen, and that after what was found in these."""
+        boxes = self.far(boxes)
+        if boxes.low.shape[0] == 0:
+            return boxes, least
+        pairs = Pairs.of(self.pitch, boxes)
+        radius = pairs.radius.min(axis=0)
+        worst = int(np.argmin(radius))
+        if radius[worst] < least[0]:
+            least = float(radius[worst]), _pair(pairs.centre[worst])
+        free = pairs.free(least[0] * (1.0 - NECK_SHARPNESS))
+        # also where the least seen is free by a hair: the neck itself is wanted
+        bowls = np.flatnonzero((pairs.bowl > 0.0) & (pairs.chord < 2.0 * least[0] * (1.0 + NECK_SHARPNESS)))
+        if bowls.size:
+            ends = _double_normals(self.pitch, pairs.centre[bowls])
+            half, inside, slant = _measured(self.pitch, ends)
+            held = ((ends >= boxes.low[bowls]) & (ends <= boxes.high[bowls])).all(axis=1) & inside
+            # |x - y| falls by no more than its share slant^2 / 2 bowl from there: Newton's method has come close enough
+            held &= slant * slant <= 2.0 * NECK_SHARPNESS * pairs.bowl[bowls]
+            free[bowls[held]] = True
+            found += [Neck(float(t), float(s), float(h)) for (t, s), h in zip(ends[held], half[held], strict=True)]
+            narrowest = min(found, key=lambda n: n.half, default=None)
+            if narrowest is not None and narrowest.half < least[0]:
+                least = narrowest.half, (narrowest.first, narrowest.second)
+        return _divided(boxes, pairs.centre, pairs.doubt.T, ~free), least
+
+    def left_open(self, boxes: Boxes, least: _Least) -> OpenNeckError:
+        """Say what is proved of pairs that were left, and how close the least was seen to be."""
+        most, seen = least
+        boxes = self.far(boxes)
+        if boxes.low.shape[0] == 0:  # the least was seen, and no neck found that has it
+            at = seen or (0.0, 0.0)
+            return OpenNeckError(most * (1.0 - NECK_SHARPNESS), most, at, seen is not None)
+        pairs = Pairs.of(self.pitch, boxes)
+        low, high = 0.0, most
+        where = pairs.centre[int(np.argmin(pairs.radius.min(axis=0)))]
+        for step in range(2 * HALVINGS):
+            aim = 0.5 * (low + high) if low or step > HALVINGS else 0.5 * high
+            free = pairs.free(aim)
+            if free.all():
+                low = aim
+            else:
+                high, where = aim, pairs.centre[int(np.argmin(free))]
+            if high - low <= 1e-3 * high:
+                break
+        return OpenNeckError(low, most, seen or _pair(where), seen is not None)
+
+
+def _pair(at: Array) -> tuple[float, float]:
+    return float(at[0]), float(at[1])
+
+
+def _divided(boxes: Boxes, centre: Array, doubt: Array, kept: NDArray[np.bool_]) -> Boxes:
+    """Halve the kept boxes, along both intervals unless one leaves much less in doubt."""
+    low, high, centre, doubt = boxes.low[kept], boxes.high[kept], centre[kept], doubt[kept]
+    for side in (0, 1):
+        cut = doubt[:, side] > 0.5 * doubt[:, 1 - side]
+        upper, lower = low[cut].copy(), high[cut].copy()
+        upper[:, side] = lower[:, side] = centre[cut, side]
+        whole = ~cut
+        low, high = np.concatenate([low[whole], low[cut], upper]), np.concatenate([high[whole], lower, high[cut]])
+        centre, doubt = (np.concatenate([a[whole], a[cut], a[cut]]) for a in (centre, doubt))
+    return Boxes(low, high)
+
+
+def _double_normals(pitch: Pitch, ends: Array) -> Array:
+    """Parameters (n, 2) that Newton's method comes to from (n, 2), for chords normal to the curve at both ends.
+
+    Whether it has come there is for `_measured` to tell: without a double normal nearby it ends anywhere.
+    """
+    ends = ends.copy()
+    count = ends.shape[0]
+    for _ in range(NEWTON):
+        both = pitch.at(ends.T.ravel())
+        x, y = both.part(slice(None, count)), both.part(slice(count, None))
+        d = x.point - y.point
+        f, g = np.sum(d * x.tangent, axis=1), np.sum(d * y.tangent, axis=1)
+        ft, fs = x.speed - x.turn * np.sum(d * x.normal, axis=1), -y.speed * np.sum(x.tangent * y.tangent, axis=1)
+        gt, gs = x.speed * np.sum(x.tangent * y.tangent, axis=1), -y.speed - y.turn * np.sum(d * y.normal, axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.stack([f * gs - g * fs, ft * g - gt * f], axis=1) / (ft * gs - fs * gt)[:, None]
+        step = np.clip(np.where(np.isfinite(step), step, 0.0), -0.1, 0.1)
+        ends -= step
+        if (np.abs(step) <= 4.0 * np.spacing(np.abs(ends))).all():
+            break
+    return ends
+
+
+def _measured(pitch: Pitch, ends: Array) -> tuple[Array, NDArray[np.bool_], Array]:
+    """Half the chord between parameters (n, 2), whether it is a double normal that runs across the inside, its slant.
+
+    The slant is how far both tangents are from square to it.
+    """
+    count = ends.shape[0]
+    both = pitch.at(ends.T.ravel())
+    x, y = both.part(slice(None, count)), both.part(slice(count, None))
+    d = x.point - y.point
+    length = np.hypot(d[:, 0], d[:, 1])
+    slant = np.full(count, np.inf)
+    along = np.hypot(np.sum(d * x.tangent, axis=1), np.sum(d * y.tangent, axis=1))
+    np.divide(along, length, out=slant, where=length > 0.0)
+    inside = (np.sum(d * x.normal, axis=1) > 0.0) & (np.sum(d * y.normal, axis=1) < 0.0)
+    return 0.5 * length, (slant <= 1e-6) & inside, slant
+
+
+def _distinct(found: list[Neck], limit: float, period: float) -> tuple[Neck, ...]:
+    """Narrowest necks, each once; its first end is the lower parameter."""
+    kept: list[Neck] = []
+    for neck in sorted(found, key=lambda n: n.half):
+        if neck.half > limit * (1.0 + NECK_SHARPNESS):
+            break
+        a, b = sorted((neck.first % period, neck.second % period))
+        if not any(_apart(a, n.first, period) < 1e-7 and _apart(b, n.second, period) < 1e-7 for n in kept):
+            kept.append(Neck(a, b, neck.half))
+    return tuple(sorted(kept, key=lambda n: n.first))
+
+
+def _apart(a: float, b: float, period: float) -> float:
+    gap = abs(a - b) % period
+    return min(gap, period - gap)

@@ -1,0 +1,80 @@
+"""Why a follower loses contact: reversals of the contour, and necks that a roller does not pass."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from camgeo.curve.curvature import least_radius, reversals
+from camgeo.curve.parallel import Parallel
+
+if TYPE_CHECKING:
+    from camgeo.curve.curvature import Reversal
+    from camgeo.curve.curve import Curve
+    from camgeo.curve.undercut.bottleneck import Neck, OpenNeckError
+
+
+class UndercutError(ValueError):
+    """No single contour is left by trimming; `parameter` says where the reason lies, None if all round.
+
+    `free_at` is the value that would be free of undercut, as `Undercut.free_at`, None where it was not asked for.
+    """
+
+    def __init__(self, message: str, parameter: float | None = None, free_at: float | None = None) -> None:
+        super().__init__(message)
+        self.parameter, self.free_at = parameter, free_at
+
+
+@dataclass(frozen=True)
+class Causes:
+    """Why contact is lost: reversals of the contour, and the narrowest necks of a pitch curve.
+
+    `open` is set where there is undercut, but whether there are narrower necks could not be decided.
+    """
+
+    reversals: tuple[Reversal, ...]
+    necks: tuple[Neck, ...]
+    open: OpenNeckError | None = None
+
+    @property
+    def none(self) -> bool:
+        """Whether the contour is free of undercut, and has no arc of radius 0 that ought to be a corner."""
+        return not self.reversals and not self.necks
+
+
+def follower_radius(curve: Curve) -> float:
+    """Radius of the roller whose contour this is, mm, infinite for a flat face; ValueError for an outer parallel."""
+    if not isinstance(curve.shape, Parallel):
+        return math.inf
+    if not curve.shape.distance > 0.0:
+        raise ValueError(f"a roller's contour lies inside its pitch curve, not {-curve.shape.distance:g} mm outside")
+    return curve.shape.distance
+
+
+def causes(curve: Curve) -> Causes:
+    """Find reversals and the narrowest necks a roller does not pass; what is proved: `reversals`, `narrowest_necks`.
+
+    Raises ValueError for a curve that a flat face cannot work, as its tangent turns back; CurveError where it is open
+    whether there is any undercut.
+    """
+    radius = follower_radius(curve)
+    found = reversals(curve)
+    if math.isinf(radius):
+        hollow = curve.cells.rows[3] < 0.0
+        if hollow.any():
+            raise ValueError(f"a flat face cannot touch the hollow near parameter {curve.cells.low[hollow][0]:.9g}")
+        return Causes(found, ())
+    from camgeo.curve.undercut.bottleneck import OpenNeckError, narrowest_necks, neck_from
+    from camgeo.curve.undercut.pairs import Pitch
+
+    below = radius if not found else min(radius, radius + least_radius(curve)[0])
+    pitch = Pitch.of(curve)
+    try:
+        return Causes(found, narrowest_necks(pitch, below))
+    except OpenNeckError as error:
+        # a pair of points that the roller does not pass is undercut, whatever else there is
+        neck = neck_from(pitch, *error.pair) if error.seen else None
+        if not found and (neck is None or not neck.half < radius):
+            raise
+        return Causes(found, () if neck is None or not neck.half < radius else (neck,), error)

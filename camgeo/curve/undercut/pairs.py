@@ -1,0 +1,184 @@
+"""Pairs of points of a pitch curve: what is proved of the disc that touches it at one and passes through the other.
+
+Over a box, a pair of parameter intervals, all is told about its centre, with what the bounds of speed and turn allow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.curvature import ROUNDING
+from camgeo.curve.curve import Curve
+from camgeo.curve.parallel import Parallel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array
+
+
+@dataclass(frozen=True)
+class Pitch:
+    """The path of a roller's centre, as a whole curve."""
+
+    curve: Curve
+
+    @staticmethod
+    def of(contour: Curve) -> Pitch:
+        """Pitch curve of a roller's whole contour, a `Parallel`. Its bounds are its own: the contour's say less."""
+        if not isinstance(contour.shape, Parallel):
+            raise TypeError("only a roller's contour has a pitch curve")
+        return Pitch(Curve(contour.shape.base, contour.runs))
+
+    def at(self, t: Array) -> Points:
+        """Points at parameters t (n,)."""
+        f = self.curve.sample(t)
+        return Points(f.point, f.tangent, f.normal, f.speed, f.turn, f.speed_slope, f.turn_slope)
+
+    def bounds(self, low: Array, high: Array, points: Points, t: Array) -> Bends:
+        """Bounds over intervals [low, high] (n,), each about a point at t (n,) of its own."""
+        b = self.curve.cells.over(low, high)
+        far = np.maximum(t - low, high - t)
+        # breaks inside an interval spoil Taylor's series about the point, not the bounds of the cells
+        speed_room = np.abs(points.speed_slope) * far + 0.5 * b.speed_bend * far**2
+        turn_room = np.abs(points.turn_slope) * far + 0.5 * b.turn_bend * far**2
+        broken = self._broken(low, high)
+        speed_room[broken], turn_room[broken] = np.inf, np.inf
+        least = np.maximum(b.speed_low, points.speed - speed_room)
+        most = np.minimum(b.speed_high, points.speed + speed_room)
+        turn_low = np.maximum(b.turn_low, points.turn - turn_room)
+        turn_high = np.minimum(b.turn_high, points.turn + turn_room)
+        # where the speed is not proved to be above 0, nothing is known of the curvature
+        least = np.where(least > 0.0, least, np.nan)
+        bend_low = np.minimum(turn_low / least, turn_low / most)
+        bend_high = np.maximum(turn_high / least, turn_high / most)
+        return Bends(most, bend_low, bend_high)
+
+    def _broken(self, low: Array, high: Array) -> NDArray[np.bool_]:
+        """Whether a break lies inside the intervals (n,)."""
+        breaks = np.array(self.curve.runs[0].breaks)
+        inside: NDArray[np.bool_] = np.searchsorted(breaks, high) > np.searchsorted(breaks, low, side="right")
+        return inside
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points, tangents, outward normals (n, 2); speed, turn and their derivatives (n,) of the pitch curve."""
+
+    point: Array
+    tangent: Array
+    normal: Array
+    speed: Array
+    turn: Array
+    speed_slope: Array
+    turn_slope: Array
+
+    def part(self, chosen: slice) -> Points:
+        """Give a slice of the points."""
+        return Points(
+            self.point[chosen],
+            self.tangent[chosen],
+            self.normal[chosen],
+            self.speed[chosen],
+            self.turn[chosen],
+            self.speed_slope[chosen],
+            self.turn_slope[chosen],
+        )
+
+
+@dataclass(frozen=True)
+class Bends:
+    """Greatest speed and bounds of the curvature over intervals (n,), nan where there is none."""
+
+    speed: Array
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """Pairs of parameter intervals: low and high ends (n, 2)."""
+
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """What is known of the pairs of n boxes about their centres (n, 2); rows are one point's and the other's.
+
+    `radius` (2, n) holds what R at the centres is not above, `reach` (2, n) how far along the curve a box extends to
+    either side, `doubt` (2, n) by how much that and the turning there move the pair against each other, `chord` (n,) a
+    lower bound of |x - y|, `bowl` (n,) the least eigenvalue of the Hessian of |x - y|^2 / 2 in arc length.
+    """
+
+    centre: Array
+    radius: Array
+    reach: Array
+    doubt: Array
+    chord: Array
+    bowl: Array
+    square: Array
+    along: Array
+    along_room: Array
+    across: Array
+    bend_low: Array
+    bend_high: Array
+    slanted: Array
+
+    @staticmethod
+    def of(pitch: Pitch, boxes: Boxes) -> Pairs:
+        """Work out what is known of the pairs of boxes."""
+        count = boxes.low.shape[0]
+        centre = 0.5 * (boxes.low + boxes.high)
+        both = pitch.at(centre.T.ravel())
+        x, y = both.part(slice(None, count)), both.part(slice(count, None))
+        bends = pitch.bounds(boxes.low.T.ravel(), boxes.high.T.ravel(), both, centre.T.ravel())
+        bend_low, bend_high = bends.low.reshape(2, count), bends.high.reshape(2, count)
+        reach = 0.5 * bends.speed.reshape(2, count) * (boxes.high - boxes.low).T
+        d = x.point - y.point
+        square = np.sum(d * d, axis=1)
+        length = np.sqrt(square)
+        room = reach.sum(axis=0)
+        along = np.stack([np.sum(d * x.tangent, axis=1), -np.sum(d * y.tangent, axis=1)])
+        across = np.stack([np.sum(d * x.normal, axis=1), -np.sum(d * y.normal, axis=1)])
+        # how far these may change over the box: d moves by `room`, the frames turn by bend * reach
+        turned = np.maximum(np.abs(bend_low), np.abs(bend_high)) * reach
+        doubt = np.nan_to_num(reach + turned * length, nan=np.inf)
+        along_room = room + turned * (length + room)
+        across_room = room + turned * (np.abs(along) + along_room)
+        radius = np.full(across.shape, np.inf)
+        sure = across - ROUNDING * pitch.curve.size  # points of a fold differ by less than they are rounded
+        np.divide(square, 2.0 * sure, out=radius, where=sure > 0.0)
+        # Hessian of |d|^2 / 2 in arc length: [[1 - k across, -T.T'], [-T.T', 1 - k' across']]
+        diagonal = 1.0 - np.maximum(
+            np.maximum(bend_low * (across - across_room), bend_low * (across + across_room)),
+            np.maximum(bend_high * (across - across_room), bend_high * (across + across_room)),
+        )
+        mixed = np.minimum(np.abs(np.sum(x.tangent * y.tangent, axis=1)) + turned.sum(axis=0), 1.0)
+        bowl = 0.5 * (diagonal[0] + diagonal[1]) - np.hypot(0.5 * (diagonal[0] - diagonal[1]), mixed)
+        slope = np.sum(along**2, axis=0)
+        least = square - 2.0 * np.sum(np.abs(along) * reach, axis=0) + np.minimum(bowl, 0.0) * np.sum(reach**2, axis=0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            least = np.where(bowl > 0.0, np.maximum(least, square - slope / bowl), least)
+        chord = np.maximum(length - room, np.sqrt(np.fmax(least, 0.0)))
+        slanted = np.abs(np.sum(x.normal * y.tangent, axis=1)) + turned.sum(axis=0)
+        return Pairs(
+            centre, radius, reach, doubt, chord, bowl, square, along, along_room, across, bend_low, bend_high, slanted
+        )
+
+    def free(self, aim: float) -> NDArray[np.bool_]:
+        """Whether R is proved to be at least `aim` over each box (n,)."""
+        # G = |d|^2 - 2 v across is above 0 where R > v; its derivatives are 2 (1 - v k) along, and for the other point
+        # 2 (along' - v N.T')
+        clear = np.ones(self.square.size, dtype=bool)
+        for i in (0, 1):
+            other = 1 - i
+            steep = np.maximum(np.abs(1.0 - aim * self.bend_low[i]), np.abs(1.0 - aim * self.bend_high[i]))
+            own = 2.0 * steep * (np.abs(self.along[i]) + self.along_room[i]) * self.reach[i]
+            pull = np.abs(self.along[other]) + self.along_room[other] + aim * self.slanted
+            clear &= self.square - 2.0 * aim * self.across[i] > own + 2.0 * pull * self.reach[other]
+        return clear | (self.chord >= 2.0 * aim)

@@ -1,0 +1,422 @@
+"""The contour that is left where a profile undercuts: what every position of the follower leaves standing.
+
+A point q of the metal stands if no contact position cuts it away. For a contour point z(s) with the outward normal N
+and a follower of curvature k (a roller of radius e: k = 1/e; a flat face: k = 0) that is
+
+    g(q, s) = k/2 |q - z|^2 - (q - z).N >= 0        for every s,
+
+the disc about z + N/k, or the half plane beyond the tangent. Along s, ``dg/ds = -(k sigma + omega) (q - z).T``. What
+stands is bounded by stretches of the contour and by corners in which the contour crosses itself.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.curvature import ROUNDING, roots
+from camgeo.curve.curve import SHIFT, Curve, Run
+from camgeo.curve.undercut.causes import UndercutError, causes, follower_radius
+from camgeo.curve.undercut.self_intersection import SHORT, all_breaks, displacement, in_parts, seen_crossings, settled
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from camgeo.curve.curve import Frame
+    from camgeo.curve.undercut.causes import Causes
+    from kin.numeric.arrays import Array
+
+NODES = 480  # of the polygon on which crossings are first seen
+MOST_TANGLED = 40  # stretches that run backwards whose crossings are looked for all over: time grows with their square
+ROUNDS = 3  # of seeing them, each with twice the nodes
+NEAR_BY = 0.03  # of a reversal's length: the first node beside it; the following ones grow
+GROWTH = 1.35
+STARTS = (0.366, 0.05, 1.0)  # a swallowtail reaches (sqrt 3 - 1)/2 of its reversal beyond it, where sigma is a parabola
+ZOOMS = 4
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A corner of what stands: the contour is left at one parameter and taken up at another, both at `point` (2,)."""
+
+    leave: float
+    enter: float
+    point: Array
+
+
+@dataclass(frozen=True)
+class Lost:
+    """Parameters `start` to `end` at which the follower touches nothing, with the corners at both ends (m, 2).
+
+    m is 1 where both ends meet, 2 at a neck, 0 where nothing at all is left. `depth` is how far the follower hangs
+    free at the worst, in mm along its normal, infinite where nothing is left.
+    """
+
+    start: float
+    end: float
+    corners: Array
+    depth: float
+
+
+@dataclass(frozen=True)
+class Remains:
+    """What stands: lost stretches in order, corners between those that are kept, and the number of pieces of metal."""
+
+    lost: tuple[Lost, ...]
+    corners: tuple[Corner, ...]
+    pieces: int
+
+
+def trimmed(curve: Curve) -> Curve:
+    """Contour that is left of a whole curve where it undercuts: several runs that meet in corners, round the shaft.
+
+    The curve itself if it does not undercut. Raises UndercutError where nothing is left, the metal falls into pieces,
+    the shaft is not inside, or the crossings cannot be told apart.
+    """
+    why = causes(curve)
+    if why.none:
+        return curve
+    what = remains(curve, why)
+    where = next((0.5 * (r.start + r.end) for r in why.reversals), None)
+    if not what.corners:
+        raise UndercutError("the undercut leaves nothing of the contour", where)
+    if what.pieces > 1:
+        middle = 0.5 * (what.lost[0].start + what.lost[0].end)
+        raise UndercutError(f"the undercut parts the metal into {what.pieces} pieces", middle)
+    result = Curve(curve.shape, kept_runs(curve, what))
+    if not _encloses_shaft(result):
+        raise UndercutError("the shaft lies outside of what the undercut leaves", where)
+    return result
+
+
+def remains(curve: Curve, why: Causes) -> Remains:
+    """Find what is left of a curve that undercuts. Raises UndercutError where crossings cannot be told apart.
+
+    Every corner is checked against all contact positions. Where the pitch curve is convex, and for a flat face, that
+    settles the whole contour: kept stretches run forward and turn once round, so they bound the body of the half planes
+    beyond them, and no face between two of them cuts into it. A hollow pitch curve is checked at the nodes as well,
+    a fine grid, without proof for what lies between; a missed cut shows when the file is judged.
+    """
+    contact = _Contact.of(curve)
+    plain = _swallowtails(curve, contact, why)
+    if plain is not None:
+        return plain
+    backwards = sum(not r.still for r in why.reversals)
+    if backwards > MOST_TANGLED * curve.shape.repeats:
+        message = (
+            f"{backwards} stretches of the contour run backwards into each other; up to {MOST_TANGLED} are told apart"
+        )
+        raise UndercutError(message, why.reversals[0].start)
+    for turn in range(ROUNDS):
+        nodes = _nodes(curve, why, NODES << turn)
+        on = curve.sample(nodes)
+        own = int(np.searchsorted(nodes, _first_part(curve)))
+        guesses = np.concatenate([seen_crossings(nodes, on.point, curve.shape.period, own), _guesses(curve, why)])
+        corners = contact.standing(_crossed(curve, settled(curve, guesses, contact.size)), nodes, on)
+        corners = _turned(curve, corners) + contact.standing(_still_corners(curve, why), nodes, on)
+        stretches = _lost_stretches(curve, corners)
+        if stretches is not None and _explained(stretches, contact, why, nodes, on):
+            return _with_depths(curve, contact, corners, stretches)
+    where = why.reversals[0].start if why.reversals else why.necks[0].first
+    raise UndercutError(f"the crossings of the undercut contour near parameter {where:.9g} cannot be told apart", where)
+
+
+def _swallowtails(curve: Curve, contact: _Contact, why: Causes) -> Remains | None:
+    """What is left where each reversal is cut off by a crossing of its own, apart from all others; else None.
+
+    Without a hollow in the pitch curve that settles it: what is kept runs forward and turns once round in left corners,
+    so it bounds a convex body. Many small swallowtails, equal but for rounding, are told apart by this alone.
+    """
+    convex = bool((curve.cells.rows[2] >= 0.0).all())
+    if not convex or why.necks or not why.reversals or any(r.still for r in why.reversals):
+        return None
+    period = curve.shape.period
+    starts = np.array([r.start for r in why.reversals])
+    ends = np.array([r.end for r in why.reversals])
+    found = np.full((len(starts), 2), np.nan)
+    for share in STARTS:
+        open_ = np.flatnonzero(np.isnan(found[:, 0]))
+        room = share * (ends - starts)[open_]
+        pairs = settled(curve, np.column_stack([starts[open_] - room, ends[open_] + room]), contact.size)
+        of = np.searchsorted(starts, pairs[:, 0], side="right")  # the reversal after the first of the two
+        for (low, high), number in zip(pairs.tolist(), of.tolist(), strict=True):
+            shift, i = (period, 0) if number == len(starts) else (0.0, number)
+            if low - shift < starts[i] and ends[i] < high - shift and np.isnan(found[i, 0]):
+                found[i] = low - shift, high - shift
+    following = np.append(found[1:, 0], found[0, 0] + period)
+    if np.isnan(found).any() or not (found[:, 1] < following).all():
+        return None
+    at, to = curve.sample(found[:, 0], -1), curve.sample(found[:, 1])
+    if not (at.tangent[:, 0] * to.tangent[:, 1] - at.tangent[:, 1] * to.tangent[:, 0] > 0.0).all():
+        return None
+    middle = 0.5 * (at.point + to.point)
+    corners = [Corner(low, high, point) for (low, high), point in zip(found.tolist(), middle, strict=True)]
+    base = curve.runs[0].low
+    turns = np.floor((found[:, 0] - base) / period) * period
+    stretches = sorted(
+        ((i, i, low, high) for i, (low, high) in enumerate((found - turns[:, None]).tolist())), key=lambda s: s[2]
+    )
+    return _with_depths(curve, contact, corners, stretches)
+
+
+@dataclass(frozen=True)
+class _Contact:
+    """The follower's curvature k and the curve's size, mm, which sets what rounding may hide."""
+
+    curve: Curve
+    k: float
+    size: float
+
+    @staticmethod
+    def of(curve: Curve) -> _Contact:
+        radius = follower_radius(curve)
+        at = curve.sample(curve.cells.low)
+        return _Contact(curve, 1.0 / radius, float(max(np.abs(at.point).max(), np.abs(at.speed).max())))
+
+    @property
+    def tolerance(self) -> float:
+        return 4.0 * ROUNDING * self.size
+
+    def clearance(self, apart: Array, normal: Array) -> Array:
+        """Give g from q - z (..., 2) and N (..., 2)."""
+        g: Array = 0.5 * self.k * np.sum(apart * apart, axis=-1) - np.sum(apart * normal, axis=-1)
+        return g
+
+    def cut(self, on: Frame, own: int) -> NDArray[np.bool_]:
+        """Whether the first `own` contour points (n,) are cut away by contact at any of them (own,)."""
+        least = np.empty(own)
+        for rows in in_parts(own, len(on.point)):
+            least[rows] = self.clearance(on.point[rows, None] - on.point[None], on.normal[None]).min(axis=1)
+        return np.asarray(least < -self.tolerance)
+
+    def standing(self, corners: list[Corner], nodes: Array, on: Frame) -> list[Corner]:
+        """Corners that no contact position cuts away; every least value of g between nodes is found."""
+        if not corners:
+            return []
+        points = np.array([c.point for c in corners])
+        apart = points[:, None] - on.point[None]
+        along = np.sum(apart * on.tangent[None], axis=2)
+        cut = np.asarray(self.clearance(apart, on.normal[None]).min(axis=1) < -self.tolerance)
+        which, where = np.nonzero((along > 0.0) & (np.roll(along, -1, axis=1) < 0.0) & ~cut[:, None])
+        period = self.curve.shape.period
+        after = np.append(nodes[1:], nodes[0] + period)
+
+        def facing(t: Array) -> Array:
+            at = self.curve.sample(t)
+            return np.asarray(np.sum((points[which] - at.point) * at.tangent, axis=1))
+
+        values = along[which, where], along[which, (where + 1) % nodes.size]
+        at = self.curve.sample(roots(facing, nodes[where], after[where], values, 1e-9))
+        low = self.clearance(points[which] - at.point, at.normal) < -self.tolerance
+        cut[which[low]] = True
+        return [c for c, gone in zip(corners, cut.tolist(), strict=True) if not gone]
+
+
+def _nodes(curve: Curve, why: Causes, count: int) -> Array:
+    """Parameters over one period (n,), close together beside reversals and necks."""
+    run, period = curve.runs[0], curve.shape.period
+    coarse = period / count
+    parts = [np.linspace(run.low, run.high, count + 1)[:-1], np.array(run.breaks)]
+
+    def beside(at: float, first: float, side: int) -> Array:
+        steps = math.ceil(math.log(max(2.0 * coarse / first, 1.0)) / math.log(GROWTH)) + 1
+        return np.asarray(at + side * first * GROWTH ** np.arange(steps, dtype=np.float64))
+
+    for reversal in why.reversals:
+        width = reversal.end - reversal.start
+        parts.append(np.linspace(reversal.start, reversal.end, 9))
+        first = max(NEAR_BY * width, 1e-13 * period)
+        parts += [beside(reversal.start, first, -1), beside(reversal.end, first, 1)]
+    for neck in why.necks:
+        for end in (neck.first, neck.second):
+            parts += [np.array([end]), beside(end, 1e-6 * period, -1), beside(end, 1e-6 * period, 1)]
+    t = np.sort(run.low + np.mod(np.concatenate(parts) - run.low, period))
+    apart: Array = t[np.append(True, np.diff(t) > 1e-14 * period)]
+    return apart
+
+
+def _first_part(curve: Curve) -> float:
+    """Where the first of the parts ends that the curve repeats, and a hair beyond."""
+    part: float = curve.shape.period / curve.shape.repeats
+    return curve.runs[0].low + part * (1.0 + SHIFT)
+
+
+def _turned(curve: Curve, corners: list[Corner]) -> list[Corner]:
+    """Corners, among them all that begin in the curve's first part, and their images in the other parts."""
+    if curve.shape.repeats == 1 or not corners:
+        return corners
+    turns = curve.shape.period / curve.shape.repeats * np.arange(curve.shape.repeats)
+    pairs = np.array([(c.leave, c.enter) for c in corners])
+    return _crossed(curve, (turns[:, None, None] + pairs).reshape(-1, 2))
+
+
+def _guesses(curve: Curve, why: Causes) -> Array:
+    """Where crossings lie if a reversal's speed is a parabola, a neck's two sides are circles; (m, 2).
+
+    Of those that a turn of the curve leads into each other one at least is given.
+    """
+    last = _first_part(curve)
+    out = [
+        (r.start - share * (r.end - r.start), r.end + share * (r.end - r.start))
+        for r in why.reversals
+        if not r.still and r.start <= last
+        for share in STARTS
+    ]
+    for neck in why.necks:
+        if curve.runs[0].low + (min(neck.first, neck.second) - curve.runs[0].low) % curve.shape.period > last:
+            continue
+        at = curve.sample(np.array([neck.first, neck.second]))
+        opening = -float(at.curvature.sum())
+        if opening > 0.0:
+            reach = math.sqrt(4.0 * max(follower_radius(curve) - neck.half, 0.0) / opening)
+            t, s = reach / at.speed
+            out += [(neck.first - t, neck.second + s), (neck.first + t, neck.second - s)]
+    return np.array(out).reshape(-1, 2)
+
+
+def _crossed(curve: Curve, pairs: Array) -> list[Corner]:
+    """Corners at crossings (m, 2), each once; the contour turns left in them."""
+    at, to = curve.sample(pairs[:, 0], -1), curve.sample(pairs[:, 1])
+    left = at.tangent[:, 0] * to.tangent[:, 1] - at.tangent[:, 1] * to.tangent[:, 0] > 0.0
+    kept: list[Corner] = []
+    period = curve.shape.period
+    for i, (t, s) in enumerate(pairs.tolist()):
+        leave, enter = (t, s) if left[i] else (s, t)
+        # for a swallowtail that is lost in rounding, guesses settle a little apart
+        near = 1e-2 * _around(s - t, period)
+        if not any(_around(leave - c.leave, period) < near and _around(enter - c.enter, period) < near for c in kept):
+            kept.append(Corner(leave, enter, 0.5 * (at.point[i] + to.point[i])))
+    return kept
+
+
+def _still_corners(curve: Curve, why: Causes) -> list[Corner]:
+    """Corners at arcs of radius 0."""
+    still = [r for r in why.reversals if r.still]
+    return [Corner(r.start, r.end, curve.sample(np.array([r.start])).point[0]) for r in still]
+
+
+def _around(gap: float, period: float) -> float:
+    gap = abs(gap) % period
+    return min(gap, period - gap)
+
+
+def _lost_stretches(curve: Curve, corners: list[Corner]) -> list[tuple[int, int, float, float]] | None:
+    """Pair each leaving with the next entering, corners' numbers and parameters; None if they do not take turns."""
+    low, period = curve.runs[0].low, curve.shape.period
+    if not corners:
+        return []
+    events = sorted(
+        [(low + (c.leave - low) % period, True, i) for i, c in enumerate(corners)]
+        + [(low + (c.enter - low) % period, False, i) for i, c in enumerate(corners)]
+    )
+    if events[0][1] is False:
+        at, _, i = events.pop(0)
+        events.append((at + period, False, i))
+    pairs = list(zip(events[::2], events[1::2], strict=True))
+    if not all(start[1] and not end[1] for start, end in pairs):
+        return None
+    return [(start[2], end[2], start[0], end[0]) for start, end in pairs]
+
+
+def _explained(
+    stretches: list[tuple[int, int, float, float]], contact: _Contact, why: Causes, nodes: Array, on: Frame
+) -> bool:
+    """Whether every cause and every node that is cut away lies within a lost stretch, and nothing else is lost."""
+    period = contact.curve.shape.period
+    own = int(np.searchsorted(nodes, _first_part(contact.curve)))
+    cut = contact.cut(on, own)
+    if not stretches:
+        # a node where the contour runs backwards may be cut by less than rounding: such a one has left corners
+        return bool((cut | (on.speed[:own] < 0.0)).all())
+    causes_at = [0.5 * (r.start + r.end) for r in why.reversals] + [n.first for n in why.necks]
+    doubtful = np.concatenate([nodes[:own][cut], np.array(causes_at)])
+    inside = np.zeros(doubtful.size, dtype=bool)
+    for _, _, start, end in stretches:
+        room = 1e-9 * period
+        inside |= (doubtful - (start - room)) % period <= end - start + 2.0 * room
+    return bool(inside.all())
+
+
+def _with_depths(
+    curve: Curve, contact: _Contact, corners: list[Corner], stretches: list[tuple[int, int, float, float]]
+) -> Remains:
+    if not stretches:
+        low, period = curve.runs[0].low, curve.shape.period
+        return Remains((Lost(low, low + period, np.empty((0, 2)), math.inf),), (), 0)
+    lost: list[Lost] = []
+    own = len(stretches) // curve.shape.repeats if len(stretches) % curve.shape.repeats == 0 else len(stretches)
+    for first, last, start, end in stretches:
+        points = np.array([corners[i].point for i in sorted({first, last})])
+        # the curve's parts are alike: so are the stretches lost from them
+        alike = len(lost) >= own
+        depth = lost[len(lost) - own].depth if alike else _depth(curve, contact, points, start, end)
+        lost.append(Lost(start, end, points, depth))
+    # the corner in which the run after each corner ends
+    follows = {now[1]: then[0] for now, then in zip(stretches, stretches[1:] + stretches[:1], strict=True)}
+    unseen, pieces = set(follows), 0
+    while unseen:
+        pieces += 1
+        at = next(iter(unseen))
+        while at in unseen:
+            unseen.remove(at)
+            at = follows[at]
+    return Remains(tuple(lost), tuple(corners), pieces)
+
+
+def _depth(curve: Curve, contact: _Contact, points: Array, start: float, end: float) -> float:
+    """How far the follower stays from the nearest of the corners (m, 2) at the worst between two parameters, mm."""
+    low, high, best = start, end, 0.0
+    for _ in range(ZOOMS):
+        t = np.linspace(low, high, 66)[1:-1]
+        at = curve.sample(t)
+        if points.shape[0] == 1 and end - start <= SHORT * curve.shape.period:
+            apart = -displacement(curve, np.full(t.size, start), t)[:, None]
+        else:
+            apart = points[None] - at.point[:, None]
+        g = contact.clearance(apart, at.normal[:, None])
+        # the distance to the follower whose contact point is missed by g
+        free = (2.0 * g / (1.0 + np.sqrt(np.maximum(1.0 + 2.0 * contact.k * g, 0.0)))).min(axis=1)
+        worst = int(np.argmax(free))
+        best = max(best, float(free[worst]))
+        step = t[1] - t[0]
+        low, high = max(start, t[worst] - step), min(end, t[worst] + step)
+    return best
+
+
+def kept_runs(curve: Curve, what: Remains) -> tuple[Run, ...]:
+    """Kept runs in order, from the end of each lost stretch to the beginning of the next."""
+    period = curve.shape.period
+    runs = []
+    for lost, following in zip(what.lost, what.lost[1:] + what.lost[:1], strict=True):
+        low = lost.end
+        high = low + (following.start - low) % period
+        inside = all_breaks(curve, low, high)
+        # a break within rounding of a corner is the corner
+        near = 64.0 * np.spacing(max(abs(low), abs(high)))
+        for b in inside.tolist():
+            low, high = (b if b - low <= near else low), (b if high - b <= near else high)
+        inside = inside[(inside > low) & (inside < high)]
+        if high - low <= 1e-12 * period:
+            raise UndercutError(f"what is left of the contour near parameter {low:.9g} is lost in rounding", low)
+        runs.append(Run(low, high, tuple(inside.tolist()), closed=False))
+    shift = period if runs[0].low >= curve.runs[0].low + period else 0.0
+    return tuple(sorted((_moved(run, -shift) for run in runs), key=lambda run: run.low))
+
+
+def _moved(run: Run, by: float) -> Run:
+    return Run(run.low + by, run.high + by, tuple(b + by for b in run.breaks), run.closed) if by else run
+
+
+def _encloses_shaft(curve: Curve) -> bool:
+    """Whether the chain of runs goes round the origin once, counter-clockwise."""
+    points = []
+    for run in curve.runs:
+        count = max(8, math.ceil(NODES * (run.high - run.low) / curve.shape.period))
+        points.append(curve.sample(np.linspace(run.low, run.high, count + 1)[:-1]).point)
+    x, y = np.concatenate(points).T
+    after_x, after_y = np.roll(x, -1), np.roll(y, -1)
+    angle = np.arctan2(x * after_y - y * after_x, x * after_x + y * after_y)
+    return round(float(angle.sum()) / (2.0 * math.pi)) == 1

@@ -1,0 +1,174 @@
+"""A part made different from the nominal one: edges moved for a kerf or a clearance, and scaled for shrinkage.
+
+Moved is the intent: a flat face farther out, a smaller roller on the same pitch curve, faces of a pair beside their
+pivot's lines. The contour follows from it by the same formulas and is proved by the same proofs; openings are moved the
+other way, as exact parallels. So what kin is told differs from the nominal part by a number, and nothing is sampled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from camgeo.curve.curvature import least_radius
+from camgeo.curve.curve import Curve
+from camgeo.curve.parallel import Parallel
+from camgeo.fit.pieces import ArcSpline
+from camgeo.recipe.cam import ConstantBreadthCam, DoubleRollerCam, FlatPairCam
+from camgeo.synthesis.design import sound
+from camgeo.synthesis.part.shapes import EXACT
+from camgeo.synthesis.profile import Profile, profile_of
+from kin.contour.contour import ARC
+from kin.contour.offset import TightError, chain_of, parallel
+
+if TYPE_CHECKING:
+    from camgeo.recipe.cam import Cam
+    from camgeo.recipe.machining import Compensation
+    from camgeo.recipe.part import Part
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from camgeo.synthesis.part.body import Body
+    from camgeo.synthesis.part.shapes import Opening
+    from kin.judge.check import Check
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+
+FINE = 1e-9  # mm: pieces of an opening's parallel no longer than this are left out
+
+
+@dataclass(frozen=True)
+class Compensated:
+    """A recipe and a design as a file shows them, and the checks of its contour that fail.
+
+    The linkage is not driven by such a part: what is cut or shrunk afterwards is.
+    """
+
+    recipe: Recipe
+    design: Design
+    checks: tuple[Check, ...]
+
+
+class NothingLeftError(ValueError):
+    """An opening that is no wider than what is taken from it."""
+
+
+def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) -> Compensated:
+    """Make a part different from the nominal one; its contour is None where a check fails.
+
+    Raises RecipeErrors at `field`, that of the file, where a roller or an opening would be nothing, CurveError where
+    the contour cannot be proved.
+    """
+    out, scale = by.out, by.scale
+    cam = recipe.cam
+    if isinstance(cam, DoubleRollerCam) and not cam.roller_radius > out:
+        what = f"the metal grows by {out / recipe.mm:.6g}, the roller's radius is {cam.roller_radius / recipe.mm:.6g}"
+        raise recipe.error(field, what, None, "give less")
+    body = None
+    try:
+        if design.body is not None:
+            body = _body(design.body, out, scale)
+        part = _part(recipe.part, out, scale)
+    except (TightError, NothingLeftError) as error:
+        raise recipe.error(field, f"an opening cannot be made smaller by {out / recipe.mm:.6g}: {error}") from error
+    intent: Lift | Transmission
+    checks: list[Check] = []
+    if isinstance(cam, DoubleRollerCam | FlatPairCam):
+        intent = cast("Transmission", design.intent).scaled(scale)
+    else:
+        intent = cast("Lift", design.intent).moved(out, scale)
+    name = f"{recipe.name}, {by.told(recipe.mm)}"
+    made = replace(recipe, name=name, cam=_cam(cam, out, scale), part=part)
+    face = scale * out if isinstance(cam, FlatPairCam) else 0.0
+    profile = profile_of(made.cam, intent)
+    if face:
+        curve = Curve.whole(Parallel(profile.curve.shape, -face))
+        profile = Profile(profile.base, curve, 0.0)
+    if face > 0.0:  # outside a convex contour nothing undercuts
+        contour = profile.curve if design.contour is not None else None
+    else:
+        checks, contour = sound(made, profile, intent)
+    if body is not None and body.chamfer is not None and contour is not None:
+        body = replace(body, least_radius=least_radius(contour)[0])
+    breadth = None if design.yoke_breadth is None else scale * (design.yoke_breadth + 2.0 * out)
+    changed = replace(
+        design,
+        intent=intent,
+        profile=profile,
+        contour=contour,
+        yoke_breadth=breadth,
+        trimmed=contour is not None and not contour.closed,
+        driven=None,
+        body=body,
+        face=face,
+    )
+    return Compensated(made, changed, tuple(check for check in checks if not check.ok))
+
+
+def _cam(cam: Cam, out: float, scale: float) -> Cam:
+    """The recipe's cam as far as its own lengths are told in a drawing."""
+    match cam:
+        case DoubleRollerCam():
+            return replace(cam, arm=scale * cam.arm, roller_radius=scale * (cam.roller_radius - out))
+        case FlatPairCam():
+            return replace(cam, arm=scale * cam.arm)
+        case ConstantBreadthCam():
+            return replace(cam, base_radius=scale * (cam.base_radius + out))
+        case _:
+            return cam
+
+
+def _part(part: Part, out: float, scale: float) -> Part:
+    """Lengths of the part that the files are told directly."""
+    hub = part.hub
+    if hub is not None:
+        hub = replace(hub, diameter=scale * (hub.diameter + 2.0 * out), height=scale * hub.height)
+    return replace(
+        part,
+        bore=None if part.bore is None else _across(part.bore, out, scale),
+        thickness=None if part.thickness is None else scale * part.thickness,
+        hub=hub,
+    )
+
+
+def _across(width: float, out: float, scale: float) -> float:
+    left = width - 2.0 * out
+    if not left > 0.0:
+        raise NothingLeftError(f"it is {width:.6g} mm across")
+    return scale * left
+
+
+def _body(body: Body, out: float, scale: float) -> Body:
+    hub, screw = body.hub, body.screw
+    if hub is not None:
+        hub = replace(hub, diameter=scale * (hub.diameter + 2.0 * out), height=scale * hub.height)
+    if screw is not None:
+        height = None if screw.height is None else scale * screw.height
+        screw = replace(screw, diameter=_across(screw.diameter, out, scale), height=height)
+    return replace(
+        body,
+        thickness=None if body.thickness is None else scale * body.thickness,
+        openings=tuple(_opening(opening, out, scale) for opening in body.openings),
+        bore=None if body.bore is None else _across(body.bore, out, scale),
+        hub=hub,
+        screw=screw,
+        chamfer=None if body.chamfer is None else scale * body.chamfer,
+    )
+
+
+def _opening(opening: Opening, out: float, scale: float) -> Opening:
+    """An opening made smaller by `out` all round, and scaled."""
+    depth = None if opening.depth is None else scale * opening.depth
+    if opening.circle is not None:
+        (x, y), radius = opening.circle
+        radius = 0.5 * _across(2.0 * radius, out, scale)
+        points = np.array([[scale * x + radius, scale * y], [scale * x - radius, scale * y]])
+        outline = ArcSpline(points, np.ones(2), EXACT)
+        return replace(opening, outline=outline, circle=((scale * x, scale * y), radius), depth=depth)
+    outline = opening.outline
+    if out:
+        edge = parallel(chain_of(outline.points, outline.bulges), out, FINE)
+        bulges = np.where(edge.kind == ARC, np.tan(0.25 * edge.sweep), 0.0)
+        outline = ArcSpline(edge.start.copy(), bulges, EXACT)
+    return replace(opening, outline=outline.scaled(scale), depth=depth)

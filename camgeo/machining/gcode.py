@@ -1,0 +1,146 @@
+"""Programs for milling machines: plain RS-274 with arcs by their centres, nothing a controller may read in two ways.
+
+Absolute places, feeds by the minute, no cutter compensation, no cycles, no variables. Every number has its decimal
+point and as many places as `places` says; centres are worked out from the ends as they are written.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from camgeo.machining.toolpath import Pass
+    from kin.numeric.arrays import Array
+
+SHARE = 0.05  # of the tolerance that is left to the rounding of numbers
+KEPT = 2e-3  # of a length that a place is told by: the last place is no more
+FIGURES = 6  # significant ones, at least, of a feed
+LEAST_PLACES = 3
+STRAIGHT = 0.25  # of the last place: an arc no higher than this over its chord is written as a line
+_COMMENT = 200  # characters
+
+
+@dataclass(frozen=True)
+class Cutting:
+    """What the machine is told besides the path: mm, mm a minute, turns a minute."""
+
+    feed: float
+    plunge: float
+    spindle: float
+    safe_height: float
+
+
+def places(tolerance: float, mm: float, lengths: Sequence[float] = ()) -> int:
+    """Decimal places that keep the rounding of ends and centres within `SHARE` of a tolerance in mm.
+
+    An end, a centre and so a radius are each off by up to 0.71, 0.71 and 1.42 of the last place's half, in a machine
+    that takes the arc from any of them: together less than 2.5 times the last place. Nor do `lengths`, mm, by which
+    places lie apart (a pass above another, a rough path beside a fine one) lose more than `KEPT` of themselves.
+    """
+    last = min([SHARE * tolerance / 2.5, *(KEPT * one for one in lengths)])
+    return max(math.ceil(-math.log10(last / mm)), LEAST_PLACES)
+
+
+def rounding(count: int, mm: float) -> float:
+    """By how much a path may be off through numbers of so many places, mm."""
+    return 2.5 * mm * 10.0**-count
+
+
+def write_gcode(
+    path: Path,
+    features: Sequence[tuple[str, Sequence[Pass]]],
+    cutting: Cutting,
+    *,
+    remarks: Sequence[str],
+    count: int,
+    mm: float = 1.0,
+) -> None:
+    """Write the passes of each feature, by name and in order, as a program in units of `mm` mm.
+
+    `count` are the decimal places. Raises OSError as the file system does.
+    """
+    number = _Numbers(count, mm)
+    lines = [f"({_comment(text)})" for text in remarks]
+    lines += [
+        "G20" if mm == 25.4 else "G21",
+        "G17 G90 G94",
+        "G40 G49 G80",
+        f"G0 Z{number(cutting.safe_height)}",
+        f"S{plain(cutting.spindle)} M3",
+    ]
+    for name, steps in features:
+        for k, step in enumerate(steps, start=1):
+            lines.append(f"({_comment(f'{name}, pass {k} of {len(steps)}')})")
+            lines += _pass(step, cutting, number)
+    lines += ["M5", "M30", ""]
+    path.write_bytes("\n".join(lines).encode("ascii"))
+
+
+class _Numbers:
+    """Numbers as they are written: lengths in mm in the program's unit."""
+
+    def __init__(self, count: int, mm: float) -> None:
+        self.count, self.mm = count, mm
+
+    def __call__(self, value: float) -> str:
+        text = f"{value / self.mm:.{self.count}f}"
+        return text[1:] if float(text) == 0.0 and text.startswith("-") else text
+
+    def rounded(self, points: Array) -> Array:
+        """Points (n, 2) in the program's unit as they are written."""
+        found: Array = np.round(points / self.mm, self.count) + 0.0
+        return found
+
+
+def _pass(step: Pass, cutting: Cutting, number: _Numbers) -> Iterator[str]:
+    points = number.rounded(step.loop.points)
+    places = [(_plain(x, number.count), _plain(y, number.count)) for x, y in points.tolist()]
+    yield f"G0 X{places[0][0]} Y{places[0][1]}"
+    yield f"G1 Z{number(step.z)} F{_feed(cutting.plunge / number.mm)}"
+    feed = f" F{_feed(cutting.feed / number.mm)}"
+    for i, bulge in enumerate(step.loop.bulges.tolist()):
+        if places[i + 1] == places[i]:
+            continue
+        yield _cut(points[i], points[i + 1], bulge, places[i + 1], number.count) + feed
+        feed = ""
+    yield f"G0 Z{number(cutting.safe_height)}"
+
+
+def _cut(start: Array, end: Array, bulge: float, place: tuple[str, str], count: int) -> str:
+    """One line or arc between two points as they are written."""
+    x, y = place
+    chord = end - start
+    if abs(bulge) * math.hypot(*chord.tolist()) * 0.5 <= STRAIGHT * 10.0**-count:
+        return f"G1 X{x} Y{y}"
+    # the centre lies on the chord's bisector, (1 - b^2)/(4 b) of the chord to its left
+    aside = (1.0 - bulge * bulge) / (4.0 * bulge)
+    i, j = 0.5 * chord[0] - aside * chord[1], 0.5 * chord[1] + aside * chord[0]
+    return f"G{3 if bulge > 0.0 else 2} X{x} Y{y} I{_plain(float(i), count)} J{_plain(float(j), count)}"
+
+
+def plain(value: float) -> str:
+    """Write a number in nine figures without an exponent, which no controller reads."""
+    return np.format_float_positional(value, precision=9, fractional=False, trim="-")
+
+
+def _feed(value: float) -> str:
+    """Write a feed in three decimals, or as many as make up `FIGURES`."""
+    return _plain(value, max(LEAST_PLACES, FIGURES - 1 - math.floor(math.log10(value))))
+
+
+def _plain(value: float, count: int) -> str:
+    text = f"{value:.{count}f}"
+    return text[1:] if float(text) == 0.0 and text.startswith("-") else text
+
+
+def _comment(text: str) -> str:
+    """One line of ASCII without parentheses, which end a comment."""
+    plain = text.replace("(", "[").replace(")", "]").encode("ascii", "replace").decode("ascii")
+    return " ".join("".join(c if c.isprintable() else " " for c in plain).split())[:_COMMENT]

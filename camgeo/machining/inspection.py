@@ -1,0 +1,114 @@
+"""The inspection table: where the follower touches the exact cam, which way the surface faces, where a cutter stands.
+
+Places and directions are those of the drawing, mirrored where the drawing is; the motion is not. Where a trimmed cam
+is not touched the cells stay empty.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from camgeo.curve.curve import Curve
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+NOTHING = 1e-14  # of a direction or of the cam's size: rounding about a coordinate that is 0
+
+
+def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], Array]:
+    """Column names and rows (angles + 1, k) over equal steps of the shaft; nan where nothing is touched.
+
+    Each contact has its place, as x and y and as radius and polar angle, the outward normal with its direction, and
+    with `manufacture` the centre of the cutter that touches the same point. Of two rollers or faces those of A come
+    first. Raises ValueError for a design without a contour, or with a linkage that does not turn.
+    """
+    if design.contour is None:
+        raise ValueError(f"{recipe.name}: there is no contour to inspect")
+    count = recipe.verify.angles
+    shaft = np.linspace(0.0, TURN, count + 1)
+    columns = {"shaft_deg": np.linspace(0.0, 360.0, count + 1)}
+    unit = "in" if recipe.units == "inch" else "mm"
+    contacts: dict[str, Array]
+    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
+        share = 0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0
+        psi = law.psi_of_shaft(shaft, 0)[0]
+        columns["follower_deg"] = np.degrees(share * psi)
+        contacts = {"a_": law.parameter(shaft), "b_": _second(law, shaft, psi)}
+    else:
+        lift, theta = cast("Lift", design.intent), shaft
+        if design.driven is not None:
+            theta = design.driven.mechanism.relative(shaft)
+            columns["relative_deg"] = np.degrees(theta)
+        columns[f"lift_{unit}"] = (lift.derivatives(theta, 0)[0] - lift.datum) / recipe.mm
+        contacts = {"": theta}
+    for name, parameter in contacts.items():
+        columns |= _contact(recipe, design.contour, parameter, name, unit)
+    return tuple(columns), np.column_stack(list(columns.values()))
+
+
+def _second(law: Transmission, shaft: Array, psi: Array) -> Array:
+    """Parameters at which follower B touches while A is at `shaft` (n,).
+
+    The law repeats itself with phi - psi + delta in place of phi and -psi in place of psi (W 4.9); done mu times, mu
+    odd, that puts A where B is, at phi - psi + alpha.
+    """
+    return law.parameter(shaft - psi + law.alpha)
+
+
+def _contact(recipe: Recipe, contour: Curve, parameter: Array, name: str, unit: str) -> dict[str, Array]:
+    """Columns of one contact, in the drawn axes and the recipe's unit."""
+    frame = contour.sample(parameter)
+    normal = np.where(np.abs(frame.normal) < NOTHING, 0.0, frame.normal)
+    point = np.where(np.abs(frame.point) < NOTHING * contour.size, 0.0, frame.point)
+    columns = _place(recipe, point, name, unit)
+    x, y = _drawn(recipe, normal).T
+    columns |= {f"{name}nx": x, f"{name}ny": y, f"{name}normal_deg": _degrees(x, y)}
+    if recipe.manufacture is not None:
+        columns |= _cartesian(recipe, point + recipe.manufacture.radius * normal, f"{name}cutter_", unit)
+    away = ~_touched(contour, parameter)
+    return {key: np.where(away, np.nan, column) for key, column in columns.items()} if away.any() else columns
+
+
+def _place(recipe: Recipe, point: Array, name: str, unit: str) -> dict[str, Array]:
+    x, y = (_drawn(recipe, point) / recipe.mm).T
+    polar = {f"{name}radius_{unit}": np.hypot(x, y), f"{name}polar_deg": _degrees(x, y)}
+    return _cartesian(recipe, point, name, unit) | polar
+
+
+def _cartesian(recipe: Recipe, point: Array, name: str, unit: str) -> dict[str, Array]:
+    x, y = (_drawn(recipe, point) / recipe.mm).T
+    return {f"{name}x_{unit}": x, f"{name}y_{unit}": y}
+
+
+def _drawn(recipe: Recipe, vectors: Array) -> Array:
+    """Places or directions (n, 2) as the drawing has them."""
+    drawn: Array = vectors * np.array([1.0, -1.0]) if recipe.rotation == "ccw" else vectors
+    return drawn
+
+
+def _degrees(x: Array, y: Array) -> Array:
+    """Directions in degrees, from 0 to less than 360 (n,)."""
+    angle = np.mod(np.degrees(np.arctan2(y, x)), 360.0)
+    return np.where(angle < 360.0, angle, 0.0)
+
+
+def _touched(contour: Curve, parameter: Array) -> NDArray[np.bool_]:
+    """Whether the contour has a point of each parameter (n,), or was trimmed away there."""
+    if contour.closed:
+        return np.ones(parameter.shape, dtype=bool)
+    period = contour.shape.period
+    kept = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]
+    touched: NDArray[np.bool_] = np.any(kept, axis=0)
+    return touched

@@ -1,0 +1,164 @@
+"""What of a part is milled: the cutter's path by the recipe, whether it reaches everything, which holes are milled."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.checks.declared import LEAST_ROOM, REACH
+from camgeo.curve.backwards import least_hollow
+from camgeo.curve.undercut.causes import UndercutError
+from camgeo.machining.cutter import cutter_path, is_convex
+from camgeo.synthesis.design import intended, shaft_deg
+from camgeo.synthesis.part.as_intent import holes_of
+from kin.judge.check import Check, failed
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Curve
+    from camgeo.machining.cutter import CutterPath
+    from camgeo.recipe.machining import Manufacture
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.judge.verify import Intent
+
+MOST_PASSES = 2000  # through the part
+ALIKE = 1e-9  # share by which hollows of a regular cam differ through rounding: the first of them is told
+
+
+class RoundHole(NamedTuple):
+    """A round hole through the part, in the cam's axes, mm."""
+
+    name: str
+    centre: tuple[float, float]
+    radius: float
+
+
+def path_of(recipe: Recipe, design: Design, further: float = 0.0) -> CutterPath:
+    """Path of the cutter's centre, or one `further` out; raises as `cutter_path` does."""
+    contour, asked = _milled(recipe, design)
+    return cutter_path(contour, asked.radius + further)
+
+
+def _milled(recipe: Recipe, design: Design) -> tuple[Curve, Manufacture]:
+    if design.contour is None or recipe.manufacture is None:
+        raise ValueError(f"{recipe.name}: there is nothing to mill")
+    return design.contour, recipe.manufacture
+
+
+def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | None]:
+    """Check how deep metal is left where the cutter does not reach; its path, None where there is no single one."""
+    contour, asked = _milled(recipe, design)
+    told = "no hollow"
+    if not is_convex(contour):
+        radius, at = least_hollow(contour)
+        told = f"least hollow radius {radius:.6g} mm at {shaft_deg(design.intent, at):.6g} deg"
+    try:
+        path = path_of(recipe, design)
+    except UndercutError as error:
+        return failed(REACH.name, f"{error}; {told}", unit="mm", limit=asked.unreached), None
+    if not path.lost:
+        return Check(REACH.name, True, 0.0, asked.unreached, "mm", detail=told), path
+    deepest = max(cut.depth for cut in path.lost)
+    worst = next(cut for cut in path.lost if cut.depth >= (1.0 - ALIKE) * deepest)
+    first, last = shaft_deg(design.intent, worst.start), shaft_deg(design.intent, worst.end)
+    free = 2.0 * min(cut.free_at for cut in path.lost)
+    detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
+    at_deg = shaft_deg(design.intent, worst.at)
+    return Check(
+        REACH.name, worst.depth <= asked.unreached, worst.depth, asked.unreached, "mm", at_deg, detail=detail
+    ), path
+
+
+def clear_of_hub(recipe: Recipe) -> None:
+    """Raise RecipeErrors where rapid moves at the safe height would run into a hub on the upper side."""
+    hub, asked = recipe.part.hub, recipe.manufacture
+    if hub is None or hub.side == "bottom" or asked is None or asked.safe_height is None:
+        return
+    if asked.safe_height <= hub.height:
+        mm, unit = recipe.mm, recipe.units
+        given = f"{asked.safe_height / mm:.6g} {unit}"
+        what, remedy = "not above the hub's top", f"give more than {hub.height / mm:.6g} {unit}"
+        raise recipe.error("manufacture.safe_height", what, given, remedy)
+
+
+def few_passes(recipe: Recipe) -> None:
+    """Raise RecipeErrors for a depth of cut so slight that a program of it would not come to an end."""
+    thickness, asked = recipe.part.thickness, recipe.manufacture
+    if thickness is None or asked is None or asked.depth_of_cut is None:
+        return
+    count = thickness / asked.depth_of_cut
+    if count > MOST_PASSES:
+        given = f"{asked.depth_of_cut / recipe.mm:.6g} {recipe.units}"
+        what = f"makes {math.ceil(count)} passes, more than {MOST_PASSES}"
+        remedy = f"give at least {thickness / MOST_PASSES / recipe.mm:.6g} {recipe.units}"
+        raise recipe.error("manufacture.depth_of_cut", what, given, remedy)
+
+
+def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
+    """Name what of the part a program leaves unmade, with the reason: it cuts through a disc, straight down."""
+    part = recipe.part
+    found = list(milled_holes(recipe, design)[1])
+    if part.hub is not None:
+        found.append(("hub", "the stock comes with it, its disc as thick as part.thickness"))
+    if part.set_screw is not None:
+        found.append(("set screw", "it runs across the shaft"))
+    if part.chamfer is not None:
+        found.append(("chamfer", "the cutter goes straight down"))
+    return found
+
+
+def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[tuple[str, str]]]:
+    """Holes that the cutter goes round, and the names of those that it does not, with the reason."""
+    _, asked = _milled(recipe, design)
+    hub = 0.0 if recipe.part.hub is None else 0.5 * recipe.part.hub.diameter
+    found: list[RoundHole] = []
+    others: list[tuple[str, str]] = []
+    if design.body is None:
+        if recipe.part.bore is not None:
+            found.append(RoundHole("bore", (0.0, 0.0), 0.5 * recipe.part.bore))
+    else:
+        for opening in design.body.openings:
+            if opening.circle is not None and opening.depth is None:
+                found.append(RoundHole(opening.name, *opening.circle))
+            else:
+                others.append((opening.name, "not a round hole" if opening.depth is None else "engraved"))
+    if not asked.holes:
+        return [], [*((hole.name, "manufacture.holes is not true") for hole in found), *others]
+    beside = [hole for hole in found if math.hypot(*hole.centre) >= hub]
+    others += [(hole.name, "within the hub, which is higher than the disc") for hole in found if hole not in beside]
+    wide = [hole for hole in beside if hole.radius >= asked.radius + LEAST_ROOM]
+    others += [(hole.name, "not wider than the cutter") for hole in beside if hole not in wide]
+    return wide, others
+
+
+def milling_intent(recipe: Recipe, design: Design) -> Intent:
+    """What kin is told of a program: the part as `intended`, but for what is not milled, and the machine's side."""
+    from kin.judge.milling import Milling
+
+    _, asked = _milled(recipe, design)
+    check, path = reach_check(recipe, design)
+    lost = path is None or bool(path.lost)
+    meant = intended(recipe, design)
+    found, _ = milled_holes(recipe, design)
+    names = {hole.name for hole in found}
+    hub = recipe.part.hub
+    top = None if hub is None or hub.side == "bottom" else hub
+    holes = () if design.body is None else tuple(hole for hole in holes_of(design.body) if hole.name in names)
+    milling = Milling(
+        radius=asked.radius,
+        thickness=recipe.part.thickness or 0.0,
+        depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
+        climb=asked.direction == "climb",
+        standing=check.limit or 0.0 if lost else 0.0,
+        hub=None if top is None else (0.5 * top.diameter, top.height),
+    )
+    return replace(
+        meant,
+        bore=meant.bore if "bore" in names else None,
+        holes=holes,
+        layers=(),
+        cross_holes=(),
+        trimmed=meant.trimmed or lost,
+        milling=milling,
+    )

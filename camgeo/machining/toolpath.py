@@ -1,0 +1,103 @@
+"""From the cutter's path to passes: where it begins, which way it runs, how the cutter comes to it and leaves it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.pieces import ArcSpline, Bound
+from kin.contour.contour import Contour
+
+if TYPE_CHECKING:
+    from camgeo.recipe.machining import Manufacture
+    from kin.numeric.arrays import Array
+
+SAME = 1e-9  # mm: a path that begins this near to a joint begins in it
+QUARTER = math.tan(math.pi / 8.0)  # bulge of a quarter turn
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A closed path with its ways in and out: chains of points (n, 2), bulges (n - 1,) of what lies between them."""
+
+    points: Array
+    bulges: Array
+    begin: int
+    end: int
+    """Numbers of the first and the last point of the closed path."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """One way round at one height z, mm, 0 at the top of the stock."""
+
+    z: float
+    loop: Loop
+
+
+def begun_at(path: ArcSpline, direction: float) -> ArcSpline:
+    """The same closed path, begun in its point that lies farthest in a direction (rad)."""
+    contour = Contour.from_bulges(path.points, path.bulges)
+    found = contour.support(np.array([direction]))
+    piece, point = int(found.piece[0]), found.point[0]
+    points, bulges = np.roll(path.points, -piece, axis=0), np.roll(path.bulges, -piece)
+    if np.hypot(*(point - points[1 % len(points)])) <= SAME:
+        return ArcSpline(np.roll(points, -1, axis=0), np.roll(bulges, -1), path.bound)
+    if np.hypot(*(point - points[0])) <= SAME:
+        return ArcSpline(points, bulges, path.bound)
+    # the piece is cut in two by the turn of the tangent up to the point
+    first = float(contour.directions[0][piece])
+    sweep = 4.0 * math.atan(float(bulges[0]))
+    turned = math.remainder(direction + 0.5 * math.pi - first, 2.0 * math.pi)
+    before, after = math.tan(0.25 * turned), math.tan(0.25 * (sweep - turned))
+    points = np.concatenate([point[None], points[1:], points[:1]])
+    bulges = np.concatenate([[after], bulges[1:], [before]])
+    return ArcSpline(points, bulges, path.bound)
+
+
+def circle(centre: tuple[float, float], radius: float, direction: float) -> ArcSpline:
+    """A circle in four arcs, begun in a direction (rad)."""
+    angle = direction + 0.5 * math.pi * np.arange(4)
+    points = np.array(centre) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    return ArcSpline(points, np.full(4, QUARTER), Bound(0.0, 0.0))
+
+
+def led(path: ArcSpline, lead: float, *, outside: bool, clockwise: bool) -> Loop:
+    """A closed counter-clockwise path, run the way asked for, with quarter turns of radius `lead` to it and from it.
+
+    Both touch the path in its first point, from without or from within.
+    """
+    points, bulges = path.points, path.bulges
+    first = float(Contour.from_bulges(points, bulges).directions[0][0])
+    if clockwise:
+        points, bulges = np.roll(points[::-1], 1, axis=0), -bulges[::-1]
+    along = np.array([math.cos(first), math.sin(first)])
+    away = np.array([along[1], -along[0]]) * (1.0 if outside else -1.0)
+    forward = -along if clockwise else along
+    start = points[0]
+    enter, leave = start + lead * (away - forward), start + lead * (away + forward)
+    turn = forward[0] * away[1] - forward[1] * away[0]  # 1 where the way in turns left
+    bend = math.copysign(QUARTER, turn)
+    return Loop(
+        np.concatenate([enter[None], points, start[None], leave[None]]),
+        np.concatenate([[bend], bulges, [bend]]),
+        1,
+        len(points) + 1,
+    )
+
+
+def depths(thickness: float, depth_of_cut: float) -> list[float]:
+    """Heights z of equal passes down to the thickness, none deeper than allowed."""
+    count = max(math.ceil(thickness / depth_of_cut * (1.0 - 1e-12)), 1)
+    return [-thickness * (k + 1) / count for k in range(count)]
+
+
+def passes(rough: Loop | None, fine: Loop, asked: Manufacture, thickness: float) -> list[Pass]:
+    """Passes down to the thickness: all round the finished path, or round a rough one and last the fine one."""
+    levels = depths(thickness, asked.depth_of_cut or thickness)
+    if rough is None:
+        return [Pass(z, fine) for z in levels]
+    return [*(Pass(z, rough) for z in levels), Pass(levels[-1], fine)]

@@ -1,0 +1,69 @@
+"""Which maker a request goes to; each is imported when a recipe asks for it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.output.job import Made
+from camgeo.recipe.export import SOLIDS
+from kin.judge.check import about
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
+
+
+def make(job: Job, request: FileRequest, path: Path) -> Made:
+    """Make the files of one request, the first at `path`, any others beside it.
+
+    Raises RecipeErrors where a tolerance cannot be held or no such file can be made, SurroundingsError where the disk
+    or a missing extra stands in the way. A page is no such request: it tells of all other files.
+    """
+    job, failed = job.of_file(request)
+    if failed:
+        return Made((), tuple(about(check, path.name) for check in failed))
+    if request.parts == "all":
+        from camgeo.output.mechanism import make_mechanism
+
+        return make_mechanism(job, request, path)
+    match request.kind:
+        case "dxf" | "svg":
+            from camgeo.output.drawing import make_drawing
+
+            return make_drawing(job, request, path)
+        case "stl" | "3mf":
+            from camgeo.output.solid import make_solid
+
+            return make_solid(job, request, path)
+        case "step":
+            from camgeo.output.step import make_step
+
+            return make_step(job, request, path)
+        case "glb":
+            from camgeo.output.view import make_view
+
+            return make_view(job, request, path)
+        case "csv":
+            from camgeo.output.table import make_table
+
+            return make_table(job, request, path)
+        case "gcode":
+            from camgeo.output.gcode import make_gcode
+
+            return make_gcode(job, request, path)
+    raise ValueError(f"nothing makes {request.kind} alone")
+
+
+def foresee(job: Job, request: FileRequest) -> None:
+    """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
+    if request.parts == "all":
+        from camgeo.output.mechanism import foresee_mechanism
+
+        foresee_mechanism(job, request)
+    job, failed = job.of_file(request)
+    if request.kind in SOLIDS - {"step"} and not failed:
+        from camgeo.output.solid import aim
+
+        aim(job, request)

@@ -1,0 +1,112 @@
+"""Drawings: the contour as arcs, a spline or a polyline, with what is cut inside it; DXF and SVG."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.output.job import Made
+from camgeo.recipe.cam import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
+from kin.judge.check import about
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.files.dxf import Cutout, Reference
+    from camgeo.fit.pieces import Outline
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
+    from kin.judge.check import Check
+
+COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which nothing is cut by
+
+
+def make_drawing(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge one drawing."""
+    with job.refusals(request):
+        outline = job.outline(request.as_ or "polyline", job.tolerance(request))
+        checks, tool = _tool_path(job, request)
+        with job.clock.stage(f"write {request.kind}"):
+            _write(job, outline, request, path, tool)
+    made = job.judged(request, path, outline.bound, outline.count)
+    return Made(made.files, (*(about(check, path.name) for check in checks), *made.checks))
+
+
+def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[Cutout]]:
+    """The path of the cutter's centre where a DXF is to show it, and whether the cutter reaches everything."""
+    asked = job.recipe.manufacture
+    if asked is None or not asked.layer or request.kind != "dxf" or request.compensation is not None:
+        return [], []
+    from camgeo.files.dxf import Cutout
+    from camgeo.machining.milling import reach_check
+
+    with job.clock.stage("cutter path"):
+        check, path = reach_check(job.recipe, job.design)
+        if path is None:
+            return [check], []
+        arcs = path.within(job.tolerance(request))
+    return [check], [Cutout("TOOLPATH", arcs.mirrored() if job.recipe.rotation == "ccw" else arcs)]
+
+
+def _write(job: Job, outline: Outline, request: FileRequest, path: Path, tool: list[Cutout]) -> None:
+    recipe, design = job.recipe, job.design
+    bore, cut, remarks = recipe.part.bore, [], []
+    if design.body is not None:
+        from camgeo.output import part_geometry
+
+        body = design.body.mirrored() if recipe.rotation == "ccw" else design.body
+        bore, cut, remarks = None, part_geometry.cutouts(body), part_geometry.remarks(body, recipe.mm)
+    if request.kind == "svg":
+        from camgeo.files.svg import write_svg
+
+        write_svg(
+            path,
+            outline,
+            bore=bore,
+            cutouts=cut,
+            remarks=remarks,
+            mm=recipe.mm,
+            name=recipe.name,
+            about=recipe.about,
+        )
+        return
+    from camgeo.files.dxf import write_dxf
+
+    write_dxf(
+        path,
+        outline,
+        bore=bore,
+        cutouts=[*cut, *tool],
+        remarks=remarks,
+        reference=_reference(job),
+        mm=recipe.mm,
+        version=request.version or "R2010",
+        name=recipe.name,
+        about=recipe.about,
+    )
+
+
+def _reference(job: Job) -> list[Reference]:
+    """Centre, base or prime circle, and the pitch curve: to look at, not to cut."""
+    from camgeo.files.dxf import Circle, Point, Trace
+    from camgeo.fit.arcs import fit_arcs
+    from camgeo.synthesis.part.walls import distance_inside
+
+    recipe, profile = job.recipe, job.design.profile
+    cam = recipe.cam
+    found: list[Reference] = [Point("shaft", (0.0, 0.0))]
+    if recipe.part.hub is not None:
+        found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
+    if isinstance(cam, ConstantBreadthCam):
+        found.append(Circle("base circle", (0.0, 0.0), cam.base_radius))
+    elif isinstance(cam, SupportCam):
+        radius = abs(distance_inside(profile.base, (0.0, 0.0))[0])
+        if radius > recipe.export.tolerance:  # the shaft may stand on the contour itself
+            found.append(Circle("base circle", (0.0, 0.0), radius))
+    elif isinstance(cam, DoubleRollerCam):
+        found.append(Circle("prime circle", (0.0, 0.0), abs(distance_inside(profile.base, (0.0, 0.0))[0])))
+        pitch = fit_arcs(profile.base, COARSE)
+        found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
+        found.append(Circle("pivot circle", (0.0, 0.0), cam.arm))
+    elif isinstance(cam, FlatPairCam):
+        found.append(Circle("pivot circle", (0.0, 0.0), 2.0 * cam.arm))
+    return found

@@ -1,0 +1,162 @@
+"""What every maker of files is given, and how its refusals become errors at a field of the recipe."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.checks.advice import less_swing
+from camgeo.common.clock import Clock
+from camgeo.curve.curve import CurveError
+from camgeo.files.errors import MissingExtraError
+from camgeo.files.triangulate import RegionError
+from camgeo.fit.bound import FormError
+from camgeo.fit.cache import Outlines, formula_rounding
+from camgeo.fit.nodes import ToleranceError
+from camgeo.output.file_intent import intent_of_file
+from camgeo.output.output_folder import SurroundingsError
+from camgeo.recipe.cam import DoubleRollerCam
+from camgeo.report.document import FileResult
+from camgeo.synthesis.design import permitted
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from camgeo.assembly.assembly import Assembly
+    from camgeo.curve.curve import Curve
+    from camgeo.fit.pieces import Bound, Outline
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.machining import Compensation
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.synthesis.design import Design
+    from kin.judge.check import Check
+
+STEEP = 0.999  # psi'(phi) from which a roller may run past a contour that is within its tolerance
+
+
+class Made(NamedTuple):
+    """The files of one request, and the verdicts on them."""
+
+    files: tuple[FileResult, ...]
+    checks: tuple[Check, ...] = ()
+
+
+@dataclass(frozen=True)
+class Job:
+    """A cam that can be made: its recipe, its exact design, and the fits that its files share.
+
+    `assemblies` holds the mechanism's bodies once a file has asked for them, `variants` the job for each part that is
+    made different from the nominal one.
+    """
+
+    recipe: Recipe
+    design: Design
+    outlines: Outlines
+    assemblies: list[Assembly] = field(default_factory=list, repr=False)
+    variants: dict[Compensation, Job] = field(default_factory=dict, repr=False)
+
+    @staticmethod
+    def of(recipe: Recipe, design: Design, clock: Clock | None = None) -> Job:
+        """Begin the files of a design that has a contour; raises ValueError for one that has none."""
+        if design.contour is None:
+            raise ValueError(f"{recipe.name}: there is no contour to be made")
+        rounding = formula_rounding(design.intent, design.contour)
+        return Job(recipe, design, Outlines(design.contour, clock or Clock(), rounding))
+
+    def of_file(self, request: FileRequest) -> tuple[Job, tuple[Check, ...]]:
+        """The job for the part as one file shows it, and the checks that forbid to make it."""
+        by = request.compensation
+        if by is None:
+            return self, ()
+        from camgeo.machining.compensation import compensated
+
+        if by not in self.variants:
+            try:
+                with self.clock.stage("compensation"):
+                    made = compensated(self.recipe, self.design, by, self.field(request))
+            except CurveError as error:
+                raise self.recipe.error(self.field(request), str(error)) from error
+            if made.design.contour is None:
+                return self, made.checks
+            unsure = by.scale * self.outlines.unsure
+            self.variants[by] = Job(made.recipe, made.design, Outlines(made.design.contour, self.clock, unsure))
+        return self.variants[by], ()
+
+    @property
+    def clock(self) -> Clock:
+        """What times the stages."""
+        return self.outlines.clock
+
+    @property
+    def contour(self) -> Curve:
+        """The exact contour."""
+        return self.outlines.contour
+
+    def field(self, request: FileRequest) -> str:
+        """Path of a request in the recipe; that of the list for one that does not stand there."""
+        files = self.recipe.export.files
+        return f"export.files[{files.index(request)}]" if request in files else "export.files"
+
+    def tolerance(self, request: FileRequest) -> float:
+        """Tolerance of a file, mm: its own, or the export's."""
+        return request.tolerance or self.recipe.export.tolerance
+
+    def tolerance_field(self, request: FileRequest) -> str:
+        """Path of the field that a file's tolerance is asked for by."""
+        return self.field(request) if request.tolerance is not None else "export.tolerance"
+
+    def outline(self, form: str, tolerance: float) -> Outline:
+        """The contour in a form, within a tolerance, mirrored as the recipe has it."""
+        outline = self.outlines.within(form, tolerance)
+        return outline.mirrored() if self.recipe.rotation == "ccw" else outline
+
+    @contextmanager
+    def refusals(self, request: FileRequest) -> Iterator[None]:
+        """Turn what a fit or a writer raises into RecipeErrors at the field to blame, or SurroundingsError."""
+        recipe = self.recipe
+        try:
+            yield
+        except ToleranceError as error:
+            raise self.refused(request, error) from error
+        except FormError as error:
+            where = f"{self.field(request)}.{request.kind}.as"
+            raise recipe.error(where, str(error), f"'{request.as_}'", "give spline or arcs") from error
+        except RegionError as error:
+            where = "part" if self.design.body else "cam" if recipe.part.bore is None else "part.bore"
+            raise recipe.error(where, f"within the tolerance, {error}") from error
+        except CurveError as error:
+            raise recipe.error("cam", str(error)) from error
+        except MissingExtraError as error:
+            raise SurroundingsError(str(error), recipe.path) from error
+
+    def refused(self, request: FileRequest, error: ToleranceError) -> RecipeErrors:
+        """Turn a tolerance that cannot be held into an error at the field that asks for it."""
+        where, recipe = self.tolerance_field(request), self.recipe
+        reached = f"{error.reached:.3g} mm are {error.reached / recipe.mm:.3g} in" if recipe.units == "inch" else ""
+        return recipe.error(where, str(error), None, reached)
+
+    def judged(self, request: FileRequest, path: Path, bound: Bound, pieces: int) -> Made:
+        """Read a file back and hold it against the recipe's motion."""
+        from kin.judge.verify import verify
+
+        recipe, tolerance = self.recipe, self.tolerance(request)
+        meant = intent_of_file(recipe, self.design, request.kind)
+        with self.clock.stage(f"judge {request.kind}"):
+            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance))
+        measured = verdict.measured_error
+        file = FileResult(path, request, tolerance, pieces, bound, measured, verdict.motion, verdict.linkage)
+        return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
+
+    def _why_lost(self, check: Check) -> Check:
+        """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""
+        if check.name != "motion" or check.value is not None or not isinstance(self.recipe.cam, DoubleRollerCam):
+            return check
+        slope = next(own.value for own in self.design.checks if own.name == "transmission")
+        if slope is None or slope < STEEP:
+            return check
+        less = less_swing(self.recipe.cam, self.recipe.mm)
+        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would do"
+        return replace(check, detail=f"{check.detail}: {why}")

@@ -1,0 +1,75 @@
+"""Every body of a mechanism: built once a run, held against each other over the whole turn, written in many formats."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from camgeo.assembly.build import assembly_of
+from camgeo.assembly.interference import collision_checks
+from camgeo.assembly.shaft import drives
+from camgeo.assembly.sizes import BodyError, runs
+from camgeo.fit.pieces import ArcSpline
+from camgeo.output.job import Made
+from camgeo.output.parts import make_parts
+from camgeo.recipe.assembly import MechanismAsked
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from camgeo.assembly.assembly import Assembly
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from kin.judge.check import Check
+
+
+def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
+    """Write and judge every body; the checks of the mechanism itself are told with its first file.
+
+    Nothing is made of a mechanism that does not turn. Raises as `make` does.
+    """
+    driven = job.design.driven
+    if driven is not None and not driven.turns:
+        return Made(())
+    checks: tuple[Check, ...] = ()
+    if not job.assemblies:
+        assembly, checks = _assembled(job, request)
+        job.assemblies.append(assembly)
+    made = make_parts(job, request, path, [member.body() for member in job.assemblies[0].members])
+    return Made(made.files, (*checks, *made.checks))
+
+
+def foresee_mechanism(job: Job, request: FileRequest) -> None:
+    """Refuse clearances that the file's tolerance takes away, and a shaft that does not turn the cam.
+
+    Raises RecipeErrors.
+    """
+    recipe, off = job.recipe, job.tolerance(request)
+    clearance = (recipe.mechanism or MechanismAsked()).clearance
+    with _told(recipe):
+        runs(clearance, job.tolerance_field(request), off)
+        drives(recipe.part, clearance, off)
+
+
+@contextmanager
+def _told(recipe: Recipe) -> Iterator[None]:
+    """Turn a body that cannot be made into RecipeErrors at the field to blame."""
+    try:
+        yield
+    except BodyError as error:
+        message, remedy = error.told(recipe.mm, recipe.units)
+        raise recipe.error(error.field, message, None, remedy) from error
+
+
+def _assembled(job: Job, request: FileRequest) -> tuple[Assembly, tuple[Check, ...]]:
+    """Build the bodies round the contour as arcs within the file's tolerance, and turn them once round."""
+    with job.refusals(request), job.clock.stage("bodies"):
+        contour = job.outlines.within("arcs", job.tolerance(request))
+        if not isinstance(contour, ArcSpline):
+            raise TypeError("bodies stand round a contour of arcs")
+        with _told(job.recipe):
+            assembly = assembly_of(job.recipe, job.design, contour)
+    with job.clock.stage("collision"):
+        return assembly, tuple(collision_checks(assembly))

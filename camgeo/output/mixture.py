@@ -1,0 +1,78 @@
+"""Files and reports of one folder that do not belong together, found by the reports' checksums.
+
+No file system replaces several files in one step. A run that is killed between its commit and its last rename leaves
+new files beside the old report until the next run of that name goes on (`camgeo.output.output_folder`). Files are also
+changed by hand.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import TYPE_CHECKING
+
+from camgeo.common.terminal import escaped
+from camgeo.output.output_folder import REJECTED
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+    from pathlib import Path
+
+REPORTS = ("report.json", "page.json", "study.json", "sweep.json")
+
+
+def mixtures(folder: Path, names: Collection[str] = ()) -> list[str]:
+    """Say of each report in a folder which of its files are missing or others than it tells of.
+
+    With `names`, only of reports that tell of one of these. What is no report of camgeo, or cannot be read, says
+    nothing.
+    """
+    found = []
+    for name in REPORTS:
+        sums = _sums(folder / name)
+        if names and not any(given in sums for given in names):
+            continue
+        others = [given for given, checksum in sums.items() if _sum(folder / given) != checksum]
+        if others:
+            files = ", ".join(escaped(given) for given in others)
+            told = "are not the files" if len(others) > 1 else "is not the file"
+            place = escaped(str(folder / name))
+            found.append(f"{place}: {files} {told} that it tells of: {_why(folder)}; export again")
+    return found
+
+
+def _why(folder: Path) -> str:
+    """What is behind it: a run that was cut off leaves its private folder beside the output folder."""
+    name = folder.name.removesuffix(REJECTED)
+    try:
+        beside = [path.name for path in folder.absolute().parent.iterdir() if path.name.startswith(f".{name}.")]
+    except OSError:
+        beside = []
+    cut_off = any(private.endswith(("swap", "undo")) for private in beside)
+    return "a run was killed between two sets of files" if cut_off else "changed since, or of another run"
+
+
+def _sums(report: Path) -> dict[str, str]:
+    """Checksums by file name as a report has them."""
+    try:
+        if not report.is_file():
+            return {}
+        entries = json.loads(report.read_bytes())["files"]
+        return {
+            entry["path"]: entry["sha256"]
+            for entry in entries
+            if "sha256" in entry and isinstance(entry["path"], str) and not set(entry["path"]) & set("/\\\0")
+        }
+    except (OSError, ValueError, TypeError, KeyError, RecursionError):
+        return {}
+
+
+def _sum(path: Path) -> str:
+    """Checksum of a file; empty where there is none that can be read."""
+    try:
+        if not path.is_file():
+            return ""
+        with path.open("rb") as stream:
+            return hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError:
+        return ""

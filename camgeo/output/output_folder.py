@@ -1,0 +1,360 @@
+"""The output folder: a set of files that changes as a whole, in a folder that a user may keep other files in.
+
+A set is what a `report.json` names, and the report itself. It lives in ``out/<name>/``, a failed one in
+``out/<name>.rejected/``. Beside them, only while a run is at work or after one was killed, stand
+
+    .<name>.lock          held by the run that is at work; the system lets go of it when the process ends
+    .<name>.partial-<n>   files being written by process n, worth nothing before they are committed
+    .<name>.swap          a committed set on its way into place
+    .<name>.undo          a swap that failed on its way back
+
+**What holds when a process is killed.** Everything up to the commit happens in the private folder: the new files, a
+journal (which files come, which go, which were there), and hard links to the files that will be replaced or removed.
+One rename of that folder to ``.swap`` is the commit. Before it the old set stands untouched. After it the new set is
+decided upon: its files are renamed into place one by one, the report last, and ``.swap`` is renamed away. Cut off in
+between, the next run of this name finds ``.swap`` and does the remaining renames: each is done once, one that was done
+leaves no source behind, so doing the list again from its start is right at any point. If a rename fails while the
+process lives (a folder without permission, a file held open), ``.swap`` is renamed to ``.undo``, which decides for the
+old set, and the linked files are renamed back; cut off there, the next run continues that in the same way.
+
+**What a reader sees.** Every file is whole, of the old set or of the new one, and so is the report, at any moment: a
+rename replaces a file in one step. File systems have no step that replaces several files of a folder and leaves the
+rest of it alone, so between the commit and the last rename (a fraction of a millisecond) new files stand beside the
+old report. Whoever must not mix them holds them against the report's checksums. The new report never stands beside an
+old file.
+
+**What does not hold.** Nothing is forced onto the disk: a loss of power is left to the file system.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import stat
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Self
+
+from camgeo.common import system
+from camgeo.common.system import locked, patient, unlock
+from camgeo.common.terminal import escaped
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+    from types import TracebackType
+
+REPORT = "report.json"
+REJECTED = ".rejected"
+_JOURNAL = ".journal.json"  # files of a set do not begin with a dot
+_OLD = ".old"
+
+
+class SurroundingsError(Exception):
+    """What is needed around a run is missing or refuses: the disk, a permission, a lock; `path` is where."""
+
+    def __init__(self, message: str, path: Path) -> None:
+        super().__init__(f"{escaped(str(path))}: {message}")
+        self.path = path
+
+
+class BusyError(SurroundingsError):
+    """Another run of the same name is at work."""
+
+
+@dataclass(frozen=True)
+class Family:
+    """Which set of files a run replaces: several, of different reports, may stand in one recipe's folder.
+
+    `report` names the files of the set; `begins` is how their names may begin, empty for the recipe's own name; `role`
+    tells the private folders from those of the other sets.
+    """
+
+    report: str = REPORT
+    begins: tuple[str, ...] = ()
+    role: str = ""
+
+
+EXPORTED = Family()
+
+
+@dataclass(frozen=True)
+class _Swap:
+    """Journal of a swap: the folder's name, files that come (the report last), that go, and that were there before."""
+
+    target: str
+    come: tuple[str, ...]
+    go: tuple[str, ...]
+    before: tuple[str, ...]
+
+    @staticmethod
+    def read(path: Path) -> _Swap:
+        entry = json.loads(path.read_text("utf-8"))
+        return _Swap(entry["target"], tuple(entry["come"]), tuple(entry["go"]), tuple(entry["before"]))
+
+
+class Run:
+    """One run's place in the output folder, as a context: files are written to `folder`, then committed or rejected.
+
+    Left without either, or by an exception, nothing has changed. Raises SurroundingsError where another run of this
+    name is at work, and in place of any OSError; ValueError for a name that is none (the recipe's loader refuses it).
+    """
+
+    def __init__(self, out: Path, name: str, family: Family = EXPORTED) -> None:
+        if not _plain(name) or name.lower().endswith(REJECTED):
+            raise ValueError(f"{name!r} is not the name of an output folder")
+        self._out = out
+        self._name = name
+        self._family = family
+        self._report = family.report
+        self._lock = -1
+        self.folder = self._beside(f"partial-{os.getpid()}")
+
+    def __enter__(self) -> Self:
+        """Lock the name, finish or undo a swap that was cut off, clear away what killed runs left, make `folder`."""
+        try:
+            self._out.mkdir(parents=True, exist_ok=True)
+            lock = locked(self._beside("lock"))
+            if lock is None:
+                text = f"another run is at work here (it holds {self._beside('lock').name})"
+                raise BusyError(text, self._out / self._name)
+            self._lock = lock
+            try:
+                self._clear()
+                self._recover()
+                self.folder.mkdir()
+            except BaseException:
+                self._unlock()
+                raise
+        except OSError as error:
+            raise _surroundings(error, self._out) from error
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> None:
+        """Clear away and unlock; a swap that an interrupt cut off is finished here."""
+        try:
+            # what cannot be finished or cleared away now is left to the next run, and says nothing about this one
+            with suppress(OSError, SurroundingsError):
+                self._clear()
+                self._recover()
+        finally:
+            self._unlock()
+        if isinstance(error, OSError):
+            raise _surroundings(error, self.folder) from error
+
+    def kept(self) -> tuple[str, ...]:
+        """Files of the last set that this run has not written again: those that `commit` may be told to keep."""
+        try:
+            names = self._last(self._out / self._name)
+        except OSError as error:
+            raise _surroundings(error, self._out / self._name) from error
+        return tuple(name for name in names if name != self._report and not (self.folder / name).exists())
+
+    def commit(self, names: Iterable[str], *, keep: Iterable[str] = ()) -> Path:
+        """Put the files `names` and the report of `folder` in the place of the last set; returns the folder.
+
+        Files of the last set go, but for those of `keep`; files that are not of the last set stay. Raises
+        SurroundingsError, the last set as it was, where the disk refuses or a file of the user's is in the way.
+        """
+        return self._replace(self._name, names, keep)
+
+    def reject(self, names: Iterable[str] | None = None) -> Path:
+        """Put the set under ``<name>.rejected`` in place of the last one there; `out/<name>` stays as it is.
+
+        `names` are its files, by default all that the run has written.
+        """
+        if names is None:
+            names = [path.name for path in sorted(self.folder.iterdir()) if path.name != self._report]
+        return self._replace(self._name + REJECTED, names, ())
+
+    def _replace(self, target: str, names: Iterable[str], keep: Iterable[str]) -> Path:
+        folder, swap = self._out / target, self._beside("swap")
+        try:
+            self._prepare(folder, tuple(names), tuple(keep))
+            patient(lambda: self.folder.rename(swap))
+        except OSError as error:
+            raise _surroundings(error, folder) from error
+        try:
+            self._forward(swap)
+        except OSError as error:
+            self._give_up(folder, error)
+        # the set is in place; if this fails, the next run repeats a swap that finds nothing left to move
+        with suppress(OSError):
+            self._done(swap)
+        return folder
+
+    def _prepare(self, folder: Path, names: tuple[str, ...], keep: tuple[str, ...]) -> None:
+        """Write the journal and link the old files; nothing outside the private folder changes but an empty folder."""
+        for name in (*names, *keep):
+            if not self._ours(name):
+                raise ValueError(f"{name!r} is not the name of a file of {self._name}")
+        come = (*dict.fromkeys(names), self._report)
+        missing = [name for name in come if not (self.folder / name).is_file()]
+        if missing:
+            raise ValueError(f"{', '.join(missing)} was not written into {self.folder}")
+        last = self._last(folder)
+        for name in come:
+            if name not in last and os.path.lexists(folder / name):
+                raise SurroundingsError("is in the way, and no report says that it may be replaced", folder / name)
+        _make_own(folder)
+        before = tuple(name for name in last if name not in keep or name in come)
+        (self.folder / _OLD).mkdir()
+        for name in before:
+            _linked(folder / name, self.folder / _OLD / name)
+        journal = {"target": folder.name, "come": come, "go": sorted(set(before) - set(come)), "before": before}
+        (self.folder / _JOURNAL).write_text(json.dumps(journal), "utf-8", newline="\n")
+
+    def _recover(self) -> None:
+        """Finish what was committed, or what was being undone."""
+        for role, step in (("undo", self._back), ("swap", self._forward)):
+            if self._beside(role).exists():
+                step(self._beside(role))
+                self._done(self._beside(role))
+
+    def _forward(self, swap: Path) -> None:
+        """Put a committed set in its place; may be repeated from any point."""
+        journal = _Swap.read(swap / _JOURNAL)
+        folder = self._out / journal.target
+        _make_own(folder)
+        for name in journal.come[:-1]:
+            _move(swap / name, folder / name)
+        for name in journal.go:
+            _removed(folder / name)
+        _move(swap / journal.come[-1], folder / journal.come[-1])
+
+    def _back(self, undo: Path) -> None:
+        """Put the old set back; may be repeated from any point."""
+        journal = _Swap.read(undo / _JOURNAL)
+        folder = self._out / journal.target
+        _make_own(folder)
+        for name in journal.before:
+            _move(undo / _OLD / name, folder / name)
+        for name in journal.come:
+            if name not in journal.before:
+                _removed(folder / name)
+
+    def _done(self, swap: Path) -> None:
+        """Let go of a swap whose files are all in place: one rename, then what is left of it."""
+        patient(lambda: swap.rename(self.folder))
+        self._clear()
+
+    def _clear(self) -> None:
+        """Remove the private folders of this name, which no living run but this one can own."""
+        for path in self._partial():
+            _discard(path)
+
+    def _give_up(self, folder: Path, error: OSError) -> None:
+        """Undo a swap that failed; raises SurroundingsError in any case."""
+        try:
+            patient(lambda: self._beside("swap").rename(self._beside("undo")))
+            self._back(self._beside("undo"))
+            self._done(self._beside("undo"))
+        except OSError as second:
+            raise SurroundingsError(
+                f"a swap of files failed and could not be undone ({second.strerror or second}); "
+                "the next run will try again",
+                folder,
+            ) from error
+        raise _surroundings(error, folder) from error
+
+    def _last(self, folder: Path) -> tuple[str, ...]:
+        """Files of the set in a folder as its report names them, those that are there, the report last."""
+        if not os.path.lexists(folder):
+            return ()
+        _make_own(folder)
+        report = folder / self._report
+        if not os.path.exists(report):  # noqa: PTH110 - pathlib raises where it may not look
+            return ()
+        if not report.is_file():  # a pipe, say, whose reader waits
+            raise SurroundingsError("is not a report of camgeo; move it out of the way", report)
+        text = report.read_bytes()
+        try:
+            entries = [entry["path"] for entry in json.loads(text)["files"]]
+        except (ValueError, TypeError, KeyError, RecursionError) as error:
+            raise SurroundingsError("is not a report of camgeo; move it out of the way", report) from error
+        names = [name for name in dict.fromkeys(entries) if isinstance(name, str) and self._ours(name)]
+        return (*(name for name in names if _is_file(folder / name)), self._report)
+
+    def _ours(self, name: str) -> bool:
+        """Whether a file can be one of this recipe's: a plain name that begins with the recipe's own or is a report.
+
+        Anything else that a report may name, changed by hand, is not touched.
+        """
+        return _plain(name) and name.startswith(self._family.begins or (self._name, "report.")) and name != self._name
+
+    def _beside(self, role: str) -> Path:
+        return self._out / f".{self._name}.{self._family.role}{role}"
+
+    def _partial(self) -> list[Path]:
+        pattern = re.compile(re.escape(self._beside("partial-").name) + "[0-9]+")
+        return [path for path in sorted(self._out.iterdir()) if pattern.fullmatch(path.name)]
+
+    def _unlock(self) -> None:
+        """Let the next run of this name begin."""
+        unlock(self._lock, self._beside("lock"))
+
+
+def _plain(name: str) -> bool:
+    """Whether a name is one component of a path, not hidden, that means the same on every system."""
+    return bool(name) and not name.startswith(".") and name.isprintable() and not set(name) & set('/\\:*?"<>|')
+
+
+def _make_own(folder: Path) -> None:
+    """Make a folder if there is none; raises SurroundingsError where anything else stands there, a link included."""
+    with suppress(FileExistsError):
+        folder.mkdir()
+    if not stat.S_ISDIR(folder.lstat().st_mode):
+        raise SurroundingsError("is in the way: a file or a symbolic link where a folder of its own should be", folder)
+
+
+def _move(source: Path, target: Path) -> None:
+    """Rename over whatever file is there, unless that was done before or both are the same file already."""
+    if not os.path.lexists(source):
+        return
+    if os.path.lexists(target) and os.path.samestat(source.lstat(), target.lstat()):
+        return
+    patient(lambda: source.replace(target))
+
+
+def _removed(path: Path) -> None:
+    """Remove a file if it is there."""
+    patient(lambda: path.unlink(missing_ok=True))
+
+
+def _linked(source: Path, target: Path) -> None:
+    """Give a file a second name; on file systems without hard links, a copy."""
+    try:
+        os.link(source, target, follow_symlinks=False)
+    except (OSError, NotImplementedError):  # the second where a system knows no link to a link
+        import shutil
+
+        shutil.copy2(source, target, follow_symlinks=False)
+
+
+def _is_file(path: Path) -> bool:
+    """Whether a file is there, or a symbolic link, which is replaced as such and never followed."""
+    try:
+        mode = os.lstat(path).st_mode
+    except FileNotFoundError:
+        return False
+    return stat.S_ISREG(mode) or stat.S_ISLNK(mode)
+
+
+def _discard(folder: Path) -> None:
+    """Remove a private folder with all that is in it; symbolic links are removed, not followed."""
+    if folder.is_symlink() or not folder.is_dir():
+        folder.unlink()
+        return
+    for path in folder.iterdir():
+        _discard(path)
+    folder.rmdir()
+
+
+def _surroundings(error: OSError, path: Path) -> SurroundingsError:
+    """Name the path that the system named, or else `path`."""
+    where = Path(os.fsdecode(error.filename)) if isinstance(error.filename, (str, bytes)) else path
+    text = error.strerror or str(error)
+    if system.WINDOWS and isinstance(error, PermissionError):
+        text += "; if another program has it open, close it there and run again"
+    return SurroundingsError(text, where)

@@ -1,0 +1,215 @@
+"""From a recipe to files on disk and a verdict on them: the plan, its stages, the report.
+
+Each stage runs only where something asks for it, and imports what it needs when it runs; what nothing asks for is
+listed as skipped, with the reason. Files are written into a private folder, read back there by kin, and put in their
+place only when every check holds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from camgeo.common.clock import Clock
+from camgeo.output.file_intent import intent_of_file
+from camgeo.report.document import FileResult, Findings, document, encoded
+from camgeo.synthesis.design import Design, designed, permitted
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.machining import Compensation
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.report.page.content import Content
+    from kin.judge.check import Check
+
+REPORT = "report.json"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one recipe: its report, whether every check held, and the folder with its files (None if none)."""
+
+    report: dict[str, Any]
+    ok: bool
+    folder: Path | None
+
+
+def export(
+    recipe: Recipe, out: Path, *, only: tuple[str, ...] = (), told: Callable[[str], None] | None = None
+) -> Outcome:
+    """Write and judge a recipe's files under `out`/<name>; see the module.
+
+    Raises RecipeErrors where no such curve exists or a tolerance cannot be held, SurroundingsError where the disk does
+    not do what it should. A failed check raises nothing: the set goes to `out`/<name>.rejected.
+    """
+    from camgeo.output.output_folder import Run
+
+    clock = Clock(told)
+    requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
+    with Run(out, recipe.name) as run:
+        _, found = _produced(recipe, requests, run.folder, clock)
+        kept = run.kept() if only else ()
+        report = document(recipe, replace(found, kept=kept))
+        (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
+        names = [file.path.name for file in found.files]
+        folder = run.commit(names, keep=kept) if found.ok else run.reject()
+    return Outcome(report, found.ok, folder)
+
+
+def check(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> Outcome:
+    """Make and judge everything in a temporary folder that is gone afterwards; raises as `export` does."""
+    import tempfile
+    from pathlib import Path
+
+    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+        _, found = _produced(recipe, recipe.export.files, Path(folder), Clock(told))
+        return Outcome(document(recipe, found), found.ok, None)
+
+
+def shown(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> tuple[Outcome, Content]:
+    """Make and judge everything as `check` does; also what a page shows of it. Raises as `export` does."""
+    import tempfile
+    from pathlib import Path
+
+    clock = Clock(told)
+    requests = tuple(request for request in recipe.export.files if request.kind != "html")
+    with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
+        design, found = _produced(recipe, requests, Path(folder), clock)
+        return Outcome(document(recipe, found), found.ok, None), _content(recipe, design, found, clock)
+
+
+def judged(
+    recipe: Recipe, paths: list[Path], *, tolerance: float | None = None, units: float | None = None
+) -> dict[str, Any]:
+    """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does.
+
+    They are held to `tolerance`, mm; without one to that of the recipe's file of the same name, or of its export.
+    `units`, mm, is that of files that state none; raises UnitsError where one states another.
+    """
+    from camgeo.recipe.export import FileRequest
+    from kin.judge.verify import verify
+    from kin.read.files import kind_of
+
+    clock = Clock()
+    design = designed(recipe, clock)
+    checks, files = list(design.checks), []
+    for path in paths:
+        with clock.stage("judge"):
+            within = _tolerance_of(recipe, path) if tolerance is None else tolerance
+            by, field = _compensation_of(recipe, path)
+            meant = intent_of_file(recipe, design, kind_of(path), by, field)
+            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within), units)
+        request = FileRequest(verdict.kind, compensation=by)
+        measured = verdict.measured_error
+        files.append(FileResult(path, request, within, verdict.pieces, None, measured, verdict.motion, verdict.linkage))
+        checks += verdict.checks
+    return document(recipe, _findings(recipe, design, checks, files, clock, units=units))
+
+
+def _compensation_of(recipe: Recipe, path: Path) -> tuple[Compensation | None, str]:
+    """By what the recipe makes the part of a file of this name different, and that file's field."""
+    files = recipe.export.files
+    for i, request in enumerate(files):
+        if request.filename(recipe.name, files) == path.name:
+            return request.compensation, f"export.files[{i}]"
+    return None, "export.files"
+
+
+def _tolerance_of(recipe: Recipe, path: Path) -> float:
+    """Tolerance in mm that the recipe gives a file of this name; that of the export for any other."""
+    files = recipe.export.files
+    own = [request.tolerance for request in files if request.filename(recipe.name, files) == path.name]
+    return next((tolerance for tolerance in own if tolerance is not None), recipe.export.tolerance)
+
+
+def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:
+    """All stages: design, fits, files, verdicts, page."""
+    from camgeo.output.skipped import left_out
+
+    design = designed(recipe, clock)
+    checks = list(design.checks)
+    files: list[FileResult] = []
+    pages = [request for request in requests if request.kind == "html"]  # they tell of all the others
+    if design.contour is not None:
+        from camgeo.output.dispatch import foresee, make
+        from camgeo.output.job import Job
+
+        job = Job.of(recipe, design, clock)
+        others = [request for request in requests if request.kind != "html"]
+        for request in others:
+            foresee(job, request)
+        for request in others:
+            made = make(job, request, folder / request.filename(recipe.name, recipe.export.files))
+            files += made.files
+            checks += made.checks
+    found = _findings(recipe, design, checks, files, clock, skipped=left_out(recipe, requests, design))
+    for request in pages:
+        path = folder / request.filename(recipe.name, recipe.export.files)
+        found = _with_page(recipe, design, found, FileResult(path, request, None, None, None, None, None), clock)
+    return design, found
+
+
+def _with_page(recipe: Recipe, design: Design, found: Findings, file: FileResult, clock: Clock) -> Findings:
+    """Write the page on everything that was found; it is there also where no cam is made."""
+    from camgeo.report.page.page import page
+
+    gathered = _content(recipe, design, found, clock)
+    with clock.stage("write html"):
+        file.path.write_bytes(page(recipe, gathered, document(recipe, found)).encode("utf-8"))
+    return replace(found, files=(*found.files, file), stages=tuple(clock.stages))
+
+
+def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> Content:
+    from camgeo.report.page.content import content
+
+    with clock.stage("page"):
+        return content(recipe, design, [file.path for file in found.files if file.shows_cam])
+
+
+def _findings(
+    recipe: Recipe,
+    design: Design,
+    checks: list[Check],
+    files: list[FileResult],
+    clock: Clock,
+    *,
+    skipped: tuple[tuple[str, str], ...] = (),
+    units: float | None = None,
+) -> Findings:
+    """Everything that a run found."""
+    linkage = None
+    if design.driven is not None:
+        from camgeo.report.linkage import linkage_section
+
+        with clock.stage("figures of the linkage"):
+            linkage = linkage_section(recipe, design.driven, files)
+    train = None
+    if recipe.dynamics is not None:
+        from camgeo.synthesis.dynamics import dynamics_of
+
+        with clock.stage("dynamics"):
+            train = dynamics_of(recipe, design, [file.path for file in files if file.shows_cam], units)
+        checks = [*checks, *train.checks]
+    if recipe.limits:
+        from camgeo.report.limits import limit_checks
+
+        with clock.stage("limits"):
+            section = None if train is None else train.section
+            checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
+    from camgeo.report.remarks import remarks_of
+
+    with clock.stage("remarks"):
+        remarks = remarks_of(recipe, design)
+    return Findings(
+        tuple(checks),
+        tuple(files),
+        tuple(clock.stages),
+        skipped,
+        design.follower,
+        linkage=linkage,
+        dynamics=None if train is None else train.section,
+        remarks=remarks,
+    )

@@ -1,0 +1,82 @@
+"""What a run leaves out, with the reason."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.checks.declared import CHECKS, OUTPUT, STANDS, Scene
+from camgeo.recipe.export import KINDS
+
+if TYPE_CHECKING:
+    from camgeo.recipe.export import FileRequest
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+
+Skipped = tuple[str, str]
+
+
+def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> tuple[Skipped, ...]:
+    """Name what was left out of a run that was asked for these files, and say why."""
+    found = [*_files(recipe, requests, design), *_harmonics(recipe, requests, design)]
+    if recipe.dynamics is None:
+        found.append(("dynamics", "dynamics is not given"))
+    if not any(request.parts == "all" for request in requests):
+        found.append(("mechanism", "no file is asked for with parts: all"))
+    found += _of_linkage(recipe, design)
+    scene = scene_of(recipe, design)
+    found += [(one.name, why) for one in CHECKS.values() if one.why_not is not None and (why := one.why_not(scene))]
+    if recipe.linkage is not None:
+        files = recipe.export.files
+        names = [request.filename(recipe.name, files) for request in requests if request.compensation is not None]
+        found += [(OUTPUT.name, f"{name}: the part is not the nominal one") for name in names]
+    return tuple(found)
+
+
+def _files(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> list[Skipped]:
+    asked = {request.kind for request in recipe.export.files}
+    wanted = {request.kind for request in requests}
+    found: list[Skipped] = []
+    for kind in KINDS:
+        if kind not in asked:
+            found.append((kind, "the recipe's export.files does not list it"))
+        elif kind not in wanted:
+            found.append((kind, "left out by --only"))
+    if design.contour is None:
+        found.append(("files", "a check of the exact contour fails"))
+    elif "gcode" in wanted and recipe.manufacture is not None:
+        from camgeo.machining.milling import unmilled
+
+        found += [(name, f"not milled: {why}") for name, why in unmilled(recipe, design)]
+    return found
+
+
+def _harmonics(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) -> list[Skipped]:
+    """Harmonics that exact splines go without."""
+    exact = [request for request in requests if request.as_ == "exact" and request.compensation is None]
+    if not exact or design.contour is None:
+        return []
+    from camgeo.fit.trigonometric import polynomial_of
+
+    p = polynomial_of(design.contour)
+    if not p.dropped:
+        return []
+    what = f"harmonic{'s' if len(p.dropped) > 1 else ''} {', '.join(map(str, p.dropped))} of p"
+    why = f"{'they move' if len(p.dropped) > 1 else 'it moves'} the contour by less than rounding, {p.rest:.2g} mm"
+    return [(what, f"{request.filename(recipe.name, recipe.export.files)}: {why}") for request in exact]
+
+
+def scene_of(recipe: Recipe, design: Design) -> Scene:
+    """What of a run decides which checks are made."""
+    turns = design.driven is None or design.driven.turns
+    return Scene(recipe, design.yoke_breadth is not None, design.trimmed, turns)
+
+
+def _of_linkage(recipe: Recipe, design: Design) -> list[Skipped]:
+    if design.driven is None:
+        return [("linkage", "linkage is not given")]
+    if design.driven.turns:
+        return []
+    files = recipe.export.files
+    asked = ["csv"] if any(request.kind == "csv" for request in files) else []
+    asked += ["mechanism"] if any(request.parts == "all" for request in files) else []
+    return [(what, STANDS) for what in asked]

@@ -1,0 +1,80 @@
+"""Solids of the cam: a polygon extruded with what is cut out of it; STL and 3MF."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.fit.nodes import ToleranceError
+from camgeo.fit.pieces import Polygon
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.files.mesh import Mesh, MeshFacts
+    from camgeo.files.precision import Precision
+    from camgeo.output.job import Job, Made
+    from camgeo.recipe.export import FileRequest
+
+
+def make_solid(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit, write, read back and judge one solid."""
+    mesh, facts = cam_mesh(job, request)
+    with job.clock.stage(f"write {request.kind}"):
+        if request.kind == "stl":
+            from camgeo.files.stl import write_stl
+
+            write_stl(path, mesh, about=job.recipe.name)
+        else:
+            from camgeo.files.three_mf import Item, write_3mf
+
+            write_3mf(path, [Item("cam", mesh)], title=job.recipe.name, about=job.recipe.about)
+    return job.judged(request, path, facts.bound, facts.vertices)
+
+
+def precision_of(request: FileRequest) -> Precision:
+    """The numbers that a request's file holds."""
+    from camgeo.files.precision import DECIMALS, SINGLE
+
+    return DECIMALS if request.kind == "3mf" else SINGLE
+
+
+def aim(job: Job, request: FileRequest) -> float:
+    """Tolerance left to the fit: what rounding to the file's numbers and a chamfer leave of the file's.
+
+    Raises RecipeErrors where that is nothing.
+    """
+    import numpy as np
+
+    body = job.design.body
+    size = float(np.abs(job.contour.sample(job.contour.cells.low).point).max())
+    # between two samples the contour reaches a little farther
+    try:
+        fine = precision_of(request).fit_tolerance(job.tolerance(request), 1.01 * size)
+    except ToleranceError as error:
+        raise job.refused(request, error) from error
+    return fine * (body.fineness if body else 1.0)
+
+
+def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
+    """The cam with everything that its part has, within a request's tolerance and in its file's numbers.
+
+    Raises RecipeErrors and SurroundingsError as `make` does.
+    """
+    recipe, body, tolerance, precision = job.recipe, job.design.body, job.tolerance(request), precision_of(request)
+    if recipe.part.thickness is None:
+        raise recipe.error("part.thickness", "a solid needs a thickness")
+    fine = aim(job, request)
+    with job.refusals(request):
+        polygon = job.outline("polyline", fine)
+        if not isinstance(polygon, Polygon):
+            raise TypeError("a solid is made of a polygon")
+        with job.clock.stage(f"mesh {request.kind}"):
+            if body is not None:
+                from camgeo.output.part_geometry import part_mesh
+
+                drawn = body.mirrored() if recipe.rotation == "ccw" else body
+                return part_mesh(polygon, drawn, tolerance=tolerance, precision=precision)
+            from camgeo.files.prism import extruded
+
+            bore, thickness = recipe.part.bore, recipe.part.thickness
+            return extruded(polygon, bore=bore, thickness=thickness, tolerance=tolerance, precision=precision)

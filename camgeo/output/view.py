@@ -1,0 +1,33 @@
+"""The cam to look at, turning once: GLB."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.files.glb import Actor, write_glb
+from camgeo.output.job import Made
+from camgeo.output.solid import cam_mesh
+from camgeo.report.document import FileResult
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.output.job import Job
+    from camgeo.recipe.export import FileRequest
+
+COLOUR = "#d08a3c"
+STEPS = 8  # of a turn: between two a viewer turns steadily, as the shaft does
+
+
+def make_view(job: Job, request: FileRequest, path: Path) -> Made:
+    """Fit and write the cam; raises as `make` does."""
+    mesh, _ = cam_mesh(job, request)
+    sense = 1.0 if job.recipe.rotation == "ccw" else -1.0
+    pose = np.zeros((STEPS + 1, 3))
+    pose[:, 2] = sense * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
+    with job.clock.stage("write glb"):
+        write_glb(path, [Actor("cam", mesh, pose, COLOUR)], title=job.recipe.name)
+    return Made((FileResult(path, request, None, None, None, None, None),))

@@ -1,0 +1,96 @@
+"""The follower train whose dynamics are asked for."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from camgeo.common.rounding import downward
+from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.reader import Reader, Values
+
+MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
+
+
+@dataclass(frozen=True)
+class Dynamics:
+    """A follower train in SI, but for `play`, mm; of `preload` and `play` one is None. `rpm` is the shaft's speed."""
+
+    mass: float
+    stiffness: float
+    rpm: float
+    damping: float = 0.0
+    preload: float | None = None
+    rate: float = 0.0
+    play: float | None = None
+
+
+_MOST = MOST**2  # of figures in SI: a bound against slips
+
+
+DYNAMICS = Table(
+    (
+        Field(
+            "mass",
+            Kind.NUMBER,
+            "mass that the contact drives, kg; where the follower turns its moment of inertia, kg m²",
+            required=True,
+            above=0,
+            at_most=_MOST,
+        ),
+        Field(
+            "damping",
+            Kind.NUMBER,
+            "damping of the contact or train, N s/m; N m s/rad where it turns",
+            default="0",
+            at_least=0,
+            at_most=_MOST,
+        ),
+        Field(
+            "stiffness",
+            Kind.NUMBER,
+            "stiffness of the contact or train, N/m; N m/rad where it turns",
+            required=True,
+            above=0,
+            at_most=_MOST,
+        ),
+        Field(
+            "preload",
+            Kind.NUMBER,
+            "force of the spring that holds the follower on the cam, N, at its lowest; N m where it turns",
+            above=0,
+            at_most=_MOST,
+        ),
+        length("play", "play between the two faces or rollers that hold the cam, at the contact, instead of a spring"),
+        Field(
+            "rate",
+            Kind.NUMBER,
+            "rate of the preload spring, N/m; N m/rad where it turns",
+            default="0",
+            at_least=0,
+            at_most=_MOST,
+        ),
+        Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
+    ),
+    alternatives=(("preload", ()), ("play", ())),
+)
+
+
+def check_train(train: Values, reader: Reader) -> None:
+    """Note the faults between the fields of a follower train."""
+    if "play" in train and "rate" in train:
+        reader.fault_at(
+            "dynamics.rate", "a spring's rate beside play", None, "give preload instead of play, or leave it out"
+        )
+    if "play" in train and "linkage" in reader.marks:
+        remedy = "give preload: what the joints have of play is not the cam's"
+        reader.fault_at("dynamics.play", "play at the cam under a linkage", None, remedy)
+    if {"mass", "stiffness"} <= train.keys() and "damping" in train:
+        ratio = train["damping"] / math.sqrt((train["stiffness"] + train.get("rate", 0.0)) * train["mass"]) / 2
+        if ratio > MOST_DAMPING:
+            most = train["damping"] * MOST_DAMPING / ratio
+            remedy = f"give less than {downward(most)}"
+            reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)

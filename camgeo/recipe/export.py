@@ -1,0 +1,279 @@
+"""The files that a recipe asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+
+from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
+from camgeo.recipe.schema.errors import shown
+from camgeo.recipe.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
+from camgeo.recipe.schema.json_schema import table_schema
+from camgeo.recipe.schema.yaml_source import Mapping, Scalar, described, is_empty, join
+
+if TYPE_CHECKING:
+    import collections.abc
+
+    from camgeo.recipe.schema.fields import Schema
+    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.recipe.schema.yaml_source import Node
+
+
+FileKind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "glb", "csv", "html", "gcode"]
+
+
+KINDS: tuple[FileKind, ...] = get_args(FileKind)
+
+
+NO_CONTOUR = frozenset({"csv", "html", "glb"})
+"""Kinds of file that hold no contour to be judged."""
+
+
+NO_PART = NO_CONTOUR | {"gcode"}
+"""Kinds of file that do not show the part itself."""
+
+
+SOLIDS = frozenset({"stl", "3mf", "step", "glb"})
+"""Kinds of file that hold a solid, which needs a thickness."""
+
+
+ALL_PARTS: dict[FileKind, str] = {"stl": "cam", "3mf": "parts", "glb": "assembly"}
+"""Ends of the name of the first file of all bodies."""
+
+
+SUFFIXES: dict[FileKind, str] = {"gcode": "ngc"}  # of kinds that are not their own
+
+
+@dataclass(frozen=True)
+class FileRequest:
+    """One file to write.
+
+    `as_` is of DXF, SVG, STEP and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that
+    is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of the
+    mechanism.
+    """
+
+    kind: FileKind
+    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "inspection"] | None = None
+    version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
+    tolerance: float | None = None
+    compensation: Compensation | None = None
+    parts: Literal["cam", "all"] = "cam"
+
+    def filename(self, name: str, requests: collections.abc.Sequence[FileRequest]) -> str:
+        """Name the file among all `requests` of recipe `name`.
+
+        `<name>.<kind>`; where a kind is asked for more than once `<name>-<as>.<kind>`, and where that still leaves two
+        alike `<name>-<as>-<version>.<kind>`, and `-kerf` and the like behind for a part that is not nominal. Of
+        all bodies of a mechanism it is the first: `<name>-cam.stl`, `<name>-parts.3mf` or `<name>-assembly.glb`.
+        """
+        kin = [request for request in requests if request.kind == self.kind]
+        parts = [name] if self.parts == "cam" else [name, ALL_PARTS[self.kind]]
+        alike = [request for request in kin if request.as_ == self.as_]
+        if len(kin) > 1 and self.as_:
+            parts.append(self.as_)
+            if len(alike) > 1 and self.version:
+                parts.append(self.version)
+        if len(alike) > 1 and self.compensation:
+            parts.append(self.compensation.tags)
+        return f"{'-'.join(parts)}.{SUFFIXES.get(self.kind, self.kind)}"
+
+
+@dataclass(frozen=True)
+class Export:
+    """The files, and the greatest distance (mm) between a file's contour and the exact one."""
+
+    tolerance: float
+    files: tuple[FileRequest, ...]
+
+
+_TOLERANCE = length("tolerance", "greatest distance between this file's contour and the exact one", default="export's")
+
+
+_PARTS = Field("parts", Kind.CHOICE, "the cam, or every body of the mechanism", default="cam", choices=("cam", "all"))
+
+
+FILES: dict[str, Table] = {
+    "dxf": Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of",
+                default="arcs",
+                choices=("arcs", "polyline", "spline", "exact"),
+            ),
+            Field(
+                "version",
+                Kind.CHOICE,
+                "version of the format; R12 has no splines",
+                default="R2010",
+                choices=("R12", "R2000", "R2010", "R2013"),
+            ),
+            _TOLERANCE,
+            *COMPENSATION,
+        ),
+    ),
+    "svg": Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of",
+                default="arcs",
+                choices=("arcs", "polyline", "spline"),
+            ),
+            _TOLERANCE,
+            *COMPENSATION,
+        ),
+    ),
+    "stl": Table((_PARTS, _TOLERANCE, *COMPENSATION)),
+    "3mf": Table((_PARTS, _TOLERANCE, *COMPENSATION)),
+    "step": Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "what the contour is made of: cylinders and planes, or the surface that a spline sweeps",
+                default="arcs",
+                choices=("arcs", "spline", "exact"),
+            ),
+            _TOLERANCE,
+            *COMPENSATION,
+        ),
+    ),
+    "glb": Table((_PARTS, _TOLERANCE)),
+    "csv": Table((Field("as", Kind.CHOICE, "which table it is", default="motion", choices=("motion", "inspection")),)),
+    "html": Table(()),
+    "gcode": Table((_TOLERANCE,)),
+}
+
+
+def read_files(reader: Reader, field: Field, node: Node, path: str) -> list[Values]:
+    """Read the list of files; each with its `kind`. A faulty one is left out."""
+    found = []
+    for i, item in enumerate(reader.items(field, node, path, MOST_FILES)):
+        below = join(path, i)
+        kind, options = _format(item)
+        if kind is None:
+            remedy = "give a format, or a mapping with one format such as {dxf: {as: spline}}"
+            reader.fault(item.mark, below, "not a file", described(item), remedy)
+            continue
+        if kind.text not in FILES:
+            _refuse_format(reader, kind, below)
+        elif options is None:
+            found.append({"kind": kind.text, "path": below})
+        else:
+            table = Field("", Kind.TABLE, "", table=FILES[kind.text])
+            values = reader.field(table, options, join(below, kind.text))
+            if values is not None:
+                found.append({"kind": kind.text, "path": below, **values})
+    return found
+
+
+def _refuse_format(reader: Reader, kind: Scalar, path: str) -> None:
+    reader.fault(kind.mark, path, "no such file format", shown(kind.text), f"give {either(tuple(FILES))}")
+
+
+def _format(node: Node) -> tuple[Scalar | None, Node | None]:
+    """Take an entry of the list of files apart: `dxf`, or the format and options of `{dxf: {...}}`."""
+    if isinstance(node, Scalar):
+        return (None if is_empty(node) else node), None
+    if isinstance(node, Mapping) and len(node.entries) == 1:
+        key, options = node.entries[0]
+        return (key if isinstance(key, Scalar) else None), options
+    return None, None
+
+
+def _files_schema(_: Field) -> Schema:
+    formats = [Field(kind, Kind.TABLE, "", required=True, table=table) for kind, table in FILES.items()]
+    items = {"anyOf": [{"enum": list(FILES)}, *(table_schema(Table((item,))) for item in formats)]}
+    return {"type": "array", "items": items, "minItems": 1, "maxItems": MOST_FILES}
+
+
+EXPORT = mapping(
+    "export",
+    "the files",
+    length("tolerance", "greatest distance between a file's contour and the exact one", default="0.001 mm"),
+    Field(
+        "files",
+        Kind.OWN,
+        "dxf, svg, stl, 3mf, step, glb, csv, html, gcode, or mappings such as {dxf: {as: spline}}",
+        default="[dxf]",
+        form=Form(
+            "a list of files",
+            "a list of files such as [dxf, stl]",
+            read_files,
+            _files_schema,
+            tables=FILES,
+            group="the file",
+        ),
+    ),
+)
+
+
+def check_files(values: Values, reader: Reader) -> None:
+    """Note the faults between the files that are asked for, and what they lack."""
+    files: list[Values] = values.get("export", {}).get("files", [])
+    listed = requests(files)
+    names = [request.filename("NAME", listed) for request in listed]
+    if any(request.kind == "gcode" for request in listed):
+        check_slight(values, reader)
+    for i, (file, request) in enumerate(zip(files, listed, strict=True)):
+        path = file["path"]
+        if request.kind in SOLIDS and "part.thickness" not in reader.marks:
+            remedy = f"give part.thickness, or leave {request.kind} out"
+            reader.fault_at(path, f"{request.kind} needs a thickness", None, remedy)
+        if request.parts == "all" and request.compensation is not None:
+            remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
+            reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
+        if request.parts == "all" and "part.bore" not in reader.marks:
+            remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
+            reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
+        if request.kind == "gcode":
+            check_milling(path, reader)
+        if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
+            remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
+            reader.fault_at(f"{path}.step.as", "the chamfer of a spline is no spline", f"'{request.as_}'", remedy)
+        if request.as_ in {"spline", "exact"} and request.version == "R12":
+            remedy = "give arcs or polyline, or a later version"
+            reader.fault_at(f"{path}.dxf.as", "R12 has no splines", f"'{request.as_}'", remedy)
+        if request in listed[:i]:
+            reader.fault_at(path, "the same file twice", None, "leave one out")
+        elif names[i] in names[:i]:
+            name = names[i].removeprefix("NAME")
+            remedy = "give each another `as` or `version`, or a recipe of its own"
+            reader.fault_at(path, "a second file of one name", f"<name>{name}", remedy)
+
+
+TOLERANCE = 0.001  # mm
+
+
+CHOSEN: dict[FileKind, Values] = {  # what a file is where its options do not say
+    "dxf": {"as": "arcs", "version": "R2010"},
+    "svg": {"as": "arcs"},
+    "step": {"as": "arcs"},
+    "csv": {"as": "motion"},
+}
+
+
+def requests(files: list[Values]) -> tuple[FileRequest, ...]:
+    """Make the list of files."""
+    return tuple(_request(file["kind"], file) for file in files)
+
+
+def _request(kind: FileKind, file: Values) -> FileRequest:
+    chosen = {**CHOSEN.get(kind, {}), **file}
+    return FileRequest(
+        kind,
+        chosen.get("as"),
+        chosen.get("version"),
+        chosen.get("tolerance"),
+        build_compensation(file),
+        chosen.get("parts", "cam"),
+    )
+
+
+def build_export(values: Values) -> Export:
+    """Make the files of values in which there is no fault."""
+    return Export(values.get("tolerance", TOLERANCE), requests(values.get("files", [{"kind": "dxf"}])))

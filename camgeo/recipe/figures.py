@@ -1,0 +1,241 @@
+"""The figures of a design, each declared once: what a recipe limits, and what a sweep ranks by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from camgeo.recipe.schema.errors import suggestion
+from camgeo.recipe.schema.fields import MOST, Field, Form, Kind, Table, either
+from camgeo.recipe.schema.json_schema import table_schema
+from camgeo.recipe.schema.yaml_source import Mapping, described, entries, join, keys, scalars
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.fields import Schema
+    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.recipe.schema.yaml_source import Node
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Bounds of a figure, as figures are told: angles in degrees, lengths in mm, rates per radian of shaft angle."""
+
+    figure: str
+    at_least: float | None = None
+    at_most: float | None = None
+
+
+Needs = Literal["", "linkage", "dwell", "follower", "roller", "swings", "plate", "wall", "all", "preload", "play"]
+
+
+NEEDS: dict[Needs, str] = {
+    "linkage": "a linkage",
+    "dwell": "dwell.band",
+    "follower": "a follower without a linkage",
+    "roller": "a cam of kind double-roller",
+    "swings": "a cam of kind double-roller or flat-pair",
+    "plate": "a cam of kind support or constant-breadth",
+    "wall": "a part with openings or a hub",
+    "all": "a file with `parts: all`",
+    "preload": "dynamics.preload",
+    "play": "dynamics.play",
+}
+"""What a figure is taken from, besides the cam and its files, in words."""
+
+
+_OPENINGS = ("bore", "hub", "bolts", "dowel", "lightening", "mark")
+
+
+# Names that stand in programs too.
+DWELL, SIZE, FACE_LENGTH, LEAST_WALL = "dwell", "size", "face-length", "wall"
+
+
+RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "pitch-radius"
+
+
+PRESSURE_ANGLE, TRANSMISSION, MOTION_ERROR = "pressure-angle", "transmission", "motion-error"
+
+
+PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
+
+
+STEEP = frozenset({PRESSURE_ANGLE, TRANSMISSION, FACE_LENGTH, *PEAKS})  # the less the smaller the motion
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure of a design.
+
+    `kind` is that of its values: degrees for an angle, the recipe's unit for a length, and for a motion either, as
+    the follower or the last link swings or slides. `best` says which values a ranking puts first, `needs` what the
+    figure is taken from. `per` ends its unit's name. `of` says whether the exact design has it, each file, or each run
+    of the dynamics. `swept` is whether a sweep knows it.
+    """
+
+    about: str
+    kind: Kind
+    best: Literal["most", "least"]
+    needs: Needs = ""
+    per: str = ""
+    of: Literal["design", "file", "dynamics"] = "design"
+    swept: bool = True
+
+
+def _of_file(about: str, kind: Kind, needs: Needs = "") -> Figure:
+    return Figure(about, kind, "least", needs, of="file", swept=False)
+
+
+FIGURES: dict[str, Figure] = {
+    DWELL: Figure("longest dwell over the shaft angle, at the band of `dwell`", Kind.ANGLE, "most", "dwell"),
+    "dwell-relative": Figure("longest dwell over the relative angle, at that band", Kind.ANGLE, "most", "dwell"),
+    "swing": Figure("swing or stroke of the output, without a linkage of the follower", Kind.MOTION, "most"),
+    PEAKS[0]: Figure("its greatest velocity, per radian of shaft angle", Kind.MOTION, "least", per="/rad"),
+    PEAKS[1]: Figure("its greatest acceleration, per radian squared", Kind.MOTION, "least", per="/rad^2"),
+    PEAKS[2]: Figure("the follower's greatest jerk, per radian cubed", Kind.MOTION, "least", "follower", per="/rad^3"),
+    PRESSURE_ANGLE: Figure(
+        "greatest angle between the contact's normal and the follower's way; 0 of a flat face",
+        Kind.ANGLE,
+        "least",
+        "follower",
+    ),
+    TRANSMISSION: Figure("greatest swing of the arm per turn of the shaft", Kind.NUMBER, "least", "swings"),
+    FACE_LENGTH: Figure("length of the face along which the contact travels", Kind.LENGTH, "least", "plate"),
+    "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
+    "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
+    "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
+    "shaft-rate": Figure(
+        "least turn of the shaft per turn of the cam against the frame", Kind.NUMBER, "most", "linkage"
+    ),
+    RADIUS: Figure("least radius of curvature of the contour", Kind.LENGTH, "most"),
+    HOLLOW_RADIUS: Figure("least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", "roller"),
+    PITCH_RADIUS: Figure("least radius of curvature of the pitch curve", Kind.LENGTH, "most", "roller"),
+    SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
+    LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
+    "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", "all", swept=False),
+    "collision": Figure("least distance between bodies over the turn", Kind.LENGTH, "most", "all", swept=False),
+    "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
+    MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
+    "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
+    "backlash": _of_file("greatest play or interference of a follower that is held twice, of a file", Kind.PLAY),
+    "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
+    "pieces": _of_file("number of pieces of a file's contour", Kind.NUMBER),
+    "least-force": Figure(
+        "least contact force, N; N m where it turns", Kind.NUMBER, "most", "preload", of="dynamics", swept=False
+    ),
+    "peak-force": Figure(
+        "greatest contact force, N; N m where it turns", Kind.NUMBER, "least", "preload", of="dynamics", swept=False
+    ),
+    "play": Figure("least play between the faces", Kind.ERROR, "most", "play", of="dynamics", swept=False),
+}
+
+
+def bounds(figure: Figure) -> Table:
+    """Give the table of the limits of a figure."""
+    return Table(
+        tuple(
+            Field(name, Kind.NUMBER, about, at_least=-(MOST**2), at_most=MOST**2, unit=figure.kind)
+            for name, about in (("at_least", "least value that will do"), ("at_most", "greatest value that will do"))
+        )
+    )
+
+
+ALL = "parts: all"
+
+
+def there(needs: Needs, cam_kind: str, given: frozenset[str] | set[str]) -> bool:
+    """Tell whether a recipe has what a figure needs, by its kind of cam and the paths of the fields given.
+
+    `ALL` is given where a file shows every body.
+    """
+    match needs:
+        case "linkage" | "play" | "preload" | "dwell":
+            return (needs if needs in {"linkage", "dwell"} else f"dynamics.{needs}") in given
+        case "follower":
+            return "linkage" not in given
+        case "roller":
+            return cam_kind == "double-roller"
+        case "swings":
+            return cam_kind in {"double-roller", "flat-pair"}
+        case "plate":
+            return cam_kind in {"support", "constant-breadth"}
+        case "wall":
+            return any(f"part.{name}" in given for name in _OPENINGS)
+        case "all":
+            return ALL in given
+    return True
+
+
+def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
+    """Read limits by the figures that they bound, those in `field.choices`; lengths in mm, angles in degrees."""
+    if not isinstance(node, Mapping):
+        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
+        return None
+    given = entries(node)
+    limits = []
+    for name, key in keys(node).items():
+        below = join(path, name)
+        if name not in field.choices:
+            known = tuple(here for here in of_recipe(reader) if here in field.choices)
+            remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
+            reader.fault(key.mark, below, "no such figure", None, remedy)
+            continue
+        table = Field("", Kind.TABLE, "", table=bounds(FIGURES[name]))
+        found = len(reader.errors)
+        values = reader.field(table, given[name], below)
+        if values is None or len(reader.errors) > found:
+            continue
+        if not values:
+            reader.fault(given[name].mark, below, "no bound", None, "give at_least, at_most or both")
+        factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
+        if values.get("at_least", -math.inf) > values.get("at_most", math.inf):
+            told = "no design" if field is not LIMITS else "nothing"
+            reader.fault_at(f"{below}.at_most", f"below at_least, so {told} will do", None, "exchange them")
+        limits.append({"figure": name, "at": below, **{bound: factor * value for bound, value in values.items()}})
+    return limits
+
+
+def _limits_schema(field: Field) -> Schema:
+    limits = {name: {**table_schema(bounds(FIGURES[name])), "minProperties": 1} for name in field.choices}
+    return {"type": "object", "properties": limits, "additionalProperties": False}
+
+
+FORM = Form(
+    "limits",
+    "a mapping from figures to bounds, such as {transmission-angle: {at_least: 40}}",
+    read_limits,
+    _limits_schema,
+)
+
+
+LIMITS = Field(
+    "limits",
+    Kind.OWN,
+    "figures that must keep within bounds, each a check of its own, such as {pressure-angle: {at_most: 45}}",
+    default="none",
+    choices=tuple(FIGURES),
+    form=FORM,
+)
+
+
+def of_recipe(reader: Reader) -> tuple[str, ...]:
+    """Name the figures that the recipe being read has."""
+    given = set(reader.marks)
+    if any(path.endswith(".parts") and scalar.text == "all" for path, scalar in scalars(reader.source.root)):
+        given.add(ALL)
+    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, reader.kinds["cam"], given))
+
+
+def check_limits(limits: list[Values], reader: Reader) -> None:
+    """Note limits of figures that the recipe has not."""
+    here = of_recipe(reader)
+    for limit in limits:
+        name, needs = limit["figure"], FIGURES[limit["figure"]].needs
+        if needs and name not in here:
+            remedy = f"the figures of this recipe are {either(here, 'and')}"
+            reader.fault_at(limit["at"], f"{name} needs {NEEDS[needs]}", None, remedy)
+
+
+def build_limits(limits: list[Values]) -> tuple[Limit, ...]:
+    """Make the limits of values in which there is no fault."""
+    return tuple(Limit(limit["figure"], limit.get("at_least"), limit.get("at_most")) for limit in limits)

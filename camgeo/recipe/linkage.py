@@ -1,0 +1,332 @@
+"""The linkage of a recipe, its dyads and the dwells of its output."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
+
+from camgeo.recipe.cam import SWINGING
+from camgeo.recipe.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, length
+from camgeo.recipe.schema.json_schema import one_of_schema
+from camgeo.recipe.schema.yaml_source import join
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.fields import Schema
+    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.recipe.schema.yaml_source import Node
+
+
+Assembly: TypeAlias = Literal["open", "crossed"]
+
+
+Carrier: TypeAlias = Literal["output", "coupler", "previous"]
+
+
+Pair: TypeAlias = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class RRRDyad:
+    """Two links, mm: the first from `point` on the link `on`, the second from there to the fixed pivot `ground`."""
+
+    on: Carrier
+    point: Pair
+    ground: Pair
+    links: Pair
+    assembly: Assembly
+
+    slides: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class RRPDyad:
+    """A link from `point` on the link `on` to a slide on the line through `through` in `direction` (rad); mm."""
+
+    on: Carrier
+    point: Pair
+    link: float
+    through: Pair
+    direction: float
+    assembly: Assembly
+
+    slides: ClassVar[bool] = True
+
+
+@dataclass(frozen=True)
+class RPRDyad:
+    """A block at `point` of the link `on`, in a slot that passes the fixed pivot `ground` at `offset`; mm."""
+
+    on: Carrier
+    point: Pair
+    ground: Pair
+    offset: float
+
+    slides: ClassVar[bool] = False
+
+
+Dyad: TypeAlias = RRRDyad | RRPDyad | RPRDyad
+
+
+@dataclass(frozen=True)
+class FourBarLinkage:
+    """The frame as the coupler of a four-bar (AS 2023, Figure 7), mm; its output is an angle."""
+
+    ground: float
+    coupler: float
+    rocker: float
+    assembly: Assembly
+    dyads: tuple[Dyad, ...] = ()
+
+    kind: ClassVar[str] = "four-bar"
+    slides: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class InvertedSliderCrankLinkage:
+    """The frame sliding on a rocker (AS 2023, Figure 4b), mm; a rocker of 0 makes an oscillating yoke."""
+
+    ground: float
+    rocker: float
+    assembly: Assembly
+    dyads: tuple[Dyad, ...] = ()
+
+    kind: ClassVar[str] = "inverted-slider-crank"
+    slides: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class SliderCrankLinkage:
+    """The frame as the coupler of a slide on the line y = offset, mm; its output is a length."""
+
+    coupler: float
+    offset: float
+    assembly: Assembly
+    dyads: tuple[Dyad, ...] = ()
+
+    kind: ClassVar[str] = "slider-crank"
+    slides: ClassVar[bool] = True
+
+
+Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage
+
+
+def output_slides(linkage: Linkage) -> bool:
+    """Tell whether the output of a linkage, that of its last dyad if it has any, is a length and not an angle."""
+    return (linkage.dyads[-1] if linkage.dyads else linkage).slides
+
+
+@dataclass(frozen=True)
+class DwellAsked:
+    """Dwells of the output: within `band` (rad, or mm where it slides); `at_least` (rad) is a check, over one angle."""
+
+    band: float
+    at_least: float | None = None
+    over: Literal["shaft", "relative"] = "shaft"
+
+
+def read_linkage(reader: Reader, field: Field, node: Node, path: str) -> Values | None:
+    """Read the linkage by the table of its kind."""
+    return reader.one_of(field, node, path)
+
+
+def read_dyads(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
+    """Read the list of dyads, each by the table of its kind, or None where one is faulty."""
+    dyad = Field("", Kind.OWN, "", form=_DYAD)
+    items = reader.items(field, node, path, MOST_DYADS)
+    values = [reader.one_of(dyad, item, join(path, i)) for i, item in enumerate(items)]
+    return [value for value in values if value is not None] if None not in values else None
+
+
+def _dyads_schema(_: Field) -> Schema:
+    return {"type": "array", "items": one_of_schema("dyad", DYADS), "minItems": 1, "maxItems": MOST_DYADS}
+
+
+_ASSEMBLY = Field(
+    "assembly",
+    Kind.CHOICE,
+    "which of the two ways to put the links together; open is Figure 7 of AS 2023",
+    default="open",
+    choices=("open", "crossed"),
+)
+
+
+_ON = Field(
+    "on",
+    Kind.CHOICE,
+    "the link that carries the dyad's first joint; previous is the output link of the dyad before",
+    default="output",
+    choices=("output", "coupler", "previous"),
+)
+
+
+_POINT = Field("point", Kind.POINT, "the first joint [x, y] in the axes of that link", required=True)
+
+
+_PIVOT = Field("ground", Kind.POINT, "the fixed pivot [x, y] in the fixed axes, the shaft at [0, 0]", required=True)
+
+
+DYADS: dict[str, Table] = {
+    "rrr": Table(
+        (
+            _ON,
+            _POINT,
+            _PIVOT,
+            Field("links", Kind.PAIR, "lengths of the two links, the one on the fixed pivot last", required=True),
+            replace(
+                _ASSEMBLY, about="open: seen from the fixed pivot towards the first joint, the second lies to the left"
+            ),
+        )
+    ),
+    "rrp": Table(
+        (
+            _ON,
+            _POINT,
+            length("link", "length of the link from the first joint to the slide", required=True),
+            Field(
+                "through", Kind.POINT, "a point [x, y] of the slide's line, from which it is measured", required=True
+            ),
+            Field("direction", Kind.ANGLE, "direction of the slide's line", required=True, at_least=-360, at_most=360),
+            replace(_ASSEMBLY, about="open: of two places on the line the slide takes the one farther along it"),
+        )
+    ),
+    "rpr": Table(
+        (
+            _ON,
+            _POINT,
+            _PIVOT,
+            coordinate(
+                "offset",
+                "distance of the slot's line from the fixed pivot, positive where the block lies to its left",
+                default="0",
+            ),
+        )
+    ),
+}
+
+
+_DYAD = Form("a dyad", "a mapping with the kind of dyad and its fields", read_linkage, _dyads_schema, tables=DYADS)
+_LIST = Form(
+    "a list of dyads",
+    "a list of dyads such as [{kind: rrr, point: [80, 0], ground: [140, 80], links: [100, 30]}]",
+    read_dyads,
+    _dyads_schema,
+    tables=DYADS,
+    group="a dyad of kind",
+)
+
+
+_DYADS = Field("dyads", Kind.OWN, "further links; the last dyad's output is the linkage's", default="none", form=_LIST)
+
+
+_GROUND = length("ground", "distance r1 of the fixed pivot from the shaft, along +x", required=True)
+
+
+_COUPLER = length("coupler", "length r3 from the middle of the frame's side to the joint", required=True)
+
+
+LINKAGES: dict[str, Table] = {
+    "four-bar": Table(
+        (_GROUND, _COUPLER, length("rocker", "length r4 of the rocker", required=True), _ASSEMBLY, _DYADS)
+    ),
+    "inverted-slider-crank": Table(
+        (
+            _GROUND,
+            Field(
+                "rocker",
+                Kind.LENGTH,
+                "length r4 of the rocker, from its pivot square to the slide; 0 makes an oscillating yoke",
+                required=True,
+                at_least=0,
+                at_most=MOST,
+            ),
+            _ASSEMBLY,
+            _DYADS,
+        )
+    ),
+    "slider-crank": Table(
+        (
+            _COUPLER,
+            coordinate("offset", "distance of the slide's line from the shaft, along +y", required=True),
+            _ASSEMBLY,
+            _DYADS,
+        )
+    ),
+}
+
+
+SLIDING = ("slider-crank", "rrp")  # kinds of linkage and of dyad whose output is a length
+
+
+LINKAGE = Form(
+    "a linkage",
+    "a mapping with the kind of linkage and its fields",
+    read_linkage,
+    lambda _: one_of_schema("linkage", LINKAGES),
+    tables=LINKAGES,
+    group="linkage of kind",
+)
+
+
+DWELL = (
+    Field(
+        "band",
+        Kind.OUTPUT,
+        "greatest less least output within a dwell, in degrees, or a length where it slides",
+        required=True,
+        above=0,
+        at_most=MOST,
+    ),
+    Field("at_least", Kind.ANGLE, "a check: least length of the longest dwell", default="none", above=0, at_most=360),
+    Field(
+        "over",
+        Kind.CHOICE,
+        "the angle that the check takes: the shaft's, or the cam's against the frame",
+        default="shaft",
+        choices=("shaft", "relative"),
+    ),
+)
+
+
+def check_linkage(values: Values, reader: Reader) -> None:
+    """Note the faults between a linkage, its dwells and the cam that drives it."""
+    if "linkage" not in reader.marks:
+        for path in ("dwell", "verify.output_error"):
+            if path in reader.marks:
+                reader.fault_at(path, "needs a linkage", None, "give a linkage, or leave it out")
+        return
+    if reader.kinds["cam"] in SWINGING:
+        remedy = "a frame around a cam of kind support or constant-breadth drives it"
+        reader.fault_at("linkage", f"cannot stand beside a cam of kind {reader.kinds['cam']}", None, remedy)
+    for part, harmonics in values.get("cam", {}).get("fourier", {}).items():
+        for j, value in harmonics if part in {"cos", "sin"} else ():
+            if j % 2 == 0 and value:
+                remedy = "a frame needs constant breadth: odd harmonics alone"
+                reader.fault_at(f"cam.fourier.{part}", "an even harmonic under a linkage", str(j), remedy)
+    dyads: list[Values] = values.get("linkage", {}).get("dyads", [])
+    if dyads and dyads[0].get("on") == "previous":
+        remedy = "give output or coupler"
+        reader.fault_at("linkage.dyads[0].on", "there is no dyad before the first", "'previous'", remedy)
+
+
+def build_linkage(linkage: Values) -> Linkage:
+    """Make the linkage of values in which there is no fault."""
+    given = {"assembly": "open", **{key: value for key, value in linkage.items() if key != "kind"}}
+    given["dyads"] = tuple(map(_dyad, given.get("dyads", [])))
+    match linkage["kind"]:
+        case "four-bar":
+            return FourBarLinkage(**given)
+        case "inverted-slider-crank":
+            return InvertedSliderCrankLinkage(**given)
+        case _:
+            return SliderCrankLinkage(**given)
+
+
+def _dyad(dyad: Values) -> Dyad:
+    given = {"on": "output", **{key: value for key, value in dyad.items() if key != "kind"}}
+    match dyad["kind"]:
+        case "rrr":
+            return RRRDyad(**{"assembly": "open", **given})
+        case "rrp":
+            return RRPDyad(**{"assembly": "open", **given})
+        case _:
+            return RPRDyad(**{"offset": 0.0, **given})

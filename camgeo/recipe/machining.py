@@ -1,0 +1,195 @@
+"""How the part is milled, and what the contour of a file is moved by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from camgeo.recipe.schema.fields import Field, Kind, Table, either, length
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.reader import Reader, Values
+
+
+@dataclass(frozen=True)
+class Manufacture:
+    """Milling, in mm, mm a minute, turns a minute and radians; figures that only a program needs are None without one.
+
+    `allowance` is left by all passes but a last one at full depth. `unreached` is how deep metal may be left where the
+    cutter does not reach.
+    """
+
+    cutter: float
+    feed: float | None = None
+    plunge: float | None = None
+    spindle: float | None = None
+    depth_of_cut: float | None = None
+    safe_height: float | None = None
+    lead_in: float | None = None
+    direction: Literal["climb", "conventional"] = "climb"
+    allowance: float | None = None
+    start: float = 0.0
+    holes: bool = False
+    unreached: float = 0.0
+    layer: bool = False
+
+    @property
+    def radius(self) -> float:
+        """Radius of the cutter, mm."""
+        return 0.5 * self.cutter
+
+    @property
+    def lead(self) -> float:
+        """Radius of the arcs of lead-in and lead-out, mm."""
+        return self.radius if self.lead_in is None else self.lead_in
+
+
+@dataclass(frozen=True)
+class Compensation:
+    """What a file's part is made different by: `kerf` (a cut's whole width) and `clearance` in mm, `shrinkage` a share.
+
+    A cut along the drawn lines takes half its width from the part, so the metal is drawn larger by that; clearance is
+    taken from it all round. What shrinks is drawn larger by 1/(1 - shrinkage) about the shaft.
+    """
+
+    kerf: float = 0.0
+    clearance: float = 0.0
+    shrinkage: float = 0.0
+
+    @property
+    def out(self) -> float:
+        """How far the metal's edges move outward, mm, before the part is scaled."""
+        return 0.5 * self.kerf - self.clearance
+
+    @property
+    def scale(self) -> float:
+        """How many times as large the part is drawn."""
+        return 1.0 / (1.0 - self.shrinkage)
+
+    @property
+    def tags(self) -> str:
+        """Name of what is compensated, for a file's name: `kerf`, `clearance-shrinkage`."""
+        return "-".join(name for name in ("kerf", "clearance", "shrinkage") if getattr(self, name))
+
+    def told(self, mm: float) -> str:
+        """Say what is compensated, lengths in units of `mm` mm."""
+        parts = [f"{name} {value / mm:.9g}" for name in ("kerf", "clearance") if (value := getattr(self, name))]
+        if self.shrinkage:
+            parts.append(f"shrinkage {100.0 * self.shrinkage:.9g} percent")
+        return ", ".join(parts)
+
+    def entry(self, mm: float) -> dict[str, float]:
+        """Tell it for a report: lengths in units of `mm` mm, the shrinkage in percent."""
+        found = {name: getattr(self, name) / mm for name in ("kerf", "clearance") if getattr(self, name)}
+        if self.shrinkage:
+            found["shrinkage"] = 100.0 * self.shrinkage
+        moved = {"outward": self.out / mm, "scale": self.scale}
+        return {**found, **{key: value for key, value in moved.items() if math.isfinite(value)}}
+
+
+MOST_RPM = 1_000_000
+
+
+MANUFACTURE = Table(
+    (
+        length("cutter", "diameter of the cutter that mills the contour", required=True),
+        length("feed", "feed along the contour, a minute; needed by gcode"),
+        length("plunge", "feed downwards, a minute; needed by gcode"),
+        Field(
+            "spindle",
+            Kind.NUMBER,
+            "speed of the spindle, turns a minute; needed by gcode",
+            above=0,
+            at_most=MOST_RPM,
+        ),
+        length("depth_of_cut", "greatest depth of one pass; needed by gcode"),
+        length("safe_height", "height above the stock at which the cutter moves fast; needed by gcode"),
+        length("lead_in", "radius of the arcs on which the cutter comes and leaves", default="half the cutter"),
+        Field(
+            "direction",
+            Kind.CHOICE,
+            "side on which a right-handed cutter that turns clockwise meets the metal",
+            default="climb",
+            choices=("climb", "conventional"),
+        ),
+        length("allowance", "metal that a last pass at full depth takes off all round", default="no such pass"),
+        Field(
+            "start",
+            Kind.ANGLE,
+            "direction in which the cutter is farthest out where it comes to the contour",
+            default="0",
+            at_least=-360,
+            at_most=360,
+        ),
+        Field("holes", Kind.TRUTH, "whether round openings larger than the cutter are milled too", default="false"),
+        length("unreached", "greatest depth of metal that may be left where the cutter does not reach", default="none"),
+        Field("layer", Kind.TRUTH, "whether a DXF shows the path of the cutter's centre, on TOOLPATH", default="false"),
+    ),
+)
+
+
+NEEDED = ("feed", "plunge", "spindle", "depth_of_cut", "safe_height")
+"""Keys that a program for a machine cannot do without."""
+
+
+SLOWEST, SHORTEST = 0.001, 1e-6
+
+
+LEAST_TOLD = dict.fromkeys(("feed", "plunge", "spindle"), SLOWEST)
+LEAST_TOLD |= dict.fromkeys(("cutter", "depth_of_cut", "safe_height", "lead_in", "allowance"), SHORTEST)
+"""Least figures of a program, in the recipe's unit: bounds against slips, far below what any machine keeps to."""
+
+
+COMPENSATION = (
+    length("kerf", "width of the cut: the metal is drawn larger by half of it, openings smaller", default="0"),
+    length("clearance", "what the metal stands back all round; openings become larger", default="0"),
+    Field(
+        "shrinkage",
+        Kind.NUMBER,
+        "percent by which the part shrinks: it is drawn larger by 1/(1 - s/100)",
+        default="0",
+        above=0,
+        at_most=20,
+    ),
+)
+"""By what the part of a file is made different from the nominal one."""
+
+
+def check_allowance(milling: Values, reader: Reader) -> None:
+    """Note an allowance that is too much for a last pass of this cutter."""
+    if {"allowance", "cutter"} <= milling.keys() and milling["allowance"] >= 0.25 * milling["cutter"]:
+        remedy = f"give less than {0.25 * milling['cutter'] / reader.mm:.6g} {reader.units}"
+        value = f"{milling['allowance'] / reader.mm:.6g} {reader.units}"
+        reader.fault_at("manufacture.allowance", "not below a quarter of the cutter", value, remedy)
+
+
+def check_milling(path: str, reader: Reader) -> None:
+    """Note what a program for a machine lacks."""
+    if "manufacture" not in reader.marks:
+        remedy = f"give manufacture with cutter, {', '.join(NEEDED[:-1])} and {NEEDED[-1]}, or leave gcode out"
+        reader.fault_at(path, "gcode needs manufacture", None, remedy)
+    elif missing := [name for name in NEEDED if f"manufacture.{name}" not in reader.marks]:
+        remedy = f"give {either(tuple(missing), 'and')}, or leave gcode out"
+        reader.fault_at("manufacture", f"gcode needs {missing[0]}", None, remedy)
+    if "part.thickness" not in reader.marks:
+        reader.fault_at(path, "gcode needs a thickness", None, "give part.thickness, or leave gcode out")
+
+
+def check_slight(values: Values, reader: Reader) -> None:
+    """Note figures so slight that a program would need its digits for them alone."""
+    for table, least_told in (("manufacture", LEAST_TOLD), ("part", {"thickness": SHORTEST})):
+        for name, least in least_told.items():
+            unit, mm = ("turns a minute", 1.0) if name == "spindle" else (reader.units, reader.mm)
+            value = values.get(table, {}).get(name)
+            if value is not None and value < least * mm:
+                remedy = f"give at least {least:.6g} {unit}"
+                reader.fault_at(f"{table}.{name}", "too little for a program", f"{value / mm:.6g} {unit}", remedy)
+
+
+def build_compensation(file: Values) -> Compensation | None:
+    """Make the compensation of a file, where it has any."""
+    given = {name: file[name] for name in ("kerf", "clearance", "shrinkage") if name in file}
+    if "shrinkage" in given:
+        given["shrinkage"] /= 100.0
+    return Compensation(**given) if given else None

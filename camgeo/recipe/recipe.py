@@ -1,0 +1,234 @@
+"""The recipe as a whole: its keys, and what it says, checked and converted: lengths in mm, angles in radians.
+
+Plain values throughout, so that recipes compare, hash and travel between processes. Formulas stay text; their values
+are in the recipe's units, and `scale` (mm per unit) turns those into mm. Each topic has a file of its own beside this
+one: its keys, how they are read and published, what they are checked for and what they become.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from camgeo.recipe.assembly import MECHANISM, MechanismAsked
+from camgeo.recipe.cam import CAM, CAMS, SWINGING, build_cam, check_cam
+from camgeo.recipe.dynamics import DYNAMICS, Dynamics, check_train
+from camgeo.recipe.export import EXPORT, build_export, check_files
+from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
+from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, DwellAsked, build_linkage, check_linkage
+from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
+from camgeo.recipe.part import PART, build_part, check_part
+from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
+from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, mapping
+from camgeo.recipe.schema.reader import kind_of
+from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Sequence, described, entries
+from camgeo.recipe.sweep import SWEEP, build_sweep, check_sweep
+
+if TYPE_CHECKING:
+    import collections.abc
+    from pathlib import Path
+
+    from camgeo.recipe.cam import Cam
+    from camgeo.recipe.export import Export
+    from camgeo.recipe.linkage import Linkage
+    from camgeo.recipe.part import Part
+    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.recipe.schema.yaml_source import Mark
+    from camgeo.recipe.sweep import Sweep
+
+ANGLES = 3600
+_MM = {"mm": 1.0, "inch": 25.4}
+
+
+@dataclass(frozen=True)
+class Verify:
+    """How each file is judged: shaft angles, and the greatest errors or None for the implied ones.
+
+    `motion_error` (mm, or rad where the follower swings) is that of follower or frame against the cam, `output_error`
+    (rad, or mm where it slides) that of the linkage's output.
+    """
+
+    angles: int
+    motion_error: float | None = None
+    output_error: float | None = None
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """A recipe, checked as far as no geometry is needed.
+
+    `mm` is the length of its unit, `path` where it was read, `text` what stands there.
+    """
+
+    name: str
+    about: str
+    units: Literal["mm", "inch"]
+    mm: float
+    rotation: Literal["cw", "ccw"]
+    cam: Cam
+    part: Part
+    export: Export
+    verify: Verify
+    path: Path
+    linkage: Linkage | None = None
+    dwell: DwellAsked | None = None
+    sweep: Sweep | None = None
+    dynamics: Dynamics | None = None
+    manufacture: Manufacture | None = None
+    mechanism: MechanismAsked | None = None
+    limits: tuple[Limit, ...] = ()
+    marks: collections.abc.Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
+    text: str = field(default="", repr=False, compare=False)
+
+    def locate(self, path: str) -> tuple[int, int]:
+        """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
+        while path and path not in self.marks:
+            path = path[: max(path.rfind("."), path.rfind("["), 0)]
+        return self.marks.get(path, (1, 1))
+
+    def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
+        """Make the error that a later stage raises about a field, with the field's place in the file."""
+        line, column = self.locate(path)
+        return RecipeErrors([RecipeError(str(self.path), line, column, path, problem, value, remedy)])
+
+
+RECIPE = Table(
+    (
+        Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
+        Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
+        Field("units", Kind.CHOICE, "unit of every length", default="mm", choices=("mm", "inch")),
+        Field(
+            "rotation",
+            Kind.CHOICE,
+            "sense in which the shaft turns, seen as drawn",
+            default="cw",
+            choices=("cw", "ccw"),
+        ),
+        Field("cam", Kind.OWN, "the cam, of exactly one kind", required=True, form=CAM),
+        Field(
+            "linkage",
+            Kind.OWN,
+            "the linkage whose coupler is the square frame around the cam",
+            default="none",
+            form=LINKAGE,
+        ),
+        PART,
+        EXPORT,
+        mapping(
+            "verify",
+            "how each file is judged",
+            Field(
+                "angles",
+                Kind.INTEGER,
+                "number of shaft angles at which each file is judged",
+                default="3600",
+                at_least=8,
+                at_most=1_000_000,
+            ),
+            Field(
+                "motion_error",
+                Kind.ERROR,
+                "greatest motion error permitted: a length, or degrees where the follower swings",
+                default="what the tolerance implies",
+                above=0,
+                at_most=MOST,
+            ),
+            Field(
+                "output_error",
+                Kind.OUTPUT,
+                "greatest error permitted of the linkage's output, in degrees, or a length where it slides",
+                default="what the tolerance implies",
+                above=0,
+                at_most=MOST,
+            ),
+        ),
+        LIMITS,
+        mapping("mechanism", "sizes of the printable bodies round the cam, for files with `parts: all`", *MECHANISM),
+        mapping("dwell", "dwells of the linkage's output", *DWELL),
+        mapping("sweep", "a search among designs", *SWEEP),
+        Field(
+            "dynamics",
+            Kind.TABLE,
+            "the follower train, whose forces, float and impacts at a speed are found",
+            default="none",
+            table=DYNAMICS,
+        ),
+        Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
+    ),
+)
+
+
+def read_values(reader: Reader) -> Values:
+    """Read the whole recipe and note the faults between its fields.
+
+    What decides how other fields read is looked for first, wherever it stands: the unit, the kinds of cam and linkage,
+    and so whether the follower swings and whether the output of the linkage slides.
+    """
+    root = reader.source.root
+    reader.survey(root, "")
+    if not isinstance(root, Mapping):
+        reader.fault(root.mark, "", "a recipe is a mapping", described(root), "begin with the key `cam:`")
+        return {}
+    top = entries(root)
+    units = top.get("units")
+    if isinstance(units, Scalar) and units.text in _MM:
+        reader.units, reader.mm = units.text, _MM[units.text]
+    linkage = top.get("linkage")
+    reader.kinds = {"cam": kind_of(top.get("cam"), CAMS), "linkage": kind_of(linkage, LINKAGES)}
+    last = reader.kinds["linkage"]
+    dyads = entries(linkage).get("dyads") if isinstance(linkage, Mapping) else None
+    if isinstance(dyads, Sequence) and dyads.items:
+        last = kind_of(dyads.items[-1], DYADS)
+    if reader.kinds["cam"] in SWINGING:
+        reader.angular |= {Kind.ERROR}
+    if last not in SLIDING:
+        reader.angular |= {Kind.OUTPUT}
+    if (Kind.OUTPUT if reader.kinds["linkage"] else Kind.ERROR) in reader.angular:
+        reader.angular |= {Kind.MOTION}
+    if reader.kinds["cam"] == "flat-pair":
+        reader.angular |= {Kind.PLAY}
+    values = {"mm": reader.mm, **reader.table(RECIPE, root, "")}
+    _check(values, reader)
+    return values
+
+
+def _check(values: Values, reader: Reader) -> None:
+    """Note the faults between fields that show without any geometry.
+
+    Each check looks at the values that were read; where one of them is missing or faulty the check has nothing to say,
+    as that fault is noted already.
+    """
+    check_cam(values.get("cam", {}), reader)
+    check_linkage(values, reader)
+    check_part(values.get("part", {}), reader)
+    check_files(values, reader)
+    check_train(values.get("dynamics", {}), reader)
+    check_allowance(values.get("manufacture", {}), reader)
+    check_limits(values.get("limits", []), reader)
+    if "sweep" in values:
+        check_sweep(values["sweep"], reader)
+
+
+def build(values: Values, path: Path, marks: collections.abc.Mapping[str, Mark], text: str) -> Recipe:
+    """Make the recipe of values in which there is no fault."""
+    return Recipe(
+        name=values["name"],
+        about=values.get("about", ""),
+        units=values.get("units", "mm"),
+        mm=values["mm"],
+        rotation=values.get("rotation", "cw"),
+        cam=build_cam(values["cam"], values["mm"]),
+        part=build_part(values.get("part", {})),
+        export=build_export(values.get("export", {})),
+        verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
+        path=path,
+        linkage=build_linkage(values["linkage"]) if "linkage" in values else None,
+        dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
+        sweep=build_sweep(values["sweep"]) if "sweep" in values else None,
+        dynamics=Dynamics(**values["dynamics"]) if "dynamics" in values else None,
+        manufacture=Manufacture(**values["manufacture"]) if "manufacture" in values else None,
+        mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,
+        limits=build_limits(values.get("limits", [])),
+        marks=marks,
+        text=text,
+    )

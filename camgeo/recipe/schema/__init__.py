@@ -1,0 +1,1 @@
+"""The machinery of recipes: YAML source, fields, readers, errors, JSON schema."""

@@ -1,0 +1,139 @@
+"""Changes to the text of a recipe that leave everything else in it as its author wrote it, comments included."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Any
+
+from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
+from camgeo.recipe.schema.scalars import Complaint, read_number
+from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Source, is_empty, keys, read_source, scalars
+
+if TYPE_CHECKING:
+    import collections.abc
+
+    from camgeo.recipe.schema.yaml_source import Mark, Node
+
+_LINE_END = re.compile(r"\r\n|\r|\n")
+_NAME = "recipe"  # of a text in errors
+
+
+def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float]) -> str:
+    """Put numbers in the place of others in a recipe's text, by paths such as `cam.pivot[0]`.
+
+    A number is written as briefly as reads back exactly. Raises ValueError for a path at which no number stands, for
+    one whose number an alias shares with other fields, and for a number that is not finite; RecipeErrors for a text
+    that is no YAML.
+    """
+    source = _source(recipe)
+    found = list(scalars(source.root))
+    places = dict(found)
+    changes = []
+    for path, value in values.items():
+        if path not in places:
+            raise ValueError(f"there is no number at {path}")
+        scalar = places[path]
+        try:
+            read_number(scalar.text)
+        except Complaint as complaint:
+            raise ValueError(f"there is no number at {path}: {complaint.problem}") from None
+        if shared := [other for other, node in found if node is scalar and other != path]:
+            raise ValueError(f"an alias shares the number at {path} with {shared[0]}")
+        changes.append((scalar, spelled(value)))
+    starts = _line_starts(source.text)
+    text = source.text
+    for scalar, number in sorted(changes, key=lambda change: change[0].mark, reverse=True):
+        first, behind = _index(starts, scalar.mark), _index(starts, scalar.end)
+        text = text[:first] + _like(text[first:behind], number) + text[behind:]
+    return text
+
+
+def without(recipe: str | Source, section: str) -> str:
+    """Take a section of the top level out of a recipe's text, with the comments in it; as it is where there is none.
+
+    Raises RecipeErrors for a text that is no YAML, or from which the section cannot be cut without harm to the rest, as
+    where an alias outside stands for something inside.
+    """
+    source = _source(recipe)
+    root = source.root
+    if not isinstance(root, Mapping) or section not in keys(root):
+        return source.text
+    index = next(i for i, (key, _) in enumerate(root.entries) if isinstance(key, Scalar) and key.text == section)
+    text = _without_entry(source, root, index) if root.flow else _without_lines(source, root, index)
+    rest = [pair for i, pair in enumerate(root.entries) if i != index]
+    left = read_source(text.encode(), source.file).root if rest else None
+    if left is None or not isinstance(left, Mapping) or _plain(left) != [_plain_pair(pair) for pair in rest]:
+        remedy = "let it stand as a block of lines of its own"
+        problem = "cannot be taken out of the text without harm"
+        raise RecipeErrors([RecipeError(source.file, *root.entries[index][0].mark, section, problem, None, remedy)])
+    return text
+
+
+def spelled(value: float) -> str:
+    """Write a number so that it reads back exactly; raises ValueError where it is not finite."""
+    value = float(value)
+    if not math.isfinite(value):
+        raise ValueError(f"{value} cannot stand in a recipe")
+    return repr(value).removesuffix(".0")
+
+
+def _source(recipe: str | Source) -> Source:
+    return recipe if isinstance(recipe, Source) else read_source(recipe.encode("utf-8", "surrogatepass"), _NAME)
+
+
+def _line_starts(text: str) -> list[int]:
+    return [0, *(found.end() for found in _LINE_END.finditer(text))]
+
+
+def _index(starts: list[int], mark: Mark) -> int:
+    return starts[mark[0] - 1] + mark[1] - 1
+
+
+def _like(old: str, number: str) -> str:
+    """Write a number in the way of the text that it replaces: in its quotes, or with the line ends behind a block."""
+    if old[0] in "'\"":
+        return f"{old[0]}{number}{old[0]}"
+    return number + old[len(old.rstrip()) :]
+
+
+def _without_entry(source: Source, root: Mapping, index: int) -> str:
+    """Cut an entry out of braces, with the comma that sets it off."""
+    starts = _line_starts(source.text)
+    if index + 1 < len(root.entries):
+        first, behind = root.entries[index][0].mark, root.entries[index + 1][0].mark
+    elif index:
+        first, behind = root.entries[index - 1][1].end, root.entries[index][1].end
+    else:
+        first, behind = root.entries[index][0].mark, root.entries[index][1].end
+    return source.text[: _index(starts, first)] + source.text[_index(starts, behind) :]
+
+
+def _without_lines(source: Source, root: Mapping, index: int) -> str:
+    """Cut the lines of an entry, and the indented comments behind it."""
+    key, value = root.entries[index]
+    starts = [*_line_starts(source.text), len(source.text)]
+    first, indent = key.mark
+    line, column = value.mark if is_empty(value) else value.end
+    behind = line - (column == 1)  # the number of the last line; a block of text ends where the next line begins
+    while behind > first and not source.lines[behind - 1].strip():
+        behind -= 1
+    behind = max(behind, first)
+    for number, text in enumerate(source.lines[behind:], behind + 1):
+        if re.match(rf"[ \t]{{{indent},}}#", text):
+            behind = number
+        elif text.strip():
+            break
+    return source.text[: starts[first - 1]] + source.text[starts[behind] :]
+
+
+def _plain(node: Node) -> Any:  # noqa: ANN401 - texts, lists of them, lists of those
+    if isinstance(node, Scalar):
+        return node.text
+    if isinstance(node, Mapping):
+        return [_plain_pair(pair) for pair in node.entries]
+    return tuple(map(_plain, node.items))
+
+
+def _plain_pair(pair: tuple[Node, Node]) -> tuple[Any, Any]:
+    return _plain(pair[0]), _plain(pair[1])

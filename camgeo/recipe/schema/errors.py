@@ -1,0 +1,71 @@
+"""Faults of a recipe, each with its place and its remedy, all of them at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from camgeo.common.terminal import escaped
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_SHOWN = 60  # characters of a value that an error repeats
+NEAR, NEARER = 0.6, 0.8  # likeness of words that may be meant, and of those that are slips of the pen
+_LONGEST_WORD = 40  # for which a near one is sought
+
+
+@dataclass(frozen=True)
+class RecipeError:
+    """One fault of a recipe.
+
+    `line` and `column` count from 1, in characters; line 0 stands for the file as a whole. `path` is the field's path,
+    such as `cam.motion[1].law`, and empty where no field is at fault. `value` is what was given, as written.
+    """
+
+    file: str
+    line: int
+    column: int
+    path: str
+    problem: str
+    value: str | None = None
+    remedy: str = ""
+
+    def __str__(self) -> str:
+        """Write the fault on one line: file:line:column: path: problem, given value; remedy."""
+        file = escaped(self.file)
+        place = f"{file}:{self.line}:{self.column}" if self.line else file
+        field = f" {self.path}:" if self.path else ""
+        given = f", given {self.value}" if self.value is not None else ""
+        remedy = f"; {self.remedy}" if self.remedy else ""
+        return f"{place}:{field} {self.problem}{given}{remedy}"
+
+
+class RecipeErrors(Exception):  # noqa: N818 - it carries several errors
+    """All faults of a recipe, by line; `str()` gives one line each."""
+
+    errors: tuple[RecipeError, ...]
+
+    def __init__(self, errors: Iterable[RecipeError]) -> None:
+        once = dict.fromkeys(errors)
+        self.errors = tuple(sorted(once, key=lambda error: (error.line, error.column)))
+        super().__init__(self.errors)
+
+    def __str__(self) -> str:
+        """Write the faults one a line."""
+        return "\n".join(map(str, self.errors))
+
+
+def shown(text: str) -> str:
+    """Quote a text for an error, shortened, with nothing in it that could disturb a terminal."""
+    return repr(text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "...")
+
+
+def suggestion(word: str, known: Iterable[str], near: float = NEAR) -> str:
+    """Name the nearest of the known words, if one is as near as `near`, of 1 for the same word."""
+    from difflib import get_close_matches  # for the message alone
+
+    if len(word) > _LONGEST_WORD:
+        return ""
+    found = get_close_matches(word.lower(), list(known), n=1, cutoff=near)
+    return f"did you mean {found[0]}?" if found else ""

@@ -1,0 +1,251 @@
+"""What a schema of a recipe is made of: fields and tables of fields, with their bounds.
+
+The tables themselves stand in the topics above this room. They are data: recipes are read and checked by them,
+`json_schema` publishes them, `starter` turns them into comments. A key that a coming version will know stands under
+`later` of its table: moving it into `fields` is what makes it known.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from camgeo.recipe.schema.reader import Reader
+    from camgeo.recipe.schema.yaml_source import Node
+
+Schema: TypeAlias = dict[str, Any]  # a JSON schema
+
+MOST = 2e6  # of lengths as written, two kilometres in mm: a bound against slips, far above any cam
+_SLIPS = (MOST, MOST**2)
+MOST_HARMONIC = 199
+MOST_LAMBDA = 200
+MOST_SEGMENTS = 100
+MOST_DYADS = 20
+MOST_COEFFICIENTS = 20
+MOST_COEFFICIENT = 1e6
+MOST_FILES = 20
+MOST_TEXT = 1000  # characters
+MOST_AXES = 20  # of a sweep
+MOST_VALUES = 1000  # listed for one axis
+MOST_STEPS = 1_000_000  # of one axis
+MOST_DESIGNS = 100_000_000  # of a sweep
+
+
+def either(words: tuple[str, ...], conjunction: str = "or") -> str:
+    """Join words: `a, b or c`."""
+    return f" {conjunction} ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
+
+
+class Kind(Enum):
+    """What a field holds; the value is the noun that messages use."""
+
+    TEXT = "a text"
+    NAME = "a name"
+    CHOICE = "a choice"
+    LENGTH = "a length"
+    AREA = "an area"
+    ANGLE = "an angle"
+    NUMBER = "a number"
+    INTEGER = "a whole number"
+    ERROR = "a motion error"  # a length, or an angle where the follower swings
+    OUTPUT = "a change of the output"  # of a linkage: an angle, or a length where its last link slides
+    MOTION = "a motion"  # of the output, or without a linkage of the follower
+    PLAY = "a backlash"  # an angle of a flat pair, else a length
+    TRUTH = "true or false"
+    RATIO = "a ratio"
+    FORMULA = "a formula"
+    POINT = "a point"
+    PAIR = "a pair of lengths"
+    HARMONICS = "harmonics"
+    NUMBERS = "a list of numbers"
+    TABLE = "a mapping"
+    OWN = "a form of its own"  # that its topic declares
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """What a field of `Kind.OWN` holds, as the topic that knows it declares it.
+
+    `noun` and `wanted` are for messages; `read` gives None for what is faulty and has noted the fault; `schema` makes
+    the JSON schema. Of a mapping whose `kind` says which keys it has, `tables` are those of each kind, and `group` with
+    the kind says where a key belongs: `cam of kind support`.
+    """
+
+    noun: str
+    wanted: str
+    read: Callable[[Reader, Field, Node, str], Any]
+    schema: Callable[[Field], Schema]
+    tables: Mapping[str, Table] | None = None
+    group: str = ""
+    others: str = ""  # said of a `kind` that is none of them
+
+
+@dataclass(frozen=True)
+class Field:
+    """One key of a table. Bounds are in the recipe's own units and degrees, as written."""
+
+    name: str
+    kind: Kind
+    about: str
+    required: bool = False
+    others: str = ""  # said of a word that is none of the choices
+    default: str = ""  # as documented; `load` knows the value
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    odd: bool = False
+    choices: tuple[str, ...] = ()
+    variable: str = "t"
+    table: Table | None = None  # of a mapping, or of each segment of a motion
+    unit: Kind | None = None  # of the coefficients of harmonics
+    form: Form | None = None  # of a field of Kind.OWN
+
+    @property
+    def noun(self) -> str:
+        """What the field holds, for messages: `a length`."""
+        return self.form.noun if self.form else self.kind.value
+
+    @property
+    def inner(self) -> Table:
+        """The table of a field that has one."""
+        if self.table is None:
+            raise AssertionError(self.name)
+        return self.table
+
+    def wanted(self) -> str:
+        """Say what would do: `an odd whole number from 3 to 99`."""
+        if self.form is not None:
+            return self.form.wanted
+        match self.kind:
+            case Kind.CHOICE:
+                return either(self.choices)
+            case Kind.RATIO:
+                return "a fraction lambda/mu above 1 in lowest terms with mu odd, such as 4/3, or a whole number"
+            case Kind.FORMULA:
+                return f"a formula in {self.variable}"
+            case Kind.POINT:
+                return "a list of two lengths [x, y]"
+            case Kind.PAIR:
+                return "a list of two lengths above 0 [a, b]"
+            case Kind.HARMONICS:
+                return f"a mapping from {'odd ' if self.odd else ''}harmonics to coefficients, such as {{3: 0.5}}"
+            case Kind.TABLE:
+                return f"a mapping with {either(self.table.keys if self.table else (), 'and')}"
+            case _:
+                noun = self.kind.value.replace("a whole", "an odd whole") if self.odd else self.kind.value
+                return f"{noun}{self._bounds()}"
+
+    def out_of_bounds(self, value: float) -> str:
+        """Say which bound a number breaks, or nothing."""
+        if self.above is not None and value <= self.above:
+            return f"not above {self.above:.10g}"
+        if self.at_least is not None and value < self.at_least:
+            return f"below {self.at_least:.10g}"
+        if self.at_most is not None and value > self.at_most:
+            return f"above {self.at_most:.10g}"
+        return "an even number" if self.odd and value % 2 == 0 else ""
+
+    def _bounds(self) -> str:
+        """Say the bounds, but not those against slips alone."""
+        if self.at_least is not None and self.at_most is not None:
+            if self.at_most not in _SLIPS:
+                return f" from {self.at_least:.10g} to {self.at_most:.10g}"
+            return "" if self.at_least == -self.at_most else f" of at least {self.at_least:.10g}"
+        low = f" above {self.above:.10g}" if self.above is not None else ""
+        high = f" up to {self.at_most:.10g}" if self.at_most not in (None, *_SLIPS) else ""
+        return low + high
+
+
+@dataclass(frozen=True)
+class Table:
+    """The keys of a mapping.
+
+    Of `alternatives` exactly one is given; each names the keys that must come with it. `later` are keys that this
+    version recognises and refuses.
+    """
+
+    fields: tuple[Field, ...]
+    alternatives: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    later: tuple[str, ...] = ()
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The keys."""
+        return tuple(item.name for item in self.fields)
+
+    def field(self, name: str) -> Field:
+        """Find a field by its key, which must be one of the table's."""
+        return next(item for item in self.fields if item.name == name)
+
+
+def length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
+    """Make the field of a length above 0, in the recipe's unit."""
+    return Field(name, Kind.LENGTH, about, required, default, above=0, at_most=MOST)
+
+
+def coordinate(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
+    """Make the field of a length that may be 0 or negative."""
+    return Field(name, Kind.LENGTH, about, required, default, at_least=-MOST, at_most=MOST)
+
+
+def mapping(name: str, about: str, *fields: Field, later: tuple[str, ...] = ()) -> Field:
+    """Make the field of a mapping with these fields."""
+    return Field(name, Kind.TABLE, about, table=Table(fields, later=later))
+
+
+def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
+    """Find the field at a path such as `cam.pivot[0]`, whichever entry of a list it is in, or None.
+
+    `kinds` says which kind each mapping with kinds is of; one that it does not name may be of any. An entry of points,
+    numbers and harmonics has the field of the whole.
+    """
+    table: Table | None = root
+    field: Field | None = None
+    for name in re.sub(r"\[[0-9]+\]", "", path).split("."):
+        if field is not None and field.kind is Kind.HARMONICS:
+            return field if name.isdecimal() else None
+        if table is None or name not in table.keys:
+            return None
+        field = table.field(name)
+        tables = field.form.tables if field.form else None
+        if tables is None:
+            table = field.table
+        elif field.name in kinds:
+            table = tables.get(kinds[field.name])
+        else:
+            table = Table(tuple(item for each in tables.values() for item in each.fields))
+    return field
+
+
+def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
+    """Say where a key belongs that stands in the wrong place, or else which keys there are."""
+    if name in root.keys:
+        return "it belongs at the top level"
+    places = [item.name for item in root.fields if item.table and name in item.table.keys]
+    places += [f"{group} {kind}" for group, kind, table in _grouped(root) if name in table.keys]
+    if places:
+        return f"it belongs under {either(tuple(places))}"
+    return f"the keys here are {either(known, 'and')}" if known else "there are no keys here"
+
+
+def _grouped(table: Table) -> list[tuple[str, str, Table]]:
+    """Every table that a kind chooses: files before cams, linkages and their dyads."""
+    forms: dict[str, Form] = {}
+
+    def walk(within: Table) -> None:
+        for item in within.fields:
+            if item.form and item.form.group and item.form.tables:
+                forms.setdefault(item.form.group, item.form)
+            below = (*(item.form.tables.values() if item.form and item.form.tables else ()), item.table)
+            for each in below:
+                if each is not None:
+                    walk(each)
+
+    walk(table)
+    order = sorted(forms, key=lambda group: (group != "the file", list(forms).index(group)))
+    return [(group, kind, found) for group in order for kind, found in (forms[group].tables or {}).items()]

@@ -1,0 +1,123 @@
+"""The schema of a recipe as a JSON schema (draft 2020-12), for editors that complete and check while one types."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.schema.fields import (
+    MOST,
+    MOST_COEFFICIENTS,
+    MOST_TEXT,
+    Field,
+    Kind,
+    Table,
+    length,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from camgeo.recipe.schema.fields import Schema
+
+# Texts that are numbers all the same: 1e-3, which YAML 1.1 takes for a text, fractions and plain arithmetic. What the
+# signs mean is for `load` to say.
+_NUMBER_TEXT = r"^(?=.*([0-9]|pi))([-+*/(). ]|[0-9]([eE][+-]?[0-9])?|pi)+$"
+_NAME = r"^[A-Za-z0-9_][A-Za-z0-9._-]{0,63}$"
+_RATIO = r"^[0-9]+(/[0-9]+)?$"
+
+
+def json_schema(root: Table) -> Schema:
+    """Make the JSON schema of a recipe with these keys.
+
+    What it refuses is refused by `load`; the reverse needs more than a schema.
+    """
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "camgeo recipe",
+        **table_schema(root),
+    }
+
+
+def table_schema(table: Table) -> Schema:
+    """Make the schema of a mapping."""
+    found: Schema = {
+        "type": "object",
+        "properties": {field.name: _field(field) for field in table.fields},
+        "additionalProperties": False,
+    }
+    if required := [field.name for field in table.fields if field.required]:
+        found["required"] = required
+    if table.alternatives:
+        found["oneOf"] = [_alternative(table, name) for name, _ in table.alternatives]
+    return found
+
+
+def _alternative(table: Table, chosen: str) -> Schema:
+    """One alternative with its companions, and no other alternative's."""
+    companions = dict(table.alternatives)
+    with_it = (chosen, *companions[chosen])
+    others = {name for key, names in companions.items() for name in (key, *names)} - set(with_it)
+    return {"required": list(with_it), "properties": dict.fromkeys(sorted(others), False)}
+
+
+def _field(field: Field) -> Schema:
+    about = {"description": field.about} if field.about else {}
+    if field.default:
+        about["description"] += f" (default: {field.default})"
+    return {**about, **_kind(field)}
+
+
+def _kind(field: Field) -> Schema:
+    if field.form is not None:
+        return field.form.schema(field)
+    match field.kind:
+        case Kind.TEXT:
+            return {"type": ["string", "number", "boolean"], "maxLength": MOST_TEXT}
+        case Kind.NAME:
+            return {"type": ["string", "number", "boolean"], "pattern": _NAME}
+        case Kind.FORMULA:
+            return {"type": ["string", "number"]}
+        case Kind.RATIO:
+            return {"anyOf": [{"type": "integer", "minimum": 2}, {"type": "string", "pattern": _RATIO}]}
+        case Kind.CHOICE:
+            return {"enum": list(field.choices)}
+        case Kind.POINT:
+            return {"type": "array", "items": number_schema(), "minItems": 2, "maxItems": 2}
+        case Kind.PAIR:
+            return {"type": "array", "items": number_schema(length("", "")), "minItems": 2, "maxItems": 2}
+        case Kind.TRUTH:
+            return {"type": "boolean"}
+        case Kind.NUMBERS:
+            return {"type": "array", "items": number_schema(), "minItems": 1, "maxItems": MOST_COEFFICIENTS}
+        case Kind.HARMONICS:
+            return {"type": "object", "additionalProperties": number_schema()}
+        case Kind.TABLE:
+            return table_schema(field.inner)
+        case _:
+            return number_schema(field)
+
+
+def number_schema(field: Field | None = None) -> Schema:
+    """Make the schema of a number within the bounds of its field."""
+    number: Schema = {"type": "number"}
+    if field is not None:
+        bounds = {"exclusiveMinimum": field.above, "minimum": field.at_least, "maximum": field.at_most}
+        number.update({key: bound for key, bound in bounds.items() if bound is not None})
+        if field.kind is Kind.INTEGER:
+            number["type"] = "integer"
+            if field.odd:
+                number["not"] = {"multipleOf": 2}
+    else:
+        number["minimum"], number["maximum"] = -(MOST**2), MOST**2
+    return {"anyOf": [number, {"type": "string", "pattern": _NUMBER_TEXT}]}
+
+
+def one_of_schema(noun: str, tables: Mapping[str, Table]) -> Schema:
+    """Make the schema of a mapping whose `kind` says which of the tables is its own."""
+    kinds = []
+    for kind, table in tables.items():
+        found = table_schema(table)
+        found["properties"] = {"kind": {"const": kind, "description": f"the kind of {noun}"}, **found["properties"]}
+        found["required"] = ["kind", *found.get("required", [])]
+        kinds.append(found)
+    return {"oneOf": kinds}

@@ -1,0 +1,69 @@
+"""Reading the fields of a recipe that are made of several entries: points, lists of numbers, harmonics."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.schema.fields import (
+    MOST,
+    MOST_COEFFICIENT,
+    MOST_COEFFICIENTS,
+    MOST_HARMONIC,
+    Field,
+    Kind,
+    coordinate,
+    length,
+)
+from camgeo.recipe.schema.yaml_source import Mapping, Sequence, described, entries, join, keys
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.reader import Reader
+    from camgeo.recipe.schema.yaml_source import Node
+
+
+def read_point(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:
+    """Read two coordinates."""
+    return _two(coordinate("", ""), reader, field, node, path)
+
+
+def read_pair(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:
+    """Read two lengths above 0."""
+    return _two(length("", ""), reader, field, node, path)
+
+
+def _two(part: Field, reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:
+    if not isinstance(node, Sequence) or len(node.items) != 2:
+        reader.fault(node.mark, path, f"not {field.noun}", described(node), reader.wanted(field))
+        return None
+    x, y = (reader.field(part, item, join(path, i)) for i, item in enumerate(node.items))
+    return None if x is None or y is None else (x, y)
+
+
+def read_numbers(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, ...] | None:
+    """Read the coefficients of a polynomial."""
+    part = Field("", Kind.NUMBER, "", at_least=-MOST_COEFFICIENT, at_most=MOST_COEFFICIENT)
+    items = reader.items(field, node, path, MOST_COEFFICIENTS)
+    values = [reader.field(part, item, join(path, i)) for i, item in enumerate(items)]
+    return tuple(values) if values and None not in values else None
+
+
+def read_harmonics(reader: Reader, field: Field, node: Node, path: str) -> tuple[tuple[int, float], ...] | None:
+    """Read coefficients by their harmonics, rising."""
+    if not isinstance(node, Mapping):
+        reader.fault(node.mark, path, "not a mapping", described(node), reader.wanted(field))
+        return None
+    harmonic = Field("", Kind.INTEGER, "", at_least=1, at_most=MOST_HARMONIC, odd=field.odd)
+    bound = MOST**2 if field.unit is Kind.AREA else MOST
+    coefficient = Field("", field.unit or Kind.NUMBER, "", at_least=-bound, at_most=bound)
+    values = entries(node)
+    read: dict[int, float] = {}
+    for name, key in keys(node).items():
+        below = join(path, name)
+        # The harmonic comes first: both have one path, and the number that stands there is the coefficient.
+        j = reader.readers[harmonic.kind](reader, harmonic, key, below)
+        value = reader.field(coefficient, values[name], below)
+        if j in read:
+            reader.fault(key.mark, below, "the harmonic stands twice", None, "give each harmonic once")
+        elif isinstance(j, int) and value is not None:
+            read[j] = value
+    return tuple(sorted(read.items()))

@@ -1,0 +1,140 @@
+"""Scalars of a recipe, from the text as written. Nothing is guessed: what could mean two things is refused."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from camgeo.recipe.schema.fields import MOST_LAMBDA, MOST_TEXT
+
+_UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_NUMBER = re.compile(rf"[+-]?{_UNSIGNED.pattern}")
+_FRACTION = re.compile(r"([+-]?[0-9]{1,9})/([0-9]{1,9})")
+_RATIO = re.compile(r"([0-9]{1,9})(?:/([0-9]{1,9}))?")
+_ZEROS_BEFORE = re.compile(r"(?<![0-9.eE])(?<![eE][+-])0+[0-9]")
+_ARITHMETIC = re.compile(r"[-+*/() ]*[-+*/()][-+*/() ]*")  # what is left of it without numbers and pi
+_LEADING_ZERO = re.compile(r"[+-]?0+[0-9]")
+_MOST_DIGITS = 60
+_LEAST = 1e-30  # so that no later square or quotient leaves the range of floats
+
+# Other ways to write a number, and what would do.
+_NOT_NUMBERS = (
+    (re.compile(r"[+-]?\.?(?:inf|infinity|nan)", re.IGNORECASE), "it must be finite"),
+    (re.compile(r"[+-]?[0-9]+(?::[0-9.]+)+"), "it is not read to the base of 60; write it as one decimal number"),
+    (re.compile(r"[+-]?0[xob][0-9a-f_]+", re.IGNORECASE), "write it to the base of ten"),
+    (re.compile(r"[+-]?[0-9][0-9_]*_[0-9_]*(?:\.[0-9_]*)?"), "write it without underscores"),
+    (re.compile(r"[+-]?[0-9]*,[0-9]+"), "a decimal takes a point, not a comma"),
+    (re.compile(r"[+-]?[0-9.]+ ?(?:mm|cm|m|in|inch|\"|deg|°|rad|degrees?)"), "write the number without its unit"),
+    (re.compile(r"[0-9]{4}-[0-9]{1,2}-[0-9]{1,2}.*", re.DOTALL), "this is a date"),
+    (re.compile(r"true|false|yes|no|on|off|y|n", re.IGNORECASE), "this is a truth value"),
+)
+
+NAME_RULE = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9._-]{0,63}")
+_DEVICE = re.compile(r"(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?", re.IGNORECASE)
+RESERVED_SUFFIX = ".rejected"  # of the folder that a failing run leaves
+
+
+class Complaint(ValueError):  # noqa: N818 - it never leaves the package
+    """What is wrong with a text, and what would do, if that is not plain from the field."""
+
+    def __init__(self, problem: str, remedy: str = "") -> None:
+        super().__init__(problem)
+        self.problem = problem
+        self.remedy = remedy
+
+
+def read_number(text: str) -> float:
+    """Read a decimal number, a fraction such as 180/7 or plain arithmetic such as 15/25.4; raises Complaint."""
+    if len(text) > _MOST_DIGITS:
+        raise Complaint(f"a number of more than {_MOST_DIGITS} characters", "sixteen digits are all that counts")
+    if found := _FRACTION.fullmatch(text):
+        if int(found[2]) == 0:
+            raise Complaint("divides by zero")
+        return int(found[1]) / int(found[2])
+    if _NUMBER.fullmatch(text):
+        if _LEADING_ZERO.match(text):
+            raise Complaint("a leading zero, which some read as octal", "leave the zero out")
+        value = float(text)
+    else:
+        hint = next((hint for pattern, hint in _NOT_NUMBERS if pattern.fullmatch(text)), None)
+        left = re.sub(r"\bpi\b", " ", _UNSIGNED.sub(" ", text))
+        if hint is not None or not (_ARITHMETIC.fullmatch(left) or text == "pi"):
+            raise Complaint("not a number", hint or "")
+        value = _worked_out(text)
+    if not math.isfinite(value):
+        raise Complaint("too large")
+    if 0 < abs(value) < _LEAST:
+        raise Complaint("too small", "write 0, or what was meant")
+    return value
+
+
+def _worked_out(text: str) -> float:
+    """Work out sums, products and quotients of numbers and pi; raises Complaint."""
+    from kin.law.formula.formula import FormulaError
+    from kin.law.formula.parser import parse
+
+    if "**" in text or "//" in text:
+        raise Complaint("not a number", "numbers are joined by + - * / and parentheses alone")
+    if _ZEROS_BEFORE.search(text):
+        raise Complaint("a leading zero, which some read as octal", "leave the zero out")
+    try:
+        return float(parse(text, ()).steps[-1].value)
+    except FormulaError as error:
+        known = {"division by zero": "divides by zero", "overflow": "too large"}
+        problem = known.get(error.message, f"not a number: {error.message.replace('the formula', 'it')}")
+        raise Complaint(problem) from None
+
+
+def read_whole(text: str) -> int:
+    """Read a whole number; raises Complaint."""
+    value = read_number(text)
+    if value != math.floor(value):
+        raise Complaint("not a whole number")
+    return int(value)
+
+
+def read_ratio(text: str) -> tuple[int, int]:
+    """Read lambda/mu as (lambda, mu), above 1, in lowest terms, mu odd (Wunderlich 2.2); raises Complaint."""
+    found = _RATIO.fullmatch(text)
+    if not found:
+        raise Complaint("not a fraction of whole numbers")
+    lam, mu = int(found[1]), int(found[2] or 1)
+    if mu == 0:
+        raise Complaint("divides by zero")
+    if lam <= mu:
+        raise Complaint("not above 1", "the arms' angle alpha = pi mu/lambda must stay below 180 degrees")
+    if (common := math.gcd(lam, mu)) > 1:
+        raise Complaint("not in lowest terms", f"write {_fraction(lam // common, mu // common)}")
+    if mu % 2 == 0:
+        raise Complaint("an even denominator", "mu must be odd, or the pitch curve would cross itself")
+    if lam > MOST_LAMBDA:
+        raise Complaint(f"a numerator above {MOST_LAMBDA}", "only small ones make useful cams")
+    return lam, mu
+
+
+def _fraction(lam: int, mu: int) -> str:
+    return str(lam) if mu == 1 else f"{lam}/{mu}"
+
+
+def read_name(text: str) -> str:
+    """Check a name that becomes a folder, on any system; raises Complaint."""
+    if not _NAME.fullmatch(text) or text.endswith("."):
+        raise Complaint("not safe as the name of a folder", f"use {NAME_RULE}")
+    if _DEVICE.fullmatch(text):
+        raise Complaint("reserved for a device by Windows", f"use {NAME_RULE}")
+    if text.lower().endswith(RESERVED_SUFFIX):
+        raise Complaint(
+            f"reserved for the folders of failed runs, which end in {RESERVED_SUFFIX}", "choose another ending"
+        )
+    return text
+
+
+def read_paragraph(text: str) -> str:
+    """Read a note as one paragraph, line breaks as spaces; raises Complaint."""
+    words = " ".join(text.split())
+    if len(words) > MOST_TEXT:
+        raise Complaint(f"longer than {MOST_TEXT} characters", "shorten it")
+    if not words.isprintable():
+        raise Complaint("holds control characters", "write plain text")
+    return words

@@ -1,0 +1,335 @@
+"""YAML as a tree of texts with their places.
+
+Only PyYAML's events are used: no tag is resolved and nothing is constructed, so a scalar is the text that was written
+and the schema says how to read it. YAML 1.1's guesses (`on` a boolean, `1:30` ninety, `010` eight, `1e-3` a text)
+therefore never come about. Size, depth and the expansion of aliases are bounded while reading.
+"""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+import yaml
+
+from camgeo.recipe.schema.errors import RecipeError, RecipeErrors, shown
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+MAX_BYTES = 1_000_000
+MAX_DEPTH = 50
+MAX_ALIASES = 100
+MAX_NODES = 10_000  # aliases counted as often as they stand for something
+
+# What YAML does not permit, with its three line ends that editors do not count (NEL, LS, PS) and the byte order mark.
+_FORBIDDEN = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]")
+_DISPUTED = re.compile(
+    r"[\t?]|[|>][0-9+-]*#"
+)  # libyaml takes some that PyYAML's own reader refuses: the latter decides
+_DIRECTIVE = re.compile(r"(?:[ \t]*(?:#[^\r\n]*)?(?:\r\n|\r|\n))*%")
+_BARE = re.compile(r"[+-]?(?=\.?[0-9])[0-9.]{1,40}(?:[eE][+-]?[0-9]{1,20})?(?:/[0-9]{1,40})?")
+_PLAIN_KEY = re.compile(r"[A-Za-z0-9_-]{1,40}")
+
+Mark: TypeAlias = tuple[int, int]  # line and column, from 1, in characters
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A text; `plain` where it stands without quotes, `end` just behind it, `tag` where one was written."""
+
+    text: str
+    plain: bool
+    mark: Mark
+    end: Mark
+    tag: str | None = None
+    size: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Sequence:
+    """A list; `end` just behind it, or behind its last entry."""
+
+    items: tuple[Node, ...]
+    mark: Mark
+    end: Mark
+    tag: str | None
+    size: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mapping:
+    """A mapping as written, keys that stand twice included; `end` as of a list, `flow` where it stands in braces."""
+
+    entries: tuple[tuple[Node, Node], ...]
+    flow: bool
+    mark: Mark
+    end: Mark
+    tag: str | None
+    size: int
+
+
+Node: TypeAlias = Scalar | Sequence | Mapping
+
+
+@dataclass(frozen=True)
+class Source:
+    """A recipe's file: its name for errors, its text, and the tree."""
+
+    file: str
+    text: str
+    lines: tuple[str, ...]
+    root: Node
+
+
+@dataclass(slots=True)
+class _Frame:
+    """A list or mapping that is still being read; a mapping's keys and values alternate in `children`.
+
+    `before` counts the nodes that came before it, `last` is just behind the last child.
+    """
+
+    event: yaml.CollectionStartEvent
+    mark: Mark
+    before: int
+    last: Mark
+    children: list[Node] = field(default_factory=list)
+
+    def close(self, nodes: int, end: Mark) -> Node:
+        size, tag, flow = nodes - self.before, self.event.tag, bool(self.event.flow_style)
+        end = end if flow else self.last  # without brackets YAML's own end lies before whatever comes next
+        if isinstance(self.event, yaml.SequenceStartEvent):
+            return Sequence(tuple(self.children), self.mark, end, tag, size)
+        pairs = tuple(zip(self.children[::2], self.children[1::2], strict=True))
+        return Mapping(pairs, flow, self.mark, end, tag, size)
+
+
+class _BadEscapeError(yaml.YAMLError):
+    """An escape beyond Unicode, behind `place`."""
+
+    def __init__(self, place: Mark) -> None:
+        super().__init__(place)
+        self.place = place
+
+
+def read_source(data: bytes, file: str) -> Source:
+    """Read YAML into a tree.
+
+    Raises RecipeErrors for bytes that are not UTF-8, characters that YAML forbids, faulty syntax, several documents,
+    directives, and anything above the bounds of this module.
+    """
+    if len(data) > MAX_BYTES:
+        raise _fault(file, (0, 0), f"the file is larger than {MAX_BYTES} bytes", remedy="a recipe takes a few hundred")
+    text = _decode(data, file)
+    if _DIRECTIVE.match(text):
+        place = _place(text, text.index("%"))
+        raise _fault(file, place, "a YAML directive", remedy="a recipe has none; leave the line out")
+    lines = tuple(re.split(r"\r\n|\r|\n", text))
+    return Source(file, text, lines, _parse(text, lines, file))
+
+
+def join(path: str, key: str | int) -> str:
+    """Make the path of an entry: `cam.motion[1]`; unusual keys are quoted and shortened."""
+    if isinstance(key, int):
+        return f"{path}[{key}]"
+    name = key if _PLAIN_KEY.fullmatch(key) else shown(key)
+    return f"{path}.{name}" if path else name
+
+
+def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:
+    """Give every scalar of a tree with its path; one that aliases share comes once for each."""
+    if isinstance(node, Scalar):
+        yield path, node
+    elif isinstance(node, Sequence):
+        for i, item in enumerate(node.items):
+            yield from scalars(item, join(path, i))
+    else:
+        for key, value in entries(node).items():
+            yield from scalars(value, join(path, key))
+
+
+def is_empty(node: Node) -> bool:
+    """Tell whether nothing was given: YAML's null, however it is written."""
+    return isinstance(node, Scalar) and node.plain and node.text in ("", "~", "null", "Null", "NULL")
+
+
+def keys(node: Mapping) -> dict[str, Scalar]:
+    """Give each key that is a text, by that text; the first where it stands twice."""
+    first: dict[str, Scalar] = {}
+    for key, _ in node.entries:
+        if isinstance(key, Scalar):
+            first.setdefault(key.text, key)
+    return first
+
+
+def entries(node: Mapping) -> dict[str, Node]:
+    """Give the values by key; the first where a key stands twice."""
+    first: dict[str, Node] = {}
+    for key, value in node.entries:
+        if isinstance(key, Scalar):
+            first.setdefault(key.text, value)
+    return first
+
+
+def written(node: Scalar) -> str:
+    """Show a scalar in an error: a number bare, a text quoted."""
+    return node.text if _BARE.fullmatch(node.text) else shown(node.text)
+
+
+def described(node: Node) -> str:
+    """Show any node in an error."""
+    if isinstance(node, Scalar):
+        return "nothing" if is_empty(node) else written(node)
+    count = len(node.entries if isinstance(node, Mapping) else node.items)
+    return f"a {'mapping' if isinstance(node, Mapping) else 'list'} of {count}"
+
+
+def _decode(data: bytes, file: str) -> str:
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        place = _place(data[: error.start].decode("utf-8") + "?", None)
+        raise _fault(file, place, "not UTF-8", f"byte 0x{data[error.start]:02x}", "save the file as UTF-8") from None
+    text = text.removeprefix("\ufeff")
+    if found := _FORBIDDEN.search(text):
+        value = f"U+{ord(found[0]):04X}"
+        raise _fault(file, _place(text, found.start()), "a character that cannot stand in a recipe", value, "delete it")
+    return text
+
+
+def _place(text: str, index: int | None) -> Mark:
+    """Line and column of the character at `index`, or of the last one."""
+    before = text[:-1] if index is None else text[:index]
+    lines = re.split(r"\r\n|\r|\n", before)
+    return len(lines), len(lines[-1].removeprefix("\ufeff")) + 1
+
+
+def _mark(mark: object) -> Mark:
+    """Convert a mark of PyYAML's, of its C reader or its own; its absence stands for the first character."""
+    return getattr(mark, "line", 0) + 1, getattr(mark, "column", 0) + 1
+
+
+def _behind(mark: Mark, lines: tuple[str, ...]) -> Mark:
+    """Place of a value that is not there: behind the last sign before it, whichever blank or line the reader names."""
+    line, column = min(mark, (len(lines), len(lines[-1]) + 1))
+    return line, len(lines[line - 1][: column - 1].rstrip()) + 1
+
+
+def _parse(text: str, lines: tuple[str, ...], file: str) -> Node:
+    fast = getattr(yaml, "CSafeLoader", None)
+    if fast is not None and not _DISPUTED.search(text):
+        with suppress(yaml.YAMLError):  # PyYAML's own reader words the same fault better, and alike on every machine
+            return _build(_events(text, fast), lines, file)
+    try:
+        return _build(_events(text, yaml.SafeLoader), lines, file)
+    except yaml.MarkedYAMLError as error:
+        place = _mark(error.problem_mark or error.context_mark)
+        problem = ", ".join(filter(None, (error.context, error.problem)))
+        raise _fault(file, place, f"YAML cannot be read: {problem}", remedy=_syntax_remedy(problem)) from None
+    except _BadEscapeError as error:
+        raise _fault(file, error.place, "an escape that stands for no character", remedy="write it out") from None
+
+
+def _events(text: str, loader: type[yaml.SafeLoader]) -> Iterator[yaml.Event]:
+    """Give the events of a text one at a time: behind a bound that is passed, nothing more is read."""
+    end: Mark = (1, 1)
+    try:
+        for event in yaml.parse(text, Loader=loader):
+            yield event
+            end = _mark(event.end_mark)
+    except (ValueError, OverflowError) as error:  # from PyYAML's own reader
+        raise _BadEscapeError(end) from error
+
+
+def _syntax_remedy(problem: str) -> str:
+    if r"'\t'" in problem:
+        return "indent with spaces, not tabs"
+    if "mapping values are not allowed" in problem:
+        return "a text with a colon and a space in it needs quotes; keys of one mapping start in one column"
+    if "alias" in problem or "anchor" in problem:
+        return "quote a text that begins with * or &"
+    return "look at indentation, quotes, brackets and colons here and in the line above"
+
+
+_OfTree = yaml.ScalarEvent | yaml.AliasEvent | yaml.CollectionStartEvent | yaml.CollectionEndEvent
+
+
+def _build(events: Iterator[yaml.Event], lines: tuple[str, ...], file: str) -> Node:
+    """Build the tree of one document; unlike PyYAML's composer it neither recurses nor goes on behind a bound."""
+    tree, documents = _Tree(lines, file), 0
+    for event in events:
+        if isinstance(event, _OfTree):
+            tree.take(event)
+        else:
+            documents += isinstance(event, yaml.DocumentStartEvent)
+            if documents > 1:
+                remedy = "one recipe a file; leave out the line ---"
+                raise _fault(file, _mark(event.start_mark), "a second YAML document", remedy=remedy)
+    if tree.root is None:
+        raise _fault(file, (1, 1), "the recipe is empty", remedy="`camgeo new` writes one to start from")
+    return tree.root
+
+
+class _Tree:
+    """A document's tree while it is put together."""
+
+    def __init__(self, lines: tuple[str, ...], file: str) -> None:
+        self.lines, self.file = lines, file
+        self.root: Node | None = None
+        self.frames: list[_Frame] = []
+        self.anchors: dict[str, Node] = {}
+        self.aliases = self.nodes = 0
+
+    def take(self, event: _OfTree) -> None:
+        """Take the next event, which begins or ends a list or mapping, or is a node by itself."""
+        mark, end = _mark(event.start_mark), _mark(event.end_mark)
+        if isinstance(event, yaml.CollectionStartEvent):
+            self._open(event, mark)
+        elif isinstance(event, yaml.CollectionEndEvent):
+            frame = self.frames.pop()
+            node = frame.close(self.nodes, end)
+            self._add(node, mark, node.end, frame.event.anchor)
+        elif isinstance(event, yaml.AliasEvent):
+            self._add(self._meant(event, mark), mark, end, None)
+        else:
+            if not event.value and not event.style:
+                mark = _behind(mark, self.lines)
+            self.nodes += 1
+            self._add(Scalar(event.value, not event.style, mark, end, event.tag), mark, end, event.anchor)
+
+    def _open(self, event: yaml.CollectionStartEvent, mark: Mark) -> None:
+        if len(self.frames) == MAX_DEPTH:
+            raise _fault(self.file, mark, f"nested more than {MAX_DEPTH} deep", remedy="a recipe needs five levels")
+        self.frames.append(_Frame(event, mark, self.nodes, mark))
+        self.nodes += 1
+
+    def _meant(self, event: yaml.AliasEvent, mark: Mark) -> Node:
+        """Give the node that an alias stands for."""
+        self.aliases += 1
+        if self.aliases > MAX_ALIASES:
+            raise _fault(self.file, mark, f"more than {MAX_ALIASES} aliases", remedy="write the values out")
+        if event.anchor not in self.anchors:
+            value = shown(f"*{event.anchor}")
+            raise _fault(self.file, mark, "an alias without its anchor", value, _syntax_remedy("alias"))
+        node = self.anchors[event.anchor]
+        self.nodes += node.size
+        return node
+
+    def _add(self, node: Node, mark: Mark, end: Mark, anchor: str | None) -> None:
+        """Put a node where it belongs."""
+        if self.nodes > MAX_NODES:
+            problem = f"more than {MAX_NODES} entries, aliases expanded"
+            raise _fault(self.file, mark, problem, remedy="a recipe takes a few dozen")
+        if anchor is not None:
+            self.anchors[anchor] = node
+        if self.frames:
+            self.frames[-1].children.append(node)
+            self.frames[-1].last = end
+        else:
+            self.root = node
+
+
+def _fault(file: str, mark: Mark, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
+    return RecipeErrors([RecipeError(file, *mark, "", problem, value, remedy)])

@@ -1,0 +1,72 @@
+"""The limits of a recipe's own: each a check, `limit:<figure>`, of the design, of each file or of each run."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.checks.declared import EVERY, LIMIT, Scene
+from camgeo.checks.remedies import Missed, of_limit
+from camgeo.recipe.figures import FIGURES
+from camgeo.report.figures import Measured, of_design, of_dynamics, of_file
+from kin.judge.check import Check
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from typing import Any
+
+    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.report.document import FileResult
+    from camgeo.synthesis.design import Design
+    from kin.judge.check import Sense
+
+ROUNDING = 1e-9  # share of a limit by which a figure that just reaches it may miss it
+
+
+def limit_checks(
+    recipe: Recipe,
+    design: Design,
+    checks: Sequence[Check],
+    files: Sequence[FileResult],
+    dynamics: Mapping[str, Any] | None,
+) -> list[Check]:
+    """Hold every figure that the recipe limits against its bounds.
+
+    `checks` are all that were made, `dynamics` the report's section. A figure that cannot be had fails, and tells why.
+    """
+    scene = Scene(recipe, design.yoke_breadth is not None)
+    measured = of_design(design, checks, [limit.figure for limit in recipe.limits])
+    found: list[Check] = []
+    for limit in recipe.limits:
+        name, of = limit.figure, FIGURES[limit.figure].of
+        if name in measured:
+            found += _held(recipe, limit, measured[name])
+        elif of == "dynamics" and dynamics is not None:
+            for run, value in of_dynamics(name, dynamics, checks).items():
+                found += _held(recipe, limit, value, run)
+        elif of == "file":
+            declared = EVERY[LIMIT + name].of_file
+            for file in files:
+                if file.body == "cam" and declared is not None and declared(scene, file.request):
+                    value = of_file(name, file, checks)
+                    found += _held(recipe, limit, value, file.path.name, file.tolerance)
+    return found
+
+
+def _held(
+    recipe: Recipe, limit: Limit, measured: Measured, file: str | None = None, tolerance: float | None = None
+) -> list[Check]:
+    """Hold a figure against each bound that is given; `tolerance` is the file's. What fails tells what would do."""
+    found = []
+    bounds: tuple[tuple[Sense, float | None], ...] = (("at_least", limit.at_least), ("at_most", limit.at_most))
+    for sense, bound in bounds:
+        if bound is None:
+            continue
+        value, slack = measured.value, ROUNDING * abs(bound)
+        ok = value is not None and (value >= bound - slack if sense == "at_least" else value <= bound + slack)
+        detail = measured.detail if value is None or math.isinf(value) else ""
+        if value is not None and not ok:
+            detail = f"{of_limit(recipe, limit.figure, Missed(value, bound, measured.unit, tolerance))} would do"
+        found.append(Check(LIMIT + limit.figure, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail))
+    return found

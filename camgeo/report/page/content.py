@@ -1,0 +1,136 @@
+"""Everything a page shows of one recipe, gathered from the design and the files: scene, plots, dwells, errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from camgeo.curve.ring import Ring, disc
+from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
+from camgeo.report.page import curves, outline
+from camgeo.report.page.followers import SHAFT, cam, double_roller, flat, flat_pair
+from camgeo.report.page.scene import Scene, Shape, pivot
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+JOINT = 0.045  # of the cam's reach: the size of a joint
+EXACT = "exact"
+
+
+@dataclass(frozen=True, eq=False)
+class FileError:
+    """How far a file lies outside the exact contour in each step: least and greatest (STEPS,), negative inside."""
+
+    name: str
+    low: Array
+    high: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """What a page shows; lengths in the recipe's unit, the drawing as the shaft turns.
+
+    `relative` (STEPS + 1,) is the angle between cam and frame over the shaft's, rad; without a linkage they are one.
+    `point` and `normal` (STEPS, 2) are of the exact contour in the cam's axes, at the middle of each step, where
+    `errors` are looked at.
+    """
+
+    scene: Scene
+    plots: tuple[curves.Plot, ...]
+    rests: tuple[curves.Rest, ...]
+    relative: Array
+    point: Array
+    normal: Array
+    errors: tuple[FileError, ...]
+
+
+def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
+    """Gather what a page shows; `paths` are the drawings and solids that were made, and still lie there."""
+    files = [found for path in paths if (found := outline.read(recipe, path)) is not None]
+    exact = outline.Exact.of(design, outline.Exact.looks(files))
+    drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
+    scene, plots, relative = _mechanism(recipe, design, drawn)
+    plots.append(curves.curvature(recipe, design, exact))
+    errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files]
+    scene = scene.scaled(1.0 / recipe.mm)
+    middle = slice(exact.per // 2, None, exact.per)
+    point, normal = exact.point[middle] / recipe.mm, exact.normal[middle]
+    if recipe.rotation == "ccw":
+        flip = np.array([1.0, -1.0])
+        scene, point, normal = scene.mirrored(), point * flip, normal * flip
+    rests = tuple(curves.rests(recipe, design))
+    return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
+
+
+def _on_face(design: Design) -> list[Shape]:
+    """Hub and timing mark of a part; a file's outline shows neither, or does not tell which hole is the mark."""
+    if design.body is None:
+        return []
+    found = []
+    if design.body.hub is not None:
+        found.append(Shape("hub", (disc(0.0, 0.0, 0.5 * design.body.hub.diameter),), "hub"))
+    for opening in design.body.openings:
+        if opening.name == "mark":
+            ring = Ring(opening.outline.points, opening.outline.bulges)
+            found.append(Shape("timing mark", (ring,), "zero of the motion"))
+    return found
+
+
+def _exact_rings(recipe: Recipe, design: Design) -> tuple[Ring, ...]:
+    bore = recipe.part.bore
+    holes = (disc(0.0, 0.0, 0.5 * bore),) if bore else ()
+    if design.contour is None:
+        return (outline.exact(design.profile.curve, whole=True), *holes)
+    return (outline.exact(design.contour), *holes)
+
+
+def _mechanism(
+    recipe: Recipe, design: Design, drawn: list[tuple[str, tuple[Ring, ...]]]
+) -> tuple[Scene, list[curves.Plot], Array]:
+    """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
+    reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
+    size, bore = JOINT * reach, recipe.part.bore
+    note = "" if design.contour is not None else "No such cam is made: a check of the exact contour fails."
+    on_it = _on_face(design)
+    disk = cam(drawn, bore, size, -SHAFT, on_it)
+    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
+        if isinstance(recipe.cam, DoubleRollerCam):
+            bodies, angles = double_roller(law, recipe.cam.roller_radius, size)
+            more = curves.pressure(angles)
+        else:
+            bodies, lever = flat_pair(law, size)
+            more = curves.levers(recipe, lever)
+        return (
+            Scene((disk, pivot("shaft", 0.0, 0.0, size, "O"), *bodies), note),
+            [*curves.motion(recipe, design), more],
+            SHAFT,
+        )
+    lift = cast("Lift", design.intent)
+    if design.driven is not None and design.driven.turns:
+        from camgeo.report.page.linked import Driven, linked
+
+        driven = Driven.of(design.driven.mechanism)
+        disk = cam(drawn, bore, size, driven.cam, on_it)
+        bodies = linked(driven, size)
+        return (
+            Scene((disk, pivot("shaft", 0.0, 0.0, size, "A"), *bodies), note),
+            curves.output(recipe, driven),
+            driven.theta,
+        )
+    if design.driven is not None:
+        where = "; ".join(check.detail for check in design.driven.checks if not check.ok and check.detail)
+        slides = "The mechanism does not turn right round: the cam is shown in a frame that only slides. "
+        note = f"{slides}{where[0].upper()}{where[1:]}. {note}" if where else slides + note
+    bodies = flat(lift, design.yoke_breadth, reach, size)
+    return Scene((disk, pivot("shaft", 0.0, 0.0, size), *bodies), note), curves.motion(recipe, design), SHAFT

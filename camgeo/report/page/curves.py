@@ -1,0 +1,172 @@
+"""What a page plots over a turn: motion, angles of force, curvature; with limits and dwells. In the recipe's units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
+
+from camgeo.checks.declared import CURVATURE
+from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
+from camgeo.report.page.followers import SHAFT
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.report.page.linked import Driven
+    from camgeo.report.page.outline import Exact
+    from camgeo.synthesis.design import Design
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+ORDER = 3
+DERIVATIVES = ("", "velocity", "acceleration", "jerk")
+POWERS = ("", "/rad", "/rad²", "/rad³")
+DEGREES = 180.0 / math.pi
+COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not told
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """One curve: values (STEPS + 1,) at equal steps of the angle."""
+
+    name: str
+    values: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Plot:
+    """Curves over one angle; `limits` are lines across (value, name), `note` a remark below."""
+
+    title: str
+    unit: str
+    series: tuple[Series, ...]
+    over: Literal["shaft", "relative"] = "shaft"
+    limits: tuple[tuple[float, str], ...] = ()
+    dwells: bool = False
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Rest:
+    """A dwell over the shaft angle, degrees."""
+
+    start: float
+    length: float
+    name: str
+
+
+def derivatives(title: str, unit: str, rows: Array) -> list[Plot]:
+    """Return plots of a motion and its derivatives by the shaft angle, rows (4, STEPS + 1)."""
+    found = [Plot(title, unit, (Series(title.lower(), rows[0]),), dwells=True)]
+    for name, power, row in zip(DERIVATIVES[1:], POWERS[1:], rows[1:], strict=True):
+        found.append(Plot(name.capitalize(), unit + power, (Series(name, row),), dwells=True))
+    return found
+
+
+def motion(recipe: Recipe, design: Design) -> list[Plot]:
+    """Return plots of the follower's motion: what the motion table holds, at the page's steps."""
+    head, last = SHAFT[:-1], SHAFT[-1:]
+    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
+        rows = np.concatenate([law.psi_of_shaft(head, ORDER), law.psi_of_shaft(last, ORDER, -1)], axis=1)
+        scale = DEGREES * (0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0)
+        return derivatives("Swing", "°", scale * rows)
+    lift = cast("Lift", design.intent)
+    rows = np.concatenate([lift.derivatives(head, ORDER), lift.derivatives(last, ORDER, -1)], axis=1)
+    rows[0] -= lift.datum
+    return derivatives("Lift", length_unit(recipe), rows / recipe.mm)
+
+
+def output(recipe: Recipe, driven: Driven) -> list[Plot]:
+    """Return plots of a linkage: output and its derivatives, the frame and its velocity, angles of force."""
+    mechanism = driven.mechanism
+    at, end = mechanism.at(driven.theta[:-1], ORDER), mechanism.at(driven.theta[-1:], ORDER, -1)
+    rows = np.concatenate([at.over_shaft(at.output), end.over_shaft(end.output)], axis=1)
+    unit, scale = ("°", DEGREES) if mechanism.unit == "deg" else (length_unit(recipe), 1.0 / recipe.mm)
+    found = derivatives("Output", unit, scale * rows)
+    if mechanism.dyads:
+        first, scale_1 = mechanism.linkage, DEGREES if mechanism.linkage.unit == "deg" else 1.0 / recipe.mm
+        values = scale_1 * np.concatenate([at.outputs[0][0], end.outputs[0][0]])
+        name = "°" if first.unit == "deg" else length_unit(recipe)
+        found.append(Plot("Output of the first loop", name, (Series("first loop", values),)))
+    frame = DEGREES * np.concatenate([at.over_shaft(at.frame[:2]), end.over_shaft(end.frame[:2])], axis=1)
+    found.append(Plot("Frame", "°", (Series("angle of the frame", frame[0]),)))
+    found.append(Plot("Velocity of the frame", "°/rad", (Series("velocity of the frame", frame[1]),)))
+    names = ("transmission angle", "force angle")
+    angles = tuple(Series(name, DEGREES * row) for name, row in zip(names, driven.angles(), strict=True))
+    note = "force angle: between the force of the frame and the direction in which it does nothing"
+    found.append(Plot("Transmission and force angle", "°", angles, limits=((0.0, ""),), note=note))
+    return found
+
+
+def pressure(angles: tuple[Array, Array]) -> Plot:
+    """Return the plot of a double roller's pressure angles, rad (STEPS + 1,) each."""
+    series = tuple(Series(f"roller {name}", DEGREES * row) for name, row in zip("AB", angles, strict=True))
+    return Plot("Pressure angle", "°", series, dwells=True)
+
+
+def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
+    """Return the plot of the levers of a flat pair's contacts about its pivot, mm (STEPS + 1,) each."""
+    series = tuple(Series(f"face {name}", row / recipe.mm) for name, row in zip("AB", found, strict=True))
+    note = "a flat face is pushed along its normal; the lever is that of the push about the pivot"
+    return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
+
+
+def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
+    """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature."""
+    over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
+    found = next((check for check in design.checks if check.name == CURVATURE.name), None)
+    unit = length_unit(recipe)
+    margin = ""
+    if found is not None and found.value is not None and math.isfinite(found.value):
+        room = (found.value - design.profile.roller_radius) / recipe.mm
+        margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {room:.5g} {unit} from undercut"
+    if design.profile.roller_radius:
+        values = closed(exact.curvature[:: exact.per]) * recipe.mm
+        limit = recipe.mm / design.profile.roller_radius
+        series = (Series("curvature of the pitch curve", values),)
+        return Plot("Curvature of the pitch curve", f"1/{unit}", series, over, ((limit, "roller"),), note=margin)
+    values = closed(exact.radius[:: exact.per]) / recipe.mm
+    return Plot("Radius of curvature", unit, (Series("radius of curvature", values),), over, ((0.0, ""),), note=margin)
+
+
+def closed(values: Array) -> Array:
+    """Return values (STEPS,) with the first repeated at the end."""
+    return np.append(values, values[0])
+
+
+def rests(recipe: Recipe, design: Design) -> list[Rest]:
+    """Return the dwells: true rests of a follower, or of an output the longest within its band."""
+    if design.driven is not None:
+        unit = "°" if design.driven.mechanism.unit == "deg" else f" {length_unit(recipe)}"
+        scale = DEGREES if unit == "°" else 1.0 / recipe.mm
+        band = "" if recipe.dwell is None else f", within {recipe.dwell.band * scale:.4g}{unit}"
+        dwells_of = design.driven.dwells.get("shaft", ())
+        counted = [dwell for dwell in dwells_of if dwell.length >= COUNTS * dwells_of[0].length]
+        return [_rest(dwell.start, dwell.start + dwell.length, band) for dwell in counted]
+    found: Sequence[tuple[float, float]]
+    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        from kin.follower.flat import dwell_angles
+
+        ends = dwell_angles(cast("Transmission", design.intent), np.empty(0))
+        found = [(float(pair[0]), float(pair[-1])) for pair in ends]
+    else:
+        from kin.follower.flat import dwells
+
+        found = list(dwells(cast("Lift", design.intent)))
+    return [_rest(begin, end, "") for begin, end in found]
+
+
+def _rest(begin: float, end: float, band: str) -> Rest:
+    start, length = math.degrees(begin), math.degrees(end - begin)
+    return Rest(start % 360.0, length, f"dwell of {length:.5g}°{band}")
+
+
+def length_unit(recipe: Recipe) -> str:
+    """Return the name of the recipe's unit of length."""
+    return "in" if recipe.units == "inch" else "mm"

@@ -1,0 +1,161 @@
+"""Scenes of the followers that stand by themselves: flat face, yoke, double roller, flat pair.
+
+The shaft turns clockwise and stands at the origin; the line from it to a follower's pivot, and the normal of face 1,
+lie along +x. Angles of `step` k are k/STEPS of a turn.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.ring import Ring, bar, box, disc
+from camgeo.report.page.scene import STEPS, Body, Label, Shape, arrow, pin, pivot, poses, still
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+SHAFT = TURN * np.arange(STEPS + 1) / STEPS
+
+
+def cam(
+    drawn: list[tuple[str, tuple[Ring, ...]]],
+    bore: float | None,
+    size: float,
+    turned: Array,
+    on_it: Sequence[Shape] = (),
+) -> Body:
+    """Return the cam: contours with holes by name, of which the first shows, and what stands `on_it`.
+
+    A line along its own x axis shows the zero of the motion where no mark of the part does.
+    """
+    hole = 0.5 * bore if bore else 0.0
+    shapes = [Shape("metal other" if index else "metal", rings, name) for index, (name, rings) in enumerate(drawn)]
+    beyond = drawn[0][1][0].flattened()
+    reach = np.abs(beyond).max()
+    ahead = beyond[beyond[:, 0] > 0.0]
+    edge = float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(reach)
+    first = max(hole, 1.2 * size)
+    if edge - first > size and not any(shape.role == "timing mark" for shape in on_it):
+        mark = Ring.through([(edge - 0.45 * (edge - first), 0.0), (edge, 0.0)], closed=False)
+        shapes.append(Shape("mark", (mark,), "zero of the motion"))
+    return Body("cam", "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
+
+
+def touched(lift: Lift, theta: Array) -> tuple[Array, Array]:
+    """Distance of a face and offset of its contact along it, at normals theta (n,): p and p', mm."""
+    p, slope = lift.derivatives(theta, 1)
+    return p, slope
+
+
+def contact(name: str, x: Array, y: Array, direction: Array | float, size: float, *, within: float = 0.0) -> Body:
+    """Return a contact with the direction in which it pushes, the arrow longer by what it runs `within` a roller."""
+    return Body(name, "contacts", arrow(6.0 * size + within, size), poses(x, y, direction))
+
+
+def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[Body]:
+    """Return a flat face, or the yoke of two faces `breadth` apart, with guides and contacts; `reach` is the cam's."""
+    p, slope = touched(lift, SHAFT)
+    thick, half_stem, gap = 2.2 * size, 1.3 * size, 1.0 * size
+    guide = 4.5 * size
+    first_guide = float(p.max()) + thick + gap
+    length = first_guide + guide + 2.0 * size - float(p.min())
+    stem = box(thick, -half_stem, length, half_stem)
+    moving = poses(p, 0.0, 0.0)
+    if breadth is None:
+        tall = float(np.abs(slope).max()) + 3.0 * size
+        plate = Shape("follower", (box(0.0, -tall, thick, tall),), "flat face")
+        found = [Body("flat face", "follower", (plate, Shape("follower", (stem,))), moving)]
+    else:
+        tall = reach + 1.2 * size
+        outer = box(-breadth - thick, -tall - thick, thick, tall + thick)
+        frame = Shape("follower", (outer, box(-breadth, -tall, 0.0, tall)), "yoke")
+        found = [Body("yoke", "follower", (frame, Shape("follower", (stem,))), moving)]
+    found.append(_guide(first_guide, guide, half_stem, size))
+    found.append(contact("contact on face 1", p, slope, 0.0, size))
+    if breadth is not None:
+        q, back = touched(lift, SHAFT + 0.5 * TURN)
+        found.append(contact("contact on face 2", -q, -back, 0.5 * TURN, size))
+    return found
+
+
+def _guide(start: float, length: float, half: float, size: float) -> Body:
+    """Return a fixed guide of two blocks about a stem."""
+    shapes = [
+        Shape("fixed", (box(start, side * half, start + length, side * (half + 1.3 * size)),), "guide")
+        for side in (-1.0, 1.0)
+    ]
+    return Body("guide", "ground", tuple(shapes), still())
+
+
+def double_roller(law: Transmission, radius: float, size: float) -> tuple[list[Body], tuple[Array, Array]]:
+    """Return the arm with its two rollers, and for rollers A and B the pressure angle (STEPS + 1,), rad."""
+    psi, slope = law.psi_of_shaft(SHAFT, 1)
+    arm, alpha = law.arm, law.alpha
+    ends = [(arm * float(np.cos(s * alpha)), arm * float(np.sin(s * alpha))) for s in (-1.0, 1.0)]
+    width = min(1.9 * size, 1.4 * radius)
+    arms = tuple(bar((0.0, 0.0), end, width) for end in ends)
+    rollers = tuple(
+        Shape("roller", (disc(*end, radius),), name) for end, name in zip(ends, ("roller A", "roller B"), strict=True)
+    )
+    pins = tuple(pin(min(size, 0.8 * radius), *end) for end in ends)
+    labels = tuple(Label(text, *end) for text, end in zip("AB", ends, strict=True))
+    # each arm a shape of its own: where they overlap about the pivot the even-odd rule would leave a hole
+    shapes = (*(Shape("follower", (each,), "arm") for each in arms), *rollers, *pins)
+    bodies = [
+        Body("arm", "follower", shapes, poses(arm, 0.0, -psi), labels),
+        pivot("pivot", arm, 0.0, size, "P", angle=0.0),
+    ]
+    angles = []
+    for side, name in ((-1.0, "roller A"), (1.0, "roller B")):
+        along = side * alpha - psi
+        centre = np.column_stack([arm + arm * np.cos(along), arm * np.sin(along)])
+        ray = np.column_stack([np.cos(along), np.sin(along)])
+        # velocity of the roller against the cam, whose axes turn with -phi: the pitch curve's tangent
+        tangent = np.column_stack([-arm * ray[:, 1] * (1.0 - slope), arm + arm * ray[:, 0] * (1.0 - slope)])
+        tangent /= np.hypot(tangent[:, 0], tangent[:, 1])[:, None]
+        normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+        point = centre - radius * normal
+        direction = np.unwrap(np.arctan2(normal[:, 1], normal[:, 0]))
+        bodies.append(contact(f"contact of {name}", point[:, 0], point[:, 1], direction, size, within=radius))
+        across = np.abs(ray[:, 0] * normal[:, 1] - ray[:, 1] * normal[:, 0])
+        angles.append(np.arctan2(np.abs(np.sum(ray * normal, axis=1)), across))
+    return bodies, (angles[0], angles[1])
+
+
+def flat_pair(law: Transmission, size: float) -> tuple[list[Body], tuple[Array, Array]]:
+    """Return the pair of faces, and for faces A and B the lever of the contact about the pivot (STEPS + 1,), mm."""
+    from kin.follower.envelope import PairSupport
+
+    support, away = PairSupport(law), 2.0 * law.arm
+    swing, half = 0.5 * law.psi_of_shaft(SHAFT, 0)[0], 0.5 * law.alpha
+    found: list[Body] = []
+    levers, thick = [], 2.0 * size
+    places = []
+    for side in (-1.0, 1.0):
+        theta = SHAFT + side * half - swing
+        q, slope = support.derivatives(theta, 1)
+        direction = theta - SHAFT
+        c, s = np.cos(direction), np.sin(direction)
+        x, y = q * c - slope * s, q * s + slope * c
+        places.append((x, y, direction))
+        levers.append(np.hypot(x - away, y))
+    tall = max(float(lever.max()) for lever in levers) + 3.0 * size
+    shapes = []
+    for side in (-1.0, 1.0):
+        c, s = np.cos(side * half), np.sin(side * half)
+        normal, along = np.array([c, s]), side * np.array([-s, c])
+        corners = [np.zeros(2), tall * along, tall * along + thick * normal, thick * normal]
+        shapes.append(Shape("follower", (Ring.through(np.array(corners)),), "face A" if side < 0.0 else "face B"))
+    hub = Shape("follower", (disc(0.0, 0.0, 1.9 * size),), "pair of faces")
+    found.append(Body("pair of faces", "follower", (*shapes, hub), poses(away, 0.0, -swing)))
+    found.append(pivot("pivot", away, 0.0, size, "P", angle=0.0))
+    for name, (x, y, direction) in zip(("face A", "face B"), places, strict=True):
+        found.append(contact(f"contact on {name}", x, y, direction, size))
+    return found, (levers[0], levers[1])

@@ -1,0 +1,143 @@
+"""The cam itself: its contour as the files draw it and as it is meant, and how far the one is from the other."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.ring import Ring
+from camgeo.report.page.scene import STEPS
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from camgeo.curve.curve import Curve
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.contour.arcs import Arcs
+    from kin.numeric.arrays import Array
+    from kin.read.files import AnySolid, Drawing
+
+POINTS = 1440  # of an exact contour
+MOST_PIECES = 1600  # of a file's contour that a page draws; of more, every second or third node
+ROUNDING = 1e-12  # of the contour's size: an error below this is none
+FINE = 1e-5  # of the contour's size: to this a spline is drawn
+MEASURED = 1e-3  # of the tolerance: to this its error is measured, as far as rounding lets it be
+PER_PIECE = 6  # places of a file's piece at which its error is looked at, as far as `MOST_LOOKS` goes
+MOST_LOOKS = 6  # for each step of the turn
+
+
+def exact(curve: Curve, *, whole: bool = False) -> Ring:
+    """Return a curve as a ring of about `POINTS` points; `whole`: with the loops that trimming takes away."""
+    period = curve.shape.period
+    runs = [(0.0, period)] if whole else [(run.low, run.high) for run in curve.runs]
+    points = []
+    for low, high in runs:
+        count = max(2, math.ceil(POINTS * (high - low) / period))
+        points.append(curve.sample(low + (high - low) * np.arange(count) / count).point)
+        if not curve.closed:
+            points.append(curve.sample(np.array([high]), -1).point)
+    return Ring.through(np.concatenate(points))
+
+
+@dataclass(frozen=True, eq=False)
+class Read:
+    """A file's contour as it was read, mm and as if the shaft turned clockwise: `arcs` throughout, `pieces` in number.
+
+    `rings` are for drawing: the contour and its holes.
+    """
+
+    name: str
+    arcs: Arcs
+    pieces: int
+    rings: tuple[Ring, ...]
+
+
+def read(recipe: Recipe, path: Path) -> Read | None:
+    """Read a drawing or a solid; None where no contour can be read from it, which a check of it tells."""
+    from kin.read.errors import ReadError
+    from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
+
+    try:
+        if kind_of(path) in SOLIDS:
+            found: Drawing | AnySolid = read_solid(path)
+            unit = 1.0
+        else:
+            found = drawing = read_drawing(path)
+            unit = recipe.mm if drawing.units_mm is None else 1.0
+    except ReadError:
+        return None
+    scaled = [each.scaled(unit) for each in (found.contour, *found.holes)]
+    contour, *holes = [each.mirrored() for each in scaled] if recipe.rotation == "ccw" else scaled
+    size = float(np.abs(contour.vertices).max())
+    arcs, _ = contour.as_arcs(max(MEASURED * recipe.export.tolerance, ROUNDING * size))
+    rings = tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in (contour, *holes))
+    return Read(path.name, arcs, len(contour), rings)
+
+
+def _drawn(arcs: Arcs) -> Ring:
+    step = -(-len(arcs) // MOST_PIECES)
+    if step > 1:
+        return Ring.through(arcs.start[::step])
+    return Ring(arcs.start, np.tan(0.25 * arcs.curvature * arcs.length))
+
+
+@dataclass(frozen=True, eq=False)
+class Exact:
+    """The exact contour at equal steps of the angle at which it is touched, `per` for each of `STEPS` steps.
+
+    `point`, `normal` (STEPS * per, 2), `radius` of curvature and `curvature` (STEPS * per,) of the base curve, which is
+    the pitch curve of a roller; `kept` tells which points belong to the contour that is made.
+    """
+
+    per: int
+    point: Array
+    normal: Array
+    radius: Array
+    curvature: Array
+    kept: NDArray[np.bool_]
+
+    @staticmethod
+    def of(design: Design, per: int) -> Exact:
+        """Sample the contour of a design."""
+        shaft = TURN * np.arange(STEPS * per) / (STEPS * per)
+        curve = design.profile.curve
+        at = getattr(design.intent, "parameter", None)
+        t = shaft if at is None else at(shaft)
+        frame, base = curve.sample(t), design.profile.base.sample(t)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            radius = base.speed / base.turn
+        kept = np.ones(len(t), dtype=np.bool_)
+        if design.trimmed and design.contour is not None:
+            inside = [np.mod(t - run.low, curve.shape.period) <= run.high - run.low for run in design.contour.runs]
+            kept = np.any(inside, axis=0)
+        return Exact(per, frame.point, frame.normal, radius, base.curvature, kept)
+
+    @staticmethod
+    def looks(files: list[Read]) -> int:
+        """Return how many places a step needs for the files' errors to show."""
+        pieces = max((file.pieces for file in files), default=0)
+        return min(MOST_LOOKS, max(1, math.ceil(PER_PIECE * pieces / STEPS)))
+
+    def error(self, file: Read) -> tuple[Array, Array]:
+        """Least and greatest distance of a file outside the exact contour in each step, mm, (STEPS,) each.
+
+        Measured from the exact contour, so negative where the file lies inside; nan where the contour is cut away.
+        """
+        from kin.contour.nearest import signed_distance
+
+        off = np.full(len(self.point), np.nan)
+        off[self.kept] = -signed_distance(file.arcs, self.point[self.kept])
+        off[np.abs(off) < ROUNDING * np.abs(self.point).max()] = 0.0
+        by_step = off.reshape(STEPS, self.per)
+        empty = np.isnan(by_step).all(axis=1)
+        by_step[empty] = 0.0
+        low, high = np.nanmin(by_step, axis=1), np.nanmax(by_step, axis=1)
+        low[empty], high[empty] = np.nan, np.nan
+        return low, high

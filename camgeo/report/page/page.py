@@ -1,0 +1,115 @@
+"""The page as one HTML file: template, style and script from this folder, drawing, tables and data from a recipe."""
+
+from __future__ import annotations
+
+import json
+import math
+from html import escape
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from camgeo.report.document import finite
+from camgeo.report.page import svg, tables
+from camgeo.report.page.pack import packed
+from camgeo.report.page.scene import STEPS
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.report.page.content import Content
+    from camgeo.report.page.curves import Plot
+    from camgeo.report.page.scene import Body
+
+RELOAD = "<!-- reload -->"  # where a page that is watched gets the script that reloads it
+LOCAL = "connect-src 'none'"  # a page may connect to nothing; one that is watched to where it came from
+
+
+def page(recipe: Recipe, found: Content, report: dict[str, Any]) -> str:
+    """Return the page of a recipe from what it shows and what the report says."""
+    ok = report["ok"]
+    parts = {
+        "title": escape(recipe.name),
+        "about": escape(recipe.about),
+        "verdict": "every check holds" if ok else tables.failing(report["checks"]),
+        "state": "ok" if ok else "failed",
+        "note": escape(found.scene.note),
+        "facts": tables.facts(report),
+        "drawing": svg.moving(found.scene),
+        "checks": tables.checks(report),
+        "files": tables.written(report),
+        "linkage": tables.linkage(report),
+        "dynamics": tables.dynamics(report),
+        "skipped": tables.skipped(report),
+        "recipe": escape(recipe.text),
+        "style": asset("drawing.css") + asset("page.css"),
+        "script": asset("page.js"),
+        "data": encoded(data(recipe, found)),
+    }
+    head, *rest = asset("page.html").split("{{")
+    text = [head]
+    for piece in rest:
+        name, _, after = piece.partition("}}")
+        text += [parts[name], after]
+    return "".join(text)
+
+
+def asset(name: str) -> str:
+    """Return a file of this folder."""
+    return (files("camgeo.report.page") / name).read_text("utf-8")
+
+
+def encoded(values: object) -> str:
+    """Return plain data as JSON that may stand within a script element."""
+    text = json.dumps(finite(values), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    return text.replace("<", "\\u003c")
+
+
+def data(recipe: Recipe, found: Content) -> dict[str, Any]:
+    """Return what the script moves and plots; angles in degrees, lengths in the recipe's unit."""
+    view = svg.View.of(found.scene)
+    extent = max(view.width, view.height) / view.scale
+    at = [*found.point.T, *found.normal.T]
+    return {
+        "name": recipe.name,
+        "unit": "in" if recipe.units == "inch" else "mm",
+        "sense": -1 if recipe.rotation == "cw" else 1,
+        "steps": STEPS,
+        "view": [view.scale, view.x, view.y],
+        "bodies": [_pose(body, extent) for body in found.scene.bodies],
+        "plots": [_plot(plot) for plot in found.plots],
+        "rests": [[rest.start, rest.length, rest.name] for rest in found.rests],
+        "relative": packed(np.degrees(found.relative)),
+        "linked": any(plot.over == "relative" for plot in found.plots),
+        "contour": [packed(row) for row in at],
+        "errors": [
+            {"file": error.name, "low": packed(error.low), "high": packed(error.high)} for error in found.errors
+        ],
+    }
+
+
+def _pose(body: Body, extent: float) -> list[dict[str, Any]]:
+    """Return x, y and angle of a body; a small movement is told as finely as a large one."""
+    x, y, angle = body.pose.T
+    rows = [packed(row, _fine(row, extent)) for row in (x, y)]
+    return [*rows, packed(np.degrees(angle), _fine(np.degrees(angle), 90.0))]
+
+
+def _fine(row: np.ndarray[Any, np.dtype[np.float64]], extent: float) -> float:
+    spread = float(np.ptp(row))
+    return min(extent, spread) if spread > 0.0 else extent
+
+
+def _plot(plot: Plot) -> dict[str, Any]:
+    entry: dict[str, Any] = {
+        "title": plot.title,
+        "unit": plot.unit,
+        "series": [{"name": series.name, **packed(series.values)} for series in plot.series],
+        "limits": [[value, name] for value, name in plot.limits if math.isfinite(value)],
+        "note": plot.note,
+    }
+    if plot.over == "relative":
+        entry["over"] = "relative"
+    if plot.dwells:
+        entry["rests"] = 1
+    return entry

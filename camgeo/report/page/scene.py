@@ -1,0 +1,166 @@
+"""A mechanism as bodies to be drawn: each has its shapes in its own axes, and its place over one turn of the shaft.
+
+Nothing here knows cams or followers. A page moves the bodies, a picture draws them once; both see the same shapes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.ring import Ring, box, disc
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
+
+STEPS = 720  # places of a turn; between them a page interpolates
+SEEN = 24  # a body's extent is taken from every so many places
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Rings filled together by the even-odd rule; `role` tells what it is and so how it looks."""
+
+    role: str
+    rings: tuple[Ring, ...]
+    name: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Label:
+    """A letter beside a point (x, y) of a body."""
+
+    text: str
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Shapes that move as one: `pose` (STEPS + 1, 3) or, where it stands still, (1, 3), holds x, y, mm, and angle, rad.
+
+    `kind` groups bodies that a page shows and hides together. An `upright` one looks the same in the mirror.
+    """
+
+    name: str
+    kind: str
+    shapes: tuple[Shape, ...]
+    pose: Array
+    labels: tuple[Label, ...] = ()
+    upright: bool = False
+
+    def at(self, step: int) -> tuple[float, float, float]:
+        """Return x, y and angle at a step of the turn."""
+        x, y, angle = self.pose[step if len(self.pose) > 1 else 0].tolist()
+        return x, y, angle
+
+    def placed(self, points: Array, step: int) -> Array:
+        """Return points (n, 2) of the body where they stand at a step."""
+        x, y, angle = self.at(step)
+        c, s = math.cos(angle), math.sin(angle)
+        placed: Array = points @ np.array([[c, s], [-s, c]]) + (x, y)
+        return placed
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Bodies from the hindmost to the foremost, and what is to be said about the drawing."""
+
+    bodies: tuple[Body, ...]
+    note: str = ""
+
+    def scaled(self, factor: float) -> Scene:
+        """Return the scene in another unit of length."""
+        return replace(self, bodies=tuple(_enlarged(body, factor) for body in self.bodies))
+
+    def mirrored(self) -> Scene:
+        """Return its image in the x axis: the same mechanism with a shaft that turns the other way."""
+        return replace(self, bodies=tuple(map(_reflected, self.bodies)))
+
+    @cached_property
+    def box(self) -> tuple[float, float, float, float]:
+        """Least x and y and greatest x and y of everything over the turn, with a small margin."""
+        low, high = np.full(2, np.inf), np.full(2, -np.inf)
+        for body in self.bodies:
+            if body.kind == "forces":
+                continue  # they reach far where they say little
+            points = np.concatenate([ring.flattened() for shape in body.shapes for ring in shape.rings])
+            for step in range(0, len(body.pose), SEEN) if len(body.pose) > 1 else (0,):
+                placed = body.placed(points, step)
+                low, high = np.minimum(low, placed.min(axis=0)), np.maximum(high, placed.max(axis=0))
+        margin = 0.03 * float((high - low).max())
+        return (*(low - margin).tolist(), *(high + margin).tolist())
+
+    @property
+    def digits(self) -> int:
+        """Decimal digits that a coordinate needs for a drawing: a hundred-thousandth of its size."""
+        x0, y0, x1, y1 = self.box
+        return digits_for(max(x1 - x0, y1 - y0), 1e-5)
+
+
+def digits_for(extent: float, share: float) -> int:
+    """Decimal digits that hold a share of an extent; at least 0."""
+    return max(0, math.ceil(-math.log10(extent * share))) if extent > 0.0 else 0
+
+
+def _enlarged(body: Body, factor: float) -> Body:
+    shapes = tuple(replace(s, rings=tuple(ring.scaled(factor) for ring in s.rings)) for s in body.shapes)
+    labels = tuple(replace(label, x=label.x * factor, y=label.y * factor) for label in body.labels)
+    return replace(body, shapes=shapes, pose=body.pose * np.array([factor, factor, 1.0]), labels=labels)
+
+
+def _reflected(body: Body) -> Body:
+    pose = body.pose * np.array([1.0, -1.0, -1.0])
+    if body.upright:
+        return replace(body, pose=pose)
+    shapes = tuple(replace(s, rings=tuple(ring.mirrored() for ring in s.rings)) for s in body.shapes)
+    labels = tuple(replace(label, y=-label.y) for label in body.labels)
+    return replace(body, shapes=shapes, pose=pose, labels=labels)
+
+
+# --- parts of mechanisms ----------------------------------------------------------------------------------------------
+
+
+def still(x: float = 0.0, y: float = 0.0, angle: float = 0.0) -> Array:
+    """Return the pose of a body that does not move, (1, 3)."""
+    return np.array([[x, y, angle]])
+
+
+def poses(x: Array | float, y: Array | float, angle: Array | float) -> Array:
+    """Return poses (n, 3) of x, y and angle, each (n,) or constant."""
+    return np.column_stack(np.broadcast_arrays(x, y, angle)).astype(np.float64)
+
+
+def block(length: float, height: float, name: str = "") -> Shape:
+    """Return a sliding block about its origin."""
+    return Shape("block", (box(-0.5 * length, -0.5 * height, 0.5 * length, 0.5 * height),), name)
+
+
+def pivot(name: str, x: float, y: float, size: float, letter: str = "", *, angle: float = -0.5 * math.pi) -> Body:
+    """Return a fixed pivot: a foot in the given direction, hatched, under a pin."""
+    c, s = math.cos(angle), math.sin(angle)
+    turn = np.array([[c, s], [-s, c]])
+    foot = np.array([(0.0, 0.0), (1.9, -1.2), (1.9, 1.2)]) * size @ turn
+    lines = [np.array([(1.9, -1.6), (1.9, 1.6)])]
+    lines += [np.array([(1.9, y), (2.5, y - 0.6)]) for y in (-1.0, -0.2, 0.6, 1.4)]
+    hatch = tuple(Ring.through(line * size @ turn, closed=False) for line in lines)
+    shapes = (Shape("foot", (Ring.through(foot),)), Shape("hatch", hatch), pin(size))
+    letters = (Label(letter, 0.0, 0.0),) if letter else ()
+    return Body(name, "ground", shapes, still(x, y), letters, upright=True)
+
+
+def pin(size: float, x: float = 0.0, y: float = 0.0) -> Shape:
+    """Return a revolute joint."""
+    return Shape("pin", (disc(x, y, 0.55 * size),))
+
+
+def arrow(length: float, size: float, role: str = "force") -> tuple[Shape, ...]:
+    """Return an arrow from the origin along x, and a dot at its foot; `size` is that of a joint."""
+    head, half = 1.6 * size, 0.62 * size
+    tip = Ring.through([(length, 0.0), (length - head, half), (length - head, -half)])
+    shaft = Ring.through([(0.0, 0.0), (length - head, 0.0)], closed=False)
+    return Shape(role, (shaft,)), Shape(f"{role} tip", (tip,)), Shape(f"{role} dot", (disc(0.0, 0.0, 0.42 * size),))

@@ -1,0 +1,156 @@
+"""Remarks: what an engineer would look at twice, and that fails nothing."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.checks.declared import PRESSURE, Scene
+from camgeo.recipe.export import NO_CONTOUR
+from camgeo.report.document import Remark
+from kin.numeric.angles import degrees
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+
+PRESSURE_RULE = {"oscillating": 45.0, "translating": 30.0}  # degrees: cam handbooks' rule of thumb for rollers
+SHARE = 0.1  # of the stroke: an error as great as that is no small one
+THICKEST, THINNEST = 2.0, 0.01  # of the cam's greatest radius
+STILL = 1e-9  # of the cam's size: a motion that is none
+LOOKS = 1440  # places of a turn at which the stroke is looked at
+CLEAR = 0.05  # of the cam's size
+INCH, STEP, HALF = 25.4, 64.0, 0.5  # sizes by the inch are whole 64ths, metric ones whole or half mm
+_SAME = 1e-6
+
+
+def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
+    """Make every remark that there is to make on a recipe and its design."""
+    found = [
+        _pressure(recipe, design),
+        *_motion(recipe, design),
+        *_output(recipe, design),
+        _shaft(recipe, design),
+        _keyway(recipe),
+        _thickness(recipe, design),
+    ]
+    return tuple(remark for remark in found if remark is not None)
+
+
+def _pressure(recipe: Recipe, design: Design) -> Remark | None:
+    """Past the rule of thumb, unless the recipe has a limit of its own."""
+    if any(limit.figure == PRESSURE.name and limit.at_most is not None for limit in recipe.limits):
+        return None
+    made = next((check for check in design.checks if check.name == PRESSURE.name), None)
+    kind = "oscillating" if Scene(recipe, yoke=False).swings else "translating"
+    rule = PRESSURE_RULE[kind]
+    if made is None or made.value is None or made.value <= rule or not made.ok:
+        return None
+    told = f"the pressure angle reaches {made.value:.4g} deg; up to {rule:.0f} is the rule for rollers, {kind}"
+    return Remark(PRESSURE.name, made.value, rule, "deg", told, made.at_deg)
+
+
+def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
+    """A follower that stands still, and errors permitted that are a good part of its stroke."""
+    stroke, arm = _stroke(design)
+    length = stroke * arm
+    if length <= STILL * design.profile.curve.size:
+        return [Remark("no-motion", 0.0, None, "mm", "the follower stands still all round")]
+    files = [request for request in recipe.export.files if request.kind not in NO_CONTOUR]
+    tolerance = max((request.tolerance or recipe.export.tolerance for request in files), default=0.0)
+    found = [_share(recipe, "coarse-tolerance", ("the tolerance", tolerance), length)]
+    error = recipe.verify.motion_error
+    if error is not None:
+        error *= arm
+        found.append(_share(recipe, "loose-motion-error", ("verify.motion_error", error), length))
+    return found
+
+
+def _stroke(design: Design) -> tuple[float, float]:
+    """Stroke in mm, or swing in rad and the arm in mm at which it is worked: 1 for a stroke."""
+    from kin.law.support_function import Lift
+
+    intent, t = design.intent, np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
+    t = np.sort(np.concatenate([t, intent.breaks]))
+    if isinstance(intent, Lift):
+        return float(np.ptp(intent.derivatives(t, 0)[0])), 1.0
+    return float(np.ptp(intent.at(t, 0)[1][0])) * (0.5 if design.follower == "flat pair" else 1.0), intent.arm
+
+
+def _share(recipe: Recipe, name: str, asked: tuple[str, float], length: float) -> Remark | None:
+    (what, value), rule = asked, SHARE * length
+    if value <= rule:
+        return None
+    told = f"{what}, {_length(recipe, value)}, is {value / length:.3g} times the stroke of {_length(recipe, length)}"
+    return Remark(name, value, rule, "mm", told)
+
+
+def _output(recipe: Recipe, design: Design) -> list[Remark | None]:
+    """Of a linkage: an error or a band that is a good part of the output's swing."""
+    if design.driven is None or design.driven.figures is None:
+        return []
+    swing, unit = design.driven.figures.swing, design.driven.mechanism.unit
+    scale = math.degrees(1.0) if unit == "deg" else 1.0
+    asked = [("loose-output-error", "verify.output_error", recipe.verify.output_error)]
+    asked.append(("wide-dwell-band", "dwell.band", None if recipe.dwell is None else recipe.dwell.band))
+    found: list[Remark | None] = []
+    for name, what, value in asked:
+        if value is not None and value > SHARE * swing:
+            told = f"{what} is {value / swing:.3g} times the swing of the output" if swing else f"{what}: no swing"
+            found.append(Remark(name, value * scale, SHARE * swing * scale, unit, told))
+    return found
+
+
+def _shaft(recipe: Recipe, design: Design) -> Remark | None:
+    """With a bore the wall is a check."""
+    if recipe.part.bore is not None or design.contour is None:
+        return None
+    from camgeo.synthesis.part.walls import distance_inside, winds
+
+    runs = [np.linspace(run.low, run.high, LOOKS) for run in design.contour.runs]
+    ring = design.contour.sample(np.concatenate(runs)).point
+    if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * design.profile.curve.size:
+        return None  # by far; what is nearer is looked at closely
+    distance, at = distance_inside(design.contour, (0.0, 0.0))
+    if distance > 0.0:
+        return None
+    told = f"the shaft lies outside the contour by {_length(recipe, -distance)}"
+    shaft = getattr(design.intent, "at", None)
+    at_deg = degrees(at if shaft is None else float(shaft(at, 0)[0][0, 0]))
+    return Remark("shaft-outside", distance, 0.0, "mm", told, at_deg)
+
+
+def _keyway(recipe: Recipe) -> Remark | None:
+    """A bore by the inch with a keyway of a metric standard."""
+    bore, keyway = recipe.part.bore, recipe.part.keyway
+    if bore is None or keyway is None or not keyway.standard:
+        return None
+    by_inch, metric = _is_whole(bore * STEP / INCH), _is_whole(bore / HALF)
+    if not (by_inch or not metric if recipe.units == "inch" else by_inch and not metric):
+        return None
+    told = (
+        f"a bore of {_length(recipe, bore)} takes a metric keyway of DIN 6885, {keyway.width:.4g} mm wide; "
+        "give part.keyway its width and depth for an inch key"
+    )
+    return Remark("metric-keyway", bore, None, "mm", told)
+
+
+def _is_whole(value: float) -> bool:
+    return abs(value - round(value)) <= _SAME * max(abs(value), 1.0)
+
+
+def _thickness(recipe: Recipe, design: Design) -> Remark | None:
+    """A disc that is a bar or a foil: a slip of the unit, mostly."""
+    thickness, size = recipe.part.thickness, design.profile.curve.size
+    if thickness is None or THINNEST * size <= thickness <= THICKEST * size:
+        return None
+    thick = thickness > size
+    rule = (THICKEST if thick else THINNEST) * size
+    told = f"part.thickness, {_length(recipe, thickness)}, is {thickness / size:.3g} times the cam's greatest radius"
+    return Remark("thick" if thick else "thin", thickness, rule, "mm", told)
+
+
+def _length(recipe: Recipe, value: float) -> str:
+    return f"{value / recipe.mm:.4g} {'in' if recipe.units == 'inch' else 'mm'}"

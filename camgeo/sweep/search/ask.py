@@ -1,0 +1,137 @@
+"""What a recipe's `sweep` asks for, in the words of this package."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam, cam_kind
+from camgeo.recipe.export import Export
+from camgeo.recipe.figures import FACE_LENGTH, HOLLOW_RADIUS, PEAKS
+from camgeo.recipe.linkage import output_slides
+from camgeo.recipe.part import Part
+from camgeo.recipe.recipe import RECIPE, Recipe, Verify
+from camgeo.recipe.schema.fields import Kind, field_at
+from camgeo.recipe.sweep import FIGURES
+from camgeo.sweep.search.figures import Evaluator, Scene, asked_of
+from camgeo.sweep.search.gather import Ranking
+from camgeo.sweep.search.plan import Axis, Plan, steps
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from camgeo.recipe.sweep import Axis as Varied
+    from camgeo.recipe.sweep import Sweep
+
+# What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
+_DEAR = ("dwell-relative", *PEAKS, "force-angle", FACE_LENGTH, HOLLOW_RADIUS)
+_LENGTH = {"mm": "mm", "inch": "in"}
+_LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Unit of a figure as told, and what its value in mm and degrees is divided by."""
+
+    name: str
+    divisor: float = 1.0
+
+
+@dataclass(frozen=True)
+class Ask:
+    """A recipe that has a sweep, and the parts of that sweep."""
+
+    recipe: Recipe
+    sweep: Sweep
+    plan: Plan
+    ranking: Ranking
+
+    @staticmethod
+    def of(recipe: Recipe) -> Ask:
+        """Take the sweep of a recipe; raises RecipeErrors where it has none."""
+        sweep = recipe.sweep
+        if sweep is None:
+            raise recipe.error("sweep", "this recipe has no sweep", None, "say what to vary: `sweep: {vary: ...}`")
+        axes = tuple(map(_axis, sweep.vary))
+        count = sweep.count
+        if count is None:
+            count = 1
+            for axis in axes:
+                count *= len(axis.values)
+        plan = Plan(axes, sweep.method, count, sweep.seed)
+        return Ask(recipe, sweep, plan, Ranking(sweep.rank, FIGURES[sweep.rank].best == "most", sweep.limits))
+
+    @cached_property
+    def figures(self) -> tuple[str, ...]:
+        """The figures that every design is given: those that cost little, and the others where they rank or limit.
+
+        Limits on the cheap ones so leave what is computed as it is. Designs with a linkage that are made one by one
+        get all, which then cost next to nothing.
+        """
+        paths = tuple(axis.path for axis in self.sweep.vary)
+        asked = {self.sweep.rank, *(limit.figure for limit in self.sweep.limits)}
+        if self.recipe.linkage is not None and Evaluator.of(self.recipe, paths).slow:
+            return self.all_figures
+        return tuple(name for name in self.all_figures if name in asked or name not in _DEAR)
+
+    @property
+    def all_figures(self) -> tuple[str, ...]:
+        """The figures that the best designs are given."""
+        return asked_of(self.recipe)
+
+    def scene(self, figures: tuple[str, ...]) -> Scene:
+        """What decides these figures of a design.
+
+        It leaves out what has no bearing on them, so that a change of limits, ranking or files to export leaves what
+        was computed as it is.
+        """
+        plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
+        recipe = replace(
+            self.recipe,
+            name="",
+            about="",
+            part=Part(),
+            export=Export(1.0, ()),
+            verify=Verify(1),
+            dynamics=None,
+            path=Path("recipe.yaml"),
+            sweep=plain,
+        )
+        return Scene(recipe, figures)
+
+    def units(self, figures: Iterable[str]) -> dict[str, Unit]:
+        """Unit of each figure, lengths in that of the recipe."""
+        length = Unit(_LENGTH[self.recipe.units], self.recipe.mm)
+        linkage, swings = self.recipe.linkage, isinstance(self.recipe.cam, DoubleRollerCam | FlatPairCam)
+        slides = not swings if linkage is None else output_slides(linkage)
+        by_kind = {
+            Kind.ANGLE: Unit("deg"),
+            Kind.LENGTH: length,
+            Kind.MOTION: length if slides else Unit("deg"),
+            Kind.NUMBER: Unit(""),
+        }
+        found = {}
+        for name in figures:
+            unit = by_kind[FIGURES[name].kind]
+            found[name] = replace(unit, name=unit.name + FIGURES[name].per)
+        return found
+
+    def axis_unit(self, path: str) -> str:
+        """Unit in which the recipe writes a field that is varied; empty for a plain number."""
+        linkage = "" if self.recipe.linkage is None else self.recipe.linkage.kind
+        field = field_at(RECIPE, path, {"cam": cam_kind(self.recipe.cam), "linkage": linkage})
+        length = _LENGTH[self.recipe.units]
+        if field is None:
+            return ""
+        if field.kind is Kind.HARMONICS:
+            return f"{length}^2" if path.startswith("cam.delta.") else length
+        return length if field.kind in _LENGTHS else "deg" if field.kind is Kind.ANGLE else ""
+
+
+def _axis(varied: Varied) -> Axis:
+    if varied.values:
+        return Axis(varied.path, min(varied.values), max(varied.values), varied.values)
+    values = steps(varied.low, varied.high, varied.steps) if varied.steps else ()
+    return Axis(varied.path, varied.low, varied.high, values)

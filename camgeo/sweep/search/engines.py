@@ -1,0 +1,167 @@
+"""Who computes the chunks: this process, several on this machine, or the workers of a Dask scheduler.
+
+Each engine is an iterator over (chunk, bytes of its file), in whatever order they land. It hands a worker its next
+chunk only when it is about to come free, so an end that comes early wastes little.
+"""
+
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+
+from camgeo.common import workers
+from camgeo.sweep.search.job import result
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+
+    from camgeo.sweep.search.job import Job
+
+Results: TypeAlias = "Generator[tuple[int, bytes], None, None]"
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+_TRIED = 0.5  # seconds of work after which it is clear how long the rest takes
+_PAYS = 2.0  # seconds of remaining work from which more processes pay
+_PATIENCE = 10.0  # seconds for a scheduler to answer
+_WORKERLESS = 6  # times as long for its first worker to come
+
+
+class EngineError(Exception):
+    """The chunks cannot be computed for want of something around the run; what has landed stays."""
+
+
+def serial(job: Job, numbers: Sequence[int]) -> Results:
+    """Compute one chunk after another, here."""
+    key = job.key
+    for number in numbers:
+        yield number, result(job, number, key)
+
+
+def processes(job: Job, numbers: Sequence[int], count: int) -> Results:
+    """Compute `count` chunks at once, each in a process of this machine; raises EngineError where one is killed."""
+    key = job.key
+    return at_once(partial(result, job, key=key), numbers, count)
+
+
+def at_once(function: Callable[[T], R], items: Iterable[T], count: int) -> Generator[tuple[T, R], None, None]:
+    """Give each item, as it is done, with what a function of a module makes of it, `count` at once."""
+    from concurrent.futures.process import BrokenProcessPool
+
+    try:
+        yield from workers.at_once(function, items, count)
+    except BrokenProcessPool as error:
+        raise EngineError(workers.KILLED.format("it")) from error
+
+
+def as_pays(job: Job, numbers: Sequence[int]) -> Results:
+    """Begin here, and go on with a process for each core where what is left takes longer than starting them."""
+    started, key = time.perf_counter(), job.key
+    cores = workers.available()
+    for done, number in enumerate(numbers):
+        spent = time.perf_counter() - started
+        if cores > 1 and done and spent > _TRIED and spent / done * (len(numbers) - done) > _PAYS:
+            yield from processes(job, numbers[done:], cores)
+            return
+        yield number, result(job, number, key)
+
+
+def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
+    """Let the workers of the Dask scheduler at `address` compute; they need camgeo, and no shared disk.
+
+    Raises ModuleNotFoundError without the package distributed, and EngineError where the scheduler does not answer or
+    goes away, has no workers, or a chunk is lost again and again.
+    """
+    from distributed import Client, wait
+
+    first_of: Callable[..., Any] = wait
+    with _connected(Client, address) as client, _lost(address):
+        key, left = job.key, list(reversed(numbers))
+        running: dict[Any, int] = {}
+        alone = 0
+        while left or running:
+            room = workers.AHEAD * max(1, sum(client.nthreads().values())) - len(running)
+            for _ in range(min(room, len(left))):
+                number = left.pop()
+                # not pure: a result is kept on our disk and nowhere else
+                running[client.submit(result, job, number, key, pure=False)] = number
+            try:
+                with client.as_current():  # `wait` asks for it, and it is no business of other threads
+                    done = first_of(list(running), timeout=_PATIENCE, return_when="FIRST_COMPLETED").done
+            except TimeoutError:
+                alone = 0 if client.nthreads() else alone + 1
+                if alone >= _WORKERLESS:
+                    raise EngineError(f"the scheduler at {address} has no workers") from None
+                continue
+            for future in done:
+                yield running.pop(future), future.result()
+
+
+@contextmanager
+def _connected(client: Any, address: str) -> Iterator[Any]:  # noqa: ANN401 - distributed has no types
+    """A client of the scheduler, closed in the end; what it still had in hand is then dropped by the scheduler."""
+    _heard(address)  # first: a client that finds nobody takes half a minute to say so, or for ever
+    try:
+        opened = client(address, timeout=_PATIENCE, set_as_default=False)
+    except OSError as error:
+        raise EngineError(f"what answers at {address} is no Dask scheduler: {error}") from error
+    with opened:
+        yield opened
+
+
+def _heard(address: str) -> None:
+    """Make sure that a scheduler listens at an address such as tcp://host:8786; raises EngineError otherwise."""
+    import asyncio
+    import socket
+    from urllib.parse import urlsplit
+
+    try:
+        parts = urlsplit(address if "://" in address else f"tcp://{address}")
+        if not parts.hostname or not parts.port:
+            raise EngineError(f"{address} is no address of a Dask scheduler, such as tcp://host:8786")
+        socket.create_connection((parts.hostname, parts.port), _PATIENCE).close()
+    except (OSError, ValueError) as error:
+        raise EngineError(f"no Dask scheduler answers at {address}: {error}") from error
+    try:
+        kind = asyncio.run(asyncio.wait_for(_kind_of(address), _PATIENCE))
+    except TimeoutError:
+        text = f"what listens at {address} does not speak as a Dask scheduler does: no answer in {_PATIENCE:g} s"
+        raise EngineError(text) from None
+    except MemoryError:  # its first bytes were read as a length
+        raise EngineError(f"what answers at {address} speaks another protocol than a Dask scheduler") from None
+    except (OSError, ValueError) as error:
+        raise EngineError(f"what answers at {address} is no Dask scheduler: {error}") from error
+    if kind != "Scheduler":
+        raise EngineError(f"what answers at {address} is no Dask scheduler, but a {kind}")
+
+
+async def _kind_of(address: str) -> str:
+    """What a node of Dask calls itself: Scheduler, Worker, Nanny."""
+    from distributed.comm.core import connect
+    from distributed.core import send_recv
+
+    reach: Callable[..., Any] = connect
+    ask: Callable[..., Any] = send_recv
+    comm = await reach(address, timeout=_PATIENCE)
+    try:
+        return str((await ask(comm, op="identity"))["type"])
+    finally:
+        comm.abort()
+
+
+@contextmanager
+def _lost(address: str) -> Iterator[None]:
+    """Say in our words that the scheduler went away, or that its workers die of a chunk."""
+    from concurrent.futures import CancelledError
+
+    from distributed.scheduler import KilledWorker
+
+    try:
+        yield
+    except (CancelledError, OSError) as error:
+        raise EngineError(f"the connection to the scheduler at {address} was lost") from error
+    except KilledWorker as error:
+        raise EngineError(f"workers of {address} were killed before their chunk was done: {error}") from error

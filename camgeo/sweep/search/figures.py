@@ -1,0 +1,348 @@
+"""Figures of many designs at once: what a sweep ranks by and limits.
+
+Designs that differ in the place of the shaft, the lengths of a linkage and the harmonics of a cam are computed
+together, in blocks that stay in the cache; other fields of a cam cost one evaluation of its lift for each distinct cam.
+Dyads, and recipes without a linkage, are computed design by design (`camgeo.sweep.search.rebuilt`). All is sampled at
+the recipe's `angles`, a multiple of 4, and rounded so that it does not depend on which designs are computed together.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camgeo.recipe.cam import cam_kind
+from camgeo.recipe.figures import DWELL, FACE_LENGTH, RADIUS, SIZE, there
+from camgeo.recipe.linkage import FourBarLinkage, InvertedSliderCrankLinkage, output_slides
+from camgeo.recipe.schema.edit import with_values
+from camgeo.recipe.sweep import FIGURES
+from camgeo.sweep.search import rebuilt
+from camgeo.sweep.search.cams import BINDS, BROKEN, FINE, REVERSES, Cams
+from camgeo.sweep.search.ends import Ends, cell_bounds, ends, greatest, least, lengths
+from camgeo.sweep.search.linkages import Lengths, Loop, angles
+from camgeo.sweep.search.windows import Samples, longest
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.recipe.figures import Limit
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.sweep.search.linkages import Kind
+    from camgeo.sweep.search.windows import Engine
+
+__all__ = ["REASONS", "Evaluator", "Found", "Scene", "asked_of", "compute", "evaluate"]
+
+Array: TypeAlias = NDArray[np.float64]
+Codes: TypeAlias = NDArray[np.uint8]
+
+# Why a design has no figures, or not all; by number.
+REASONS = ("", "impossible", "undercut", "shaft-outside", "binds", "reverses", "limits")
+BLOCK = 11_520  # samples of a block: a dozen arrays of them stay in a cache of 1 MB
+_SAMPLES = 360
+_LENGTHS = ("ground", "coupler", "rocker", "offset")
+_DWELLS = (DWELL, "dwell-relative")
+
+
+class Found(NamedTuple):
+    """Figures by name, (m,) each, in mm and degrees, rates by radian of the shaft; and a number of REASONS, (m,)."""
+
+    figures: dict[str, Array]
+    reason: Codes
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is computed of each design of a sweep: plain data that travels to any worker, and is part of the key.
+
+    A recipe with its sweep, without what has no bearing on a figure, and the names of the figures wanted.
+    """
+
+    recipe: Recipe
+    figures: tuple[str, ...]
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """The fields that vary."""
+        return tuple(axis.path for axis in self.recipe.sweep.vary) if self.recipe.sweep else ()
+
+
+def compute(recipe: Recipe, values: Array) -> dict[str, Array]:
+    """Give the figures of designs with the given values (m, k) of the recipe's sweep, in its units; see `evaluate`."""
+    if recipe.sweep is None:
+        raise ValueError(f"{recipe.name}: there is no sweep")
+    return evaluate(recipe, tuple(axis.path for axis in recipe.sweep.vary), values).figures
+
+
+def asked_of(recipe: Recipe) -> tuple[str, ...]:
+    """Names of the figures that a recipe's designs have."""
+    given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
+    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, cam_kind(recipe.cam), given))
+
+
+def evaluate(
+    recipe: Recipe,
+    paths: Sequence[str],
+    values: Array,
+    *,
+    figures: Sequence[str] | None = None,
+    samples: int | None = None,
+    engine: Engine | None = None,
+) -> Found:
+    """Give the figures of designs in which the fields at `paths` have the values (m, k), as the recipe writes them.
+
+    `figures`, if given, are those wanted besides those limited. `samples` is their number, raised to a multiple
+    of 4. A design that does not exist or does not turn has nan for all figures. One that breaks a limit of the
+    recipe's sweep is computed no further: its dwells are -inf. Raises ValueError for a path at which no number stands.
+    """
+    return Evaluator.of(recipe, paths, figures=figures, samples=samples, engine=engine).found(values)
+
+
+class _Motion(Protocol):
+    """Samples of m mechanisms, (m, n) each, as `Loop` has them."""
+
+    @property
+    def output(self) -> Array: ...
+    @property
+    def rate(self) -> Array: ...
+    @property
+    def second(self) -> Array: ...
+    @property
+    def frame(self) -> Array: ...
+    @property
+    def frame_rate(self) -> Array: ...
+    @property
+    def frame_second(self) -> Array: ...
+    @property
+    def transmission(self) -> Array | None: ...
+    @property
+    def force(self) -> Array: ...
+    def part(self, rows: NDArray[np.bool_], /) -> _Motion: ...
+
+
+@dataclass(frozen=True)
+class Evaluator:
+    """Computes the figures `wanted` of designs that differ at `paths`; what they share is prepared once."""
+
+    recipe: Recipe
+    paths: tuple[str, ...]
+    wanted: tuple[str, ...]
+    limits: tuple[Limit, ...]
+    count: int
+    engine: Engine | None
+
+    @staticmethod
+    def of(
+        recipe: Recipe,
+        paths: Sequence[str],
+        *,
+        figures: Sequence[str] | None = None,
+        samples: int | None = None,
+        engine: Engine | None = None,
+    ) -> Evaluator:
+        """See `evaluate`. Raises ValueError for a path at which no number stands."""
+        sweep = recipe.sweep
+        limits = sweep.limits if sweep else ()
+        wanted = tuple(dict.fromkeys((*(figures or asked_of(recipe)), *(limit.figure for limit in limits))))
+        count = samples or (sweep.angles if sweep else _SAMPLES)
+        with_values(recipe.text, dict.fromkeys(paths, 1.0))  # raises where no number stands
+        return Evaluator(recipe, tuple(paths), wanted, limits, -(-count // 4) * 4, engine)
+
+    @cached_property
+    def cams(self) -> Cams:
+        """Where the cams come from."""
+        return Cams.of(self.recipe, self.paths, self.count)
+
+    @property
+    def slow(self) -> bool:
+        """Whether designs are made one by one."""
+        linkage = self.recipe.linkage
+        return linkage is None or bool(linkage.dyads) or bool(self.cams.others)
+
+    @cached_property
+    def scale(self) -> float:
+        """What the output is told in: mm as it is, rad in degrees."""
+        linkage = self.recipe.linkage
+        return 1.0 if linkage is not None and output_slides(linkage) else math.degrees(1.0)
+
+    def found(self, values: Array) -> Found:
+        """Give the figures of designs with values (m, k); see `evaluate`."""
+        m = len(values)
+        values = np.asarray(values, dtype=float).reshape(m, len(self.paths))
+        figures = {name: np.full(m, np.nan) for name in self.wanted}
+        reason = np.zeros(m, dtype=np.uint8)
+        if self.recipe.linkage is None:
+            found, reason[:] = rebuilt.plain(self.recipe, self.paths, values, tuple(figures))
+            figures.update(found)
+            reason[(reason == FINE) & self._broken(figures)] = BROKEN
+            return Found(figures, reason)
+        rows = max(1, BLOCK // self.count)
+        kept: list[tuple[NDArray[np.intp], dict[str, Ends]]] = []
+        for first in range(0, m, rows):
+            block = slice(first, min(first + rows, m))
+            here = {name: column[block] for name, column in figures.items()}
+            index, windows = self._block(values[block], here, reason[block])
+            kept.append((index + first, windows))
+        for name in _DWELLS:
+            if name in figures:
+                figures[name][reason == BROKEN] = -np.inf
+                parts = [windows[name] for index, windows in kept if len(index)]
+                if parts:
+                    at = np.concatenate([index for index, _ in kept])
+                    figures[name][at] = np.degrees(lengths(Ends.joined(parts), self._band))
+        bad = (reason != FINE) & (reason != BROKEN)
+        for column in figures.values():
+            column[bad] = np.nan
+        reason[(reason == FINE) & self._broken(figures)] = BROKEN
+        return Found(figures, reason)
+
+    @property
+    def _band(self) -> float:
+        dwell = self.recipe.dwell
+        if dwell is None:
+            raise ValueError(f"{self.recipe.name}: a dwell needs a band")
+        return dwell.band
+
+    def _broken(self, figures: dict[str, Array]) -> NDArray[np.bool_]:
+        """Which designs break a limit on a figure known by now."""
+        broken = np.zeros(len(next(iter(figures.values()))), dtype=np.bool_)
+        for limit in self.limits:
+            values = figures[limit.figure]
+            if limit.at_least is not None:
+                broken |= values < limit.at_least
+            if limit.at_most is not None:
+                broken |= values > limit.at_most
+        return broken
+
+    def _block(
+        self, values: Array, figures: dict[str, Array], reason: Codes
+    ) -> tuple[NDArray[np.intp], dict[str, Ends]]:
+        """Fill in figures and reasons (m,) of a block; and give what the dwells of some designs (k,) are made of."""
+        cams = self.cams.sampled(values)
+        reason[:] = cams.fault
+        alive = reason == FINE
+        if RADIUS in figures:
+            figures[RADIUS][:] = cams.radius
+        if FACE_LENGTH in figures:
+            figures[FACE_LENGTH][:] = greatest(cams.support.dp, cams.smooth) - least(cams.support.dp, cams.smooth)
+        if SIZE in figures:
+            square = cams.support.p * cams.support.p
+            square += cams.support.dp * cams.support.dp
+            figures[SIZE][:] = np.sqrt(greatest(square, cams.smooth))
+        alive = self._keep(alive, figures, reason)
+        index = np.flatnonzero(alive)
+        if not index.size:
+            return index, {}
+        motion: _Motion
+        if self.recipe.linkage is not None and self.recipe.linkage.dyads:
+            margin, motion = rebuilt.chains(self.recipe, self.paths, values[index], self.count)
+        else:
+            support = cams.support if alive.all() else cams.support.part(alive)
+            loop = Loop.of(self._kind, self._side, support, self._lengths(values[index]))
+            smooth = cams.smooth[index]
+            margin, motion = loop.margin(lambda rows: least(rows, smooth)), loop
+        if "margin" in figures:
+            figures["margin"][index] = margin
+        reason[index[~(margin > 0.0)]] = BINDS
+        index, motion = self._still(index, motion, margin > 0.0, figures, reason)
+        if index.size:
+            smooth = cams.smooth[index]
+            rate = least(1.0 - motion.frame_rate, smooth)
+            if "shaft-rate" in figures:
+                figures["shaft-rate"][index] = rate
+            reason[index[~(rate > 0.0)]] = REVERSES
+            if "transmission-angle" in figures:
+                figures["transmission-angle"][index] = _acute(motion.transmission, len(index), smooth)
+            if "force-angle" in figures:
+                figures["force-angle"][index] = _acute(motion.force, len(index), smooth)
+            index, motion = self._still(index, motion, rate > 0.0, figures, reason)
+        if index.size:
+            self._moving(index, motion, figures, cams.smooth[index])
+            index, motion = self._still(index, motion, np.ones(len(index), dtype=np.bool_), figures, reason)
+        return index, self._windows(motion) if index.size else {}
+
+    def _keep(self, alive: NDArray[np.bool_], figures: dict[str, Array], reason: Codes) -> NDArray[np.bool_]:
+        broken = alive & self._broken(figures)
+        reason[broken] = BROKEN
+        return alive & ~broken
+
+    def _still(
+        self,
+        index: NDArray[np.intp],
+        motion: _Motion,
+        alive: NDArray[np.bool_],
+        figures: dict[str, Array],
+        reason: Codes,
+    ) -> tuple[NDArray[np.intp], _Motion]:
+        """Leave out the designs that are no longer alive and those that break a limit."""
+        alive = self._keep(alive, {name: column[index] for name, column in figures.items()}, part := reason[index])
+        reason[index] = part
+        return (index, motion) if alive.all() else (index[alive], motion.part(alive))
+
+    def _moving(
+        self, index: NDArray[np.intp], motion: _Motion, figures: dict[str, Array], smooth: NDArray[np.bool_]
+    ) -> None:
+        """Fill in the figures of the output."""
+        turn = 1.0 - motion.frame_rate
+        if "swing" in figures:
+            output = motion.output
+            figures["swing"][index] = self.scale * (greatest(output, smooth) - least(output, smooth))
+        if "peak-velocity" in figures:
+            figures["peak-velocity"][index] = self.scale * greatest(np.abs(motion.rate / turn), smooth)
+        if "peak-acceleration" in figures:
+            # (f'/phi')'/phi' with phi'' = -theta_3''
+            bent = motion.second * turn
+            bent += motion.rate * motion.frame_second
+            bent /= turn * turn * turn
+            figures["peak-acceleration"][index] = self.scale * greatest(np.abs(bent), smooth)
+
+    def _windows(self, motion: _Motion) -> dict[str, Ends]:
+        names = [name for name in _DWELLS if name in self.wanted]
+        if not names:
+            return {}
+        output = motion.output, motion.rate
+        bounds = cell_bounds(*output)
+        theta = np.broadcast_to(angles(self.count), output[0].shape)
+        over = {
+            DWELL: (theta - motion.frame, 1.0 - motion.frame_rate),
+            "dwell-relative": (theta, np.ones_like(theta)),
+        }
+        abscissae = np.stack([over[name][0] for name in names])
+        start, cells = longest(Samples(output[0], *bounds, abscissae), self._band, self.engine)
+        return {name: ends((start[k], cells[k]), output, over[name], bounds) for k, name in enumerate(names)}
+
+    @property
+    def _kind(self) -> Kind:
+        linkage = self.recipe.linkage
+        if isinstance(linkage, FourBarLinkage):
+            return "four-bar"
+        return "inverted-slider-crank" if isinstance(linkage, InvertedSliderCrankLinkage) else "slider-crank"
+
+    @property
+    def _side(self) -> float:
+        return -1.0 if self.recipe.linkage is not None and self.recipe.linkage.assembly == "crossed" else 1.0
+
+    def _lengths(self, values: Array) -> Lengths:
+        columns = []
+        for name in _LENGTHS:
+            path = f"linkage.{name}"
+            if path in self.paths:
+                column = self.paths.index(path)
+                columns.append(values[:, column : column + 1] * self.recipe.mm)
+            else:
+                columns.append(np.full((len(values), 1), getattr(self.recipe.linkage, name, 0.0)))
+        return Lengths(*columns)
+
+
+def _acute(sine: Array | None, count: int, smooth: NDArray[np.bool_]) -> Array:
+    """Least angle, degrees (m,), of which the signed sine (m, n) is given; 90 degrees where there is none."""
+    if sine is None:
+        return np.full(count, 90.0)
+    smallest = np.maximum(least(np.abs(sine), smooth), 0.0)
+    smallest[(sine.min(axis=1) < 0.0) & (sine.max(axis=1) > 0.0)] = 0.0
+    found: Array = np.degrees(np.arcsin(np.minimum(smallest, 1.0)))
+    return found

@@ -1,0 +1,124 @@
+"""Designs one by one, each a recipe of its own: recipes without a linkage, and linkages with dyads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camgeo.recipe.load import load_text
+from camgeo.recipe.part import Part
+from camgeo.recipe.schema.edit import with_values
+from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.sweep.search.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
+from camgeo.sweep.search.linkages import angles
+from kin.law.support_function import Lift
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.recipe.recipe import Recipe
+
+Array: TypeAlias = NDArray[np.float64]
+Codes: TypeAlias = NDArray[np.uint8]
+
+_ROUND = 720  # angles at which faces are held against the shaft
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """What `camgeo.sweep.search.linkages.Loop` knows of m mechanisms at n relative angles, (m, n) each."""
+
+    output: Array
+    rate: Array
+    second: Array
+    frame: Array
+    frame_rate: Array
+    frame_second: Array
+    transmission: Array
+    force: Array
+
+    def part(self, rows: NDArray[np.bool_]) -> Rows:
+        """Return some of them."""
+        return Rows(*(column[rows] for column in vars(self).values()))
+
+
+def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | Array) -> Recipe:
+    """Give the recipe with values put in at paths. RecipeErrors where it is none; ValueError for a wrong path."""
+    given = {path: float(value) for path, value in zip(paths, values, strict=True)}
+    return load_text(with_values(recipe.text, given), recipe.path)
+
+
+def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[str]) -> tuple[dict[str, Array], Codes]:
+    """Figures by name, (m,) each, lengths in mm and angles in degrees, and what is wrong (m,).
+
+    Of the part there is nothing but the contour: a bore has no bearing on these.
+    """
+    from camgeo.report.figures import of_design
+    from camgeo.synthesis.design import designed
+
+    m = len(values)
+    figures, fault = {name: np.full(m, np.nan) for name in names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
+    for i, row in enumerate(values):
+        try:
+            design = designed(replace(recipe_with(recipe, paths, row), part=Part(), dynamics=None))
+        except RecipeErrors:
+            continue
+        if isinstance(design.intent, Lift) and _outside(design.intent):
+            fault[i] = OUTSIDE
+            continue
+        if design.contour is None:
+            fault[i] = UNDERCUT
+            continue
+        for name, measured in of_design(design, design.checks, names).items():
+            figures[name][i] = np.nan if measured.value is None else measured.value
+        fault[i] = FINE
+    return figures, fault
+
+
+def _outside(lift: Lift) -> bool:
+    """Whether the shaft lies outside the contour: some face would have to pass it."""
+    p = lift.derivatives(angles(_ROUND), 0)[0]
+    return bool(p.min() < -EDGE * p.max())
+
+
+def chains(recipe: Recipe, paths: Sequence[str], values: Array, count: int) -> tuple[Array, Rows]:
+    """Sample mechanisms with dyads: least margin of any loop (m,), mm, and their motion, nan where a loop binds."""
+    m = len(values)
+    margin = np.full(m, -np.inf)
+    rows = Rows(*(np.full((m, count), np.nan) for _ in range(8)))
+    for i, row in enumerate(values):
+        margin[i] = _chain(recipe_with(recipe, paths, row), count, [column[i] for column in vars(rows).values()])
+    return margin, rows
+
+
+def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
+    """Fill in the rows (n,) of one mechanism, and return its least margin: -inf where it binds."""
+    from camgeo.synthesis.checks import breadth_of
+    from camgeo.synthesis.linkage import mechanism_of
+    from camgeo.synthesis.profile import intent_of
+    from kin.linkage.loop import BindingError
+    from kin.linkage.transmission_angle import force, transmission
+    from kin.numeric.elementary import Jet
+
+    lift = intent_of(recipe.cam)
+    if not isinstance(lift, Lift):
+        raise TypeError("a linkage is driven by the lift of a frame")
+    mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])
+    theta = angles(count)
+    try:
+        at = mechanism.at(theta, 2)
+        s, s1 = (Jet(at.faces[k, :1]) for k in (0, 1))
+        margin = min(
+            float(mechanism.chain.margin(loop, s.c[0], s1.c[0], mechanism.about).min())
+            for loop in range(mechanism.outputs)
+        )
+    except BindingError:
+        return -np.inf
+    place = mechanism.linkage.solve(s, s1, mechanism.breadth)
+    sines = transmission(mechanism.linkage, place)[0], np.abs(force(mechanism.linkage, place, *at.faces[:, 1])[0])
+    for row, values in zip(rows, (*at.output, *at.frame, *sines), strict=True):
+        row[:] = values
+    return margin

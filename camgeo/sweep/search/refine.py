@@ -1,0 +1,161 @@
+"""Polishing a design: from where a sweep has found it to the best place near it, off the grid.
+
+The figure to be best in is seldom smooth. A dwell is longest where its ripple just fills the band, and one step farther
+it falls in two. So differential evolution searches a cloud of designs about the start, all computed together, and
+Nelder and Mead's simplex walks on from the best of them; both from scipy, with a fixed seed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from camgeo.sweep.search.figures import Evaluator, asked_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.recipe.figures import Limit
+    from camgeo.sweep.search.ask import Ask
+
+Array: TypeAlias = NDArray[np.float64]
+
+_SEED = 5
+_ANGLES = 720  # at least so many samples; extremes and ends between them are then good to about 1e-7
+_CLOUD = 0.04  # of each range: the spread of the cloud about the start
+_MEMBERS = 40
+_GENERATIONS, _STEPS = 150, 400
+_SLOW_GENERATIONS, _SLOW_STEPS = 6, 150  # where each design is a recipe of its own
+_TIGHTER = 1e-6  # relatively: limits as they are sought, so that no rounding of a figure breaks them
+_DIGITS = 6  # of each range, that a polished value keeps
+_WORTH = 1e-3
+_IDLE = 1e-9  # relatively: what is gained by less is rounding, and the start stays
+_FAR = 1e6  # what breaks a limit is worse than anything that does not
+
+
+@dataclass(frozen=True)
+class _Goal:
+    """Loss of designs within the unit cube of the ranges that are free; the other values stay as they are."""
+
+    evaluator: Evaluator
+    rank: str
+    most: bool
+    limits: tuple[Limit, ...]
+    start: Array
+    free: NDArray[np.intp]
+    low: Array
+    span: Array
+
+    def values(self, share: Array) -> Array:
+        """Values (m, axes) of designs at places (m, free) in the cube."""
+        values = np.repeat(self.start[None], len(share), axis=0)
+        values[:, self.free] = self.low + self.span * share
+        return values
+
+    def loss(self, values: Array) -> Array:
+        """The rank's figure (m,), less is better, and above all others where a limit is broken."""
+        return self.loss_of(self.evaluator.found(values).figures)
+
+    def loss_of(self, figures: dict[str, Array]) -> Array:
+        """The same for designs whose figures are known."""
+        lost = -figures[self.rank] if self.most else figures[self.rank]
+        broken = np.zeros(len(lost))
+        for limit in self.limits:
+            figure = figures[limit.figure]
+            for bound, sign in ((limit.at_least, 1.0), (limit.at_most, -1.0)):
+                if bound is not None:
+                    size = max(abs(bound), 1.0)
+                    broken += np.maximum(sign * (bound - figure) / size + _TIGHTER, 0.0)
+        lost = np.where(broken > 0.0, _FAR * (1.0 + np.minimum(broken, 1e3)), lost)
+        return np.where(np.isfinite(lost), lost, 1e4 * _FAR)
+
+
+def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+    """Give a design that is as good or better, and its figures in mm and degrees.
+
+    `values` are those of a design of the sweep by their paths. Only what varies over a range moves, within that range;
+    listed values stay. The result keeps the sweep's limits, or is the start. Raises ModuleNotFoundError without scipy.
+    """
+    paths = [axis.path for axis in ask.sweep.vary]
+    start = np.array([values[path] for path in paths])
+    goal = _goal(ask, paths, start)
+    designs = start[None]
+    if len(goal.free):
+        found = goal.values(_sought(goal)[None])[0]
+        designs = np.stack([start, found, _rounded(goal, found)])
+    # all figures, in the end; the search itself looks at those that rank or limit
+    figures = replace(goal.evaluator, wanted=asked_of(ask.recipe)).found(designs).figures
+    loss = goal.loss_of(figures)
+    best = 0
+    if len(designs) > 1 and loss[1] < min(loss[0] - _IDLE * abs(loss[0]), _FAR):
+        # written with no more digits than it is worth, unless that costs a part of what was gained
+        best = 2 if loss[2] - loss[1] <= _WORTH * (loss[0] - loss[1]) else 1
+    return (
+        {path: float(value) for path, value in zip(paths, designs[best], strict=True)},
+        {name: float(column[best]) for name, column in figures.items()},
+    )
+
+
+def _goal(ask: Ask, paths: Sequence[str], start: Array) -> _Goal:
+    sweep = ask.sweep
+    free = np.array([i for i, axis in enumerate(sweep.vary) if not axis.values], dtype=np.intp)
+    low = np.array([axis.low for axis in sweep.vary])[free]
+    high = np.array([axis.high for axis in sweep.vary])[free]
+    recipe = replace(ask.recipe, sweep=replace(sweep, limits=()))  # whatever limits are broken
+    wanted = (sweep.rank, *(limit.figure for limit in sweep.limits))
+    evaluator = Evaluator.of(recipe, paths, figures=wanted, samples=max(sweep.angles, _ANGLES))
+    return _Goal(evaluator, sweep.rank, ask.ranking.most, sweep.limits, start, free, low, high - low)
+
+
+def _sought(goal: _Goal) -> Array:
+    """Search about the start; the best place found in the cube (free,)."""
+    from scipy.optimize import differential_evolution, minimize
+
+    start = np.clip((goal.start[goal.free] - goal.low) / goal.span, 0.0, 1.0)
+    slow = goal.evaluator.slow
+    rng = np.random.default_rng(_SEED)
+    cloud = np.clip(start + _CLOUD * rng.standard_normal((_MEMBERS, len(start))), 0.0, 1.0)
+    cloud[0] = start
+    box = [(0.0, 1.0)] * len(start)
+    evolved = differential_evolution(
+        lambda share: goal.loss(goal.values(share.T)),
+        box,
+        init=cloud,
+        maxiter=_SLOW_GENERATIONS if slow else _GENERATIONS,
+        tol=0.0,
+        mutation=(0.3, 0.8),
+        rng=_SEED,
+        polish=False,
+        updating="deferred",
+        vectorized=True,
+    )
+    corners = evolved.x + 0.25 * _CLOUD * np.eye(len(start) + 1, len(start), k=-1)
+    corners = np.where(corners > 1.0, 2.0 * evolved.x - corners, corners)
+    walked = minimize(
+        lambda share: float(goal.loss(goal.values(share[None]))[0]),
+        evolved.x,
+        method="Nelder-Mead",
+        bounds=box,
+        options={
+            "initial_simplex": corners,
+            "maxfev": _SLOW_STEPS if slow else _STEPS,
+            "xatol": 1e-8,
+            "fatol": 1e-9,
+            "adaptive": True,
+        },
+    )
+    best: Array = walked.x if walked.fun < evolved.fun else evolved.x
+    return best
+
+
+def _rounded(goal: _Goal, values: Array) -> Array:
+    """Values rounded to a millionth of their ranges, within them."""
+    rounded = values.copy()
+    for i, low, span in zip(goal.free, goal.low, goal.span, strict=True):
+        digits = _DIGITS - math.floor(math.log10(span))
+        rounded[i] = min(max(round(float(values[i]), digits), float(low)), float(low + span)) + 0.0  # and not -0
+    return rounded

@@ -1,0 +1,228 @@
+"""A whole sweep: every chunk, what they come to, the best polished and written out, the files in their place."""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass, replace
+from functools import partial
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from camgeo.output.output_folder import BusyError, Family, Run, SurroundingsError
+from camgeo.sweep.search.engines import at_once
+from camgeo.sweep.search.job import Job
+from camgeo.sweep.search.outputs import PICTURES, REPORT, TABLES, outputs
+from camgeo.sweep.search.recipes import Best, recipe_text
+from camgeo.sweep.search.run import chunks_of, compute, gathered
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from camgeo.sweep.search.ask import Ask
+    from camgeo.sweep.search.gather import Floats, Gathered
+    from camgeo.sweep.search.job import Compute
+    from camgeo.sweep.search.run import How, Told, Work
+
+FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
+_WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
+_AGAIN = 0.05
+_NEAR = 0.15  # of an axis's range in every value: polishing would lead designs nearer than that to one place
+_SAME = 1e-3  # of an axis's range: designs nearer than that in every value are one, as far as polishing can tell
+
+
+class Polish(Protocol):
+    """Makes a design better without breaking a limit."""
+
+    def __call__(self, ask: Ask, values: dict[str, float], /) -> tuple[dict[str, float], dict[str, float]]:
+        """Values of a design that is as good or better, and its figures, in mm and degrees."""
+
+
+class Measure(Protocol):
+    """Tells of a few designs also what the search went without."""
+
+    def __call__(self, ask: Ask, values: Floats, /) -> Mapping[str, Floats]:
+        """All figures (m,) of designs with values (m, axes), in mm and degrees."""
+
+
+@dataclass(frozen=True)
+class Means:
+    """What computes the figures of designs, all those of a few, what polishes; the words for why one has none."""
+
+    compute: Compute
+    measure: Measure
+    polish: Polish
+    reasons: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a sweep: its report, and the folder of its files, a rejected one where no design is kept."""
+
+    report: dict[str, Any]
+    folder: Path
+    work: Work
+
+
+def search(ask: Ask, out: Path, how: How, means: Means, *, fresh: bool = False, told: Told | None = None) -> Outcome:
+    """Run the sweep of a recipe.
+
+    Raises RecipeErrors for a recipe whose sweep cannot be cut out; ModuleNotFoundError, EngineError, VersionsError and
+    SurroundingsError for what is missing around the run; OSError for a disk that refuses.
+    """
+    started = time.perf_counter()
+    demand_extras(ask, how)
+    recipe_text(ask, Best(1, 0, False, _by_path(ask, ask.plan.values(0, 1)[0]), {}))  # told now if it cannot be written
+    demand_room(ask, out)
+    job = Job(ask.plan, ask.scene(ask.figures), means.compute)
+    chunks = chunks_of(job, out / ask.recipe.name)
+    work = compute(job, chunks, how, fresh=fresh, told=told)
+    found = gathered(job, chunks, ask.ranking)
+    best = best_of(ask, found, means, how, told)
+    run = {
+        "engine": str(how),
+        "key": job.key,
+        "chunks": ask.plan.chunks,
+        "designs_computed": work.computed,
+        "designs_found": work.reused,
+        "chunks_damaged": work.damaged,
+        "computing_seconds": round(work.seconds, 3),
+        "designs_per_second": round(work.computed / work.seconds, 1) if work.computed else None,
+        "seconds": round(time.perf_counter() - started, 3),
+    }
+    files, report = outputs(ask, found, best, run, means.reasons)
+    return Outcome(report, put(out, ask.recipe.name, files, kept=bool(best)), work)
+
+
+def demand_extras(ask: Ask, how: How) -> None:
+    """Raise ModuleNotFoundError for a package without which the sweep would come to a halt halfway."""
+    needed = []
+    if ask.sweep.method == "sobol" or ask.sweep.refine:
+        needed.append("scipy")
+    if how.scheduler is not None:
+        needed.append("distributed")
+    for name in needed:
+        if find_spec(name) is None:
+            raise ModuleNotFoundError(name=name)
+
+
+def demand_room(ask: Ask, out: Path) -> None:
+    """Raise SurroundingsError for a file of the user's where one of the sweep would go: told now, not in the end."""
+    folder = out / ask.recipe.name
+    if not folder.exists():
+        return
+    try:
+        with Run(out, ask.recipe.name, FILES) as run:
+            ours = {*run.kept(), REPORT}
+    except BusyError:
+        return  # a run that is putting its files in place; the end will tell
+    best = (f"best-{place}.yaml" for place in range(1, min(ask.sweep.keep, ask.plan.count) + 1))
+    for name in (*TABLES, *PICTURES, *best):
+        if name not in ours and os.path.lexists(folder / name):
+            raise SurroundingsError("is in the way, and no report says that it may be replaced", folder / name)
+
+
+def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None = None) -> list[Best]:
+    """The best designs with all their figures.
+
+    If asked for it is the best that lie apart, polished, those that have become the same as one.
+    """
+    places = _apart(ask, found) if ask.sweep.refine else range(min(ask.sweep.keep, found.rows))
+    plain = [
+        Best(
+            number,
+            int(found.index[place]),
+            False,
+            _by_path(ask, found.values[place]),
+            {name: float(values[place]) for name, values in found.figures.items()},
+        )
+        for number, place in enumerate(places, 1)
+    ]
+    if not ask.sweep.refine:
+        return _measured(ask, plain, means.measure)
+    polished = sorted(_polished(ask, plain, means.polish, how, told), key=lambda design: _order(ask, design))
+    best: list[Best] = []
+    for design in polished:
+        if not any(_same(ask, design, other) for other in best):
+            best.append(replace(design, place=len(best) + 1))
+    return best
+
+
+def _measured(ask: Ask, plain: list[Best], measure: Measure) -> list[Best]:
+    """Designs with the figures that the search went without."""
+    if not plain or set(ask.all_figures) <= set(plain[0].figures):
+        return plain
+    found = measure(ask, np.array([list(design.values.values()) for design in plain]))
+    return [
+        replace(design, figures={**{name: float(found[name][i]) for name in found}, **design.figures})
+        for i, design in enumerate(plain)
+    ]
+
+
+def _order(ask: Ask, design: Best) -> tuple[float, int]:
+    figure = design.figures[ask.sweep.rank]
+    return (-figure if ask.ranking.most else figure), design.place
+
+
+def _apart(ask: Ask, found: Gathered) -> list[int]:
+    """Places in the table of the best designs from which polishing is likely to lead to different ones."""
+    ranges = np.array([abs(axis.high - axis.low) or 1.0 for axis in ask.plan.axes])
+    left = np.arange(found.rows)
+    places: list[int] = []
+    while len(left) and len(places) < ask.sweep.keep:
+        places.append(int(left[0]))
+        distance = np.abs((found.values[left] - found.values[left[0]]) / ranges).max(axis=1)
+        left = left[distance > _NEAR]
+    return places
+
+
+def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, told: Told | None) -> list[Best]:
+    """Each design polished, several at once where there are processes for it; in the same order."""
+    started = time.perf_counter()
+    if told is not None:
+        told("polished", 0, len(plain), 0.0)
+    workers = min(how.processes, len(plain))
+    work = partial(_polish, polish, ask)
+    results = at_once(work, plain, workers) if workers > 1 else ((design, work(design)) for design in plain)
+    done: dict[int, Best] = {}
+    for design, result in results:
+        done[design.place] = result
+        if told is not None:
+            told("polished", len(done), len(plain), time.perf_counter() - started)
+    return [done[design.place] for design in plain]
+
+
+def _polish(polish: Polish, ask: Ask, design: Best) -> Best:
+    values, figures = polish(ask, design.values)
+    return replace(design, polished=values != design.values, values=values, figures=figures)
+
+
+def _by_path(ask: Ask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of an array
+    return {axis.path: float(value) for axis, value in zip(ask.plan.axes, row, strict=True)}
+
+
+def _same(ask: Ask, one: Best, other: Best) -> bool:
+    """Whether two designs are the same but for what polishing leaves open."""
+    return all(
+        abs(one.values[axis.path] - other.values[axis.path]) <= _SAME * abs(axis.high - axis.low)
+        for axis in ask.plan.axes
+    )
+
+
+def put(out: Path, name: str, files: dict[str, bytes], *, kept: bool) -> Path:
+    """Put all files in their place at once, or, where no design was kept, beside it as rejected."""
+    give_up = time.monotonic() + _WAIT
+    while True:
+        try:
+            with Run(out, name, FILES) as run:
+                for file, data in files.items():
+                    (run.folder / file).write_bytes(data)
+                names = [file for file in files if file != REPORT]
+                return run.commit(names) if kept else run.reject(names)
+        except BusyError:
+            if time.monotonic() > give_up:
+                raise
+            time.sleep(_AGAIN)

@@ -1,0 +1,56 @@
+"""The table of a sweep: the designs kept, best first, as CSV and as Parquet."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import NDArray
+
+    from camgeo.sweep.search.ask import Unit
+    from camgeo.sweep.search.gather import Gathered
+    from camgeo.sweep.search.plan import Plan
+
+    Columns: TypeAlias = Mapping[str, NDArray[np.float64] | NDArray[np.int64]]
+
+
+def columns(plan: Plan, found: Gathered, units: Mapping[str, Unit]) -> Columns:
+    """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units."""
+    return {
+        "place": np.arange(1, found.rows + 1),
+        "index": found.index,
+        **{axis.path: found.values[:, i] for i, axis in enumerate(plan.axes)},
+        **{_head(name, units[name].name): values / units[name].divisor for name, values in found.figures.items()},
+    }
+
+
+def _head(figure: str, unit: str) -> str:
+    """Head of a figure's column: `dwell_deg`, `size_mm`; without a unit the figure's name."""
+    suffix = unit.replace("/", "_per_").replace("^", "")
+    return f"{figure}_{suffix}" if suffix else figure
+
+
+def as_csv(heads: Columns) -> bytes:
+    """The table as CSV, every number as short as reads back exactly."""
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(heads)
+    writer.writerows(zip(*(column.tolist() for column in heads.values()), strict=True))
+    return stream.getvalue().encode()
+
+
+def as_parquet(heads: Columns, about: Mapping[str, str]) -> bytes:
+    """The table as Parquet, `about` among the metadata of its schema. Raises ModuleNotFoundError without pyarrow."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    table = pa.table({name: pa.array(column) for name, column in heads.items()})
+    sink = pa.BufferOutputStream()
+    parquet.write_table(table.replace_schema_metadata(dict(about)), sink, compression="zstd")
+    return bytes(sink.getvalue().to_pybytes())

@@ -1,0 +1,53 @@
+"""The fewest pieces with which theory lets a curve be told within a tolerance, to leading order (docs/theory.md 3)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.fit.cubic import ORDER, spans_wanted
+from camgeo.fit.nodes import Density
+from camgeo.fit.polygon import least_vertices
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Curve, Frame
+    from kin.numeric.arrays import Array
+
+FREE_ARCS = 124.7  # tangent-continuous arcs with joints off the curve: the integral of (|kappa'|/(124.7 e))^(1/3) ds
+
+
+def least_pieces(form: str, curve: Curve, tolerance: float) -> float | None:
+    """Least number of pieces of a form within `tolerance` mm; None for one without a formula (an exact spline).
+
+    A form's pieces are counted as the report counts them. A piece at least is counted for each smooth stretch: the
+    arcs' integral vanishes on a dwell.
+    """
+    if form in {"polyline", "stl"}:
+        return least_vertices(curve, tolerance)
+    if form == "arcs":
+        return least_arcs(curve, tolerance)
+    if form == "spline":
+        return least_spline(curve, tolerance)
+    return None
+
+
+def least_arcs(curve: Curve, tolerance: float) -> float:
+    """Leading-order count of tangent-continuous arcs with free joints, and one at least for each smooth stretch."""
+    parts = [part.total for run in curve.runs for part in Density.of(curve, run.stretches, _arc_density)]
+    return sum(max(1.0, part / math.cbrt(tolerance)) for part in parts)
+
+
+def least_spline(curve: Curve, tolerance: float) -> float:
+    """Leading-order count of cubic spans with a continuous tangent, and one at least for each smooth stretch."""
+    stretches = np.concatenate([run.stretches for run in curve.runs])
+    scale = math.pow(tolerance, -1.0 / ORDER)
+    return float(np.maximum(1.0, scale * spans_wanted(curve, stretches).totals).sum())
+
+
+def _arc_density(frame: Frame) -> Array:
+    """(|kappa'|/124.7)^(1/3) ds by the parameter: the cube root of |omega' sigma - omega sigma'| takes no division."""
+    slope = np.abs(frame.turn_slope * frame.speed - frame.turn * frame.speed_slope)
+    density: Array = np.cbrt(slope / FREE_ARCS)
+    return density

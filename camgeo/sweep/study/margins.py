@@ -1,0 +1,116 @@
+"""How far a recipe is from trouble: undercut, binding, the edge of a square root; and by what errors grow."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from camgeo.checks.declared import CURVATURE, PRESSURE, REVERSAL, WALL
+from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
+from camgeo.synthesis.design import intended
+from kin.law.feasibility import steepest
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Curve
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.law.transmission import Transmission
+
+LOOKS = 1440  # parameters over the turn at which smooth figures are looked at
+SMALL = 1e-7  # mm: an error of the profile that stands for the limit of small ones
+EPS = float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class Margin:
+    """A distance from trouble, at which it is 0; or, where `grows` is true, a factor by which errors grow.
+
+    `unit` mm, deg, deg/mm or none; `of` says in words what happens at 0, or what grows.
+    """
+
+    name: str
+    value: float
+    unit: str
+    of: str
+    grows: bool = False
+
+
+def margins(recipe: Recipe, design: Design) -> list[Margin]:
+    """Everything that applies to the scene, in mm and degrees."""
+    found = _undercut(design)
+    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        found += _swinging(recipe.cam, cast("Transmission", design.intent))
+    for check in design.checks:
+        if check.name == PRESSURE.name and check.value is not None:
+            found.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", "the cam cannot drive the roller"))
+        if check.name == WALL.name and check.value is not None:
+            found.append(Margin(WALL.name, check.value, "mm", "the bore breaks through the contour"))
+    found += _linkage(design)
+    if design.contour is not None:
+        found += _conditions(recipe, design, design.contour)
+    return found
+
+
+def _undercut(design: Design) -> list[Margin]:
+    check = next(check for check in design.checks if check.name == CURVATURE.name)
+    if check.value is None:
+        return []
+    roller = design.profile.roller_radius
+    what = "the roller undercuts" if roller else "the flat face loses contact"
+    found = [Margin("undercut", check.value - roller, "mm", f"{what} (least radius of curvature)")]
+    base = roller or design.profile.curve.size
+    return [*found, Margin("undercut-relative", (check.value - roller) / base, "", f"{what}, as a part of the size")]
+
+
+def _swinging(cam: DoubleRollerCam | FlatPairCam, law: Transmission) -> list[Margin]:
+    tau = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
+    tau = np.sort(np.concatenate([tau, law.breaks]))
+    psi = law.at(tau, 0)[1]
+    rate = steepest(law)[1]
+    widest = float(np.abs(psi[0]).max())
+    turning = [Margin("turning-through", 1.0 - rate, "", "the cam cannot be turned through: psi' = 1")]
+    # D = -l^2 sin psi under the roots of the analytic route
+    edge = Margin("square-root", math.degrees(0.5 * math.pi - widest), "deg", "D reaches l^2: psi = 90 degrees")
+    reach = float(np.cos(0.5 * (psi[0] + law.alpha)).min())
+    shaft = Margin("shaft", 2.0 * cam.arm * reach, "mm", "the pitch curve reaches the shaft: r = 0")
+    pivot = float(1.0 - np.cos(0.5 * (psi[0] + law.alpha)).max())
+    stretched = Margin("stretched", 2.0 * cam.arm * pivot, "mm", "the arm is stretched: r = 2 l")
+    return [*turning, edge, shaft, stretched]
+
+
+def _linkage(design: Design) -> list[Margin]:
+    if design.driven is None:
+        return []
+    mechanism = design.driven.mechanism
+    mobility = mechanism.mobility()
+    found = [Margin("binding", mobility.margin, "mm", "a loop of the linkage binds: its square root's edge")]
+    if not math.isnan(mobility.least_rate):
+        found.append(Margin(REVERSAL.name, mobility.least_rate, "", "the shaft would have to turn back"))
+    if design.driven.figures is None:
+        return found
+    force = math.degrees(design.driven.figures.force_least.value)
+    found.append(Margin("force-angle", force, "deg", "the force on the output link runs along it"))
+    from kin.follower.frame import implied_limit
+
+    limit = implied_limit(mechanism, SMALL)
+    if limit is not None:
+        unit = "deg/mm" if mechanism.unit == "deg" else ""
+        found.append(
+            Margin("output-condition", limit / SMALL, unit, "error of the output by that of the profile", True)
+        )
+    return found
+
+
+def _conditions(recipe: Recipe, design: Design, contour: Curve) -> list[Margin]:
+    follower = intended(recipe, design).follower
+    unit = "deg/mm" if follower.unit == "deg" else ""
+    condition = follower.motion_limit(SMALL) / SMALL
+    size = contour.size
+    precision = recipe.export.tolerance / (EPS * size)
+    return [
+        Margin("motion-condition", condition, unit, "error of the follower by that of the profile", True),
+        Margin("precision", precision, "", "tolerance over the rounding of the contour's coordinates; 64 at least"),
+    ]

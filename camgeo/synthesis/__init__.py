@@ -1,0 +1,1 @@
+"""The exact cam of a recipe, and the checks that need no file."""

@@ -1,0 +1,280 @@
+"""The exact cam of a recipe: what the follower is meant to do, the curve that does it, and what is wrong with either.
+
+Nothing here writes or fits. `designed` is the part of a run that needs no file; `intended` and `permitted` say in kin's
+words what a file will be held against.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+from camgeo.checks.advice import larger, less_swing
+from camgeo.checks.declared import CURVATURE, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
+from camgeo.common.clock import Clock
+from camgeo.common.rounding import downward
+from camgeo.curve.curve import CurveError
+from camgeo.recipe.cam import ConstantBreadthCam, DoubleRollerCam, FlatPairCam
+from camgeo.recipe.linkage import output_slides
+from camgeo.synthesis.profile import Profile, intent_of, profile_of
+from kin.judge.check import Check
+from kin.numeric.angles import degrees
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Curve
+    from camgeo.curve.undercut.undercut import Undercut
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.linkage import Driven
+    from camgeo.synthesis.part.body import Body
+    from kin.follower.follower import Follower
+    from kin.judge.verify import Intent, Limits
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+
+
+@dataclass(frozen=True)
+class Design:
+    """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file.
+
+    `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
+    `driven` is the linkage, None without one; `body` the part where it has more than a round bore. `face` is how far
+    the faces of a pair stand beside the lines through its pivot, mm.
+    """
+
+    intent: Lift | Transmission
+    profile: Profile
+    contour: Curve | None
+    checks: tuple[Check, ...]
+    follower: str
+    yoke_breadth: float | None
+    trimmed: bool
+    driven: Driven | None = None
+    body: Body | None = None
+    face: float = 0.0
+
+
+def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
+    """Intent, curve and exact checks of a recipe; raises RecipeErrors where there is no such motion or curve."""
+    from kin.law.programme import IntentError
+
+    clock = clock or Clock()
+    cam = recipe.cam
+    with clock.stage("motion"):
+        try:
+            intent = intent_of(cam)
+        except IntentError as error:
+            raise recipe.error(f"cam.{error.field}", error.message) from error
+    try:
+        with clock.stage("profile"):
+            profile = profile_of(cam, intent)
+        with clock.stage("undercut"):
+            checks, contour = sound(recipe, profile, intent)
+    except CurveError as error:
+        raise recipe.error("cam", _unproved(recipe, error, intent)) from error
+    with clock.stage("figures"):
+        breadth, follower, more = _figures(recipe, intent, profile)
+    driven = None
+    if recipe.linkage is not None:
+        from camgeo.synthesis import linkage
+
+        with clock.stage("linkage"):
+            driven = linkage.driven(recipe, cast("Lift", intent), breadth)
+        more += driven.checks
+    body = None
+    if contour is not None:
+        try:
+            with clock.stage("part"):
+                body, found = _part(recipe, contour, intent)
+        except CurveError as error:
+            raise recipe.error("part.chamfer", str(error)) from error
+        more += found
+        if not all(check.ok for check in found):
+            contour = body = None  # without its least walls there is no part to draw
+    trimmed = contour is not None and not contour.closed
+    return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed, driven, body)
+
+
+def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
+    """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
+    from camgeo.curve.curvature import enclosed_least_radius
+    from camgeo.curve.undercut.causes import UndercutError
+    from camgeo.curve.undercut.undercut import undercuts
+
+    trim = recipe.cam.undercut == "trim"
+    of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
+    # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
+    least = enclosed_least_radius(profile.curve)
+    radius = least.radius + profile.roller_radius
+    roomy, at_deg = radius > profile.roller_radius, shaft_deg(intent, least.at)
+    bent = Check(CURVATURE.name, roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
+    if least.room and roomy:
+        lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
+        bent = replace(bent, detail=lower)
+    try:
+        found = undercuts(profile.curve)
+    except UndercutError as error:
+        kind = "global" if roomy else "local"
+        free = "" if error.free_at is None else f"; {_free(recipe, profile, error.free_at)}"
+        return [bent, Check(of_kind[kind].name, False, None, 0.0, "mm", None, detail=f"{error}{free}")], None
+    outcome, contour = "", None if found else profile.curve
+    if trim and found:
+        try:
+            outcome, contour = "; trimmed", _trimmed(profile.curve)
+        except UndercutError as error:
+            outcome = f"; it cannot be trimmed: {error}"
+    if not (roomy or found):
+        contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
+    # of a trimmed contour the radius that was asked for is told, and held against nothing
+    cut_off = bool(found and contour)
+    checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
+    # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
+    free_at = (min if profile.roller_radius else max)((cut.free_at for cut in found), default=0.0)
+    free = _free(recipe, profile, free_at)
+    for kind in ("local", "global"):
+        cuts = [cut for cut in found if cut.kind == kind]
+        if kind == "global" and profile.roller_radius == 0.0 and not cuts:
+            continue
+        if not cuts:
+            checks.append(Check(of_kind[kind].name, True, 0.0, 0.0, "mm"))
+            continue
+        worst = max(cuts, key=lambda cut: cut.depth)
+        detail = f"{_extent(profile, intent, worst)}; {free}{outcome}"
+        depth = worst.depth if math.isfinite(worst.depth) else None
+        ok, at_deg, limit = contour is not None, shaft_deg(intent, worst.at), None if cut_off else 0.0
+        checks.append(Check(of_kind[kind].name, ok, depth, limit, "mm", at_deg, detail=detail))
+    return checks, contour
+
+
+def _extent(profile: Profile, intent: Lift | Transmission, cut: Undercut) -> str:
+    """Say from where to where contact is lost, in shaft angles."""
+    if cut.end - cut.start >= profile.curve.shape.period:
+        return "all round"
+    return f"from {shaft_deg(intent, cut.start):.6g} to {shaft_deg(intent, cut.end):.6g} deg"
+
+
+def _free(recipe: Recipe, profile: Profile, free_at: float) -> str:
+    """Say what would be free of undercut; `free_at` in mm."""
+    value = free_at / recipe.mm
+    if isinstance(recipe.cam, FlatPairCam):
+        # r + const closes no pair: there is no base radius to enlarge
+        return f"{less_swing(recipe.cam, recipe.mm)} would be free of it"
+    if profile.roller_radius and not value > 0.0:
+        return "no roller radius is proved to be free of it"
+    if profile.roller_radius:
+        return f"a roller radius below {downward(value)} would be free of it"
+    return f"{larger(recipe.cam, value)} would be free of it"
+
+
+def _unproved(recipe: Recipe, error: CurveError, intent: Lift | Transmission) -> str:
+    """Say what could not be proved of a curve, and what would do."""
+    from camgeo.curve.undercut.bottleneck import OpenNeckError
+
+    if not isinstance(error, OpenNeckError):
+        return str(error)
+    first, second = (shaft_deg(intent, t) for t in error.pair)
+    most, least = error.most / recipe.mm, error.least / recipe.mm
+    half = f"lies between {least:.9g} and {most:.9g}" if error.seen else f"is at least {least:.9g}"
+    return (
+        f"whether a roller radius of {most:.9g} is free of undercut between {first:.6g} and {second:.6g} deg cannot be "
+        f"proved: half the width of the neck there {half}; "
+        f"{f'one below {downward(least)}' if least > 0.0 else 'none'} is proved to be free of it"
+    )
+
+
+def _trimmed(curve: Curve) -> Curve:
+    from camgeo.curve.undercut.trim import trimmed  # few contours need it
+
+    return trimmed(curve)
+
+
+def shaft_deg(intent: Lift | Transmission, parameter: float) -> float:
+    """Shaft angle in degrees at which the follower touches the contour at a parameter of it."""
+    at = getattr(intent, "at", None)
+    return degrees(parameter if at is None else float(at(parameter, 0)[0][0, 0]))
+
+
+def _figures(recipe: Recipe, intent: Lift | Transmission, profile: Profile) -> tuple[float | None, str, list[Check]]:
+    """Breadth of the yoke if there is one, the follower's name, and the checks of the intended motion."""
+    from camgeo.synthesis.checks import breadth_of, flat_face_checks, is_constant, pressure_angle, transmission_checks
+
+    cam = recipe.cam
+    if isinstance(cam, DoubleRollerCam | FlatPairCam):
+        law = cast("Transmission", intent)  # the kind of cam decides the kind of intent
+        if isinstance(cam, FlatPairCam):
+            return None, "flat pair", transmission_checks(law)
+        return None, "double roller", [*transmission_checks(law), pressure_angle(profile, law)]
+    lift = cast("Lift", intent)
+    breadth = breadth_of(lift)
+    yoke = isinstance(cam, ConstantBreadthCam) or is_constant(*breadth[:2])
+    held = "square frame" if recipe.linkage is not None else "yoke" if yoke else "flat face"
+    return breadth[0] if yoke else None, held, flat_face_checks(lift, breadth if yoke else None)
+
+
+def _part(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> tuple[Body | None, list[Check]]:
+    """The body of a part that has more than a bore, and the checks of the walls."""
+    part = recipe.part
+    if part.plain:
+        if part.bore is None:
+            return None, []
+        from camgeo.synthesis.part.walls import least_wall
+
+        wall, at = least_wall(contour, part.bore)
+        ok = wall > 0.0 if part.wall is None else wall >= part.wall
+        told = "" if ok else "bore and contour" if wall > -0.5 * part.bore else "the shaft lies outside the contour"
+        return None, [
+            Check(WALL.name, ok, wall, part.wall or 0.0, "mm", shaft_deg(intent, at), "at_least", detail=told)
+        ]
+    from camgeo.synthesis.part.body import body_of
+    from camgeo.synthesis.part.checks import part_checks
+
+    body = body_of(part, contour)
+    return body, part_checks(body, contour, part.wall, lambda t: shaft_deg(intent, t))
+
+
+def intended(recipe: Recipe, design: Design) -> Intent:
+    """What kin is told of the part: the follower with its law, and how the part is drawn."""
+    from kin.follower import follower
+    from kin.judge.contour_checks import DwellAsked
+    from kin.judge.verify import Intent
+
+    cam = recipe.cam
+    held: Follower
+    if isinstance(cam, DoubleRollerCam):
+        held = follower.DoubleRoller(cast("Transmission", design.intent), cam.roller_radius)
+    elif isinstance(cam, FlatPairCam):
+        held = follower.FlatPair(cast("Transmission", design.intent), design.face)
+    elif design.yoke_breadth is not None:
+        held = follower.Yoke(cast("Lift", design.intent), breadth=design.yoke_breadth)
+    else:
+        held = follower.FlatFace(cast("Lift", design.intent))
+    driven, asked = design.driven, recipe.dwell
+    turns = driven is not None and driven.turns
+    intent = Intent(
+        follower=held,
+        mm=recipe.mm,
+        mirrored=recipe.rotation == "ccw",
+        bore=recipe.part.bore,
+        thickness=recipe.part.thickness,
+        trimmed=design.trimmed,
+        mechanism=driven.mechanism if driven is not None and turns else None,
+        dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
+    )
+    if design.body is None:
+        return intent
+    from camgeo.synthesis.part.as_intent import cross_holes_of, holes_of, layers_of
+
+    body = design.body
+    return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
+
+
+def permitted(recipe: Recipe, tolerance: float) -> Limits:
+    """What kin permits: the tolerance, and the recipe's own limits of motion and output (degrees for a swing)."""
+    from kin.judge.verify import Limits
+
+    motion, output = recipe.verify.motion_error, recipe.verify.output_error
+    if output is not None and recipe.linkage is not None and not output_slides(recipe.linkage):
+        output = math.degrees(output)
+    if motion is not None and isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        motion = math.degrees(motion)
+    return Limits(tolerance, motion, output=output)

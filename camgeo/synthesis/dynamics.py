@@ -1,0 +1,340 @@
+"""Dynamics of a recipe's follower train: as intended, and with each file's cam; the report's section and its checks.
+
+Forces in N and figures in SI as the recipe gives them, lengths of the follower's motion in the recipe's unit, degrees
+where it swings.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from camgeo.checks.declared import FLOAT, PLAY
+from kin.judge.check import Check, about, failed
+from kin.numeric.angles import degrees
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from camgeo.recipe.dynamics import Dynamics
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.contour.contour import Contour
+    from kin.dynamics.cycle import Turn
+    from kin.dynamics.drive import Drive, Motion
+    from kin.dynamics.excitation import Faces
+    from kin.dynamics.impacts import Course
+    from kin.dynamics.train import Steady, Train
+
+TURNS = 20  # that are followed from rest, unless one repeats the one before
+_DIGITS = 9  # of a dwell's ends in degrees, beyond which they are rounding
+MOST_FOR_FLOAT = 150  # stretches of a drive for which the speed at which float begins is searched
+MOST_PLACES = 9_000_000  # that all searches of a recipe look at together, which bounds them to some ten seconds
+
+
+class _Purse:
+    """What the searches still to come may look at: each an equal share of what the ones before have left."""
+
+    def __init__(self, runs: int, *, each: int) -> None:
+        self._places, self._searches = MOST_PLACES, runs * each
+
+    def share(self) -> int:
+        """The most that the next search may look at."""
+        return self._places // max(self._searches, 1)
+
+    def spend(self, places: int) -> None:
+        """One search is done."""
+        self._places, self._searches = max(0, self._places - places), self._searches - 1
+
+
+class Found(NamedTuple):
+    """The report's section, and the checks."""
+
+    section: dict[str, Any]
+    checks: tuple[Check, ...]
+
+
+class _Scene(NamedTuple):
+    """What all runs of a recipe have in common. `unit` turns metres or radians into the report's, `name` names it."""
+
+    recipe: Recipe
+    asked: Dynamics
+    train: Train
+    purse: _Purse
+    rests: tuple[tuple[float, float], ...]
+    unit: float
+    name: str
+    drawn: float | None
+
+
+def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: float | None = None) -> Found:
+    """Find the dynamics of a recipe that asks for them, as intended and with each drawing and solid.
+
+    `units`, mm, is that of a file that states none; without it drawings are in the recipe's, meshes in mm.
+
+    Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
+    play `play`, that some is left. Raises RecipeErrors where the train has no steady state, and ValueError for a recipe
+    that asks for no dynamics.
+    """
+    from kin.dynamics.drive import DriveError
+    from kin.dynamics.train import DynamicsError
+    from kin.follower.motion_error import ContactError
+    from kin.read.files import KINDS
+
+    asked = recipe.dynamics
+    if asked is None:
+        raise ValueError("the recipe has no dynamics")
+    sources: list[Path | None] = [None]
+    if recipe.linkage is None:
+        sources += [path for path in files if path.suffix.lstrip(".") in KINDS]
+    scene = _scene(recipe, asked, design, _Purse(len(sources), each=1 if asked.play is not None else 2), units)
+    entries: list[dict[str, Any]] = []
+    checks: list[Check] = []
+    for path in sources:
+        try:
+            entry, check = _one(scene, design, path)
+        except DynamicsError as error:
+            raise recipe.error("dynamics", str(error)) from error
+        except (ContactError, DriveError) as error:
+            if path is None:
+                raise recipe.error("dynamics", str(error)) from error
+            entry = {"from": path.name}
+            check = failed((FLOAT if asked.play is None else PLAY).name, str(error), unit="N", limit=0.0)
+        entries.append(entry)
+        checks.append(check if path is None else about(check, path.name))
+    train = scene.train
+    section = {
+        "rpm": asked.rpm,
+        "natural_ratio": train.ratio(asked.rpm),
+        "natural_rpm": train.natural * 30.0 / math.pi,
+        "damping_ratio": train.damping_ratio,
+        "unit": scene.name,
+        "force_unit": "N" if scene.name != "deg" else "N m",
+        "runs": entries,
+    }
+    return Found(section, tuple(checks))
+
+
+def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn: float | None) -> _Scene:
+    from camgeo.synthesis.design import intended
+    from kin.dynamics.excitation import METRE, rests
+    from kin.dynamics.train import Train
+
+    train = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
+    if design.driven is None:
+        follower = intended(recipe, design).follower
+        swings, found = follower.unit == "deg", rests(follower)
+    else:
+        if not design.driven.turns:
+            raise recipe.error("dynamics", "the mechanism does not turn: it has no motion over the shaft angle")
+        swings = design.driven.mechanism.unit == "deg"
+        found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
+    if asked.play is not None and design.yoke_breadth is None and not swings:
+        raise recipe.error("dynamics.play", "a single flat face has no play", None, "give preload")
+    name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
+    unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
+    return _Scene(recipe, asked, train, purse, found, unit, name, drawn)
+
+
+def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
+    """What drives the follower, as intended or as a file's contour gives it."""
+    from camgeo.synthesis.design import intended
+    from kin.dynamics.excitation import METRE, Faces, OfMechanism, intended_faces, measured_faces
+    from kin.follower.follower import DoubleRoller, FlatPair
+
+    if design.driven is not None:
+        return Faces(OfMechanism(design.driven.mechanism), None)
+    intent = intended(scene.recipe, design)
+    play = scene.asked.play
+    if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
+        held = intent.follower
+        play = play / held.transmission.arm if isinstance(held, DoubleRoller | FlatPair) else METRE * play
+    if path is None:
+        return intended_faces(intent.follower, play)
+    return measured_faces(
+        intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored, units=scene.drawn), play
+    )
+
+
+def contour_of(path: Path, mm: float, *, mirrored: bool, units: float | None = None) -> Contour:
+    """Read the outer contour of a drawing or a solid, in mm as if not mirrored.
+
+    Where the file states no unit it is `units`, mm; without that it is `mm` in a drawing, and 1 mm in a mesh.
+    """
+    from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
+
+    if kind_of(path) in SOLIDS:
+        contour = read_solid(path, (), units).contour
+    else:
+        drawing = read_drawing(path)
+        mm = mm if units is None else units
+        contour = drawing.contour if drawing.units_mm is not None or mm == 1.0 else drawing.contour.scaled(mm)
+    return contour.mirrored() if mirrored else contour
+
+
+def _one(scene: _Scene, design: Design, path: Path | None) -> tuple[dict[str, Any], Check]:
+    """One run: entry of the report, and its check."""
+    from kin.dynamics.drive import drives
+    from kin.dynamics.excitation import Faces, Moved
+
+    faces = _faces(scene, design, path)
+    if scene.asked.rate:  # the spring's force is given at the lowest place
+        faces = Faces(Moved(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
+    ends = [end for rest in scene.rests for end in rest]
+    found = drives([face for face in faces if face is not None], ends)
+    entry: dict[str, Any] = {"from": "intended" if path is None else path.name}
+    if len(found) > 1:
+        return _with_play(scene, entry, found[0], found[1])
+    return _with_spring(scene, entry, found[0])
+
+
+def _lowest(motion: Motion) -> float:
+    """Least position of a motion, m or rad, at the best of 65 places a stretch."""
+    import numpy as np
+
+    from kin.dynamics.drive import drives
+
+    (drive,) = drives([motion])
+    every = np.repeat(np.arange(len(drive)), 65)
+    phi = drive.knots[every] + np.tile(np.linspace(0.0, 2.0, 65), len(drive)) * drive.half[every]
+    return float(drive.rows(every, phi)[0].min())
+
+
+def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:
+    from kin.dynamics.impacts import course
+    from kin.dynamics.train import steady
+
+    train, rpm = scene.train, scene.asked.rpm
+    found = steady(train, drive, rpm, scene.rests)
+    entry["steady"] = _steady(scene, found)
+    followed = course(train, (drive, None), rpm, TURNS, most=scene.purse.share())
+    scene.purse.spend(followed.places)
+    entry |= _followed(followed, rpm, train) | _float_speed(scene, drive)
+    least = found.force.least
+    detail = f"greatest {found.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
+    unit = "N m" if scene.name == "deg" else "N"
+    at_deg = degrees(found.force.least_at)
+    return entry, Check(FLOAT.name, least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
+
+
+def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
+    from kin.dynamics.events import LOWER, UPPER
+    from kin.dynamics.impacts import course, least_gap
+    from kin.dynamics.train import DynamicsError
+
+    least, at = least_gap(lower, upper)
+    detail = ""
+    if least > 0.0:
+        followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS, most=scene.purse.share())
+        scene.purse.spend(followed.places)
+        if not followed.turns and followed.stopped is not None:
+            raise DynamicsError(followed.stopped)
+        entry |= _followed(followed, scene.asked.rpm, scene.train)
+        bore = followed.turns[-1].bore
+        entry["impacts"]["faces"] = [name for name, face in (("lower", LOWER), ("upper", UPPER)) if face in bore]
+        if not bore:
+            detail = "the follower touches neither face: the play is more than the cam moves"
+    swings = scene.name == "deg"
+    value, unit = (math.degrees(least), "deg") if swings else (1e3 * least, "mm")
+    return entry, Check(PLAY.name, least > 0.0, value, 0.0, unit, degrees(at), "at_least", detail=detail)
+
+
+def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:
+    force = found.force
+    return {
+        "holds": found.holds,
+        "peak_force": force.greatest,
+        "peak_at_deg": degrees(force.greatest_at),
+        "least_force": force.least,
+        "least_at_deg": degrees(force.least_at),
+        "residual": [
+            {
+                "dwell_from_deg": round(degrees(rest.start), _DIGITS) % 360.0,
+                "dwell_to_deg": round(degrees(rest.end), _DIGITS) or 360.0,
+                "amplitude": scene.unit * rest.amplitude,
+            }
+            for rest in found.residual
+        ],
+    }
+
+
+def _followed(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
+    """Entries for a course: `transient` and `impacts`, both None where not one turn could be followed."""
+    if not followed.turns:
+        return {"transient": None, "impacts": None, "transient_why": followed.stopped}
+    entry = {"transient": _transient(followed, rpm, train), "impacts": _impacts(followed)}
+    return entry if followed.stopped is None else entry | {"transient_why": followed.stopped}
+
+
+def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
+    """From rest: the extremes of all turns, and how many turns the free motion takes to fall to a hundredth."""
+    turns = followed.turns
+    peak = max(range(len(turns)), key=lambda i: turns[i].greatest)
+    low = min(range(len(turns)), key=lambda i: turns[i].least)
+    found = {
+        "turns": len(turns),
+        "settled": followed.settled,
+        "peak_force": turns[peak].greatest,
+        "peak_at_deg": math.degrees(turns[peak].greatest_at) + 360.0 * peak,
+        "least_force": turns[low].least,
+        "least_at_deg": math.degrees(turns[low].least_at) + 360.0 * low,
+    }
+    fading = train.at(rpm).bound.fading
+    # of a free motion in contact: where contact is lost it says nothing of the course
+    if fading > 0.0 and not turns[-1].free:
+        found["turns_to_one_percent"] = math.log(100.0) / (2.0 * math.pi * fading)
+    return found
+
+
+def _impacts(followed: Course) -> dict[str, Any]:
+    """Of the last turn that was followed; `settled` says that all later turns are like it.
+
+    If they are not, `of_turns` has the least and the greatest of the later half of the turns: no two are alike, and
+    rounding decides which of them is the last.
+    """
+    last: Turn = followed.turns[-1]
+    found: dict[str, Any] = {
+        "settled": followed.settled,
+        "count": last.impacts,
+        "greatest_velocity": last.velocity,
+        "velocity_at_deg": degrees(last.velocity_at) if last.impacts else None,
+        "peak_force": last.greatest,
+        "peak_at_deg": degrees(last.greatest_at),
+        "free_deg": math.degrees(last.free),
+    }
+    if not followed.settled:
+        half = followed.turns[len(followed.turns) // 2 :]
+        found["of_turns"] = {
+            "turns": len(half),
+            "count": [min(turn.impacts for turn in half), max(turn.impacts for turn in half)],
+            "greatest_velocity": [min(turn.velocity for turn in half), max(turn.velocity for turn in half)],
+            "peak_force": [min(turn.greatest for turn in half), max(turn.greatest for turn in half)],
+        }
+    return found
+
+
+def _float_speed(scene: _Scene, drive: Drive) -> dict[str, Any]:
+    from kin.dynamics.separation import float_speed
+    from kin.dynamics.train import DynamicsError
+
+    train = scene.train
+    if len(drive) > MOST_FOR_FLOAT:
+        return {"float_rpm": None, "float_why": f"not searched: the motion has more than {MOST_FOR_FLOAT} stretches"}
+    try:
+        found = float_speed(train, drive, most=scene.purse.share())
+    except DynamicsError as error:
+        return {"float_rpm": None, "float_why": str(error)}
+    scene.purse.spend(found.places)
+    entry: dict[str, Any] = {"float_rpm": found.rpm, "float_rigid_rpm": found.rigid_rpm}
+    if found.between is not None:
+        holds, floats = found.between
+        above = f"above {holds:.6g} rpm" if floats is None else f"between {holds:.6g} and {floats:.6g} rpm"
+        entry["float_between_rpm"] = list(found.between)
+        entry["float_why"] = (
+            f"not settled: it begins {above}; with {train.damping_ratio:.3g} times the critical damping there are too "
+            "many resonances to look at; more damping or less stiffness has fewer, fewer files leave more room"
+        )
+    elif found.rpm is None:
+        entry["float_why"] = "contact holds up to a shaft at twice the natural frequency"
+    return entry

@@ -1,0 +1,52 @@
+"""The checks that a run of a recipe is going to make, told without running it.
+
+Only the intended motion is built, which costs milliseconds, no curve and no file. A run may differ where an undercut
+decides: without a contour no file is judged, and a trimmed one only against a limit of the motion that is given; and
+where a linkage does not turn, by which files are not judged then.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.checks.declared import EVERY, Scene
+from camgeo.recipe.cam import ConstantBreadthCam, SupportCam
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+
+
+class Foreseen(NamedTuple):
+    """One check to come: its name, and the file it concerns, None for the exact curve and the intended motion."""
+
+    name: str
+    file: str | None = None
+
+    def __str__(self) -> str:
+        """Write it as in a test's name."""
+        return self.name if self.file is None else f"{self.name}[{self.file}]"
+
+
+def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
+    """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
+    scene, files = Scene(recipe, _in_a_yoke(recipe)), recipe.export.files
+    found = [Foreseen(one.name) for one in EVERY.values() if one.exact is not None and one.exact(scene)]
+    # of a file, what its contour is in itself comes before what is left between it and the follower
+    in_turn = sorted(EVERY.values(), key=lambda one: one.play or one.exact is not None)
+    for request in files:
+        file = request.filename(recipe.name, files)
+        made = (one.name for one in in_turn if one.of_file is not None and one.of_file(scene, request))
+        found += [Foreseen(name, file) for name in made]
+    return tuple(found)
+
+
+def _in_a_yoke(recipe: Recipe) -> bool:
+    """Whether two parallel faces hold the cam. Builds the motion in any case: one that cannot be is told first."""
+    from camgeo.synthesis.checks import is_constant_breadth
+    from camgeo.synthesis.profile import intent_of
+    from kin.law.support_function import Lift
+
+    intent = intent_of(recipe.cam)
+    if isinstance(recipe.cam, ConstantBreadthCam):
+        return True
+    return isinstance(recipe.cam, SupportCam) and isinstance(intent, Lift) and is_constant_breadth(intent)

@@ -1,0 +1,217 @@
+"""The linkage that a cam drives: the mechanism of a recipe, its checks before any file, its figures and its table.
+
+The cam is held in a square frame, the coupler (AS section 3). Angles of the recipe's checks are shaft angles, as
+everywhere; where the linkage binds, the shaft has no angle, and the relative angle between cam and frame is told.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from camgeo.checks.declared import DWELL, MOBILITY, REVERSAL
+from camgeo.recipe.linkage import FourBarLinkage, InvertedSliderCrankLinkage, RPRDyad, RRPDyad, RRRDyad
+from kin.judge.check import Check, failed
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.monotone import RoughError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from camgeo.recipe.linkage import DwellAsked, Dyad, Linkage
+    from camgeo.recipe.recipe import Recipe
+    from kin.law.support_function import Lift
+    from kin.linkage import dyad, four_bar
+    from kin.linkage.extremes import Figures
+    from kin.linkage.mechanism import Mechanism
+    from kin.numeric.arrays import Array
+    from kin.numeric.longest_window import Dwell
+
+Over: TypeAlias = Literal["shaft", "relative"]
+OVER: tuple[Over, ...] = ("shaft", "relative")
+DEGREES = 180.0 / math.pi
+
+
+def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
+    """Mechanism of a recipe that has a linkage.
+
+    Raises RecipeErrors where the shaft does not lie within the cam, or a dyad's output would not swing.
+    """
+    from kin.law.programme import IntentError
+    from kin.linkage.mechanism import Mechanism
+
+    asked = _linkage(recipe)
+    try:
+        return Mechanism(_loop(asked), lift, breadth, tuple(map(_dyad, asked.dyads)))
+    except IntentError as error:
+        part = "linkage" if error.field.startswith("dyads") else "cam"
+        field = f"{part}.{error.field}"
+        raise recipe.error(field if field in recipe.marks else part, error.message) from error
+
+
+def _linkage(recipe: Recipe) -> Linkage:
+    if recipe.linkage is None:
+        raise ValueError(f"{recipe.name}: there is no linkage")
+    return recipe.linkage
+
+
+def _loop(asked: Linkage) -> four_bar.Linkage:
+    from kin.linkage import four_bar
+
+    if isinstance(asked, FourBarLinkage):
+        return four_bar.FourBar(asked.ground, asked.coupler, asked.rocker, asked.assembly)
+    if isinstance(asked, InvertedSliderCrankLinkage):
+        return four_bar.InvertedSliderCrank(asked.ground, asked.rocker, asked.assembly)
+    return four_bar.SliderCrank(asked.coupler, asked.offset, asked.assembly)
+
+
+def _dyad(asked: Dyad) -> dyad.Dyad:
+    from kin.linkage import dyad
+
+    if isinstance(asked, RRRDyad):
+        return dyad.RRR(asked.on, asked.point, asked.ground, asked.links, asked.assembly)
+    if isinstance(asked, RRPDyad):
+        return dyad.RRP(asked.on, asked.point, asked.link, asked.through, asked.direction, asked.assembly)
+    if isinstance(asked, RPRDyad):
+        return dyad.RPR(asked.on, asked.point, asked.ground, asked.offset)
+    raise TypeError(f"no such dyad: {asked!r}")
+
+
+# --- checks before any file -------------------------------------------------------------------------------------------
+
+
+def mobility_checks(mechanism: Mechanism) -> list[Check]:
+    """That every loop closes all round (AS after eq. 18), and that the shaft never has to turn back.
+
+    Where the mechanism does not turn right round there is no shaft angle: the places are then told by the detail alone.
+    """
+    found = mechanism.mobility()
+    loop = "the linkage" if found.loop == 0 else f"dyad {found.loop}"
+    where = f"{loop} binds {_spans(found.binds)} of the relative angle" if found.binds else f"{loop} is the nearest"
+    back = f"the shaft would turn back {_spans(found.reverses)} of the relative angle" if found.reverses else ""
+
+    def above_zero(name: str, value: float | None, unit: str, at: float, detail: str) -> Check:
+        place = degrees(float(mechanism.at(at, 0).shaft[0, 0])) if found.turns else None
+        return Check(name, value is not None and value > 0.0, value, 0.0, unit, place, "at_least", detail=detail)
+
+    rate = None if math.isnan(found.least_rate) else found.least_rate
+    return [
+        above_zero(MOBILITY.name, found.margin, "mm", found.margin_at, where),
+        above_zero(REVERSAL.name, rate, "", found.rate_at, back or (where if rate is None else "")),
+    ]
+
+
+def _spans(spans: Sequence[tuple[float, float]]) -> str:
+    return " and ".join(f"from {math.degrees(a):.6g} to {math.degrees(b):.6g} deg" for a, b in spans)
+
+
+def _dwell_check(asked: DwellAsked, longest: Dwell) -> list[Check]:
+    """That the intended output dwells for as long as the recipe wants; nothing if it wants no certain length."""
+    if asked.at_least is None:
+        return []
+    length, wanted = math.degrees(longest.length), math.degrees(asked.at_least)
+    start = degrees(longest.start)
+    detail = f"from {start:.6g} over {length:.6g} deg of the {asked.over} angle"
+    at = start if asked.over == "shaft" else None
+    return [Check(DWELL.name, length >= wanted, length, wanted, "deg", at, "at_least", detail=detail)]
+
+
+# --- the whole of it --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Driven:
+    """The linkage of a recipe: mechanism, checks, and dwells over the shaft and the relative angle, if asked for.
+
+    `figures` are those of its motion, None where it does not turn.
+    """
+
+    mechanism: Mechanism
+    checks: tuple[Check, ...]
+    dwells: Mapping[Over, tuple[Dwell, ...]]
+    figures: Figures | None
+
+    @property
+    def turns(self) -> bool:
+        """Whether the shaft can be turned right round; else the mechanism has no motion over the shaft angle."""
+        return self.mechanism.mobility().turns
+
+
+def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
+    """Mechanism of a recipe that has a linkage, with its checks; `breadth` (mm) is that of the cam, None if it varies.
+
+    Raises RecipeErrors where no square frame holds the cam, or the shaft does not lie within it, where a dyad's output
+    would not swing, a band is lost in rounding, or the motion is too sudden to be followed.
+    """
+    if breadth is None:
+        remedy = "give p odd harmonics alone, or take another kind of cam"
+        raise recipe.error(
+            "linkage", "a square frame holds a cam of constant breadth alone, and this cam's varies", None, remedy
+        )
+    try:
+        mechanism = mechanism_of(recipe, lift, breadth)
+    except RoughError as error:
+        at = math.degrees(error.at % TURN)
+        problem = f"its motion is too sudden for a linkage's to be followed, near {at:.6g} degrees"
+        raise recipe.error("cam", problem, None, "give p fewer or lower waves") from error
+    try:
+        return _driven(recipe, mechanism)
+    except RoughError as error:
+        at = math.degrees(error.at % TURN)
+        problem = f"the motion is too sudden to be followed, near a relative angle of {at:.6g} degrees"
+        remedy = "keep its loops farther from binding, or give p fewer waves"
+        raise recipe.error("linkage", problem, None, remedy) from error
+
+
+def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
+    checks = mobility_checks(mechanism)
+    found: dict[Over, tuple[Dwell, ...]] = {}
+    asked = recipe.dwell
+    if asked is not None and mechanism.mobility().turns:
+        try:
+            found = {over: mechanism.dwells(asked.band, over) for over in OVER}
+        except ValueError as error:
+            unit = "rad" if mechanism.unit == "deg" else "mm"
+            raise recipe.error("dwell.band", f"{error} {unit}", None, "give a wider band") from error
+        checks += _dwell_check(asked, found[asked.over][0])
+    elif asked is not None and asked.at_least is not None:
+        checks.append(failed(DWELL.name, "the mechanism does not turn", unit="deg", limit=math.degrees(asked.at_least)))
+    figures = mechanism.figures() if mechanism.mobility().turns else None
+    return Driven(mechanism, tuple(checks), found, figures)
+
+
+def motion_table(recipe: Recipe, mechanism: Mechanism) -> tuple[tuple[str, ...], Array]:
+    """Column names and rows (angles + 1, k) over equal steps of the shaft, for a mechanism that turns.
+
+    Shaft, relative and frame angle and the output, each output's velocity and acceleration by radian of shaft,
+    those of the frame, and the output's by radian of the relative angle, which AS plot; places of the joints, D
+    first, with the pivot B on +x. Angles in degrees, lengths in the recipe's unit. At a break the derivatives are
+    those that follow, at the end of the turn those that precede.
+    """
+    count = recipe.verify.angles
+    shaft = np.linspace(0.0, TURN, count + 1)
+    theta = mechanism.relative(shaft)
+    parts = [mechanism.at(theta[:-1], 2), mechanism.at(theta[-1:], 2, -1)]
+
+    length = "in" if recipe.units == "inch" else "mm"
+    frame = DEGREES * np.concatenate([part.over_shaft(part.frame) for part in parts], axis=1)
+    columns = {"shaft_deg": np.linspace(0.0, 360.0, count + 1), "relative_deg": theta * DEGREES, "frame_deg": frame[0]}
+    units = [mechanism.linkage.unit, *(dyad.unit for dyad in mechanism.dyads)]
+    last = len(units) - 1
+    for index in (last, *range(last)):  # the output that counts comes first
+        mark = "" if index == last else f"_{index}"
+        unit, scale = ("deg", DEGREES) if units[index] == "deg" else (length, 1.0 / recipe.mm)
+        rows = scale * np.concatenate([part.over_shaft(part.outputs[index]) for part in parts], axis=1)
+        columns |= {f"output{mark}_{unit}": rows[0], f"velocity{mark}": rows[1], f"acceleration{mark}": rows[2]}
+        if index == last:
+            relative = scale * np.concatenate([part.output for part in parts], axis=1)
+    columns |= {"frame_velocity": frame[1], "frame_acceleration": frame[2]}
+    columns |= {"velocity_by_relative": relative[1], "acceleration_by_relative": relative[2]}
+    for index in range(len(units)):
+        mark = "" if index == 0 else f"_{index}"
+        x, y = np.concatenate([part.joints[index][:, 0] for part in parts], axis=1) / recipe.mm
+        columns |= {f"joint{mark}_x_{length}": x, f"joint{mark}_y_{length}": y}
+    return tuple(columns), np.column_stack(list(columns.values()))

@@ -1,0 +1,40 @@
+"""The motion table: the intended motion over the shaft angle, for a person or a controller to read."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+ORDER = 3
+
+
+def motion_table(recipe: Recipe, intent: Lift | Transmission) -> tuple[tuple[str, ...], Array]:
+    """Column names, and rows (angles + 1, 5): shaft angle, position and its derivatives by radian of shaft.
+
+    A plate's lift is in the recipe's unit, the distance from the shaft less its datum; a follower that swings is in
+    degrees, a flat pair by its own swing psi/2. At a break the derivatives are those that follow, at the end of the
+    turn those that precede.
+    """
+    count = recipe.verify.angles
+    phi = np.linspace(0.0, 2.0 * np.pi, count + 1)
+    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+        law = cast("Transmission", intent)  # the kind of cam decides the kind of intent
+        rows = np.concatenate([law.psi_of_shaft(phi[:-1], ORDER), law.psi_of_shaft(phi[-1:], ORDER, -1)], axis=1)
+        name, scale = "follower_deg", math.degrees(0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0)
+    else:
+        lift = cast("Lift", intent)
+        rows = np.concatenate([lift.derivatives(phi[:-1], ORDER), lift.derivatives(phi[-1:], ORDER, -1)], axis=1)
+        rows[0] -= lift.datum
+        name, scale = ("lift_in" if recipe.units == "inch" else "lift_mm"), 1.0 / recipe.mm
+    table = np.column_stack([np.linspace(0.0, 360.0, count + 1), *(rows * scale)])
+    return ("shaft_deg", name, "velocity", "acceleration", "jerk"), table

@@ -1,0 +1,79 @@
+"""A part's body in kin's words: the openings, layers and radial holes that a file will be held against."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from kin.judge.holes import Hole, round_hole
+from kin.judge.layers import CrossHole, Layer
+
+if TYPE_CHECKING:
+    from camgeo.synthesis.part.body import Body
+    from camgeo.synthesis.part.shapes import Opening
+
+KINDS = {"BORE": "bore", "HOLES": "holes", "MARK": "mark", "ENGRAVE": "mark"}
+
+
+def holes_of(body: Body) -> tuple[Hole, ...]:
+    """Every opening, in the cam's axes."""
+    return tuple(_hole(opening) for opening in body.openings)
+
+
+def layers_of(body: Body) -> tuple[Layer, ...]:
+    """Layers of the solid from below; none without a thickness."""
+    thickness = body.thickness
+    if thickness is None:
+        return ()
+    through = tuple(_hole(opening) for opening in body.openings if opening.depth is None)
+    chamfer = body.chamfer or 0.0
+    heights = {0.0, thickness}
+    if chamfer:
+        heights |= {chamfer, thickness - chamfer}
+    heights |= {thickness - opening.depth for opening in body.openings if opening.depth is not None}
+    rising = sorted(heights)
+    layers = []
+    for low, high in pairwise(rising):
+        shallow = tuple(
+            _hole(opening)
+            for opening in body.openings
+            if opening.depth is not None and thickness - opening.depth <= low
+        )
+        inset = (_inset(low, thickness, chamfer), _inset(high, thickness, chamfer))
+        layers.append(Layer(low, high, (*through, *shallow), None, inset))
+    hub = body.hub
+    if hub is not None:
+        outline = round_hole("hub", "hub", (0.0, 0.0), hub.diameter)
+        inside = tuple(
+            _hole(opening) for opening in body.openings if opening.depth is None and _is_within(opening, hub.diameter)
+        )
+        if body.bottom < 0.0:
+            layers.insert(0, Layer(body.bottom, 0.0, inside, outline))
+        if body.top > thickness:
+            layers.append(Layer(thickness, body.top, inside, outline))
+    return tuple(layers)
+
+
+def cross_holes_of(body: Body) -> tuple[CrossHole, ...]:
+    """The set screw's hole, if there is one."""
+    height = body.screw_height
+    if body.screw is None or height is None:
+        return ()
+    return (CrossHole("set screw", body.screw.at, body.screw.diameter, height),)
+
+
+def _inset(z: float, thickness: float, chamfer: float) -> float:
+    """How far inside the contour the chamfers take the outline at a height; exactly 0 between them."""
+    upper = thickness - chamfer
+    return max(chamfer - z, 0.0) if z <= upper else z - upper
+
+
+def _is_within(opening: Opening, diameter: float) -> bool:
+    x, y = opening.middle
+    return 4.0 * (x * x + y * y) < diameter * diameter
+
+
+def _hole(opening: Opening) -> Hole:
+    points = tuple((float(x), float(y)) for x, y in opening.outline.points)
+    bulges = tuple(float(b) for b in opening.outline.bulges)
+    return Hole(opening.name, KINDS[opening.layer], points, bulges, opening.depth)

@@ -1,0 +1,128 @@
+"""Every edge of a part against every other: the least wall, the pair that has it, and where."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from camgeo.checks.declared import CHAMFER, LIGHTENING, WALL
+from camgeo.curve.curvature import least_radius
+from camgeo.synthesis.part.shapes import Opening, disc, strip
+from camgeo.synthesis.part.walls import Gap, contour_gap, inside_gap, outside_gap
+from kin.judge.check import Check
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from camgeo.curve.curve import Curve
+    from camgeo.synthesis.part.body import Body
+
+MOST_NAMED = 6  # pairs named in a message
+ROUNDING = 1e-9  # mm, by which a wall that is just held may lie below its limit
+
+
+class Pair(NamedTuple):
+    """Two edges and the wall between them."""
+
+    one: str
+    other: str
+    gap: Gap
+
+    def __str__(self) -> str:
+        """Tell the pair, the wall and the place."""
+        x, y = (coordinate if abs(coordinate) > ROUNDING else 0.0 for coordinate in self.gap.place)
+        place = "" if self.gap.place == NOWHERE else f" at ({x:.4g}, {y:.4g})"
+        return f"{self.one} and {self.other}: {self.gap.wall:.4g} mm{place}"
+
+
+NOWHERE = (float("inf"), float("inf"))  # of a wall that runs all along a face
+
+
+def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Callable[[float], float]) -> list[Check]:
+    """Check the walls of a part, and that the lightening holes asked for found room.
+
+    `least` is the wall asked for; without one it must be above 0. `shaft_deg` gives the shaft angle of a parameter.
+    """
+    checks = []
+    pairs = sorted(walls(body, contour), key=lambda pair: pair.gap.wall)
+    if pairs:
+        limit = 0.0 if least is None else least
+        thin = [pair for pair in pairs if not _holds(pair.gap.wall, least)]
+        told = "; ".join(map(str, thin[:MOST_NAMED] or pairs[:1]))
+        more = f"; and {len(thin) - MOST_NAMED} more pairs" if len(thin) > MOST_NAMED else ""
+        worst = pairs[0].gap
+        at_deg = None if worst.parameter is None else shaft_deg(worst.parameter)
+        checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told + more))
+    if body.chamfer is not None:
+        checks.append(_chamfer_check(body, contour, shaft_deg))
+    if body.placed is not None:
+        placed = body.placed
+        count = len(placed.diameters)
+        sizes = f", {min(placed.diameters):.6g} to {max(placed.diameters):.6g} mm across" if count else ""
+        detail = f"{count} of {placed.asked} holes{sizes}, {placed.wall:.6g} mm from every edge, {placed.area:.4g} mm^2"
+        least_count = placed.asked if placed.exactly else 1
+        checks.append(
+            Check(LIGHTENING.name, count >= least_count, count, least_count, "holes", None, "at_least", detail=detail)
+        )
+    return checks
+
+
+def _chamfer_check(body: Body, contour: Curve, shaft_deg: Callable[[float], float]) -> Check:
+    """Check that the contour is nowhere sharper than its chamfer: its parallel inside has no corners then."""
+    chamfer = body.chamfer or 0.0
+    if not contour.closed:
+        detail = "a trimmed contour has corners, along which no chamfer runs"
+        return Check(CHAMFER.name, ok=False, value=0.0, limit=chamfer, unit="mm", sense="at_least", detail=detail)
+    radius, at = least_radius(contour)
+    sharp = "the contour's least radius of curvature must be above the chamfer"
+    return Check(CHAMFER.name, radius > chamfer, radius, chamfer, "mm", shaft_deg(at), "at_least", detail=sharp)
+
+
+def _holds(wall: float, least: float | None) -> bool:
+    return wall > 0.0 if least is None else wall >= least - ROUNDING
+
+
+def walls(body: Body, contour: Curve) -> Iterator[Pair]:
+    """Walls between all pairs of edges; those of openings far apart are left out."""
+    edge, other = body.chamfer or 0.0, "contour" if body.chamfer is None else "chamfer"
+    for opening in body.openings:
+        gap = contour_gap(contour, opening.chain)
+        yield Pair(opening.name, other, gap._replace(wall=gap.wall - edge))
+    for i, one in enumerate(body.openings):
+        for two in body.openings[:i]:
+            (x, y), (x2, y2) = one.middle, two.middle
+            if (x - x2) ** 2 + (y - y2) ** 2 <= (2.0 * (one.reach + two.reach)) ** 2:
+                yield Pair(two.name, one.name, outside_gap(one.chain, two.chain))
+    yield from _hub_walls(body, contour, edge)
+    for opening in body.openings:
+        if opening.depth is not None and body.thickness is not None:
+            yield Pair(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
+
+
+def _hub_walls(body: Body, contour: Curve, edge: float) -> Iterator[Pair]:
+    """Walls between the hub and all else; a hole may pass beside the hub or through it."""
+    hub = body.hub
+    if hub is None:
+        return
+    round_hub = disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)
+    gap = contour_gap(contour, round_hub.chain)
+    yield Pair("hub", "contour" if body.chamfer is None else "chamfer", gap._replace(wall=gap.wall - edge))
+    for opening in body.openings:
+        within = opening.name == "bore" or (opening.depth is None and _is_within(opening, hub.diameter))
+        gap = (inside_gap if within else outside_gap)(opening.chain, round_hub.chain)
+        yield Pair(opening.name, "hub", gap)
+    height = body.screw_height
+    if body.screw is None or height is None or body.thickness is None:
+        return
+    beyond = -height if hub.side == "bottom" else height - body.thickness
+    radius = 0.5 * body.screw.diameter
+    along = Opening("set screw", "HOLES", strip(0.5 * hub.diameter, body.screw.diameter, body.screw.at))
+    for opening in body.openings:
+        if opening.name != "bore" and opening.depth is None and _is_within(opening, hub.diameter):
+            yield Pair("set screw", opening.name, outside_gap(opening.chain, along.chain))
+    yield Pair("set screw", "the disc's face", Gap(beyond - radius, NOWHERE))
+    yield Pair("set screw", "the hub's face", Gap(hub.height - beyond - radius, NOWHERE))
+
+
+def _is_within(opening: Opening, diameter: float) -> bool:
+    x, y = opening.middle
+    return x * x + y * y < 0.25 * diameter * diameter

@@ -1,0 +1,172 @@
+"""Lightening holes placed where there is room: the largest circles that keep a wall from every edge, or a ring of them.
+
+The room round a point is its distance to the nearest edge. It is looked at on a grid and climbed from the best places;
+a hole's diameter then follows from the exact distances of its centre, rounded down. So a wall is kept exactly, while
+"largest" means the best that the search found.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.synthesis.part.shapes import Opening, disc
+from camgeo.synthesis.part.walls import distance_inside, intervals
+from kin.contour.arcs import Arcs
+from kin.contour.nearest import signed_distance
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Curve
+    from camgeo.recipe.part import Lightening
+    from kin.numeric.arrays import Array
+
+GRID = 49  # points of the search each way
+STARTS = 12  # places from which the room is climbed
+CENTRE, DIAMETER = 0.01, 0.1  # mm: steps of centres and diameters
+RINGS = 400  # radii of a ring that are tried
+SHRINK = 0.5  # of the step of a climb that finds nothing better
+
+
+@dataclass(frozen=True)
+class Placed:
+    """How many lightening holes were asked for and placed, and their diameters, mm."""
+
+    asked: int
+    diameters: tuple[float, ...]
+    wall: float
+    exactly: bool
+
+    @property
+    def area(self) -> float:
+        """Area taken away, mm^2."""
+        return 0.25 * math.pi * sum(d * d for d in self.diameters)
+
+
+def lightened(wanted: Lightening, contour: Curve, there: list[Opening], edge: float) -> tuple[list[Opening], Placed]:
+    """Holes in a contour round openings and hub that are there, `edge` more from the contour for its chamfer."""
+    room = _Room(contour, there, wanted.wall, edge)
+    least = 2.0 * wanted.wall if wanted.least is None else wanted.least
+    if wanted.ring is not None:
+        found = _ring(room, wanted.ring, wanted.start, least)
+    else:
+        found = _largest(room, wanted.largest or 0, least)
+    asked = wanted.ring or wanted.largest or 0
+    holes = [disc(f"lightening hole {k + 1}", "HOLES", centre, 0.5 * d) for k, (centre, d) in enumerate(found)]
+    return holes, Placed(asked, tuple(d for _, d in found), wanted.wall, wanted.ring is not None)
+
+
+Found = list[tuple[tuple[float, float], float]]
+
+
+class _Room:
+    """The radius that a hole about a point can have; grows fuller as holes are added."""
+
+    def __init__(self, contour: Curve, there: list[Opening], wall: float, edge: float) -> None:
+        self.contour, self.wall, self.edge = contour, wall, edge
+        self.chains = [opening.chain for opening in there if opening.circle is None]
+        self.discs = [(*opening.circle[0], opening.circle[1]) for opening in there if opening.circle is not None]
+        self.ring = contour.sample(intervals(contour)[0]).point
+        step = np.roll(self.ring, -1, axis=0) - self.ring
+        length = np.hypot(step[:, 0], step[:, 1])
+        kept = length > 0.0
+        tangent = step[kept] / length[kept, None]
+        self.polygon = Arcs(self.ring[kept], tangent, np.zeros(int(kept.sum())), length[kept])
+
+    def about(self, points: Array) -> Array:
+        """Radius (n,) about points (n, 2), the contour taken as a polygon; negative where there is none."""
+        least = np.minimum(-signed_distance(self.polygon, points) - self.edge, self.beside(points))
+        radius: Array = least - self.wall
+        return radius
+
+    def beside(self, points: Array) -> Array:
+        """Distance of points (n, 2) to the nearest opening (n,), infinite where there is none."""
+        least: Array = np.full(len(points), np.inf)
+        for x, y, radius in self.discs:
+            least = np.minimum(least, np.hypot(points[:, 0] - x, points[:, 1] - y) - radius)
+        for chain in self.chains:
+            least = np.minimum(least, signed_distance(chain, points))
+        return least
+
+    def exactly(self, centre: tuple[float, float]) -> float:
+        """The same about one point by the exact contour."""
+        inside, _ = distance_inside(self.contour, centre)
+        return min(inside - self.edge, float(self.beside(np.array([centre]))[0])) - self.wall
+
+    def fill(self, centre: tuple[float, float], diameter: float) -> None:
+        """Take the room of a hole."""
+        self.discs.append((*centre, 0.5 * diameter))
+
+
+def _down(value: float, step: float) -> float:
+    return round(step * math.floor(value / step + 1e-9), 9)
+
+
+def _largest(room: _Room, count: int, least: float) -> Found:
+    """One after the other the largest circle that still fits."""
+    found: Found = []
+    low, high = room.ring.min(axis=0), room.ring.max(axis=0)
+    x, y = (np.linspace(a, b, GRID) for a, b in zip(low.tolist(), high.tolist(), strict=True))
+    grid = np.column_stack([part.ravel() for part in np.meshgrid(x, y)])
+    grid = grid[room.about(grid) > 0.0]
+    pitch = float((high - low).max()) / (GRID - 1)
+    for _ in range(count):
+        if not grid.size:
+            break
+        radius = room.about(grid)
+        best = _climbed(room, grid[np.argsort(-radius, kind="stable")[:STARTS]], pitch)
+        centre = (round(best[0] / CENTRE) * CENTRE, round(best[1] / CENTRE) * CENTRE)
+        centre = (round(centre[0], 9), round(centre[1], 9))
+        diameter = _down(2.0 * room.exactly(centre), DIAMETER)
+        if diameter < least or diameter <= 0.0:
+            break
+        found.append((centre, diameter))
+        room.fill(centre, diameter)
+    return found
+
+
+def _climbed(room: _Room, points: Array, step: float) -> tuple[float, float]:
+    """Climb the room from points (n, 2), all at once, in eight directions; the best place reached."""
+    turns = np.arange(8) * 0.25 * np.pi
+    ways = np.column_stack([np.cos(turns), np.sin(turns)])
+    height = room.about(points)
+    while step > 0.2 * CENTRE:
+        tried = points[:, None, :] + step * ways
+        heights = room.about(tried.reshape(-1, 2)).reshape(len(points), -1)
+        which = heights.argmax(axis=1)
+        rows = np.arange(len(points))
+        better = heights[rows, which] > height
+        points = np.where(better[:, None], tried[rows, which], points)
+        height = np.where(better, heights[rows, which], height)
+        if not better.any():
+            step *= SHRINK
+    x, y = points[int(np.argmax(height))].tolist()
+    return x, y
+
+
+def _ring(room: _Room, count: int, start: float, least: float) -> Found:
+    """Equal holes at equal angles, on the circle on which they are largest."""
+    angle = start + 2.0 * np.pi * np.arange(count) / count
+    u = np.column_stack([np.cos(angle), np.sin(angle)])
+    reach = float(np.hypot(room.ring[:, 0], room.ring[:, 1]).max())
+    between = math.sin(math.pi / count)
+
+    def size(radii: Array) -> Array:
+        about = room.about((radii[:, None, None] * u).reshape(-1, 2)).reshape(len(radii), count).min(axis=1)
+        equal: Array = np.minimum(about, radii * between - 0.5 * room.wall)
+        return equal
+
+    low, high = 0.0, reach
+    for _ in range(4):
+        radii = np.linspace(low, high, RINGS)
+        best = int(np.argmax(size(radii)))
+        low, high = float(radii[max(best - 1, 0)]), float(radii[min(best + 1, RINGS - 1)])
+    radius = round(round(float(radii[best]) / CENTRE) * CENTRE, 9)
+    centres = [(radius * float(x), radius * float(y)) for x, y in u]
+    fits = min([*(room.exactly(centre) for centre in centres), radius * between - 0.5 * room.wall])
+    diameter = _down(2.0 * fits, DIAMETER)
+    if diameter < least or diameter <= 0.0:
+        return []
+    return [(centre, diameter) for centre in centres]

@@ -1,0 +1,128 @@
+"""Closed outlines of lines and arcs for what is cut into a part: circles, keyed bores, flats, polygons, slots.
+
+In the cam's axes, mm, counter-clockwise. A circle is two halves; `centre` and `radius` of one are kept for drawing.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from camgeo.fit.pieces import ArcSpline, Bound
+from kin.contour.contour import Contour
+
+if TYPE_CHECKING:
+    from kin.contour.arcs import Arcs
+    from kin.numeric.arrays import Array
+
+EXACT = Bound(0.0, 0.0)
+QUARTER = 1e-14  # rad: an angle this near to a quarter turn is one, rounded
+Layer = Literal["BORE", "HOLES", "MARK", "ENGRAVE"]
+
+
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """One closed outline cut into the part: through everything, or `depth` mm into the upper face of the disc.
+
+    `layer` is that of a drawing; `circle` is the centre and radius of a round one, None of any other.
+    """
+
+    name: str
+    layer: Layer
+    outline: ArcSpline
+    circle: tuple[tuple[float, float], float] | None = None
+    depth: float | None = None
+
+    def mirrored(self) -> Opening:
+        """Mirror about the x axis."""
+        circle = self.circle and ((self.circle[0][0], -self.circle[0][1]), self.circle[1])
+        return Opening(self.name, self.layer, self.outline.mirrored(), circle, self.depth)
+
+    @cached_property
+    def chain(self) -> Arcs:
+        """The outline as lines and arcs of at most half a turn."""
+        return Contour.from_bulges(self.outline.points, self.outline.bulges).as_arcs()[0]
+
+    @cached_property
+    def middle(self) -> tuple[float, float]:
+        """Middle of the bounding box."""
+        x_min, y_min, x_max, y_max = self.outline.box()
+        return 0.5 * (x_min + x_max), 0.5 * (y_min + y_max)
+
+    @cached_property
+    def reach(self) -> float:
+        """Greatest distance from the middle, or a little more."""
+        x_min, y_min, x_max, y_max = self.outline.box()
+        return 0.5 * math.hypot(x_max - x_min, y_max - y_min)
+
+
+def disc(name: str, layer: Layer, centre: tuple[float, float], radius: float) -> Opening:
+    """Round opening."""
+    x, y = centre
+    points = np.array([[x + radius, y], [x - radius, y]])
+    return Opening(name, layer, ArcSpline(points, np.ones(2), EXACT), (centre, radius))
+
+
+def keyed(radius: float, width: float, depth: float, at: float) -> ArcSpline:
+    """Circle about the origin with a keyway of this width, its floor `depth` beyond the circle (DIN 6885 t2)."""
+    half = 0.5 * width
+    floor, corner = radius + depth, math.sqrt(radius * radius - half * half)
+    sweep = 2.0 * (math.pi - math.asin(half / radius))
+    points = np.array([[corner, half], [corner, -half], [floor, -half], [floor, half]])
+    return ArcSpline(_turned(points, at), np.array([math.tan(0.25 * sweep), 0.0, 0.0, 0.0]), EXACT)
+
+
+def flattened(radius: float, across: float, at: float) -> ArcSpline:
+    """Circle about the origin with a flat, `across` from its opposite side; the flat's normal points to `at`."""
+    height = across - radius
+    half = math.sqrt(radius * radius - height * height)
+    sweep = 2.0 * (math.pi - math.acos(height / radius))
+    points = np.array([[height, half], [height, -half]])
+    return ArcSpline(_turned(points, at), np.array([math.tan(0.25 * sweep), 0.0]), EXACT)
+
+
+def polygonal(sides: int, across: float, at: float) -> ArcSpline:
+    """Regular polygon about the origin, `across` from flat to flat, one flat's normal pointing to `at`."""
+    corner = 0.5 * across / math.cos(math.pi / sides)
+    angle = at + (2.0 * np.arange(sides) - 1.0) * math.pi / sides
+    points = corner * np.column_stack([np.cos(angle), np.sin(angle)])
+    return ArcSpline(points, np.zeros(sides), EXACT)
+
+
+def slot(inner: float, outer: float, width: float) -> ArcSpline:
+    """Slot with round ends on the ray at 0, from radius `inner` to `outer`."""
+    half = 0.5 * width
+    points = np.array([[inner + half, -half], [outer - half, -half], [outer - half, half], [inner + half, half]])
+    return ArcSpline(points, np.array([0.0, 1.0, 0.0, 1.0]), EXACT)
+
+
+def strip(reach: float, width: float, at: float) -> ArcSpline:
+    """Rectangle of this width along a ray, from the origin to a radius."""
+    half = 0.5 * width
+    points = np.array([[0.0, -half], [reach, -half], [reach, half], [0.0, half]])
+    return ArcSpline(_turned(points, at), np.zeros(4), EXACT)
+
+
+def polar(radius: float, angle: float) -> tuple[float, float]:
+    """Point at a radius and angle; exact on the axes."""
+    c, s = _direction(angle)
+    return radius * c + 0.0, radius * s + 0.0
+
+
+def _turned(points: Array, at: float) -> Array:
+    """Turn points (n, 2) about the origin; by nothing or quarter turns exactly."""
+    c, s = _direction(at)
+    turned: Array = points @ np.array([[c, s], [-s, c]])
+    return turned
+
+
+def _direction(angle: float) -> tuple[float, float]:
+    """Cosine and sine, exact at quarter turns."""
+    quarters = round(angle / (0.5 * math.pi))
+    if abs(angle - quarters * 0.5 * math.pi) < QUARTER:
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarters % 4]
+    return math.cos(angle), math.sin(angle)

@@ -1,0 +1,169 @@
+"""Least walls: what is left of the metal between two edges of a part, and where.
+
+A least distance stands where the line between two feet meets an edge square. Between two looked-at points of one edge
+the square is met where the product of foot vector and tangent changes its sign upwards, and is root-found there.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.curve.curvature import roots
+from kin.contour.arcs import dot, nearest_on
+from kin.contour.nearest import nearest, signed_distance
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Curve, Frame
+    from kin.contour.arcs import Arcs
+    from kin.numeric.arrays import Array, Indices
+
+LOOKS_PER_TURN = 768  # points of a contour, about, at which the distance is looked at
+PART_TURN = 0.1  # rad: an arc is looked at about so often
+PARTS = 12  # and each of its pieces at least so often
+SETTLED = 1e-9  # of the interval: a least distance is off by the square of this
+
+
+class Gap(NamedTuple):
+    """A wall in mm, negative where edges cross; its place on one edge, and the parameter there of a contour."""
+
+    wall: float
+    place: tuple[float, float]
+    parameter: float | None = None
+
+
+def least_wall(contour: Curve, bore: float) -> tuple[float, float]:
+    """Least wall in mm between a bore of this diameter about the shaft and the contour, and where (parameter).
+
+    Negative where the bore breaks through, and where the shaft lies outside the contour.
+    """
+    distance, at = distance_inside(contour, (0.0, 0.0))
+    return distance - 0.5 * bore, at
+
+
+def distance_inside(contour: Curve, place: tuple[float, float]) -> tuple[float, float]:
+    """How far a point lies inside a contour, mm, negative outside, and the parameter of the nearest point."""
+    origin = np.array(place)
+    low, high, first, last = _looked_at(contour)
+    # between two nodes the nearest point is where the radius meets the tangent square: its product changes sign upwards
+    falls, rises = _outward(first, origin), _outward(last, origin)
+    turning = (falls < 0.0) & (rises > 0.0)
+    nearest_points = roots(
+        lambda t: _outward(contour.sample(t), origin),
+        low[turning],
+        high[turning],
+        (falls[turning], rises[turning]),
+        SETTLED,
+    )
+    nodes = np.concatenate([low, nearest_points])
+    point = contour.sample(nodes).point - origin
+    distance = np.hypot(point[:, 0], point[:, 1])
+    nearest_node = int(np.argmin(distance))
+    side = 1.0 if winds(first.point - origin) else -1.0
+    return side * float(distance[nearest_node]), float(nodes[nearest_node])
+
+
+def contour_gap(contour: Curve, chain: Arcs) -> Gap:
+    """Wall between a closed chain inside a contour and that contour; negative where they cross or it lies outside."""
+    low, high, first, last = _looked_at(contour)
+    falls, rises = _from_chain(chain, first.point, first.tangent), _from_chain(chain, last.point, last.tangent)
+    turning = (falls < 0.0) & (rises > 0.0)
+
+    def product(t: Array) -> Array:
+        at = contour.sample(t)
+        return _from_chain(chain, at.point, at.tangent)
+
+    found = roots(product, low[turning], high[turning], (falls[turning], rises[turning]), SETTLED)
+    nodes = np.concatenate([low, found])
+    point = contour.sample(nodes).point
+    distance = signed_distance(chain, point)
+    least = int(np.argmin(distance))
+    wall = float(distance[least])
+    if wall > 0.0 and not winds(first.point - chain.start[0]):
+        wall = -wall
+    return Gap(wall, _place(point[least]), float(nodes[least]))
+
+
+def outside_gap(one: Arcs, other: Arcs) -> Gap:
+    """Wall between two closed chains, each to lie outside the other; negative where they cross or one holds another."""
+    gap = _chain_gap(one, other, 1.0)
+    held = float(signed_distance(one, other.start[:1])[0])
+    return gap if held > 0.0 else Gap(min(gap.wall, held), _place(other.start[0]))
+
+
+def inside_gap(inner: Arcs, outer: Arcs) -> Gap:
+    """Wall between a closed chain and the one that is to hold it; negative where they cross or it does not."""
+    return _chain_gap(inner, outer, -1.0)
+
+
+def _chain_gap(one: Arcs, other: Arcs, side: float) -> Gap:
+    """Least signed distance of the points of one chain outside (side 1) or inside (-1) the other."""
+    turns = np.abs(one.curvature) * one.length
+    parts, _ = one.cut(np.maximum(np.ceil(turns / PART_TURN), PARTS).astype(np.intp))
+    falls = side * _from_chain(other, parts.start, parts.tangent)
+    rises = side * _from_chain(other, parts.ends, parts.end_tangents)
+    turning = np.flatnonzero((falls < 0.0) & (rises > 0.0))
+
+    def product(s: Array) -> Array:
+        here = parts.take(turning)
+        return side * _from_chain(other, here.points(s), here.tangents(s))
+
+    zero = np.zeros(turning.size)
+    found = roots(product, zero, parts.length[turning], (falls[turning], rises[turning]), SETTLED)
+    point = np.concatenate([parts.start, parts.take(turning).points(found)])
+    distance = side * signed_distance(other, point)
+    least = int(np.argmin(distance))
+    return Gap(float(distance[least]), _place(point[least]))
+
+
+def _place(point: Array) -> tuple[float, float]:
+    x, y = point.tolist()
+    return x, y
+
+
+def _from_chain(chain: Arcs, point: Array, tangent: Array) -> Array:
+    """Rate at which the distance outside a chain grows along tangents (n, 2) at points, times that distance (n,)."""
+    piece, _ = nearest(chain, point)
+    return _along(chain, piece, point, tangent)
+
+
+def _along(chain: Arcs, piece: Indices, point: Array, tangent: Array) -> Array:
+    here = chain.take(piece)
+    s, _ = nearest_on(here, point)
+    product = dot(point - here.points(s), tangent)
+    return np.sign(signed_distance(chain, point)) * product
+
+
+def _looked_at(contour: Curve) -> tuple[Array, Array, Frame, Frame]:
+    """Intervals between the points of a contour that are looked at, and the frames at their ends."""
+    low, high = intervals(contour)
+    return (low, high, *contour.span(low, high))
+
+
+def intervals(contour: Curve) -> tuple[Array, Array]:
+    """Cut the cells of a contour into parts of about its period over LOOKS_PER_TURN: their ends (n,), (n,)."""
+    cells = contour.cells
+    width = cells.high - cells.low
+    parts = np.maximum(np.ceil(width * (LOOKS_PER_TURN / contour.shape.period)), 1.0).astype(np.intp)
+    owner = np.repeat(np.arange(parts.size), parts)
+    number = np.arange(owner.size) - np.repeat(np.cumsum(parts) - parts, parts)
+    low = cells.low[owner] + width[owner] * (number / parts[owner])
+    last = number + 1 == parts[owner]
+    high = np.where(last, cells.high[owner], np.append(low[1:], 0.0))
+    return low, high
+
+
+def winds(ring: Array) -> bool:
+    """Whether a closed ring of points (n, 2) runs round the origin."""
+    around = np.append(ring, ring[:1], axis=0)
+    turned = np.arctan2(
+        around[:-1, 0] * around[1:, 1] - around[:-1, 1] * around[1:, 0], np.sum(around[:-1] * around[1:], axis=1)
+    )
+    return abs(float(turned.sum())) > np.pi
+
+
+def _outward(at: Frame, origin: Array) -> Array:
+    """Distance from the origin times the rate at which it grows along the curve (n,)."""
+    product: Array = np.sum((at.point - origin) * at.tangent, axis=1)
+    return product

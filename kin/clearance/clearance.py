@@ -1,0 +1,330 @@
+"""Clearance between moving flat bodies over one whole turn of the shaft, with a proved lower bound.
+
+Bodies are stacks of slabs: regions with holes, between two heights. Two slabs are held against each other in plan where
+their heights overlap. D is the distance between the two regions, below 0 where they overlap (`kin.clearance.distance`).
+
+The least of D over the turn is found by halving intervals of the shaft angle. Over an interval of half width h about
+phi,  D >= D(phi) - L h,  L the bound of the rate of D there. An interval is closed when that is no more than the
+accuracy below the least D found; what is left is halved. The least of the bounds of all closed intervals is below D at
+every angle, however narrow the window in which two bodies meet: nothing rests on how the turn was sampled. Pairs of
+features that cannot be the nearest within an interval are left out in all parts of it.
+
+The bound is one for the motions and contours as stated, up to rounding (about 1e-9 mm) and 1e-5 mm where a contour has
+splines; how far a sampled motion may be from the true one is given beside it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations, product
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.clearance.distance import DEPTH_SHARE, Encounter, Pairs, rates, see
+from kin.clearance.pose import alike
+from kin.contour.arcs import turned
+from kin.contour.region import Region
+from kin.numeric.angles import TURN, degrees
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from kin.clearance.distance import Seen
+    from kin.clearance.pose import Motion
+    from kin.contour.contour import Contour
+    from kin.numeric.arrays import Array, Mask
+
+__all__ = ["Allowed", "Clearance", "Mover", "Slab", "clearances"]
+
+CELLS = 64  # intervals of a turn to begin with
+FIRST = 4  # of them are looked at before the rest
+AT_ONCE = 256  # intervals that are worked on together
+FINEST = 4  # times that pieces are halved along with the intervals
+FEW = 16  # pairs in play for each interval, below which halves of their pieces cost less than they tell
+MOST = 60_000  # intervals that a pair of bodies may take
+TOUCHING = 1e-9  # mm, by which heights may overlap by rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Slab:
+    """A horizontal slab from z `low` to `high`: an outline with holes in it, in the axes of its body, mm."""
+
+    outer: Contour
+    holes: tuple[Contour, ...]
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        if not self.low < self.high:
+            raise ValueError(f"a slab from z = {self.low!r} to {self.high!r} mm has no height")
+
+    @cached_property
+    def region(self) -> Region:
+        """The inside of the outline without that of the holes."""
+        return Region.of(self.outer, self.holes)
+
+
+@dataclass(frozen=True, eq=False)
+class Mover:
+    """A body: its slabs, and its motion over one turn of the shaft (`kin.clearance.pose`)."""
+
+    name: str
+    slabs: tuple[Slab, ...]
+    motion: Motion
+
+    @property
+    def reach(self) -> float:
+        """Distance of its farthest point from its own origin, at most; mm."""
+        return max(float(np.hypot(*slab.region.disc[0])) + slab.region.disc[1] for slab in self.slabs)
+
+    @property
+    def slack(self) -> float:
+        """How far a point of it may be from where its motion says; mm."""
+        place, angle = self.motion.slack
+        return place + angle * self.reach
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """Two bodies meant to come closer than others: the least gap meant, 0 for contact, less a tolerance; mm.
+
+    A gap of -inf exempts the pair: it is not looked at.
+    """
+
+    a: str
+    b: str
+    gap: float = 0.0
+    tolerance: float = 0.0
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """Least clearance of two bodies over one turn.
+
+    least         least distance in plan found, mm; below 0 where they overlap, by as much as the deepest point of
+                  either lies in the other
+    at_deg        shaft angle there, [0, 360)
+    place         where, in the fixed axes, mm: midway between the nearest points, or the deepest point
+    proved        no angle has less than this
+    slack         how far the bodies may be from where their motions say, mm, both together; 0 unless sampled
+    required      the least gap asked for; `tolerance` the deviation allowed from it
+    evaluations   number of angles looked at
+    """
+
+    a: str
+    b: str
+    least: float
+    at_deg: float
+    place: tuple[float, float]
+    proved: float
+    slack: float
+    required: float
+    tolerance: float
+    evaluations: int
+
+    @property
+    def holds(self) -> bool:
+        """Whether the gap asked for is proved, sampling and tolerance considered."""
+        return self.proved - self.slack >= self.required - self.tolerance
+
+    @property
+    def collides(self) -> bool:
+        """Whether an angle was found at which the gap is too small for certain."""
+        return self.least + self.slack < self.required - self.tolerance
+
+
+def clearances(
+    movers: Sequence[Mover],
+    allowed: Iterable[Allowed] = (),
+    *,
+    gap: float = 0.0,
+    axial: float = 0.0,
+    accuracy: float = 1e-3,
+    share: float = 1e-3,
+) -> list[Clearance]:
+    """Clearance of every pair of bodies that has slabs at common heights, in the order of the movers.
+
+    `gap` is asked of all pairs that are not `allowed` another; of those allowed a tolerance no more is proved than that
+    they keep to it. Slabs less than `axial` apart in height count as at one
+    height; those that only touch do not, at 0. `least` and `proved` differ by no more than the greatest of `accuracy`
+    mm, a quarter of the pair's tolerance, `share` of what is over or short of the gap asked for, and 5 % of a depth;
+    more only where that takes more than 60,000 angles. Raises ValueError for two movers of one name and for a pair
+    allowed that is none.
+    """
+    names = [mover.name for mover in movers]
+    if len(set(names)) < len(names):
+        raise ValueError("two movers have one name")
+    asked = {frozenset((one.a, one.b)): one for one in allowed}
+    for pair in asked:
+        if len(pair) != 2 or not pair <= set(names):
+            raise ValueError(f"no such pair of bodies: {' and '.join(sorted(pair))}")
+    found = []
+    for one, other in combinations(movers, 2):
+        wanted = asked.get(frozenset((one.name, other.name)), Allowed(one.name, other.name, gap))
+        if wanted.gap == -math.inf:
+            continue
+        search = _Search(one, other, wanted, max(accuracy, 0.25 * wanted.tolerance), share)
+        for first, second in product(one.slabs, other.slabs):
+            if max(first.low, second.low) - min(first.high, second.high) < axial - TOUCHING:
+                search.run((first.region, second.region))
+        if search.evaluations:
+            found.append(search.clearance())
+    return found
+
+
+class _Cells(NamedTuple):
+    """Intervals phi +- half (m,), lower bounds of D over them (m,), and the pairs that may be the nearest, if known.
+
+    `regions` are those that the pairs are of: the finer, the shorter the intervals.
+    """
+
+    phi: Array
+    half: Array
+    lower: Array
+    regions: tuple[Region, Region]
+    level: int = 0
+    pairs: Pairs | None = None
+
+    def within(self, kept: Mask) -> _Cells:
+        """Return the intervals kept (m,)."""
+        pairs = self.pairs and self.pairs.within(kept)
+        return self._replace(phi=self.phi[kept], half=self.half[kept], lower=self.lower[kept], pairs=pairs)
+
+    def halved(self) -> _Cells:
+        """Both halves of each interval: all first halves, then all second ones."""
+        quarter, pairs, regions, level = 0.5 * self.half, self.pairs, self.regions, self.level
+        if pairs is not None:
+            if level < FINEST and len(pairs.cell) < FEW * len(self.phi):
+                first, second = regions
+                pairs, regions, level = pairs.finer(first, second), (first.finer, second.finer), level + 1
+            after = pairs._replace(cell=pairs.cell + len(self.phi))
+            pairs = Pairs(*(np.concatenate(rows) for rows in zip(pairs, after, strict=True)))
+        phi = np.concatenate([self.phi - quarter, self.phi + quarter])
+        return _Cells(phi, np.tile(quarter, 2), np.tile(self.lower, 2), regions, level, pairs)
+
+
+class _Search:
+    """The least of D of two bodies: what has been found and proved so far, over one pair of slabs after another."""
+
+    def __init__(self, one: Mover, other: Mover, wanted: Allowed, accuracy: float, share: float) -> None:
+        self.one, self.other, self.wanted = one, other, wanted
+        self.accuracy, self.share = accuracy, share
+        self.slack = one.slack + other.slack
+        self.least, self.at, self.place = math.inf, 0.0, (math.nan, math.nan)
+        self.proved = math.inf
+        self.evaluations = 0
+
+    @property
+    def margin(self) -> float:
+        """How far below the least found the bound may stay."""
+        if math.isinf(self.least):
+            return 0.0
+        over = self.share * abs(self.least - self.wanted.gap)
+        return max(self.accuracy, over, -2.5 * DEPTH_SHARE * self.least)
+
+    def run(self, regions: tuple[Region, Region]) -> None:
+        """Search the turn for one pair of slabs."""
+        stack = self._begin(regions)
+        while stack:
+            cells = stack.pop()
+            cells = cells.within(self._open(cells.lower))
+            if self.evaluations >= MOST:
+                self.proved = min(self.proved, float(cells.lower.min(initial=math.inf)))
+            elif len(cells.phi) > AT_ONCE:
+                chosen = _lowest(cells.lower, AT_ONCE)
+                stack += [cells.within(~chosen), cells.within(chosen)]
+            elif len(cells.phi):
+                stack += self._looked_at(cells)
+
+    def _begin(self, regions: tuple[Region, Region]) -> list[_Cells]:
+        """Intervals to begin with, the most promising ones apart; a single angle if the bodies move as one."""
+        count = 1 if alike(self.one.motion, self.other.motion) else CELLS
+        half = np.full(count, TURN / (2 * count) if count > 1 else 0.0)
+        phi = (2 * np.arange(count) + 1) * half
+        cells = _Cells(phi, half, np.full(count, -math.inf), regions)
+        meeting = self._meeting(cells)
+        cells = cells._replace(lower=meeting.discs_apart - half * meeting.fastest)
+        chosen = _lowest(cells.lower, FIRST)
+        return [cells.within(~chosen), cells.within(chosen)]
+
+    def _meeting(self, cells: _Cells) -> Encounter:
+        home, body = (mover.motion.over(cells.phi, cells.half) for mover in (self.one, self.other))
+        return Encounter.of(cells.regions, home, body, cells.half)
+
+    def _open(self, lower: Array) -> Mask:
+        """Which intervals may still hold a lesser D, by their bounds (m,); those of the others are kept."""
+        enough = self.least - self.margin
+        if self.wanted.tolerance > 0.0:
+            enough = min(enough, self.wanted.gap - self.wanted.tolerance + self.slack)
+        open_: Mask = lower < enough
+        self.proved = min(self.proved, float(lower[~open_].min(initial=math.inf)))
+        return open_
+
+    def _looked_at(self, cells: _Cells) -> list[_Cells]:
+        """Work out D at the middle of each interval; what is left, halved."""
+        meeting = self._meeting(cells)
+        self.evaluations += len(cells.phi)
+        if cells.pairs is None:
+            return self._first_look(cells, meeting)
+        pairs, half, fastest = cells.pairs, cells.half, meeting.fastest
+        seen = see(meeting, pairs, 0.25 * self.accuracy)
+        self._take(cells.phi, seen)
+        size = np.abs(seen.value) + seen.doubt
+        reachable = seen.gap <= (size + 2.0 * half * fastest)[pairs.cell]
+        pairs, gap = pairs.take(reachable), seen.gap[reachable]
+        rate, speed = rates(meeting, pairs, seen.value - seen.doubt > half * fastest)
+        heads = np.searchsorted(pairs.cell, np.arange(len(half)))
+        bound = np.minimum(fastest, np.maximum.reduceat(speed, heads))
+        for _ in range(2):
+            # a pair is in play only if both it and D can have come so near; fewer pairs in play bound D's rate lower
+            in_play = gap <= (size + half * bound)[pairs.cell] + half[pairs.cell] * speed
+            bound = np.minimum(bound, np.maximum.reduceat(np.where(in_play, rate, 0.0), heads))
+        lower = np.maximum(cells.lower, seen.value - seen.doubt - half * bound)
+        left = cells._replace(lower=lower, pairs=pairs.take(in_play))
+        return [left.within(self._open(lower)).halved()]
+
+    def _first_look(self, cells: _Cells, meeting: Encounter) -> list[_Cells]:
+        """Find D among all pairs of features; what the greatest speed of all leaves open, with the pairs in play."""
+        nowhere = np.full(len(cells.phi), np.nan)
+        seen = see(meeting, meeting.near(nowhere, cells.half * 0.0), 0.25 * self.accuracy, whole=True)
+        self._take(cells.phi, seen)
+        lower = np.maximum(cells.lower, seen.value - seen.doubt - cells.half * meeting.fastest)
+        open_ = self._open(lower)
+        left = cells._replace(lower=lower).within(open_)
+        if not open_.any():
+            return []
+        meeting = self._meeting(left)
+        size = (np.abs(seen.value) + seen.doubt)[open_]
+        return [left._replace(pairs=meeting.near(size, left.half))]
+
+    def _take(self, phi: Array, seen: Seen) -> None:
+        k = int(np.argmin(seen.value))
+        if seen.value[k] < self.least:
+            self.least, self.at = float(seen.value[k]), float(phi[k])
+            pose = self.one.motion.over(phi[k : k + 1], np.zeros(1)).pose
+            x, y = (turned(seen.place[k : k + 1], pose[:, 2]) + pose[:, :2])[0].tolist()
+            self.place = (x, y)
+
+    def clearance(self) -> Clearance:
+        """Sum up."""
+        return Clearance(
+            a=self.one.name,
+            b=self.other.name,
+            least=self.least,
+            at_deg=degrees(self.at),
+            place=self.place,
+            proved=min(self.proved, self.least),
+            slack=self.slack,
+            required=self.wanted.gap,
+            tolerance=self.wanted.tolerance,
+            evaluations=self.evaluations,
+        )
+
+
+def _lowest(values: Array, count: int) -> Mask:
+    """Mark the lowest values (m,), `count` of them."""
+    chosen: Mask = np.isin(np.arange(len(values)), np.argsort(values, kind="stable")[:count])
+    return chosen

@@ -1,0 +1,346 @@
+"""Two flat regions in relative motion: their distance at an angle, and how fast it can change over an interval.
+
+The distance D is that between the regions where they are apart. Where they overlap it is less than 0: D = -d when a
+point of one boundary (or one point kept well inside) lies as deep as d in the other region, and none deeper. D is
+continuous, and it is the least, over points b of the one, of the signed distance of b from the other.
+
+Rate of D. Where D is attained at b, and a is the point nearest to b on the other boundary, the line ab is a normal n
+there, and D changes at the rate n.v, v the velocity of b's body relative to a's at any point of that line: along it the
+velocities of a rigid body have one component. The line passes through the centre of the arc that a lies on. If b is no
+corner it is also a normal of the arc of b, and passes through that centre. Where several a are nearest at once, the
+derivative is an average of their rates, and the average of their normals is a normal at b no longer than one (Clarke's
+rule for a least of greatest values), so the same bounds hold. Each pair of features that may be the nearest within an
+interval gives a bound by the normals it has and the velocities at its centre or on it; the greatest of them bounds the
+rate of D. So a disc turning about its centre has rate 0, and rolling contact nearly so, though points pass at speed.
+
+A pair may be the nearest only if its distance at the middle exceeds |D| by no more than both can change meanwhile.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.contour.arcs import dot, left, turned
+from kin.contour.region import gaps, moved
+
+if TYPE_CHECKING:
+    from kin.clearance.pose import Course
+    from kin.contour.arcs import Arcs
+    from kin.contour.region import Gaps, Region
+    from kin.numeric.arrays import Array, Indices, Mask
+
+__all__ = ["DEPTH_SHARE", "Encounter", "Pairs", "Relative", "Seen", "distances", "fastest", "rates", "see"]
+
+ROUNDS = 40  # halvings of a piece searched for its deepest point: its bound is then a 2^41st of it below its middle
+DEPTH_SHARE = 0.02  # precision of a depth, as a part of it
+
+
+@dataclass(frozen=True, eq=False)
+class Relative:
+    """Motion of a body relative to another over m intervals, in the other's axes (`home`), as it is at the middle.
+
+    place (m, 2), angle (m,)  of the body at the middle
+    drift (m, 2), turn (m,)   velocity at the place of the home's origin, rad/rad of turning, both relative to the home
+    stray (m,), twist (m,)    how far those may be off anywhere in the interval, `drift` in the home's own axes
+    half (m,)                 half the interval
+    """
+
+    place: Array
+    angle: Array
+    drift: Array
+    turn: Array
+    stray: Array
+    twist: Array
+    half: Array
+
+    @staticmethod
+    def of(home: Course, body: Course, half: Array) -> Relative:
+        """Work out the motion of `body` as seen from `home`, over the intervals of both courses."""
+        back = -home.pose[:, 2]
+        gap = body.pose[:, :2] - home.pose[:, :2]
+        flow = body.rate[:, :2] - home.rate[:, :2]
+        loose = np.hypot(*(body.spread + home.spread)[:, :2].T)
+        speed = np.hypot(flow[:, 0], flow[:, 1]) + loose
+        away = np.hypot(gap[:, 0], gap[:, 1])
+        spin, own = (np.abs(c.rate[:, 2]) + c.spread[:, 2] for c in (body, home))
+        # seen from the home, what is fixed in direction turns; and the gap between the origins changes
+        change = speed + own * (away + speed * half)
+        stray = loose + speed * own * half + body.spread[:, 2] * away + spin * change * half
+        return Relative(
+            place=turned(gap, back),
+            angle=body.pose[:, 2] + back,
+            drift=turned(flow - body.rate[:, 2:] * left(gap), back),
+            turn=body.rate[:, 2] - home.rate[:, 2],
+            stray=stray,
+            twist=body.spread[:, 2] + home.spread[:, 2],
+            half=half,
+        )
+
+    @cached_property
+    def spin(self) -> Array:
+        """Greatest relative turning (m,)."""
+        return np.abs(self.turn) + self.twist
+
+    def at(self, cell: Indices, point: Array) -> tuple[Array, Array]:
+        """Velocity (k, 2) of the body where home's points (k, 2) are, and by how much it may be off (k,)."""
+        velocity = self.drift[cell] + self.turn[cell, None] * left(point)
+        return velocity, self.stray[cell] + self.twist[cell] * np.hypot(point[:, 0], point[:, 1])
+
+    def along(self, cell: Indices, point: Array) -> tuple[Array, Array]:
+        """Velocity of the body's own points (k, 2), that are there at the middle, and by how much it may be off (k,).
+
+        They move with their velocity, which changes by the turning times how far they get: hence the exponential.
+        """
+        velocity, off = self.at(cell, point)
+        spin, half = self.spin[cell], self.half[cell]
+        speed = np.hypot(velocity[:, 0], velocity[:, 1]) + off
+        return velocity, off + spin * half * speed * np.exp(spin * half)
+
+
+class Pairs(NamedTuple):
+    """Pairs of features (k,) that may be the nearest within an interval: interval, rising, and a feature of either."""
+
+    cell: Indices
+    first: Indices
+    second: Indices
+
+    def take(self, index: Indices | Mask) -> Pairs:
+        """Return the pairs chosen."""
+        return Pairs(self.cell[index], self.first[index], self.second[index])
+
+    def finer(self, first: Region, second: Region) -> Pairs:
+        """Return the pairs of the features' halves, in the finer regions."""
+        cell, (i, j) = (
+            self.cell,
+            (
+                feature + np.minimum(feature, region.pieces)
+                for feature, region in ((self.first, first), (self.second, second))
+            ),
+        )
+        more_i, more_j = self.first < first.pieces, self.second < second.pieces
+        both = more_i & more_j
+        order = np.argsort(rows := np.concatenate([cell, cell[more_i], cell[more_j], cell[both]]), kind="stable")
+        return Pairs(
+            rows[order],
+            np.concatenate([i, i[more_i] + 1, i[more_j], i[both] + 1])[order],
+            np.concatenate([j, j[more_i], j[more_j] + 1, j[both] + 1])[order],
+        )
+
+    def within(self, kept: Mask) -> Pairs:
+        """Return the pairs of the intervals kept (m,), which are numbered anew."""
+        chosen = self.take(kept[self.cell])
+        return chosen._replace(cell=(np.cumsum(kept) - 1)[chosen.cell])
+
+
+@dataclass(frozen=True, eq=False)
+class Encounter:
+    """Two regions over m intervals: the motion of the second seen from the first, and of the first from the second."""
+
+    first: Region
+    second: Region
+    motion: Relative
+    back: Relative
+
+    @staticmethod
+    def of(regions: tuple[Region, Region], home: Course, body: Course, half: Array) -> Encounter:
+        """Put the regions on two courses over the same intervals of half width `half` (m,)."""
+        return Encounter(*regions, Relative.of(home, body, half), Relative.of(body, home, half))
+
+    @cached_property
+    def fastest(self) -> Array:
+        """Greatest speed of any point of either region relative to the other (m,)."""
+        return np.minimum(fastest(self.second, self.motion), fastest(self.first, self.back))
+
+    @cached_property
+    def discs_apart(self) -> Array:
+        """Lower bound of D at the middles (m,), from the discs about both regions."""
+        (centre, radius), (other, reach) = self.first.disc, self.second.disc
+        gap = _placed(other[None], self.motion)[:, 0] - centre
+        return np.hypot(gap[:, 0], gap[:, 1]) - radius - reach
+
+    def near(self, size: Array, half: Array) -> Pairs:
+        """Pairs that may be the nearest at less than `half` (m,) from each middle, by the discs about them.
+
+        `size` (m,) is a bound of |D| at the middle. Where it is nan the distance of the boundaries is bounded instead,
+        by that of the two features whose middles are nearest.
+        """
+        a, b = self.first.middle, self.second.middle
+        reach = self.first.reach[:, None] + self.second.reach
+        rim = (np.arange(len(a)) < self.first.boundary)[:, None] & (np.arange(len(b)) < self.second.boundary)
+        places = _placed(b, self.motion)
+        margin = 2.0 * half * self.fastest
+        found = []
+        for cell, (place, bound) in enumerate(zip(places, size, strict=True)):
+            gap = np.hypot(a[:, None, 0] - place[:, 0], a[:, None, 1] - place[:, 1])
+            limit = gap[rim].min() if np.isnan(bound) else bound
+            i, j = np.nonzero(gap - reach <= limit + margin[cell])
+            found.append(Pairs(np.full(len(i), cell), i, j))
+        return Pairs(*(np.concatenate(rows) for rows in zip(*found, strict=True)))
+
+
+def fastest(body: Region, motion: Relative) -> Array:
+    """Greatest speed of any point of the body over intervals (m,): that of a disc's centre, and what turning adds."""
+    centre, radius = body.disc
+    velocity, off = motion.along(np.arange(len(motion.half)), _placed(centre[None], motion)[:, 0])
+    speed: Array = np.hypot(velocity[:, 0], velocity[:, 1]) + off + motion.spin * radius
+    return speed
+
+
+def _placed(points: Array, motion: Relative) -> Array:
+    """Points (n, 2) of the body in the home's axes at the middles of the intervals: (m, n, 2)."""
+    c, s = np.cos(motion.angle)[:, None], np.sin(motion.angle)[:, None]
+    x, y = points[:, 0], points[:, 1]
+    return np.stack([c * x - s * y, s * x + c * y], axis=2) + motion.place[:, None]
+
+
+class Seen(NamedTuple):
+    """What is known at the middle of each interval (m,): D, no farther off than `doubt`, and where (m, 2), home's axes.
+
+    `gap` (k,) is the distance of each pair given, or below it.
+    """
+
+    value: Array
+    doubt: Array
+    place: Array
+    gap: Array
+
+
+def see(meeting: Encounter, pairs: Pairs, precision: float, *, whole: bool = False) -> Seen:
+    """Find D at the middle of each interval from the pairs that may be the nearest there; every interval has one.
+
+    Depths are found to `precision`, or 2 %; `whole`: among all features, not only those paired.
+    """
+    first, second, motion = meeting.first, meeting.second, meeting.motion
+    cell, every = pairs.cell, np.arange(len(motion.half))
+    heads = np.searchsorted(cell, every)
+    rim = (pairs.first < first.boundary) & (pairs.second < second.boundary)
+    apart_at_most, gap = _by_discs(meeting, pairs)
+    least = np.minimum.reduceat(np.where(rim, apart_at_most, np.inf), heads)
+    close = np.flatnonzero(rim & (gap <= least[cell]))
+    found = distances(meeting, pairs.take(close))
+    gap[close] = found.distance
+    value = np.minimum.reduceat(np.where(rim, gap, np.inf), heads)
+    best = np.flatnonzero(found.distance == value[cell[close]])
+    best = best[np.searchsorted(cell[close[best]], every)]
+    nearest = pairs.take(close[best])
+    place = 0.5 * (found.first[best] + found.second[best])
+    # Of two regions whose boundaries do not meet, the nearest points tell whether one reaches into the other.
+    there = turned(found.first[best] - motion.place, -motion.angle)
+    apart = (first.side(nearest.first, found.second[best]) > 0.0) & (second.side(nearest.second, there) > 0.0)
+    overlap = np.flatnonzero((value == 0.0) | ~apart)
+    doubt = np.zeros(len(value))
+    if len(overlap):
+        value[overlap], place[overlap] = _depths(meeting, None if whole else pairs, overlap, precision)
+        doubt[overlap] = np.maximum(precision, DEPTH_SHARE * np.abs(value[overlap]))
+    return Seen(value, doubt, place, gap)
+
+
+def _by_discs(meeting: Encounter, pairs: Pairs) -> tuple[Array, Array]:
+    """Bounds of the distance of each pair from above and below (k,) each, by the discs about both."""
+    motion, cell = meeting.motion, pairs.cell
+    body = turned(meeting.second.middle[pairs.second], motion.angle[cell]) + motion.place[cell]
+    apart = np.hypot(*(meeting.first.middle[pairs.first] - body).T)
+    return apart, apart - meeting.first.reach[pairs.first] - meeting.second.reach[pairs.second]
+
+
+def distances(meeting: Encounter, pairs: Pairs) -> Gaps:
+    """Distance of each pair at the middle of its interval, in the first region's axes."""
+    motion, cell = meeting.motion, pairs.cell
+    body = moved(meeting.second.arcs.take(pairs.second), motion.place[cell], motion.angle[cell])
+    return gaps(meeting.first.arcs.take(pairs.first), body)
+
+
+def _depths(meeting: Encounter, pairs: Pairs | None, cells: Indices, precision: float) -> tuple[Array, Array]:
+    """D (m,) of regions that overlap, and the deepest point (m, 2), among the features paired or all."""
+    motion, back = meeting.motion, meeting.back
+    value, place = np.full(len(cells), np.inf), np.zeros((len(cells), 2))
+    row = np.full(len(motion.half), -1)
+    row[cells] = np.arange(len(cells))
+    for own, other, seen, feature in (
+        (meeting.second, meeting.first, motion, pairs and pairs.second),
+        (meeting.first, meeting.second, back, pairs and pairs.first),
+    ):
+        if pairs is None or feature is None:
+            r, k = np.divmod(np.arange(len(cells) * len(own.reach)), len(own.reach))
+        else:
+            wanted = row[pairs.cell] >= 0
+            r, k = np.divmod(np.unique(row[pairs.cell[wanted]] * len(own.reach) + feature[wanted]), len(own.reach))
+        arcs = moved(own.arcs.take(k), seen.place[cells[r]], seen.angle[cells[r]])
+        depth, point = _deepest(other, arcs, r, value, precision)
+        if seen is back:
+            point = turned(point, motion.angle[cells]) + motion.place[cells]
+        deeper = depth < value
+        value[deeper], place[deeper] = depth[deeper], point[deeper]
+    return value, place
+
+
+def _deepest(region: Region, arcs: Arcs, row: Indices, known: Array, precision: float) -> tuple[Array, Array]:
+    """Least signed distance from the region, of the pieces of each row, and where; what is above `known` is left."""
+    value, place = np.full(len(known), np.inf), np.zeros((len(known), 2))
+    limit = known.copy()
+    for _ in range(ROUNDS):
+        middle = arcs.points(0.5 * arcs.length)
+        piece, distance = region.nearest(middle)
+        order = np.lexsort((distance, row))
+        head = order[np.flatnonzero(np.diff(row[order], prepend=-1))]
+        lower = head[distance[head] < value[row[head]]]
+        value[row[lower]], place[row[lower]] = distance[lower], middle[lower]
+        np.minimum(limit, value, out=limit)
+        bound = np.maximum(distance - 0.5 * arcs.length, region.no_deeper(arcs, piece))
+        open_ = bound < (limit - np.maximum(precision, DEPTH_SHARE * np.abs(limit)))[row]
+        if not open_.any():
+            break
+        arcs, row = arcs.take(open_), np.repeat(row[open_], 2)
+        arcs, _ = arcs.cut(np.full(len(arcs), 2))
+    return value, place
+
+
+def rates(meeting: Encounter, pairs: Pairs, apart: Mask) -> tuple[Array, Array]:
+    """Bounds, over its interval, of the rate of D where a pair has it, and of that of the pair's own distance: (k,).
+
+    `apart` (m,) says that D > 0 all over an interval.
+    """
+    cell, i, j = pairs
+    one, other, motion, back = meeting.first, meeting.second, meeting.motion, meeting.back
+    spin = motion.spin[cell]
+    body = turned(other.middle[j], motion.angle[cell]) + motion.place[cell]
+    home = turned(one.middle[i], back.angle[cell]) + back.place[cell]
+    of_first, of_second = (one.normal[i], one.fan[i]), (other.normal[j], other.fan[j])
+    on_first, on_second = spin * one.reach[i], spin * other.reach[j]
+    passing, passed = motion.along(cell, body), back.along(cell, home)
+    # normals of the one or the other; the velocity at its centre, and at points of the one or the other
+    through = np.minimum(
+        _projected(*of_first, *motion.at(cell, one.centre[i])) + _swung(spin, one.off[i]),
+        _projected(*of_second, *back.at(cell, other.centre[j])) + _swung(spin, other.off[j]),
+    )
+    at_second = (
+        np.minimum(_projected(*of_first, *passing), _projected(*of_second, *back.at(cell, other.middle[j]))) + on_second
+    )
+    at_first = (
+        np.minimum(_projected(*of_second, *passed), _projected(*of_first, *motion.at(cell, one.middle[i]))) + on_first
+    )
+    # of two that overlap the deepest point may be of either
+    both = np.where(apart[cell], np.minimum(at_first, at_second), np.maximum(at_first, at_second))
+    speed = np.minimum(*(np.hypot(*v.T) + off + on for (v, off), on in ((passing, on_second), (passed, on_first))))
+    return np.minimum(through, both), speed
+
+
+def _swung(spin: Array, off: Array) -> Array:
+    """Speed (k,) at a distance from a centre; infinite without a centre, also where nothing turns."""
+    centred = np.isfinite(off)
+    return np.where(centred, spin * np.where(centred, off, 0.0), np.inf)
+
+
+def _projected(normal: Array, fan: Array, velocity: Array, off: Array) -> Array:
+    """Greatest |n.v| over normals n within `fan` (k,) of `normal` (k, 2), v within `off` (k,) of `velocity` (k, 2)."""
+    along = np.abs(dot(normal, velocity))
+    square = dot(velocity, velocity)
+    across = np.sqrt(np.maximum(square - along * along, 0.0))
+    c, s = np.cos(fan), np.sin(fan)
+    beyond = (fan < 0.5 * np.pi) & (across * c > along * s)  # no normal has the direction of the velocity
+    bound: Array = np.where(beyond, along * c + across * s, np.sqrt(square)) + off
+    return bound

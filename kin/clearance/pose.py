@@ -1,0 +1,224 @@
+"""Where a rigid body stands over one turn of the shaft, and between which bounds its velocity lies over an interval.
+
+A pose is x, y in mm and an angle in rad, of the body's own axes in the fixed ones. Rates are by the shaft angle. Every
+kind of motion here tells `over` an interval what it is at the middle and how far the rates stray from a middle value;
+these are bounds, not samples: a search that rests on them is a proof for the motion as it is stated. A `Sampled` motion
+is a curve through samples, stated between them by interpolation alone; its `slack` estimates how far the true motion
+may be from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.elementary import BallJet, Jet
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.numeric.arrays import Array, Indices
+
+    Coordinate = Jet | BallJet | float
+
+__all__ = ["Course", "Formula", "Motion", "Sampled", "Still", "Turning", "alike"]
+
+FEWEST = 8  # samples of a turn, below which an interpolation says nothing
+CLOSED = 1e-6  # mm and rad, by which the last sample may miss the first, whole turns apart
+
+
+class Course(NamedTuple):
+    """Poses (n, 3) at the middle of n intervals, and rates over each: every rate within `spread` of `rate`, (n, 3)."""
+
+    pose: Array
+    rate: Array
+    spread: Array
+
+
+class Motion(Protocol):
+    """A body's motion over one turn of the shaft."""
+
+    def over(self, phi: Array, half: Array) -> Course:
+        """Give the course over the intervals [phi - half, phi + half], (n,) each, rad."""
+        ...
+
+    @property
+    def slack(self) -> tuple[float, float]:
+        """How far the body may be from where `over` has it: mm of its origin, rad."""
+        ...
+
+
+@dataclass(frozen=True)
+class Still:
+    """A body standing still."""
+
+    x: float = 0.0
+    y: float = 0.0
+    angle: float = 0.0
+
+    slack = (0.0, 0.0)
+
+    def over(self, phi: Array, half: Array) -> Course:  # noqa: ARG002
+        """Give the course over intervals."""
+        pose = np.broadcast_to(np.array([self.x, self.y, self.angle]), (len(phi), 3))
+        return Course(pose, np.zeros_like(pose), np.zeros_like(pose))
+
+
+@dataclass(frozen=True)
+class Turning:
+    """A body turning steadily about its own origin, `rate` times as fast as the shaft, counter-clockwise positive."""
+
+    rate: float
+    x: float = 0.0
+    y: float = 0.0
+    angle: float = 0.0
+
+    slack = (0.0, 0.0)
+
+    def over(self, phi: Array, half: Array) -> Course:  # noqa: ARG002
+        """Give the course over intervals."""
+        pose = np.stack([np.full_like(phi, self.x), np.full_like(phi, self.y), self.angle + self.rate * phi], axis=1)
+        rate = np.broadcast_to(np.array([0.0, 0.0, self.rate]), pose.shape)
+        return Course(pose, rate, np.zeros_like(pose))
+
+
+@dataclass(frozen=True, eq=False)
+class Formula:
+    """A motion by formulas: x, y and angle of the shaft angle, written with the functions of `kin.numeric.elementary`.
+
+    `function` is called with a `Jet` and with a `BallJet` of the shaft angle; what it returns may be plain numbers
+    where nothing moves. Its rates are enclosed by ball arithmetic.
+    """
+
+    function: Callable[[Jet | BallJet], tuple[Coordinate, Coordinate, Coordinate]]
+
+    slack = (0.0, 0.0)
+
+    def over(self, phi: Array, half: Array) -> Course:
+        """Give the course over intervals; ValueError where the rates cannot be bounded."""
+        point, stretch = Jet.variable(phi, 0), BallJet.variable(phi - half, phi + half, 1)
+        columns = [c if isinstance(c, Jet) else point.constant(_number(c)) for c in self.function(point)]
+        bounds = [
+            (c if isinstance(c, BallJet) else stretch.constant(_number(c))).bounds() for c in self.function(stretch)
+        ]
+        low, high = (np.stack([b[side][1] for b in bounds], axis=1) for side in (0, 1))
+        if not (np.isfinite(low).all() and np.isfinite(high).all()):
+            raise ValueError(
+                "the rates of a motion cannot be bounded over an interval: its formula may have a pole there"
+            )
+        return Course(np.stack([c.c[0] for c in columns], axis=1), 0.5 * (low + high), 0.5 * (high - low))
+
+
+def _number(value: Coordinate) -> float:
+    if isinstance(value, (Jet, BallJet)):
+        raise TypeError("a coordinate of a motion is of another kind than its argument")
+    return float(value)
+
+
+@dataclass(frozen=True, eq=False)
+class Sampled:
+    """A motion known at equal steps of one turn: pose (n + 1, 3), the last a whole turn after the first.
+
+    Angles run on without jumps. Between samples x, y and angle are cubics with the slopes `rate` (n + 1, 3), the true
+    rates by the shaft angle if they are known, else those of the quartics through five samples. For a smooth motion
+    the error falls with the fourth power of the step, with the second where an acceleration jumps. It is taken to be
+    what leaving a sample out would miss it by: sixteen times the error of a smooth motion, at a jump more than the
+    error too. Raises ValueError for fewer than 8 steps, a last pose that is not the first, or angles that jump.
+    """
+
+    pose: Array
+    rate: Array | None = None
+
+    def __post_init__(self) -> None:
+        shape = np.shape(self.pose)
+        if len(shape) != 2 or shape[1] != 3 or shape[0] <= FEWEST or not np.isfinite(self.pose).all():
+            raise ValueError(f"a sampled motion takes finite poses (n + 1, 3) of {FEWEST} steps or more, not {shape}")
+        if self.rate is not None and np.shape(self.rate) != shape:
+            raise ValueError("the rates of a sampled motion are as many as its poses")
+        turned = self.pose[-1] - self.pose[0]
+        turned[2] -= TURN * np.round(turned[2] / TURN)
+        if np.abs(turned).max() > CLOSED:
+            raise ValueError("the last pose of a sampled motion is not the first, a turn of the shaft on")
+        if np.abs(np.diff(self.pose[:, 2])).max() > 0.5 * np.pi:
+            raise ValueError("the angle of a sampled motion jumps by more than a right angle between two samples")
+
+    @property
+    def steps(self) -> int:
+        """Number of steps of a turn."""
+        return len(self.pose) - 1
+
+    @cached_property
+    def _slope(self) -> Array:
+        """Rates at the samples, times the step (n + 1, 3)."""
+        if self.rate is not None:
+            return np.asarray(self.rate, dtype=float) * (TURN / self.steps)
+        whole = self.pose[-1] - self.pose[0]
+        longer = np.concatenate([self.pose[-3:-1] - whole, self.pose, self.pose[1:3] + whole])
+        slope: Array = (8.0 * (longer[3:-1] - longer[1:-3]) - (longer[4:] - longer[:-4])) / 12.0
+        return slope
+
+    @cached_property
+    def slack(self) -> tuple[float, float]:
+        """How far the motion may be from this curve: mm of the origin, rad; an estimate."""
+        whole = self.pose[-1] - self.pose[0]
+        longer = np.concatenate([self.pose[-2:-1] - whole, self.pose, self.pose[1:2] + whole])
+        slope = np.concatenate([self._slope[-2:-1], self._slope, self._slope[1:2]])
+        between = 0.5 * (longer[:-2] + longer[2:]) + 0.25 * (slope[:-2] - slope[2:])
+        miss = np.abs(self.pose - between)
+        return float(np.hypot(miss[:, 0], miss[:, 1]).max()), float(miss[:, 2].max())
+
+    @cached_property
+    def _bends(self) -> list[Array]:
+        """Greatest second derivatives over runs of 1, 2, 4, ... steps from each on, round and round (2 n, 3) each."""
+        rise, slope = np.diff(self.pose, axis=0), self._slope
+        first = 6.0 * rise - 4.0 * slope[:-1] - 2.0 * slope[1:]
+        last = 2.0 * slope[:-1] + 4.0 * slope[1:] - 6.0 * rise
+        bend = np.maximum(np.abs(first), np.abs(last)) * (self.steps / TURN) ** 2
+        levels = [np.concatenate([bend, bend])]
+        while 2 ** len(levels) <= self.steps:
+            far = 2 ** (len(levels) - 1)
+            levels.append(np.maximum(levels[-1], np.roll(levels[-1], -far, axis=0)))
+        return levels
+
+    def _bend(self, low: Array, high: Array) -> Array:
+        """Greatest second derivatives (m, 3) over stretches from low to high (m,), in steps."""
+        begin = np.floor(low - 1e-9).astype(np.intp)
+        count = np.clip(np.floor(high + 1e-9).astype(np.intp) - begin + 1, 1, self.steps)
+        level = np.floor(np.log2(count)).astype(np.intp)
+        begin = begin % self.steps
+        found = np.empty((len(low), 3))
+        for k in range(len(self._bends)):
+            at = np.flatnonzero(level == k)
+            table = self._bends[k]
+            found[at] = np.maximum(table[begin[at]], table[begin[at] + count[at] - 2**k])
+        return found
+
+    def over(self, phi: Array, half: Array) -> Course:
+        """Give the course over intervals: rates differ from that of the middle by half times the greatest bend."""
+        width = TURN / self.steps
+        turns = np.floor(phi / TURN)
+        u = (phi - turns * TURN) / width
+        k: Indices = np.clip(np.floor(u).astype(np.intp), 0, self.steps - 1)
+        x = (u - k)[:, None]
+        start, slope, end = self.pose[k], self._slope[k], self._slope[k + 1]
+        rise = self.pose[k + 1] - start
+        c, d = 3.0 * rise - 2.0 * slope - end, slope + end - 2.0 * rise
+        pose = start + x * (slope + x * (c + x * d)) + turns[:, None] * (self.pose[-1] - self.pose[0])
+        rate = (slope + x * (2.0 * c + 3.0 * x * d)) / width
+        return Course(pose, rate, half[:, None] * self._bend(u - half / width, u + half / width))
+
+
+def alike(one: Motion, other: Motion) -> bool:
+    """Whether two bodies move as one, or both stand still."""
+    if one is other or (isinstance(one, Still) and isinstance(other, Still)):
+        return True
+    if isinstance(one, Turning) and isinstance(other, Turning):
+        return (one.rate, one.x, one.y) == (other.rate, other.x, other.y)
+    if isinstance(one, Sampled) and isinstance(other, Sampled):
+        known = one.rate is None and other.rate is None
+        return known and np.array_equal(one.pose, other.pose)
+    return False

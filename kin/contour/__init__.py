@@ -1,0 +1,1 @@
+"""Closed chains of lines, arcs and Bezier curves: support, area, offset, intersections."""

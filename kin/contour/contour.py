@@ -1,0 +1,354 @@
+"""A closed contour of lines, circular arcs and Bezier pieces, as read from a file: support function and measures.
+
+Counter-clockwise, in mm. Nothing is assumed of its shape: the support function is the exact maximum over all points of
+the contour, also of a dented or spoilt one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.contour.arcs import Arcs, cross, dot, unit
+from kin.contour.biarc import arcs_along
+from kin.contour.hull import convex_hull, is_convex_polygon
+from kin.contour.nearest import nearest
+from kin.contour.pieces import ARC, BEZIER, LINE, NormalRanges, Pieces, wrapped
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array, Indices
+
+__all__ = ["ARC", "BEZIER", "LINE", "Box", "Contour", "Support"]
+
+# Pairs of piece and angle that are worked on at a time, which bounds the memory a hostile contour can ask for.
+PAIRS_AT_ONCE = 1_000_000
+# Greatest distance at which arcs stand in for a spline where only arcs will do: mm, but no more and no less than these
+# shares of the contour's extent.
+ARC_TOLERANCE = 1e-9
+MOST_SHARE = 2e-11
+ARC_SHARE = 1e-12
+# How many times finer than asked for the arcs at hand may be to serve instead.
+ALIKE = 4.0
+# Rounding of a tangent's angle, in units of the machine's precision times extent over chord.
+ANGLE_ROUNDING = 16.0
+# Normals that are closer than this, radians, are one.
+NORMAL_ROUNDING = 1e-12
+# Directions, besides the pieces' own, between which a dented contour is searched for lines that touch it twice.
+PROBES = 720
+# How far within an interval between two directions, as a part of it, the contact is looked at to see whether it leaps.
+INSET = 1e-6
+# Of the angles between which the farthest point leaps: more than a number has bits.
+HALVINGS = 60
+
+
+class Support(NamedTuple):
+    """q (k,) = max over the contour of x.u(theta), the point (k, 2) and the piece (k,) that reach it."""
+
+    q: Array
+    point: Array
+    piece: Indices
+
+
+class Box(NamedTuple):
+    """Least and greatest coordinates, mm."""
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+
+
+@dataclass(frozen=True, eq=False)
+class Contour(Pieces):
+    """Pieces end to end, closed: end[i] is start[i+1], the last end the first start, within the reader's gap.
+
+    Counter-clockwise when it comes from a reader; every measure here takes either sense, only `area`, `turning` and
+    `is_convex` tell them apart. `arcs_within`, mm, is how closely arcs stand in for its splines by default.
+    """
+
+    arcs_within: float | None = None
+
+    @staticmethod
+    def from_pieces(pieces: Pieces) -> Contour:
+        """Return the contour of `pieces`, which follow one another (checked where they are chained, not here)."""
+        return Contour(**{f.name: getattr(pieces, f.name) for f in fields(pieces)})
+
+    @staticmethod
+    def from_vertices(vertices: Array) -> Contour:
+        """Return the closed polygon through vertices (n, 2)."""
+        return Contour.from_bulges(vertices, np.zeros(len(vertices)))
+
+    @staticmethod
+    def from_bulges(vertices: Array, bulges: Array) -> Contour:
+        """Lines and arcs from vertex to vertex (n, 2) and back; bulge (n,) = tan(sweep/4) of the piece that follows."""
+        start = np.asarray(vertices, dtype=np.float64)
+        end = np.roll(start, -1, axis=0)
+        return Contour.from_pieces(Pieces.from_chords(start, end, np.asarray(bulges, dtype=np.float64)))
+
+    def reversed(self) -> Contour:
+        """Return the same contour run through the other way."""
+        return Contour.from_pieces(self.take(np.arange(len(self))[::-1]).turned_round())
+
+    def mirrored(self) -> Contour:
+        """Return the mirror image in the x axis, run through the other way so that its sense stays."""
+        return Contour.from_pieces(self.reflected()).reversed()
+
+    def scaled(self, factor: float) -> Contour:
+        """Return the contour enlarged about the origin by a positive factor."""
+        return Contour.from_pieces(self.enlarged(factor))
+
+    @cached_property
+    def vertices(self) -> Array:
+        """Ends of all pieces in order: the starts (n, 2), or starts and ends by turns (2n, 2) if they do not meet."""
+        if np.array_equal(self.end[:-1], self.start[1:]) and np.array_equal(self.end[-1:], self.start[:1]):
+            return self.start
+        return np.stack([self.start, self.end], axis=1).reshape(-1, 2)
+
+    @cached_property
+    def hull(self) -> Indices:
+        """Corners of the convex hull of the `vertices`, counter-clockwise: indices (h,) into them."""
+        if is_convex_polygon(self.vertices):
+            return np.arange(len(self.vertices))
+        return convex_hull(self.vertices)
+
+    @cached_property
+    def hull_edges(self) -> tuple[Array, Indices]:
+        """Normals (h,) of the hull's edges, rising in [0, 2 pi), and the vertex (h,) at the end of each edge."""
+        corners = self.hull
+        if corners.size < 2:
+            return np.zeros(corners.size), corners
+        following = np.roll(corners, -1)
+        edge = self.vertices[following] - self.vertices[corners]
+        normal = np.mod(np.arctan2(-edge[:, 0], edge[:, 1]), TURN)
+        order = np.argsort(normal, kind="stable")
+        return normal[order], following[order]
+
+    def support(self, theta: Array) -> Support:
+        """Support function at angles theta (k,): q, contact point and piece, exact over every point of the contour.
+
+        Among vertices the farthest is found on their convex hull by bisection; each curved piece is tried at the angles
+        within its own range of normals. Cost grows as n + k log n for a contour that goes round once.
+        """
+        theta = np.asarray(theta, dtype=np.float64).reshape(-1)
+        u = unit(theta)
+        reduced = np.mod(theta, TURN)
+        normals, corners = self.hull_edges
+        place = np.searchsorted(normals, reduced, side="right") - 1
+        # Rounding of the normals can miss by a corner where edges are nearly in line.
+        near = corners[(place[:, None] + np.array([0, -1, 1])) % corners.size]
+        reach = np.einsum("kjc,kc->kj", self.vertices[near], u)
+        best = reach.argmax(axis=1)
+        rows = np.arange(theta.size)
+        vertex = near[rows, best]
+        found = Support(reach[rows, best], self.vertices[vertex], vertex * len(self) // len(self.vertices))
+        ranges = self.normal_ranges
+        if ranges.piece.size and theta.size:
+            order = np.argsort(reduced, kind="stable")
+            for tried, at in paired(ranges, reduced[order]):
+                self._raise(found, ranges.piece[tried], order[at], reduced, u)
+        return found
+
+    def _raise(self, found: Support, tried: Indices, at: Indices, theta: Array, u: Array) -> None:
+        """Let pieces `tried` compete at the angles number `at`; write into `found` where they reach farther."""
+        q, point, piece = found
+        is_arc = self.kind[tried] == ARC
+        arc, a = tried[is_arc], at[is_arc]
+        half = (theta[a] - self.angle[arc]) / 2.0
+        # From the start of the arc, not from its centre: nothing is lost where the centre is far away.
+        value, share = np.empty(tried.size), np.zeros(tried.size)
+        value[is_arc] = dot(self.start[arc], u[a]) + 2.0 * self.radius[arc] * np.sin(half) ** 2
+        if not is_arc.all():
+            bow, b = self.curve[tried[~is_arc]], at[~is_arc]
+            share[~is_arc] = self.beziers.farthest(bow, theta[b])
+            value[~is_arc] = dot(self.beziers.point(bow, share[~is_arc]), u[b])
+        ahead = np.flatnonzero(value > q[at])
+        np.maximum.at(q, at[ahead], value[ahead])
+        won = ahead[value[ahead] == q[at[ahead]]]
+        piece[at[won]] = tried[won]
+        arc, bow = won[is_arc[won]], won[~is_arc[won]]
+        point[at[arc]] = self.arc_points(tried[arc], theta[at[arc]] - self.angle[tried[arc]])
+        if bow.size:
+            point[at[bow]] = self.beziers.point(self.curve[tried[bow]], share[bow])
+
+    @cached_property
+    def normals(self) -> Array:
+        """Angles in [0, 2 pi) at which the support function changes its form, rising.
+
+        For a convex contour these are the normals at both ends of each piece; else those of them and of hull edges that
+        are active, and the normals of lines that touch the contour twice. Between two of them one corner, arc or Bezier
+        piece is the farthest throughout; one that is farthest over less than half a degree, between two such lines, may
+        be overlooked. Angles that differ by rounding alone are given once.
+        """
+        if self.is_convex:
+            return apart(np.concatenate(self.directions) - np.pi / 2.0)
+        normals, corners = self.hull_edges
+        ranges = self.normal_ranges
+        if not ranges.piece.size:
+            return apart(normals)
+        # The ends of a range belong to the ends of its piece, in an order that depends on the sense of turning.
+        leftward = (self.turns[ranges.piece] >= 0.0)[:, None]
+        first, last = self.start[ranges.piece], self.end[ranges.piece]
+        low_end, high_end = np.where(leftward, first, last), np.where(leftward, last, first)
+        point = np.concatenate([self.vertices[corners], low_end, high_end])
+        theta = np.concatenate([normals, ranges.low, ranges.low + ranges.width])
+        rounding = 64.0 * np.finfo(float).eps * float(np.abs(self.vertices).max())
+        active = theta[dot(point, unit(theta)) >= self.support(theta).q - rounding]
+        probes = apart(np.concatenate([theta, np.arange(PROBES) * (TURN / PROBES)]))
+        return apart(np.concatenate([active, self._switches(probes)]))
+
+    def _switches(self, theta: Array) -> Array:
+        """Angles at which the farthest point leaps: strictly between neighbours in theta (k,), rising, and of theta.
+
+        Between two of theta it is found by bisection, to the last places: `HALVINGS` exceed the bits of a number.
+        """
+        width = np.diff(theta, append=theta[0] + TURN)
+        wide = width > 4.0 * np.finfo(float).eps / INSET
+        low, high = (theta + INSET * width)[wide], (theta + (1.0 - INSET) * width)[wide]
+        piece, last = self.support(low).piece, self.support(high).piece
+        # an arc whose end lies beside it, by a file's rounding, is not quite the farthest where the next one takes over
+        at = theta[wide][piece != np.roll(last, 1)]
+        leaps = piece != last
+        low, high, piece = low[leaps], high[leaps], piece[leaps]
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2.0
+            same = self.support(middle).piece == piece
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        found: Array = np.mod(np.concatenate([low, at]), TURN)
+        return found
+
+    @cached_property
+    def area(self) -> float:
+        """Signed area, mm^2, positive if counter-clockwise: Green's theorem, closed forms but for rational pieces."""
+        v = self.vertices - self.vertices.mean(axis=0)
+        polygon = float(np.sum(cross(v, np.roll(v, -1, axis=0)))) / 2.0
+        arc = self.kind == ARC
+        bows = float(np.sum(self.radius[arc] ** 2 * less_sine(self.sweep[arc]))) / 2.0
+        return polygon + bows + self.beziers.area_over_chords()
+
+    @cached_property
+    def length(self) -> float:
+        """Perimeter, mm."""
+        return float(self.lengths.sum())
+
+    @cached_property
+    def box(self) -> Box:
+        """Bounding box, exact."""
+        point = self.support(np.array([0.0, 0.5, 1.0, 1.5]) * np.pi).point
+        return Box(float(point[2, 0]), float(point[3, 1]), float(point[0, 0]), float(point[1, 1]))
+
+    @cached_property
+    def joints(self) -> Array:
+        """Turn of the tangent at the start of each piece, from the piece before it, in [-pi, pi) (n,)."""
+        first, last = self.directions
+        return wrapped(first - np.roll(last, 1))
+
+    @cached_property
+    def turning(self) -> int:
+        """Number of turns of the tangent: 1 for a simple counter-clockwise contour, -1 for a clockwise one."""
+        return round(float(self.turns.sum() + self.joints.sum()) / TURN)
+
+    @cached_property
+    def is_convex(self) -> bool:
+        """Whether it turns left throughout, and once, up to the rounding of the tangents' angles."""
+        extent = float(np.abs(self.vertices).max())
+        chord = np.hypot(*(self.end - self.start).T)
+        share = np.divide(extent, chord, out=np.zeros(len(self)), where=chord > 0.0)
+        noise = ANGLE_ROUNDING * np.finfo(float).eps * (TURN + share)
+        left_pieces = bool((self.turns >= -noise).all())
+        left_joints = bool((self.joints >= -noise - np.roll(noise, 1)).all())
+        return left_pieces and left_joints and self.turning == 1
+
+    def sample(self, per_piece: int) -> Array:
+        """Points (n * per_piece, 2) in order, the starts among them, evenly along each piece (a Bezier's parameter)."""
+        piece = np.repeat(np.arange(len(self)), per_piece)
+        share = np.tile(np.arange(per_piece) / per_piece, len(self))
+        return self.points(piece, share)
+
+    def as_arcs(self, tolerance: float | None = None) -> tuple[Arcs, Indices]:
+        """Lines and arcs in order, each turning by at most half a turn, and the piece each belongs to (k,).
+
+        Exact on lines and arcs; on Bezier pieces within `tolerance` mm, proved, and smooth; by default 1e-9 mm, but
+        from 1e-12 to 2e-11 of the extent. Cost grows as tolerance^(-1/3). Raises ValueError where rounding is larger.
+        """
+        # the arcs of the default are kept: where they are not many more, they serve for what is asked
+        fine = self._fine
+        alike = tolerance is None or fine <= tolerance <= ALIKE * fine
+        return self._fine_arcs if tolerance is None or alike else self._arcs_within(tolerance)
+
+    def finer(self, tolerance: float) -> Contour:
+        """Return the contour for whose splines arcs within `tolerance` mm, or finer ones, stand by default."""
+        return replace(self, arcs_within=tolerance) if self.beziers.count and tolerance < self._fine else self
+
+    @property
+    def _fine(self) -> float:
+        if self.arcs_within is not None:
+            return self.arcs_within
+        extent = float(np.abs(self.vertices).max())
+        return max(ARC_SHARE * extent, min(ARC_TOLERANCE, MOST_SHARE * extent))
+
+    @cached_property
+    def _fine_arcs(self) -> tuple[Arcs, Indices]:
+        return self._arcs_within(self._fine)
+
+    def _arcs_within(self, tolerance: float) -> tuple[Arcs, Indices]:
+        first, _ = self.directions
+        size = np.where(self.kind == ARC, self.radius, 1.0)
+        curvature = np.where(self.kind == ARC, np.copysign(1.0, self.sweep) / size, 0.0)
+        plain = np.flatnonzero(self.kind != BEZIER)
+        lengths = np.hypot(*(self.end - self.start).T)
+        lengths = np.where(self.kind == ARC, self.radius * np.abs(self.sweep), lengths)
+        arcs = Arcs(self.start[plain], unit(first[plain]), curvature[plain], lengths[plain])
+        arcs, part = arcs.cut(1 + (np.abs(self.sweep[plain]) > np.pi).astype(np.intp))
+        owner = plain[part]
+        if self.beziers.count:
+            bows, row = arcs_along(self.beziers, tolerance)
+            piece_of_row = np.empty(self.beziers.count, dtype=np.intp)
+            bow = np.flatnonzero(self.kind == BEZIER)
+            piece_of_row[self.curve[bow]] = bow
+            owner = np.concatenate([owner, piece_of_row[row]])
+            order = np.argsort(owner, kind="stable")
+            arcs, owner = arcs.joined(bows).take(order), owner[order]
+        return arcs, owner
+
+    def distance(self, points: Array, tolerance: float | None = None) -> Array:
+        """Distance of points (k, 2) from the contour, mm (k,): exact from lines and arcs, else as near as `as_arcs`."""
+        _, distance = nearest(self.as_arcs(tolerance)[0], np.asarray(points, dtype=np.float64))
+        return distance
+
+
+def apart(theta: Array) -> Array:
+    """Return angles brought to [0, 2 pi), rising, without those that differ from the one before by rounding."""
+    reduced = np.mod(theta, TURN)
+    rising = np.sort(np.where(reduced < TURN, reduced, 0.0))
+    return rising[np.diff(rising, prepend=-1.0) > NORMAL_ROUNDING]
+
+
+def less_sine(x: Array) -> Array:
+    """Return x - sin x (n,), to full relative precision for small x too."""
+    x2 = x * x
+    series = x * x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0))))
+    return np.where(np.abs(x) < 0.25, series, x - np.sin(x))
+
+
+def paired(ranges: NormalRanges, theta: Array) -> list[tuple[Indices, Indices]]:
+    """All pairs of a range and an angle within it, theta (k,) rising in [0, 2 pi): batches of numbers of either."""
+    ring = np.concatenate([theta, theta + TURN])
+    first = np.searchsorted(ring, ranges.low, side="left")
+    count = np.minimum(np.searchsorted(ring, ranges.low + ranges.width, side="right") - first, theta.size)
+    used = np.flatnonzero(count > 0)
+    total = np.cumsum(count[used])
+    batches = []
+    begin = 0
+    while begin < used.size:
+        done = total[begin - 1] if begin else 0
+        stop = max(begin + 1, int(np.searchsorted(total, done + PAIRS_AT_ONCE, side="right")))
+        chosen = used[begin:stop]
+        rows = np.repeat(chosen, count[chosen])
+        offset = np.arange(rows.size) - np.repeat(total[begin:stop] - count[chosen] - done, count[chosen])
+        batches.append((rows, (first[rows] + offset) % theta.size))
+        begin = stop
+    return batches

@@ -1,0 +1,292 @@
+"""What a sound contour has not: places where it crosses or touches itself, and dents in its convex hull."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.contour.arcs import Arcs, cross, dot, left, nearest_on, right
+from kin.contour.hull import convex_hull
+from kin.contour.nearest import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kin.contour.contour import Contour
+    from kin.numeric.arrays import Array, Indices
+
+    Levels = list[tuple[Array, Array]]
+
+__all__ = ["Crossings", "Dents", "crossings", "dents", "first_meeting", "meetings"]
+
+# Two pieces closer than this, mm, have a point in common.
+TOUCHING = 1e-9
+# A loop shorter than this, mm, is the rounding of a joint.
+SHORTEST_LOOP = 1e-7
+# Default precision of a dent's depth: mm, or share of the extent; and the least that may be asked for.
+DENT_TOLERANCE = 1e-7
+DENT_SHARE = 1e-8
+LEAST_SHARE = 1e-12
+# Boxes under one box of the next level.
+BRANCH = 4
+# Pairs of boxes that are looked at together, which bounds the memory.
+PAIRS_AT_ONCE = 500_000
+# A contour with so many crossings needs no more of them.
+ENOUGH = 200
+
+
+class Crossings(NamedTuple):
+    """Common points (k, 2) of pieces that are not neighbours in them, and the numbers of both pieces (k, 2)."""
+
+    point: Array
+    piece: Indices
+
+
+class Dents(NamedTuple):
+    """Stretches of a contour inside its convex hull: greatest depth (k,), falling, its place (k, 2) and piece (k,)."""
+
+    depth: Array
+    point: Array
+    piece: Indices
+
+
+def dents(contour: Contour, tolerance: float | None = None) -> Dents:
+    """How far the contour lies inside its convex hull, one entry for each stretch that does; depths within `tolerance`.
+
+    Depth is the distance to the hull's boundary. A contour that turns left throughout has none, without further work;
+    any other is replaced by chords within `tolerance` mm, by default 1e-7 or 1e-8 of its extent if that is more. Cost
+    grows as tolerance^(-1/2). Raises ValueError for less than 1e-12 of the extent.
+    """
+    extent = float(np.abs(contour.vertices).max())
+    if tolerance is None:
+        tolerance = max(DENT_TOLERANCE, DENT_SHARE * extent)
+    elif tolerance < LEAST_SHARE * extent:
+        raise ValueError(f"{tolerance:g} mm is lost in the rounding of a contour that reaches out to {extent:g} mm")
+    nothing = Dents(np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=np.intp))
+    if contour.is_convex:
+        return nothing
+    chain, owner = contour.as_arcs(tolerance / 2.0)
+    bend = np.abs(chain.curvature)
+    # The sagitta of a chord over the angle a is (1 - cos(a/2))/k = 2 sin(a/4)^2/k.
+    angle = 4.0 * np.arcsin(np.minimum(np.sqrt(bend * tolerance) / 2.0, 0.5))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        parts = np.where(bend > 0.0, np.ceil(bend * chain.length / angle), 1.0)
+    links, source = chain.cut(np.maximum(parts, 1.0).astype(np.intp))
+    points = links.start
+    corners = convex_hull(points)
+    inside = np.ones(len(points), dtype=bool)
+    inside[corners] = False
+    if not inside.any():
+        return nothing
+    depth = np.zeros(len(points))
+    depth[inside] = nearest(polygon(points[corners]), points[inside])[1]
+    rounding = 16.0 * np.finfo(float).eps * float(np.abs(points).max())
+    dented = depth > rounding
+    if not dented.any():
+        return nothing
+    head = int(np.argmin(dented))  # start where the contour is on its hull, so that no stretch is cut in two
+    order = np.roll(np.arange(len(points)), -head)
+    heads = np.flatnonzero(dented[order] & ~np.roll(dented[order], 1))
+    run = np.searchsorted(heads, np.flatnonzero(dented[order]), side="right") - 1
+    index = order[dented[order]]
+    rank = np.lexsort((-depth[index], run))
+    deepest = index[rank[np.concatenate([[True], np.diff(run[rank]) > 0])]]
+    deepest = deepest[np.argsort(-depth[deepest], kind="stable")]
+    return Dents(depth[deepest], points[deepest], owner[source[deepest]])
+
+
+def polygon(corners: Array) -> Arcs:
+    """Return the edges of a closed polygon (n, 2)."""
+    edge = np.roll(corners, -1, axis=0) - corners
+    length = np.hypot(edge[:, 0], edge[:, 1])
+    return Arcs(corners, edge / length[:, None], np.zeros(len(corners)), length)
+
+
+def crossings(contour: Contour) -> Crossings:
+    """Where the contour crosses, touches or covers itself, to within a nanometre; each place once a pair of pieces.
+
+    A convex contour, or one seen whole from its middle or from the origin, has none, without further work. Else pieces
+    whose boxes overlap are found by descending a tree of boxes against itself, and intersected in closed form. The
+    search ends early at a contour that has hundreds.
+    """
+    nothing = Crossings(np.zeros((0, 2)), np.zeros((0, 2), dtype=np.intp))
+    if contour.is_convex:
+        return nothing
+    chain, owner = contour.as_arcs()
+    if seen_whole(chain, chain.start.mean(axis=0)) or seen_whole(chain, np.zeros(2)):
+        return nothing
+    before = np.concatenate([[0.0], np.cumsum(chain.length)])
+    found = []
+    levels = boxes(chain)
+    for i, j in overlapping(levels, levels, mirrored=True):
+        shared = common_points(chain, chain, i, j)
+        one, other = i[shared.pair], j[shared.pair]
+        apart = before[other] + shared.second - before[one] - shared.first
+        loop = np.minimum(apart, before[-1] - apart) > SHORTEST_LOOP
+        found.append((shared.point[loop], np.stack([owner[one[loop]], owner[other[loop]]], axis=1)))
+        if sum(len(p) for p, _ in found) > ENOUGH:
+            break
+    return distinct(found)
+
+
+def meetings(contour: Contour, other: Contour) -> Crossings:
+    """Points that two contours have in common, to within a nanometre, with the piece of either."""
+    first, first_owner = contour.as_arcs()
+    second, second_owner = other.as_arcs()
+    found = []
+    for i, j in overlapping(boxes(first), boxes(second), mirrored=False):
+        shared = common_points(first, second, i, j)
+        found.append((shared.point, np.stack([first_owner[i[shared.pair]], second_owner[j[shared.pair]]], axis=1)))
+        if sum(len(p) for p, _ in found) > ENOUGH:
+            break
+    return distinct(found)
+
+
+def first_meeting(contours: list[Contour]) -> tuple[float, float] | None:
+    """A place that two of the contours have in common, mm; None if all keep apart."""
+    boxes = np.array([contour.box for contour in contours]).reshape(-1, 4)
+    for k, one in enumerate(contours[:-1]):
+        x_min, y_min, x_max, y_max = boxes[k]
+        later = boxes[k + 1 :]
+        near = (later[:, 0] <= x_max + TOUCHING) & (later[:, 2] >= x_min - TOUCHING)
+        near &= (later[:, 1] <= y_max + TOUCHING) & (later[:, 3] >= y_min - TOUCHING)
+        others = [contours[k + 1 + int(j)] for j in np.flatnonzero(near)]
+        if not others:
+            continue
+        _, away = nearest(one.as_arcs()[0], np.array([other.start[0] for other in others]))
+        for other, distance in zip(others, away, strict=True):
+            x_min, y_min, x_max, y_max = other.box
+            if distance > np.hypot(x_max - x_min, y_max - y_min):
+                continue  # no point of the other is so far from its first
+            common = meetings(one, other).point
+            if len(common):
+                return float(common[0, 0]), float(common[0, 1])
+    return None
+
+
+def distinct(found: list[tuple[Array, Indices]]) -> Crossings:
+    """Return the crossings without those found again at the end of one link and the start of the next."""
+    point = np.concatenate([np.zeros((0, 2)), *(p for p, _ in found)])
+    piece = np.concatenate([np.zeros((0, 2), dtype=np.intp), *(n for _, n in found)])
+    order = np.lexsort((point[:, 1], point[:, 0], piece[:, 1], piece[:, 0]))
+    point, piece = point[order], piece[order]
+    new = np.ones(len(point), dtype=bool)
+    step = np.abs(np.diff(point, axis=0)).max(axis=1, initial=0.0)
+    new[1:] = (np.diff(piece, axis=0) != 0).any(axis=1) | (step > SHORTEST_LOOP)
+    return Crossings(point[new], piece[new])
+
+
+def seen_whole(chain: Arcs, eye: Array) -> bool:
+    """Whether every ray from the eye (2,) meets the closed chain once: then it cannot cross itself (sufficient).
+
+    The moment x cross T about the eye stays positive along each piece, bounded from its ends by its greatest slope
+    |k x.T|, and the pieces' angles at the eye add up to one turn.
+    """
+    x, ends = chain.start - eye, chain.ends - eye
+    at_start, at_end = cross(x, chain.tangent), cross(ends, chain.end_tangents)
+    reach = np.maximum(np.hypot(x[:, 0], x[:, 1]), np.hypot(ends[:, 0], ends[:, 1])) + chain.length
+    least = (at_start + at_end - np.abs(chain.curvature) * reach * chain.length) / 2.0
+    angle = np.arctan2(cross(x, ends), dot(x, ends))
+    once = abs(float(angle.sum()) - 2.0 * np.pi) < 1.0
+    return bool((least > 0.0).all() and (angle > 0.0).all()) and once
+
+
+def boxes(chain: Arcs) -> Levels:
+    """Lower and upper corners of boxes about runs of 1, BRANCH, BRANCH^2 ... pieces that turn <= pi, finest first."""
+    ends = chain.ends
+    sagitta = np.hypot(*(ends - chain.start).T) / 2.0 * np.tan(np.abs(chain.curvature) * chain.length / 4.0)
+    margin = sagitta[:, None] + TOUCHING
+    low, high = np.minimum(chain.start, ends) - margin, np.maximum(chain.start, ends) + margin
+    levels = [(low, high)]
+    while len(low) > BRANCH:
+        heads = np.arange(0, len(low), BRANCH)
+        low, high = np.minimum.reduceat(low, heads), np.maximum.reduceat(high, heads)
+        levels.append((low, high))
+    return levels
+
+
+def overlapping(first: Levels, second: Levels, *, mirrored: bool) -> Iterator[tuple[Indices, Indices]]:
+    """Pairs of pieces, one from either tree, whose boxes overlap, in batches (k,), (k,).
+
+    `mirrored`: both trees are the same one, and of (i, j) and (j, i) only that with i < j is wanted.
+    """
+    top = max(len(first), len(second)) - 1
+    i, j = np.indices((len(first[-1][0]), len(second[-1][0]))).reshape(2, -1)
+    stack = [(top, i, j)]
+    while stack:
+        level, i, j = stack.pop()
+        if len(i) > PAIRS_AT_ONCE:
+            half = len(i) // 2
+            stack += [(level, i[half:], j[half:]), (level, i[:half], j[:half])]
+            continue
+        (a_low, a_high), (b_low, b_high) = (levels[min(level, len(levels) - 1)] for levels in (first, second))
+        keep = (a_low[i] <= b_high[j]).all(axis=1) & (b_low[j] <= a_high[i]).all(axis=1)
+        if mirrored:
+            keep &= (i <= j) if level else (i < j)
+        i, j = i[keep], j[keep]
+        if not len(i):
+            continue
+        if level == 0:
+            yield i, j
+            continue
+        a, b = (branches(k, levels, level) for k, levels in ((i, first), (j, second)))
+        i, j = (g.ravel() for g in np.broadcast_arrays(a[:, :, None], b[:, None, :]))
+        real = (i < len(first[min(level, len(first)) - 1][0])) & (j < len(second[min(level, len(second)) - 1][0]))
+        stack.append((level - 1, i[real], j[real]))
+
+
+def branches(runs: Indices, levels: Levels, level: int) -> Indices:
+    """Return the boxes, one level down, under `runs` (k,): (k, BRANCH), or (k, 1) in the lower tree of the two."""
+    if level >= len(levels):
+        return runs[:, None]
+    numbers: Indices = runs[:, None] * BRANCH + np.arange(BRANCH)
+    return numbers
+
+
+class Shared(NamedTuple):
+    """Common points (k, 2), the number of the pair that has each (k,), and the arc lengths at which either meets it."""
+
+    point: Array
+    pair: Indices
+    first: Array
+    second: Array
+
+
+def common_points(first: Arcs, second: Arcs, i: Indices, j: Indices) -> Shared:
+    """Points common to pieces i of `first` and j of `second`, (k,) each: crossings, and ends of one on the other.
+
+    Relative to the start of the one, the circles are  k y^2 + 2 m.y = 0  and  k' y^2 + 2 m''.y + c = 0;  their
+    difference is the line through both intersections, also where one or both are lines themselves.
+    """
+    a, b = first.take(i), second.take(j)
+    gap = b.start - a.start
+    m = right(a.tangent)
+    m2 = right(b.tangent) - b.curvature[:, None] * gap
+    c = b.curvature * dot(gap, gap) - 2.0 * dot(right(b.tangent), gap)
+    lines = (a.curvature == 0.0) & (b.curvature == 0.0)
+    v = np.where(lines[:, None], m, b.curvature[:, None] * m - a.curvature[:, None] * m2)
+    w = np.where(lines, 0.0, a.curvature * c / 2.0)
+    flatter = np.abs(a.curvature) < np.abs(b.curvature)
+    k = np.where(flatter, b.curvature, a.curvature)
+    m = np.where((flatter | lines)[:, None], m2, m)
+    c = np.where(flatter | lines, c, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        size = np.hypot(v[:, 0], v[:, 1])
+        along = left(v) / size[:, None]
+        foot = v * (w / size**2)[:, None]
+        slope, height = dot(m, along), k * dot(foot, foot) + 2.0 * dot(m, foot) + c
+        far = -(slope + np.copysign(np.sqrt(slope**2 - k * height), slope))
+        # of  k x^2 + 2 slope x + height = 0  the one root divides by what the other multiplies
+        steps = np.stack([height / far, np.where(k == 0.0, np.nan, far / k)])
+        crossing = a.start + foot + steps[:, :, None] * along
+    # Pieces that cover each other have no crossing, but an end or the middle of one lies on the other.
+    covering = (a.start, a.points(a.length / 2.0), a.ends, b.start, b.points(b.length / 2.0), b.ends)
+    point = np.concatenate([*crossing, *covering])
+    pair = np.tile(np.arange(len(i)), 2 + len(covering))
+    near = np.isfinite(point).all(axis=1)
+    point, pair = point[near], pair[near]
+    s, off = nearest_on(a.take(pair), point)
+    t, off2 = nearest_on(b.take(pair), point)
+    on = (off <= TOUCHING) & (off2 <= TOUCHING)
+    return Shared(point[on], pair[on], s[on], t[on])

@@ -1,0 +1,118 @@
+"""Parallel of a closed chain of lines and arcs: arcs to arcs, exactly, with its corners cut off or rounded.
+
+On the side to which a corner opens the parallel is an arc about it; on the other side its neighbours are cut where they
+meet. An arc about a centre nearer than the parallel's distance has none; one that shrinks to a point is left out.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.arcs import Arcs, cross, dot, left
+from kin.contour.contour import Contour
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
+
+STEPS = 60
+SETTLED = 1e-13  # of the size: a meeting is found to this
+SMOOTH = 1e-3  # times `fine`: what a joint's corner may move a parallel by before it counts as one
+
+
+class TightError(ValueError):
+    """A piece that has no parallel at the distance, with its number and a place on it."""
+
+    def __init__(self, message: str, piece: int, place: tuple[float, float]) -> None:
+        super().__init__(message)
+        self.piece = piece
+        self.place = place
+
+
+def parallel(loop: Arcs, distance: float, fine: float) -> Contour:
+    """Curve at `distance` mm to the left of a closed chain (to its right if negative), run the same way.
+
+    Pieces of the parallel no longer than `fine` mm are left out, and so is what lies within a thousandth of that beside
+    a joint whose tangents do not quite agree. Raises TightError for a piece that has no parallel.
+    """
+    stretched = loop.length * (1.0 - loop.curvature * distance)
+    tight = np.flatnonzero(stretched < -fine)
+    if tight.size:
+        raise _tight(loop, int(tight[0]), distance)
+    kept = np.flatnonzero(stretched > fine)
+    if not kept.size:
+        raise _tight(loop, 0, distance)
+    chain = loop.take(kept)
+    moved = Arcs(
+        chain.start + distance * left(chain.tangent),
+        chain.tangent,
+        chain.curvature / (1.0 - chain.curvature * distance),
+        stretched[kept],
+    )
+    begin, end = np.zeros(len(kept)), moved.length.copy()
+    following = np.roll(np.arange(len(kept)), -1)
+    leave, enter = moved.ends, moved.start[following]
+    out, into = moved.end_tangents, moved.tangent[following]
+    turn = np.arctan2(cross(out, into), dot(out, into))
+    gap = enter - leave
+    apart = np.hypot(gap[:, 0], gap[:, 1])
+    smooth = apart * np.abs(turn) <= SMOOTH * fine
+    neighbours = (kept[following] - kept) % len(loop) == 1
+    rounded = ~smooth & neighbours & (distance * turn < 0.0)
+    joint = 0.5 * (leave + enter)
+    end += np.where(smooth, dot(joint - leave, out), 0.0)
+    begin[following] += np.where(smooth, dot(joint - enter, into), 0.0)
+    for i in np.flatnonzero(~smooth & ~rounded).tolist():
+        j = int(following[i])
+        met = _meeting(moved.take(np.array([i])), moved.take(np.array([j])))
+        if met is None:
+            raise _tight(loop, int(kept[i]), distance)
+        joint[i], end[i], begin[j] = met
+    swallowed = np.flatnonzero(end <= begin)
+    if swallowed.size:
+        raise _tight(loop, int(kept[swallowed[0]]), distance)
+    points, bulges = [], []
+    spanned = np.tan(0.25 * moved.curvature * (end - begin))
+    for i in range(len(kept)):
+        before = (i - 1) % len(kept)
+        if rounded[before]:
+            points += [leave[before], enter[before]]
+            bulges += [np.tan(0.25 * turn[before]), spanned[i]]
+        else:
+            points.append(joint[before])
+            bulges.append(spanned[i])
+    return Contour.from_bulges(np.array(points), np.array(bulges))
+
+
+def chain_of(points: Array, bulges: Array) -> Arcs:
+    """Lines and arcs from point to point (n, 2) and back, by bulges (n,), each turning by at most half a turn."""
+    return Contour.from_bulges(points, bulges).as_arcs()[0]
+
+
+def _meeting(one: Arcs, other: Arcs) -> tuple[Array, float, float] | None:
+    """Where two pieces (1,), run on beyond their ends, meet near the end of one and the start of the other.
+
+    The point (2,) and the arc lengths on both, by Newton's method; None where it finds none.
+    """
+    s, t = one.length.copy(), np.zeros(1)
+    size = float(np.abs(one.start).max() + one.length[0] + other.length[0])
+    for _ in range(STEPS):
+        gap = other.points(t) - one.points(s)
+        along, across = one.tangents(s), other.tangents(t)
+        sine = cross(along, across)
+        if not abs(float(sine[0])) > 0.0:
+            return None
+        step, shift = cross(gap, across) / sine, cross(gap, along) / sine
+        s, t = s + step, t + shift
+        if not (abs(float(s[0])) < 4.0 * size and abs(float(t[0])) < 4.0 * size):
+            return None
+        if max(abs(float(step[0])), abs(float(shift[0]))) <= SETTLED * size / min(1.0, abs(float(sine[0]))):
+            return one.points(s)[0], float(s[0]), float(t[0])
+    return None
+
+
+def _tight(loop: Arcs, piece: int, distance: float) -> TightError:
+    x, y = loop.start[piece].tolist()
+    what = f"the curve turns too sharply for its parallel at {abs(distance):.6g} mm, near ({x:.6g}, {y:.6g})"
+    return TightError(what, piece, (x, y))

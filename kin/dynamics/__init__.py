@@ -1,0 +1,1 @@
+"""The follower train as an oscillator with separation and impacts."""

@@ -1,0 +1,138 @@
+"""One turn of a follower train that may lose contact: what is noted of it on the way, and the sum of that."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.dynamics.events import Span, Work, top
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.numeric.arrays import Array, Indices
+
+
+_MOST_NEAR = 24  # samples beside which an extreme is looked for at once
+
+
+class Turn(NamedTuple):
+    """One turn: greatest and least contact force with shaft angles, meetings, and what was lost of contact.
+
+    `least` is 0 where contact was lost. `impacts` counts the meetings with a face, `velocity` (m/s or rad/s) is the
+    greatest at one, and `free` the shaft angle spent without contact, radians. `bore` are the faces that did.
+    """
+
+    greatest: float
+    greatest_at: float
+    least: float
+    least_at: float
+    impacts: int
+    velocity: float
+    velocity_at: float
+    free: float
+    bore: frozenset[int]
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """Samples of a state of contact in time order: stretch (n,), time in it (n,), level (n,); `knots` of all."""
+
+    stretch: Indices
+    time: Array
+    level: Array
+    knots: Array
+
+    def until(self, stretch: int, time: float) -> Seen:
+        """Those that are not later than a time."""
+        later = (self.stretch > stretch) | ((self.stretch == stretch) & (self.time > time))
+        count = int(np.argmax(later)) if later.any() else len(later)
+        return Seen(self.stretch[:count], self.time[:count], self.level[:count], self.knots)
+
+    def phi(self, i: int) -> float:
+        """Shaft angle of a sample."""
+        return float(self.knots[self.stretch[i]] + self.time[i])
+
+
+class Log:
+    """What a turn has shown so far; `reached` is the shaft angle up to which it has, `changes` those of contact."""
+
+    def __init__(self, work: Work) -> None:
+        self._work = work
+        self.reached, self.changes = 0.0, 0
+        self._greatest, self._greatest_at = -math.inf, 0.0
+        self._least, self._least_at = math.inf, 0.0
+        self._impacts, self._velocity, self._velocity_at = 0, 0.0, 0.0
+        self._free = 0.0
+        self._bore: set[int] = set()
+
+    def see(
+        self, contact: int, seen: Seen, span_of: Callable[[int], Span], hit: tuple[int, float] | None = None
+    ) -> None:
+        """Note the extremes of a contact's force, up to its end in (stretch, time)."""
+        end = float(seen.phi(-1) if hit is None else seen.knots[hit[0]] + hit[1])
+        self.reached = end
+        self._bore.add(contact)
+        if hit is not None:
+            seen = seen.until(*hit)
+        self._extremes(1.0, seen, span_of, end)
+        if self._least > 0.0:
+            self._extremes(-1.0, seen, span_of, end)
+
+    def fly(self, begin: float, end: float) -> None:
+        """Note a time without contact, as shaft angles."""
+        self.reached = end
+        self._free += end - begin
+        self.force(0.0, begin)
+
+    def _extremes(self, sign: float, seen: Seen, span_of: Callable[[int], Span], end: float) -> None:
+        level = sign * seen.level
+        best = int(np.argmax(level))
+        self.force(float(seen.level[best]), seen.phi(best))
+        joined = seen.stretch[1:] == seen.stretch[:-1]
+        step = np.diff(level)
+        before = np.append(0.0, np.where(joined, step, 0.0))  # how much a sample is above the one before
+        after = np.append(np.where(joined, -step, 0.0), 0.0)
+        # a parabola is an eighth of what its samples lie apart above them, at most
+        known = sign * (self._greatest if sign > 0.0 else self._least)
+        room = np.maximum(before, after)
+        near = np.flatnonzero((before >= 0.0) & (after >= 0.0) & (level + 0.5 * room > known) & (room > 0.0))
+        near = near[np.argsort(-level[near], kind="stable")[:_MOST_NEAR]]
+        for i in near.tolist():
+            stretch, time = int(seen.stretch[i]), float(seen.time[i])
+            knot = float(seen.knots[stretch])
+            low = float(seen.time[i - 1]) if i and joined[i - 1] else time
+            high = max(time, end - knot) if i == len(joined) else float(seen.time[i + 1]) if joined[i] else time
+            value, at = top(span_of(stretch), low, high, sign, self._work)
+            self.force(value, knot + at)
+
+    def force(self, value: float, phi: float) -> None:
+        """Note a contact force."""
+        value = max(value, 0.0)
+        if value > self._greatest:
+            self._greatest, self._greatest_at = value, phi
+        if value < self._least:
+            self._least, self._least_at = value, phi
+
+    def meet(self, speed: float, phi: float) -> None:
+        """Note a meeting with a face."""
+        self._impacts += 1
+        if speed > self._velocity:
+            self._velocity, self._velocity_at = speed, phi
+
+    def turn(self) -> Turn:
+        """Sum up."""
+        return Turn(
+            self._greatest,
+            self._greatest_at,
+            self._least,
+            self._least_at,
+            self._impacts,
+            self._velocity,
+            self._velocity_at,
+            self._free,
+            frozenset(self._bore),
+        )

@@ -1,0 +1,177 @@
+"""What drives a follower train: a motion over the shaft angle, as Chebyshev series between its breaks.
+
+A motion gives position, velocity and acceleration from closed forms, never by differences. Each of the three is fitted
+by itself, so that a contact force, which is the acceleration's, is not lost in the position's rounding. Where the
+velocity jumps, at the corners of a polygon, the jump is that of the two limits.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.chebyshev import AT_START, DEGREE, NODES, evaluated, fitted
+from kin.numeric.distinct import distinct
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.numeric.arrays import Array, Indices
+
+
+AIM = 1e-14  # of a fitted acceleration, as a share of the greatest
+_ROUNDING = 1e-15  # of the greatest position: what an acceleration may hold of it, as that of a circle R - q does
+TOLERANCE = 1e-10  # what is accepted where halving helps no more
+_TAIL = 3  # coefficients that must have died away
+_FIRST = 12  # stretches, at least: none is wider than 30 degrees
+_GAIN = 0.1  # a halving that leaves more of the last coefficients than this has come to rounding
+_MOST_HALVINGS = 18
+_MOST_STRETCHES = 200_000
+_CLOSE = 1e-9  # rad: breaks that are closer are one
+
+
+class Motion(Protocol):
+    """A position over the shaft angle, of period one turn, smooth between `breaks` (radians, any order)."""
+
+    @property
+    def breaks(self) -> Array:
+        """Shaft angles at which velocity or acceleration may jump, in [0, 2 pi)."""
+        ...
+
+    @property
+    def corners(self) -> Array:
+        """Those of the breaks at which the velocity may jump; at all others its two limits are one."""
+        ...
+
+    def rows(self, phi: Array) -> Array:
+        """Position and two derivatives by the shaft angle, (3, n), at angles phi (n,) that are no breaks."""
+        ...
+
+
+class DriveError(ValueError):
+    """A motion that no series follows; `at` is the shaft angle, radians."""
+
+    def __init__(self, message: str, at: float) -> None:
+        super().__init__(f"{message} near {math.degrees(at) % 360.0:.6g} degrees")
+        self.at = at
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """One motion over a turn: series of position, velocity and acceleration on m stretches, each (m, DEGREE + 1).
+
+    `knots` (m + 1,) rise from 0 to 2 pi; `jumps` (m,) is how much the velocity leaps at the start of each stretch.
+    Lengths, or angles, in the motion's unit; the derivatives by radian of shaft.
+    """
+
+    knots: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    jumps: Array
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+    @property
+    def half(self) -> Array:
+        """Half widths of the stretches (m,)."""
+        return 0.5 * np.diff(self.knots)
+
+    def find(self, phi: float) -> int:
+        """Stretch of a shaft angle in [0, 2 pi]; at a knot the one that begins there."""
+        return min(max(int(np.searchsorted(self.knots, phi, side="right")) - 1, 0), len(self) - 1)
+
+    def rows(self, stretch: Indices, phi: Array) -> Array:
+        """Position, velocity and acceleration, (3, n), at shaft angles phi (n,) in the given stretches (n,)."""
+        half = self.half[stretch]
+        x = (phi - self.knots[stretch]) / half - 1.0
+        return np.stack([evaluated(part, stretch, x) for part in (self.position, self.velocity, self.acceleration)])
+
+    def split(self, parts: Indices) -> Drive:
+        """Cut each stretch into `parts` (m,) equal ones."""
+        if parts.max(initial=1) == 1:
+            return self
+        owner = np.repeat(np.arange(len(self)), parts)
+        number = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
+        step = np.diff(self.knots)[owner] / parts[owner]
+        knots = np.append(self.knots[owner] + number * step, self.knots[-1])
+        cut = parts[owner] > 1
+        x = (2.0 * number[:, None] + 1.0 + NODES) / parts[owner][:, None] - 1.0
+        row = np.repeat(owner[cut], DEGREE + 1)
+        series = []
+        for part in (self.position, self.velocity, self.acceleration):
+            found = part[owner]
+            found[cut] = fitted(evaluated(part, row, x[cut].ravel()).reshape(-1, DEGREE + 1))
+            series.append(found)
+        jumps = np.where(number == 0, self.jumps[owner], 0.0)
+        return Drive(knots, series[0], series[1], series[2], jumps)
+
+    def scaled(self, factor: float) -> Drive:
+        """The motion in another unit."""
+        rows = (factor * row for row in (self.position, self.velocity, self.acceleration, self.jumps))
+        return Drive(self.knots, *rows)
+
+
+def drives(motions: Sequence[Motion], also: Sequence[float] | Array = (), tolerance: float = TOLERANCE) -> list[Drive]:
+    """Fit motions on common knots: all their breaks, the angles `also`, and what the tolerance needs in between.
+
+    Stretches are halved until the last coefficients of every acceleration are below AIM times the greatest in its
+    motion, or come to rounding below `tolerance` times it; DriveError is raised where they do not.
+    """
+    ends = np.concatenate([*(np.mod(motion.breaks, TURN) for motion in motions), np.mod(np.asarray(also), TURN)])
+    ends = distinct(np.concatenate([[0.0, TURN], ends]))
+    ends = ends[np.append(np.diff(ends) > _CLOSE, True)]
+    ends[0] = 0.0
+    parts = np.ceil(np.diff(ends) / (TURN / _FIRST) - 1e-9).astype(np.intp)
+    low = np.concatenate([a + (b - a) / n * np.arange(n) for a, b, n in zip(ends[:-1], ends[1:], parts, strict=True)])
+    width = np.repeat(np.diff(ends) / parts, parts)
+    done: list[tuple[Array, list[Array]]] = []
+    scale, before = np.zeros(len(motions)), np.full((len(motions), len(low)), np.inf)
+    for halving in range(_MOST_HALVINGS + 1):
+        series, tail = [], np.zeros((len(motions), len(low)))
+        phi = low[:, None] + 0.5 * width[:, None] * (1.0 + NODES)
+        for i, motion in enumerate(motions):
+            rows = motion.rows(phi.ravel()).reshape(3, *phi.shape)
+            size = np.abs(rows[[0, 2]]).max(axis=(1, 2), initial=0.0)
+            scale[i] = max(scale[i], float(size[1]), float(size[0]) * _ROUNDING / AIM)
+            series.append(fitted(rows))
+            tail[i] = np.abs(series[i][2, :, -_TAIL:]).max(axis=1)
+        least = np.maximum(scale, np.finfo(float).tiny)[:, None]
+        open_ = ((tail > AIM * least) & ((tail > tolerance * least) | (tail < _GAIN * before))).any(axis=0)
+        done.append((low[~open_], [part[:, ~open_] for part in series]))
+        if not open_.any():
+            break
+        if halving == _MOST_HALVINGS or 2 * open_.sum() + sum(len(part[0]) for part in done) > _MOST_STRETCHES:
+            worst = int(np.argmax((tail / least).max(axis=0)))
+            reached = float((tail / least)[:, worst].max())
+            raise DriveError(
+                f"the acceleration is followed within {reached:.2g} of its greatest, no closer", low[worst]
+            )
+        width = np.repeat(0.5 * width[open_], 2)
+        low, before = np.repeat(low[open_], 2), np.repeat(tail[:, open_], 2, axis=1)
+        low[1::2] += width[1::2]
+    knots = np.concatenate([part[0] for part in done])
+    order = np.argsort(knots)
+    knots = np.append(knots[order], TURN)
+    found = [np.concatenate([part[1][i] for part in done], axis=1)[:, order] for i in range(len(motions))]
+    return [
+        Drive(knots, s, ds, dds, _jumps(knots, ds, motion)) for motion, (s, ds, dds) in zip(motions, found, strict=True)
+    ]
+
+
+def _jumps(knots: Array, velocity: Array, motion: Motion) -> Array:
+    """Leap of the velocity at the start of each stretch (m,): 0 but for the motion's corners."""
+    corners = np.sort(np.mod(motion.corners, TURN))
+    if not len(corners):
+        return np.zeros(len(velocity))
+    at = knots[:-1]
+    after = np.searchsorted(corners, at) % len(corners)
+    apart = np.stack([corners[after] - at, at - corners[after - 1]])
+    apart = np.abs(apart - TURN * np.round(apart / TURN)).min(axis=0)
+    leap: Array = velocity @ AT_START - np.roll(velocity.sum(axis=1), 1)
+    return np.where(apart <= _CLOSE, leap, 0.0)

@@ -1,0 +1,340 @@
+"""A follower train that loses contact, flies, and meets a face again: event after event, each stretch in closed form.
+
+The train is in one of three states: on the lower face, on the upper one, or free. In each the equation of motion is
+linear, and solved exactly (`kin.dynamics.response`); what is searched for are the instants at which the state changes
+(`kin.dynamics.events`, `kin.dynamics.flight`).
+
+    contact ends    where its force would fall below 0, which with damping is before the contact's spring is slack
+    contact begins  where the spring is compressed and its force, damping included, above 0
+
+Meeting a face at speed v with damping c, the force begins at c v: Kelvin's and Voigt's contact has that step.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.dynamics.cycle import Log, Seen, Turn
+from kin.dynamics.events import FREE, LOWER, UPPER, Driven, Pressed, SpentError, Work, dips, first, windows
+from kin.dynamics.flight import Flight, Path
+from kin.dynamics.response import Response, Samples, response
+from kin.dynamics.train import DynamicsError, Running, Train
+from kin.numeric.arrays import Array
+from kin.numeric.chebyshev import DERIVATIVE, evaluated
+
+if TYPE_CHECKING:
+    from kin.dynamics.drive import Drive
+    from kin.dynamics.oscillator import Free
+
+
+MOST_WORK = 6_000_000  # places that a course looks at, which bounds it to some seconds
+
+_LEVEL = 1e-12  # of the greatest force in sight: within this a force is 0
+_ALONE = 3  # stretches after an event that are looked along one by one
+_FIRST_WINDOW, _MOST_WINDOW = 8, 256  # stretches looked at together
+_QUIET = 256  # samples for free motion beyond which a stretch is looked along by itself
+_MOST_EVENTS = 20_000
+_SETTLED = 1e-9
+
+_Event = tuple[int, int, float, Array]  # the state that begins, stretch and time in it, z and z' there
+
+
+class State(NamedTuple):
+    """Contact, and z and z' over the face that bears; over the lower face where none does. By radian of shaft."""
+
+    contact: int
+    z: float
+    v: float
+
+
+@dataclass(frozen=True)
+class Course:
+    """Turns in order from the start, the state at the end of the last, and whether that repeats the one before.
+
+    `stopped` says where and why a course was given up before that, else it is None; `places` is how many it took.
+    """
+
+    turns: tuple[Turn, ...]
+    end: State
+    settled: bool
+    stopped: str | None
+    places: int
+
+
+def course(
+    train: Train,
+    faces: tuple[Drive, Drive | None],
+    rpm: float,
+    turns: int,
+    start: State | None = None,
+    *,
+    most: int = MOST_WORK,
+) -> Course:
+    """Follow a train over at most `turns` turns, until one repeats the one before.
+
+    `faces` are the drives below and above, on common knots, in SI; without one above the preload alone keeps the train
+    down. It begins at rest, x' = 0, at shaft angle 0: on the lower face with its spring as at rest, or halfway between
+    the faces. Raises DynamicsError where the faces leave no play. Where a turn has more than 20 000 changes of contact,
+    or `most` places have been looked at, the course ends with the last whole turn, which may be none.
+    """
+    return _Course(train.at(rpm), faces, most).run(turns, start)
+
+
+def least_gap(lower: Drive, upper: Drive) -> tuple[float, float]:
+    """Least distance from the lower to the upper face, at the best of nine angles a stretch, and where."""
+    every = np.repeat(np.arange(len(lower)), 9)
+    phi = lower.knots[every] + np.tile(np.linspace(0.0, 2.0, 9), len(lower)) * lower.half[every]
+    gap = upper.rows(every, phi)[0] - lower.rows(every, phi)[0]
+    worst = int(np.argmin(gap))
+    return float(gap[worst]), float(phi[worst])
+
+
+class _Course:
+    """The three responses, and the search for events in them."""
+
+    def __init__(self, running: Running, faces: tuple[Drive, Drive | None], most: int) -> None:
+        self.running = running
+        self.lower, self.upper = faces
+        self.found = {
+            LOWER: running.response(self.lower),
+            FREE: response(running.loose, self.lower, running.forcing),
+        }
+        self.gap: Array | None = None
+        if self.upper is not None:
+            least, at = least_gap(self.lower, self.upper)
+            if least <= 0.0:
+                where = math.degrees(at) % 360.0
+                raise DynamicsError(f"no play is left at {where:.6g} degrees: {least:.3g} m or rad")
+            self.found[UPPER] = running.response(self.upper)
+            rows = (self.upper.position - self.lower.position, self.upper.velocity - self.lower.velocity)
+            self.gap = np.stack(rows, axis=1)
+        self.forces = {side: running.force(self.found[side], side) for side in (LOWER, UPPER) if side in self.found}
+        self.contact = running.train.stiffness, running.train.damping * running.speed
+        scale = running.inertia * float(np.abs(self.lower.acceleration).sum(axis=1).max())
+        self.limit = -_LEVEL * (scale + running.train.preload)
+        self.work = Work(most)
+
+    def run(self, turns: int, start: State | None) -> Course:
+        state, settled = start or self._rest(), False
+        done: list[Turn] = []
+        while len(done) < turns and not settled:
+            log = Log(self.work)
+            try:
+                after = self._turn(state, log)
+            except SpentError:
+                return Course(tuple(done), state, settled, self._stopped(len(done), log), self.work.places)
+            done.append(log.turn())
+            settled = after.contact == state.contact and self._alike(state, after)
+            state = after
+        return Course(tuple(done), state, settled, None, self.work.places)
+
+    def _stopped(self, turns: int, log: Log) -> str:
+        train, rpm = self.running.train, self.running.rpm
+        return (
+            f"followed from rest to {math.degrees(log.reached):.4g} degrees of turn {turns + 1} and no further: "
+            f"{log.changes} changes of contact in that turn, {self.work.places} places looked at in all; with the "
+            f"natural frequency {train.ratio(rpm):.4g} times the shaft's and {train.damping_ratio:.3g} times the "
+            "critical damping; more damping, less stiffness or a faster shaft takes fewer"
+        )
+
+    def _rest(self) -> State:
+        start = np.array([0])
+        position, velocity, _ = self.lower.rows(start, np.zeros(1))[:, 0]
+        # before the jump at 0, which belongs to the first stretch
+        velocity -= self.lower.jumps[0]
+        if self.upper is None:
+            return State(LOWER, self.running.static(position), -velocity)
+        above = self.upper.rows(start, np.zeros(1))[0, 0]
+        return State(FREE, 0.5 * (above - position), -velocity)
+
+    def _alike(self, one: State, other: State) -> bool:
+        natural = self.running.bound.natural
+        size = max(abs(one.z), abs(one.v) / natural, abs(other.z), abs(other.v) / natural)
+        return bool(math.hypot(one.z - other.z, (one.v - other.v) / natural) <= _SETTLED * size)
+
+    def _turn(self, state: State, log: Log) -> State:
+        contact, place, time = state.contact, 0, 0.0
+        current = np.array([state.z, state.v - self.found[contact].drive.jumps[0]])
+        # a state that has just begun may not end at once by rounding, but a jump may end it
+        while True:
+            event = self._on(contact, place, time, current, log)
+            if not isinstance(event, tuple):
+                return State(contact, float(event[0]), float(event[1]))
+            begins, place, time, current = event
+            phi = float(self.found[contact].drive.knots[place]) + time
+            current = self._over(current, contact, begins, phi)
+            log.changes += 1
+            if log.changes > _MOST_EVENTS:
+                raise SpentError
+            if begins != FREE:
+                k, c = self.contact
+                log.meet(-begins * float(current[1]) * self.running.speed, phi)
+                log.force(-begins * float(k * current[0] + c * current[1]), phi)
+            contact = begins
+            drive = self.found[contact].drive
+            place = drive.find(phi)
+            time = phi - float(drive.knots[place])
+
+    def _over(self, current: Array, before: int, after: int, phi: float) -> Array:
+        """The state over the face that counts after an event."""
+        if UPPER not in (before, after):
+            return current
+        gap = self._gaps(np.array([phi]))[:, 0]
+        return current - gap if after == UPPER else current + gap
+
+    def _gaps(self, phi: Array) -> Array:
+        """Upper less lower face, and the rate of that, (2, n)."""
+        if self.gap is None:
+            raise DynamicsError("there is no upper face")
+        at = np.clip(np.searchsorted(self.lower.knots, phi, side="right") - 1, 0, len(self.lower) - 1)
+        x = (phi - self.lower.knots[at]) / self.lower.half[at] - 1.0
+        return np.stack([evaluated(self.gap[:, row], at, x) for row in (0, 1)])
+
+    def _pressed(self, contact: int, place: int, free: Free) -> Pressed:
+        """A face that bears on one stretch."""
+        half = float(self.found[contact].half[place])
+        k, c = self.contact
+        series = self.forces[contact].series[place]
+        return Pressed(Driven(series, half), free, (-contact * k, -contact * c), self.limit)
+
+    def _flight(self, place: int, free: Free) -> Flight:
+        """A train without contact on one stretch."""
+        here = self.found[FREE]
+        half = float(here.half[place])
+        gap = None
+        if self.gap is not None:
+            begin = float(here.drive.knots[place])
+            own = self.lower.find(begin + half)
+            gap = Path(self.gap[own], float(self.lower.half[own]), begin - float(self.lower.knots[own]))
+        return Flight(Path(np.stack([here.p[place], here.v[place]]), half), free, self.contact, gap, self.limit)
+
+    def _on(self, contact: int, place: int, time: float, current: Array, log: Log) -> _Event | Array:
+        """Run on to the next event, or to the end of the turn: the state (2,) there."""
+        here = self.found[contact]
+        window, alone = _FIRST_WINDOW, _ALONE
+        while True:
+            found = self._along(contact, place, time, current, log)
+            if isinstance(found, tuple):
+                return found
+            current, place, time = found, place + 1, 0.0
+            if alone and place < len(here):
+                alone -= 1
+                current = current - np.array([0.0, here.drive.jumps[place]])
+                continue
+            while place < len(here):
+                count = min(window, len(here) - place)
+                starts, quiet = self._quiet(here, place, count, current)
+                if not quiet:
+                    current = starts[:, place]
+                    break
+                event = self._many(contact, starts, place, quiet, log)
+                if event is not None:
+                    return event
+                current = here.end(current, place, quiet)
+                place, window = place + quiet, min(2 * window, _MOST_WINDOW)
+            if place == len(here):
+                return current
+
+    def _quiet(self, here: Response, place: int, count: int, before: Array) -> tuple[Array, int]:
+        """States (2, m) at the starts of the next `count` stretches, and how many come before one that rings long."""
+        starts = np.zeros((2, len(here)))
+        starts[:, place : place + count] = here.starts(before, place, count)
+        fine = here.swings(starts, np.arange(place, place + count))[1]
+        loud = np.flatnonzero(fine > _QUIET)
+        return starts, int(loud[0]) if len(loud) else count
+
+    def _along(self, contact: int, place: int, time: float, current: Array, log: Log) -> _Event | Array:
+        """Run on along one stretch to the next event, or to its end: the state (2,) there."""
+        here = self.found[contact]
+        free = here.free(place, time, current)
+        end = 2.0 * float(here.half[place])
+        if contact == FREE:
+            flight, knot = self._flight(place, free), float(here.drive.knots[place])
+            landed = flight.landed(time, end, self.work)
+            log.fly(knot + time, knot + (end if landed is None else landed))
+            if landed is not None:
+                return flight.face(landed), place, landed, here.moved(place, free, landed)
+            return here.moved(place, free, end)
+        span = self._pressed(contact, place, free)
+        bound = here.oscillator.bound(np.array([[free.z], [free.v]]))
+        ringing = time + float(here.lasting(bound, np.array([place]))[0])
+        for at in windows(time, end, ringing, here.step):
+            self.work.take(len(at))
+            level = span.at(at)
+            hit = first(span, at, level, self.work)
+            seen = Seen(np.full(len(at), place), at, level, here.drive.knots)
+            log.see(contact, seen, lambda _: span, None if hit is None else (place, hit))
+            if hit is not None:
+                return FREE, place, hit, here.moved(place, free, hit)
+        return here.moved(place, free, end)
+
+    def _many(self, contact: int, starts: Array, place: int, count: int, log: Log) -> _Event | None:
+        """Look along whole stretches at once, from the states (2, m) at their starts: the next event in them."""
+        here = self.found[contact]
+        at = here.samples(starts, np.arange(place, place + count))
+        self.work.take(len(at.time))
+        if contact == FREE:
+            return self._far(starts, at, log)
+        level = self.forces[contact].at(starts, at)
+        seen = Seen(at.stretch, at.time, level, here.drive.knots)
+
+        def span_of(stretch: int) -> Pressed:
+            return self._pressed(contact, stretch, here.free(stretch, 0.0, starts[:, stretch]))
+
+        doubtful = np.union1d(np.flatnonzero(level < self.limit), dips(level))
+        for stretch in np.unique(at.stretch[doubtful]).tolist():
+            inside = at.stretch == stretch
+            hit = first(span_of(stretch), at.time[inside], level[inside], self.work)
+            if hit is not None:
+                log.see(contact, seen, span_of, (stretch, hit))
+                state = here.moved(stretch, here.free(stretch, 0.0, starts[:, stretch]), hit)
+                return FREE, stretch, hit, state
+        log.see(contact, seen, span_of)
+        return None
+
+    def _far(self, starts: Array, at: Samples, log: Log) -> _Event | None:
+        """Fly along whole stretches; those on which a face may be met between two samples are looked along alone."""
+        here = self.found[FREE]
+        knots = here.drive.knots
+        first_, last = int(at.stretch[0]), int(at.stretch[-1])
+        begin = float(knots[first_])
+        z = here.states(starts, at)[0]
+        deep, bend = -z, self._bends(starts)
+        if self.gap is not None:
+            deep = np.maximum(deep, z - self._gaps(knots[at.stretch] + at.time)[0])
+        # between two places a function is no more above both than this
+        above = np.maximum(deep[:-1], deep[1:]) + bend[at.stretch[1:]] * np.diff(at.time) ** 2 / 8.0
+        near = (above >= 0.0) & (at.stretch[1:] == at.stretch[:-1])
+        for stretch in np.unique(at.stretch[1:][near]).tolist():
+            free = here.free(stretch, 0.0, starts[:, stretch])
+            flight = self._flight(stretch, free)
+            landed = flight.landed(0.0, 2.0 * float(here.half[stretch]), self.work)
+            if landed is not None:
+                log.fly(begin, float(knots[stretch]) + landed)
+                return flight.face(landed), stretch, landed, here.moved(stretch, free, landed)
+        log.fly(begin, float(knots[last + 1]))
+        return None
+
+    def _bends(self, starts: Array) -> Array:
+        """Bound (m,) of the second derivative of the distance to either face in flight, on each stretch."""
+        here, oscillator = self.found[FREE], self.found[FREE].oscillator
+        if not oscillator.square:
+            return self._driven_bends
+        found: Array = self._driven_bends + oscillator.square * oscillator.bound(starts - here.ends[0].T)
+        return found
+
+    @cached_property
+    def _driven_bends(self) -> Array:
+        """What `_bends` are without free motion."""
+        here = self.found[FREE]
+        found: Array = np.abs(here.v @ DERIVATIVE.T).sum(axis=1) / here.half
+        if self.gap is not None:
+            bends = np.abs(self.gap[:, 1] @ DERIVATIVE.T).sum(axis=1) / self.lower.half
+            middle = here.drive.knots[:-1] + here.half
+            found = found + bends[np.searchsorted(self.lower.knots, middle, side="right") - 1]
+        return found

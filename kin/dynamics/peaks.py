@@ -1,0 +1,132 @@
+"""Greatest and least values of a contact force, or of any figure linear in the state, over stretches of a response."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.dynamics.response import Response, Samples
+from kin.numeric.chebyshev import evaluated
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.numeric.arrays import Array, Indices
+
+
+_NEAR = 0.03  # of the range: samples a quarter of a radian apart miss less of a peak
+_MOST_NEAR = 256
+_GRID, _ROUNDS = 17, 8  # places between two neighbours, of which each round keeps an eighth
+_AT_ONCE = 400_000  # samples, which bounds the memory
+
+
+class Peaks(NamedTuple):
+    """Greatest and least value, each with the shaft angle (radians) at which it is reached."""
+
+    greatest: float
+    greatest_at: float
+    least: float
+    least_at: float
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """A figure w0 z + w1 z' + q over a response, q a polynomial on each stretch.
+
+    `series` (m, DEGREE + 1) is that of w0 p + w1 p' + q, `z` and `v` are w0 and w1, which the free motion takes.
+    """
+
+    response: Response
+    series: Array
+    z: float
+    v: float
+
+    @staticmethod
+    def of(response: Response, z: float, v: float, more: Array | float = 0.0) -> Figure:
+        """Make the figure z * z + v * z' + more, `more` (m, DEGREE + 1) a series or a constant."""
+        series = z * response.p + v * response.v
+        if isinstance(more, float):
+            series[:, 0] += more
+        else:
+            series = series + more
+        return Figure(response, series, z, v)
+
+    def at(self, starts: Array, at: Samples) -> Array:
+        """Values (n,) from the states at the starts (2, m)."""
+        response = self.response
+        free_z, free_v = response.rung(starts, at)
+        x = at.time / response.half[at.stretch] - 1.0
+        found: Array = evaluated(self.series, at.stretch, x) + self.z * free_z + self.v * free_v
+        return found
+
+    def peaks(self, starts: Array, stretches: Indices) -> Peaks:
+        """Extremes over the given stretches, ends included, from the states at their starts.
+
+        Found by sampling every swing, and closer and closer between the neighbours of each sample that may be the
+        highest.
+        """
+        parts: list[tuple[Samples, Array]] = []
+        for chosen in np.array_split(stretches, max(1, len(stretches) * 64 // _AT_ONCE)):
+            at = self.response.samples(starts, chosen)
+            for first in range(0, len(at.time), _AT_ONCE):
+                part = Samples(at.stretch[first : first + _AT_ONCE + 2], at.time[first : first + _AT_ONCE + 2])
+                parts.append((part, self.at(starts, part)))
+        return Peaks(*self._highest(starts, parts, 1.0), *self._highest(starts, parts, -1.0))
+
+    def least(self, starts: Array, at: Samples) -> float:
+        """Least value at samples (n,) in time order that show every swing, and between neighbours."""
+        return self._highest(starts, [(at, self.at(starts, at))], -1.0)[0]
+
+    def _highest(self, starts: Array, parts: list[tuple[Samples, Array]], sign: float) -> tuple[float, float]:
+        """Greatest value times sign, and where."""
+        best = max(float((sign * values).max()) for _, values in parts)
+        spread = best + max(float((-sign * values).max()) for _, values in parts)
+        least = best - _NEAR * spread
+        found: list[tuple[float, int, float]] = []
+        brackets: list[tuple[int, float, float]] = []
+        for at, values in parts:
+            near = np.flatnonzero(sign * values >= least)
+            top = int(near[np.argmax(sign * values[near])]) if len(near) else -1
+            if top >= 0:
+                found.append((float(values[top]), int(at.stretch[top]), float(at.time[top])))
+            before, after = beside(at.stretch, near)
+            peak = (sign * values[near] >= sign * values[before]) & (sign * values[near] >= sign * values[after])
+            near, before, after = near[peak], before[peak], after[peak]
+            highest = np.argsort(-sign * values[near], kind="stable")[:_MOST_NEAR]
+            columns = at.stretch[near], at.time[before], at.time[after]
+            brackets += zip(*(column[highest].tolist() for column in columns), strict=True)
+        if brackets:
+            stretch, low, high = (np.array(column) for column in zip(*brackets, strict=True))
+            tops, times = narrowed(lambda at: self.at(starts, at), stretch, (low, high), sign)
+            found += zip(tops.tolist(), stretch.tolist(), times.tolist(), strict=True)
+        value, which, time = max(found, key=lambda one: sign * one[0])
+        return value, float(self.response.drive.knots[which]) + time
+
+
+def narrowed(
+    value: Callable[[Samples], Array],
+    stretch: Indices,
+    between: tuple[Array, Array],
+    sign: float,
+) -> tuple[Array, Array]:
+    """Greatest value times sign between two times in each stretch (n,), and its time: (n,), (n,)."""
+    low, high = between
+    grid, rows = np.linspace(0.0, 1.0, _GRID), np.arange(len(stretch))
+    best, where = np.empty(len(stretch)), low
+    for _ in range(_ROUNDS):
+        time = low[:, None] + (high - low)[:, None] * grid
+        values = value(Samples(np.repeat(stretch, _GRID), time.ravel())).reshape(time.shape)
+        top = np.argmax(sign * values, axis=1)
+        best, where = values[rows, top], time[rows, top]
+        low, high = time[rows, np.maximum(top - 1, 0)], time[rows, np.minimum(top + 1, _GRID - 1)]
+    return best, where
+
+
+def beside(stretch: Indices, places: Indices) -> tuple[Indices, Indices]:
+    """The samples before and after the given ones, or themselves at the ends of a stretch; `stretch` of each sample."""
+    before, after = np.maximum(places - 1, 0), np.minimum(places + 1, len(stretch) - 1)
+    before = np.where(stretch[before] == stretch[places], before, places)
+    after = np.where(stretch[after] == stretch[places], after, places)
+    return before, after

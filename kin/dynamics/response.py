@@ -1,0 +1,274 @@
+"""The exact response of a damped oscillator to a drive: z'' + 2 a z' + r^2 z = g, stretch by stretch.
+
+z = x - s is the follower's place relative to the cam, so g = -s'' - kappa s - f and nothing of s itself is lost in
+rounding where the train is stiff. On each stretch z = p + h: p is a polynomial that depends on the drive alone, h the
+free motion that takes up the difference to the state at the start, known in closed form. A jump of s' is one of z'.
+
+p is found in one of two ways.
+
+slow      where a stretch lasts long against the free motion: the polynomial solution itself, by back substitution in
+          1 + (2 a/r^2) d + (1/r^2) d^2, whose matrix over Chebyshev coefficients is upper triangular with diagonal 1.
+at rest   elsewhere, on parts of at most LONGEST radians of free motion to each side: the solution with p = p' = 0 at
+          the start, from the integral equation for p'' (Greengard 1991), which is well conditioned.
+
+Neither has a time step: their number is that of the drive's stretches, times a bounded number of parts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.dynamics.oscillator import Free
+from kin.numeric.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated, value
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.dynamics.drive import Drive
+    from kin.dynamics.oscillator import Oscillator
+    from kin.numeric.arrays import Array, Indices
+
+
+LONGEST = 4.0  # radians of free motion in half a stretch, see kin.numeric.chebyshev
+_ROOM = 0.25  # times the degree squared: half a stretch's radians from which the slow solution loses no digits
+_LEAST_SLOW = 8.0
+_NOISE = 2e-16  # coefficients below this share of the greatest are rounding
+_MOST_PARTS = 100_000
+_PASSES = 2
+_STEP = 0.25  # radians of free motion between samples
+_SAMPLES = 33  # of a stretch, at least
+_SILENT = 1e-11  # a free motion below this share of all else is not sampled for
+
+
+class StiffnessError(ValueError):
+    """More parts than can be held: the damping is so strong that one rate of decay lies far below the other."""
+
+
+class Samples(NamedTuple):
+    """Places in time order: stretch (n,) and time since its start (n,)."""
+
+    stretch: Indices
+    time: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Forcing:
+    """g = -s'' - kappa s - f; kappa the preload spring's own square frequency, f its force by the mass."""
+
+    kappa: float = 0.0
+    constant: float = 0.0
+
+    def series(self, drive: Drive) -> Array:
+        """Chebyshev coefficients of g (m, DEGREE + 1)."""
+        found: Array = -drive.acceleration
+        if self.kappa:
+            found = found - self.kappa * drive.position
+        found[:, 0] -= self.constant
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Response to a drive; `drive` is already cut as the oscillator needs it, `p` and `v` are the series of p and p'.
+
+    Each (m, DEGREE + 1). States are (2,) or (2, n): z and z'.
+    """
+
+    oscillator: Oscillator
+    drive: Drive
+    p: Array
+    v: Array
+    slow: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.p)
+
+    @cached_property
+    def half(self) -> Array:
+        """Half widths of the stretches (m,)."""
+        return self.drive.half
+
+    @cached_property
+    def _steps(self) -> tuple[Array, Array, Array]:
+        """Of each stretch: p, p' at its start (m, 2) and end (m, 2), and the matrix of the free motion (m, 4)."""
+        at_start = np.stack([self.p @ AT_START, self.v @ AT_START], axis=1)
+        at_end = np.stack([self.p.sum(axis=1), self.v.sum(axis=1)], axis=1)
+        matrix = np.stack(self.oscillator.propagator(np.diff(self.drive.knots)), axis=1)
+        return at_start, at_end, matrix
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """Values of p and p' at the start and at the end of each stretch, (m, 2) each."""
+        return self._steps[:2]
+
+    def starts(self, state: Array, first: int, count: int) -> Array:
+        """States (2, count) at the starts of stretches first, first + 1, ..., from that at the end of the one before.
+
+        `state` (2,) is taken before the jump of the drive's velocity at the first of them.
+        """
+        return self._run(state, first, count)[0]
+
+    def end(self, state: Array, first: int, count: int) -> Array:
+        """State (2,) at the end of `count` stretches, from that before the first."""
+        return self._run(state, first, count)[1]
+
+    def _run(self, state: Array, first: int, count: int) -> tuple[Array, Array]:
+        at_start, at_end, matrix = (part[first : first + count].tolist() for part in self._steps)
+        jumps = self.drive.jumps[first : first + count].tolist()
+        z, v = float(state[0]), float(state[1])
+        found = []
+        for (p0, v0), (p1, v1), (zz, zv, vz, vv), jump in zip(at_start, at_end, matrix, jumps, strict=True):
+            v -= jump
+            found.append((z, v))
+            z, v = z - p0, v - v0
+            z, v = p1 + zz * z + zv * v, v1 + vz * z + vv * v
+        return np.array(found).T.reshape(2, -1), np.array([z, v])
+
+    def free(self, stretch: int, time: float, state: Array) -> Free:
+        """The free motion on a stretch from the state (2,) at a time since its start."""
+        p, v = self._driven(stretch, time)
+        return Free(self.oscillator, time, float(state[0]) - p, float(state[1]) - v)
+
+    def _driven(self, stretch: int, time: float) -> tuple[float, float]:
+        x = time / self.half[stretch] - 1.0
+        return value(self.p[stretch].tolist(), x), value(self.v[stretch].tolist(), x)
+
+    def moved(self, stretch: int, free: Free, time: float) -> Array:
+        """State (2,) at a time since the start of a stretch, of the free motion there and what is driven."""
+        p, v = self._driven(stretch, time)
+        z, rate = free.after(time)
+        return np.array([p + z, v + rate])
+
+    def periodic(self) -> Array:
+        """State (2,) at the end of the turn that a turn brings back to itself; ValueError at exact resonance.
+
+        The second pass starts where free motion is small already, so that its phase, good to r eps, is not what limits
+        the result.
+        """
+        state = np.zeros(2)
+        for _ in range(_PASSES):
+            state = state + self.oscillator.periodic(self.end(state, 0, len(self)) - state)
+        return state
+
+    def particular(self, at: Samples) -> Array:
+        """Values of p and p' (2, n)."""
+        x = at.time / self.half[at.stretch] - 1.0
+        return np.stack([evaluated(self.p, at.stretch, x), evaluated(self.v, at.stretch, x)])
+
+    def states(self, starts: Array, at: Samples) -> Array:
+        """Values z and z' (2, n), from the states (2, m) at all starts."""
+        found: Array = self.particular(at) + self.rung(starts, at)
+        return found
+
+    def rung(self, starts: Array, at: Samples) -> Array:
+        """The free part of z and z' (2, n), as `states`."""
+        return self.oscillator.moved((starts - self._steps[0].T)[:, at.stretch], at.time)
+
+    def lasting(self, bound: Array, stretches: Indices) -> Array:
+        """How long (n,) free motions, of bounds (n,), shake p visibly on the given stretches; 0 where p is no slow one.
+
+        Seen from the greatest p and the greatest free motion of all given.
+        """
+        size = _SILENT * (np.abs(self.p[stretches]).sum(axis=1).max(initial=0.0) + bound.max(initial=0.0))
+        alive = self.slow[stretches] & (bound > size)
+        found = np.where(alive, np.inf, 0.0)
+        if self.oscillator.fading > 0.0:
+            found[alive] = np.log(bound[alive] / size) / self.oscillator.fading
+        return found
+
+    @property
+    def step(self) -> float:
+        """Time between samples that show every swing of the free motion; infinite where there is none."""
+        return _STEP / self.oscillator.fast if self.oscillator.fast > 0.0 else np.inf
+
+    def swings(self, starts: Array, stretches: Indices) -> tuple[Array, Indices]:
+        """Time (n,) for which free motion is sampled on the given stretches, and how many samples (n,) that takes."""
+        bound = self.oscillator.bound((starts - self._steps[0].T)[:, stretches])
+        lasting = np.minimum(self.lasting(bound, stretches), 2.0 * self.half[stretches])
+        fine = np.where(lasting > 0.0, np.ceil(lasting / self.step) + 1.0, 0.0).astype(np.intp)
+        return lasting, fine
+
+    def samples(self, starts: Array, stretches: Indices) -> Samples:
+        """Places that show every swing of z on the given stretches, ends included, from the states at all starts."""
+        width = 2.0 * self.half[stretches]
+        lasting, fine = self.swings(starts, stretches)
+        each = fine + _SAMPLES
+        owner = np.repeat(np.arange(len(stretches)), each)
+        number = np.arange(len(owner)) - np.repeat(np.cumsum(each) - each, each)
+        time = width[owner] * number / (_SAMPLES - 1)
+        if fine.any():
+            swinging = lasting[owner] * (number - _SAMPLES + 1) / (fine[owner] + 1.0)
+            time = np.where(number < _SAMPLES, time, swinging)
+            time = time[np.lexsort((time, owner))]
+        return Samples(stretches[owner], time)
+
+
+def response(oscillator: Oscillator, drive: Drive, forcing: Forcing) -> Response:
+    """Cut the drive as the oscillator needs it and find p on every stretch.
+
+    Raises StiffnessError where that takes more than 100 000 parts.
+    """
+    half = drive.half
+    series = forcing.series(drive)
+    noise = _NOISE * float(np.abs(series).max(initial=0.0))
+    degree = degrees(series, noise)
+    slow = oscillator.slow * half >= np.maximum(_LEAST_SLOW, _ROOM * degree**2)
+    parts = np.where(slow, 1, np.ceil(oscillator.fast * half / LONGEST)).astype(np.int64)
+    parts = np.maximum(parts, 1)
+    if parts.sum() > _MOST_PARTS:
+        raise StiffnessError(
+            f"{int(parts.sum())} parts of a turn are needed: the rates of decay, {oscillator.slow:.3g} and "
+            f"{oscillator.fast:.3g} by radian, lie too far apart"
+        )
+    parts = parts.astype(np.intp)
+    drive = drive.split(parts)
+    owner = np.repeat(np.arange(len(parts)), parts)
+    slow = slow[owner]
+    g = forcing.series(drive)
+    half = drive.half
+    p, v = np.zeros_like(g), np.zeros_like(g)
+    g[slow] = np.where(np.abs(g[slow]) > noise, g[slow], 0.0)
+    if slow.any():
+        p[slow], v[slow] = _slow(oscillator, g[slow], half[slow])
+    if not slow.all():
+        p[~slow], v[~slow] = _from_rest(oscillator, g[~slow], half[~slow], owner[~slow])
+    return Response(oscillator, drive, p, v, slow)
+
+
+_EYE = np.eye(DEGREE + 1)
+
+
+def _slow(oscillator: Oscillator, g: Array, half: Array) -> tuple[Array, Array]:
+    """Polynomial solution p and p' of the forces g (k, n); half widths (k,)."""
+    first = (2.0 * oscillator.decay / oscillator.square / half)[:, None, None]
+    second = (1.0 / oscillator.square / half**2)[:, None, None]
+    matrix = _EYE + first * DERIVATIVE + second * (DERIVATIVE @ DERIVATIVE)
+    p = np.asarray(np.linalg.solve(matrix, g[:, :, None] / oscillator.square)[:, :, 0], dtype=np.float64)
+    v: Array = (p @ DERIVATIVE.T) / half[:, None]
+    return p, v
+
+
+def _from_rest(oscillator: Oscillator, g: Array, half: Array, owner: Indices) -> tuple[Array, Array]:
+    """Solution p and p', both 0 at the start, of the forces g (k, n); half widths (k,), alike for one owner (k,)."""
+    once, twice = INTEGRAL, INTEGRAL @ INTEGRAL
+    first = np.flatnonzero(np.diff(owner, prepend=-1))
+    scale = half[first]
+    matrix = (
+        _EYE
+        + (2.0 * oscillator.decay * scale)[:, None, None] * once
+        + (oscillator.square * scale**2)[:, None, None] * twice
+    )
+    ends = np.append(first[1:], len(owner))
+    bend = np.empty_like(g)
+    alone = ends - first == 1
+    bend[first[alone]] = np.linalg.solve(matrix[alone], g[first[alone], :, None])[:, :, 0]
+    for i in np.flatnonzero(~alone).tolist():
+        rows = slice(first[i], ends[i])
+        bend[rows] = np.linalg.solve(matrix[i], g[rows].T).T
+    p: Array = (bend @ twice.T) * half[:, None] ** 2
+    v: Array = (bend @ once.T) * half[:, None]
+    return p, v

@@ -1,0 +1,232 @@
+"""The shaft speed at which a follower under a preload spring first loses contact.
+
+From a speed at which no steady state can float, upwards, ranges of speeds are either shown to hold by
+`kin.dynamics.separation_bounds`, or halved; what is left of them at last, narrower than 1e-11, is where float begins.
+So no dip of the least force over the speed is passed over, however narrow, and wide ranges cost a look or two.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.dynamics.events import SpentError, Work, crossing
+from kin.dynamics.separation_bounds import Look, Range
+from kin.dynamics.train import DynamicsError, Train, steady
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from kin.dynamics.drive import Drive
+
+
+MOST_WORK = 6_000_000  # places that a search looks at, which bounds it to some seconds
+
+
+_LADDER = 1.08  # ratio of the speeds of the widest range
+_WIDE = 1.0  # in turns of the shaft: ranges wider are tried by the bound that knows no phase
+_DAMPED = 0.25  # of the decay in a radian, which may be wider
+_CLOSE = 0.25  # in turns of the shaft: narrower ranges are cut as their ends' forces suggest
+_STRIDE = 1.02  # ratio of the speeds at which a floating one is looked for
+_BESIDE = 1e-9  # of a speed: so near a resonance, and not on it, where nothing may be steady
+_RESOLUTION = 1e-11
+_CORNER = 1e-9  # of the greatest velocity: a lesser leap is a tangent's rounding
+_BISECTIONS = 200  # of the logarithm of a speed: many times the bits of a number
+_LEAST_RATIO = 0.5  # natural frequency in turns of the shaft, below which nobody asks
+
+
+@dataclass(frozen=True)
+class FloatSpeed:
+    """Where float begins.
+
+    rpm       least speed at which the contact force of the steady state falls to 0; None where that is not reached
+              while the natural frequency is above half the shaft's
+    at        shaft angle at which contact is lost there, radians
+    rigid_rpm the same for a follower without compliance; None where it never floats, and where the motion has corners
+    between   where the search was given up: a speed up to which contact holds, and one that floats, or None where none
+              was found
+    places    how many places were looked at
+    """
+
+    rpm: float | None
+    at: float | None
+    rigid_rpm: float | None
+    between: tuple[float, float | None] | None
+    places: int
+
+
+def float_speed(train: Train, drive: Drive, *, most: int = MOST_WORK) -> FloatSpeed:
+    """Find the speed at which float begins, to 1e-11 of itself; without preload or damping raises DynamicsError.
+
+    (Without damping every speed at which a harmonic of the drive resonates floats, and these have no least one.) A
+    search that has looked at `most` places ends, with the speeds between which float begins.
+    """
+    if train.preload <= 0.0:
+        raise DynamicsError("without preload contact is lost at any speed")
+    if train.damping <= 0.0:
+        raise DynamicsError("without damping contact is lost wherever a harmonic resonates, at however low a speed")
+    rigid = _rigid(train, drive)
+    search = _Search(train, drive, Work(most))
+    try:
+        begins = search.run()
+    except SpentError:
+        floats = search.floats or _floats(train, drive, search.holds)
+        if floats is not None:
+            floats = _floats_below(train, drive, search.holds, floats)
+        between = search.holds, floats
+        return FloatSpeed(None, None, rigid, between, search.work.places)
+    at = None if begins is None else steady(train, drive, begins).force.least_at
+    return FloatSpeed(begins, at, rigid, None, search.work.places)
+
+
+class _Search:
+    """`holds` is a speed up to which contact holds, `floats` the least known one that floats."""
+
+    def __init__(self, train: Train, drive: Drive, work: Work) -> None:
+        self.train, self.drive, self.work = train, drive, work
+        self.holds = _safe(train, drive)
+        self.floats: float | None = None
+
+    def run(self) -> float | None:
+        """The least speed at which contact is lost."""
+        last = _last(self.train)
+        low = self._look(self.holds)
+        while low.rpm < last:
+            high = self._look(min(low.rpm * _LADDER, last))
+            begins = self._first(Range(low, high))
+            if begins is not None:
+                return begins
+            low = high
+        return None
+
+    def _look(self, rpm: float) -> Look:
+        return Look(self.train, self.drive, rpm, self.work)
+
+    def _first(self, widest: Range) -> float | None:
+        """The least speed in a range at which contact is lost."""
+        left = [widest]
+        while left:
+            part = left.pop()
+            if self._passed(part):
+                self.holds = part.high.rpm
+                continue
+            low, high = part.low, part.high
+            if high.rpm - low.rpm <= _RESOLUTION * high.rpm:
+                return high.rpm
+            looks = [low, *(self._look(rpm) for rpm in self._cuts(part)), high]
+            left += [Range(*ends) for ends in pairwise(looks)][::-1]
+        return None
+
+    def _passed(self, part: Range) -> bool:
+        if part.sure:
+            return True
+        if part.high.swings and part.width > max(_WIDE, _DAMPED * part.high.fading):
+            return False
+        if part.high.least < 0.0:
+            self.floats = min(part.high.rpm, self.floats or math.inf)
+            return False
+        return part.holds
+
+    def _cuts(self, part: Range) -> list[float]:
+        """Speeds within a range, rising: close to where it floats, or to where what is above can be shown, or halfway.
+
+        Halfway may be a resonance, or between two.
+        """
+        low, high = part.low, part.high
+        middle = math.sqrt(low.rpm * high.rpm)
+        if part.width < _CLOSE and low.least > 0.0:
+            if high.least < 0.0:
+                room = 0.5 * _RESOLUTION
+                found = crossing(lambda rpm: self._look(rpm).least, low.rpm, high.rpm, 0.0, self.work, room=room)
+                return [rpm for rpm in (found * (1.0 - _RESOLUTION), found) if low.rpm < rpm < high.rpm] or [middle]
+            share = 0.9 * math.sqrt(high.least / part.between)
+            return [high.rpm - share * (high.rpm - low.rpm) if share < 0.5 and high.least < low.least else middle]
+        if part.width > 0.5 and high.swings:
+            share = high.oscillator.split / high.b
+            b = 0.5 * round(2.0 * share * self.train.ratio(middle)) / share
+            if high.b + 0.1 < b < low.b - 0.1:
+                middle = self.train.natural / b * 60.0 / TURN
+        return [middle]
+
+
+def _floats(train: Train, drive: Drive, rpm: float) -> float | None:
+    """A speed above another that floats; None where none is found."""
+    work, last = Work(MOST_WORK // 6), _last(train)
+    try:
+        while rpm < last:
+            rpm *= _STRIDE
+            if Look(train, drive, rpm, work).least < 0.0:
+                return rpm
+    except SpentError:
+        return None
+    return None
+
+
+def _floats_below(train: Train, drive: Drive, holds: float, floats: float) -> float:
+    """A speed that floats, no greater than `floats`: by halving, at resonances alone, as if all above it floated."""
+    work, low = Work(MOST_WORK // 6), holds
+    try:
+        while floats > _STRIDE * low:
+            middle = math.sqrt(low * floats)
+            tried = (rpm for rpm in _resonances(train, middle) if low < rpm < floats)
+            found = next((rpm for rpm in tried if Look(train, drive, rpm, work).least < 0.0), None)
+            low, floats = (middle, floats) if found is None else (low, found)
+    except SpentError:
+        return floats
+    return floats
+
+
+def _resonances(train: Train, rpm: float) -> list[float]:
+    """Speeds near another at which a harmonic resonates, of orders that a drive's symmetry is likely to leave.
+
+    A cam of constant breadth has odd ones alone, one of three lobes multiples of 3, a rise of 120 degrees all others.
+    """
+    order = math.sqrt(max(1.0 - train.damping_ratio**2, 0.0)) * train.ratio(rpm)
+    odd = max((step for step in (1, 3, 15, 105) if step <= 0.05 * order), default=1)
+    orders = [odd * (2 * round(0.5 * (order / odd - 1.0)) + 1)] + [round(order) + i for i in (0, 1, -1, 2)]
+    return [(1.0 + _BESIDE) * rpm * order / near for near in orders if near > 0]
+
+
+def _rigid(train: Train, drive: Drive) -> float | None:
+    """Speed at which F + k_p s + m W^2 s'' first falls to 0, on a grid of 33 points a stretch; None with corners."""
+    if (np.abs(drive.jumps) > _CORNER * float(np.abs(drive.velocity).sum(axis=1).max())).any():
+        return None
+    every = np.repeat(np.arange(len(drive)), 33)
+    phi = drive.knots[every] + np.tile(np.linspace(0.0, 2.0, 33), len(drive)) * drive.half[every]
+    position, _, bend = drive.rows(every, phi)
+    falling = bend < 0.0
+    if not falling.any():
+        return None
+    held = np.maximum(train.preload + train.rate * position[falling], 0.0)
+    return float(np.sqrt((held / (-train.mass * bend[falling])).min())) * 60.0 / TURN
+
+
+def _last(train: Train) -> float:
+    """The speed beyond which nobody asks."""
+    return train.natural / _LEAST_RATIO * 60.0 / TURN
+
+
+def _safe(train: Train, drive: Drive) -> float:
+    """A speed below which no steady state can float: by the integral of the modulus of what a force drives up."""
+    zeta = train.damping_ratio
+    bend = float(np.abs(drive.acceleration).sum(axis=1).max())
+    kicks = float(np.abs(drive.jumps).sum())
+    held = train.preload + train.rate * min(0.0, float(drive.position.sum(axis=1).min()))
+    if held <= 0.0:
+        raise DynamicsError("the preload spring is slack over a part of the turn")
+
+    def driven(rpm: float) -> float:
+        running = train.at(rpm)
+        oscillator = running.bound
+        gain = oscillator.amplification * (1.0 + 2.0 * zeta)
+        lasting = -math.expm1(-TURN * oscillator.fading)
+        return running.inertia * (gain * bend + (1.0 + 2.0 * zeta) * oscillator.natural * kicks / lasting)
+
+    low, high = 1e-9, train.natural * 60.0
+    for _ in range(_BISECTIONS):  # `low` is safe after any number of them
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if driven(middle) < held else (low, middle)
+    return low

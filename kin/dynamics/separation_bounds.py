@@ -1,0 +1,281 @@
+"""Whether contact holds under a preload spring over a range of shaft speeds, by bounds on the least contact force.
+
+On each stretch the steady state is z = q + h, where q is known and smooth over the speed: the slow polynomial solution,
+or g/r^2 or so. h is what kicks leave: the leaps of q and q' at the knots, those of the drive's velocity, and what q
+leaves of g. With w = exp(lambda 2 pi), lambda = -a + ib, and kicks c_j,
+
+    h(phi) = Re of (sum of c_j exp(lambda (phi - phi_j)) over the last turn) / (1 - w)
+
+so over b no phase in the sum moves by more than 2 pi, or pi to either side of the middle one: whatever the damping,
+its size is known between two speeds from those there, but for (width pi)^2/8 times the sum of the moduli. 1 - w has a
+closed form. So a resonance, however narrow, is not passed over. What goes with a power of the speed alone, q and the
+size of the kicks, is allowed for with the fourth (a leap of s'' gives a force that goes with the square, one of s'''
+with the third). Near critical damping and beyond there is no resonance, and all follows from how h fades.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.dynamics.response import Samples
+from kin.dynamics.train import periodic
+from kin.numeric.angles import TURN
+from kin.numeric.chebyshev import AT_START, DERIVATIVE, ORDERS, evaluated
+
+if TYPE_CHECKING:
+    from kin.dynamics.drive import Drive
+    from kin.dynamics.events import Work
+    from kin.dynamics.oscillator import Oscillator
+    from kin.dynamics.train import Train
+    from kin.numeric.arrays import Array, Indices
+
+
+PARTS = 32  # windows of a stretch
+_EACH = 50  # places that a stretch costs to solve
+_STEP = 0.25  # radians of free motion between samples
+_POWER = 4.0  # of the speed, with which kicks grow at most
+_PART = 8.0  # radians of free motion in a stretch that is not slow, at most: its kicks' own phase
+_GRID = np.linspace(-1.0, 1.0, PARTS + 1)
+_BLUNT = 0.9  # damping ratio from which a free motion is bounded as one that does not swing
+_CURVED = ORDERS**2 * (ORDERS**2 - 1.0) / 3.0  # greatest second derivative of each Chebyshev polynomial
+
+
+class Look:
+    """The steady state at one speed: bounds of its contact force, and the least of that."""
+
+    def __init__(self, train: Train, drive: Drive, rpm: float, work: Work) -> None:
+        self.train, self.rpm, self.work = train, rpm, work
+        self._running = running = train.at(rpm)
+        self.found = found = running.response(drive)
+        work.take(_EACH * len(found))
+        self.oscillator: Oscillator = found.oscillator
+        self.b = train.ratio(rpm)  # natural frequency in turns of the shaft
+        self._figure = running.force(found)
+        self.swings = train.damping_ratio < _BLUNT
+        self.fading = self.oscillator.fading if self.swings else 0.5 * self.oscillator.fading
+        self.gain = self._gain()
+        q, rate, remainder = self._followed(running.forcing.series(found.drive))
+        slow = found.slow[:, None]
+        self._q, self._rate = np.where(slow, found.p, q), np.where(slow, found.v, rate)
+        each = self._size(np.array([[0.0], [1.0]]))[0]
+        self.inner = np.where(found.slow, 0.0, 2.0 * found.half * remainder * each)
+
+    def _followed(self, g: Array) -> tuple[Array, Array, Array]:
+        """Series of a q that a push g moves, those of q' (m, DEGREE + 1), and a bound (m,) of what q leaves of g.
+
+        g/r^2, or g/r^2 - 2 a g'/r^4 if that leaves less.
+        """
+        a, square, half = self.oscillator.decay, self.oscillator.square, self.found.half[:, None]
+        first = g @ DERIVATIVE.T / half
+        second = first @ DERIVATIVE.T / half
+        third = second @ DERIVATIVE.T / half
+        drag = 2.0 * a / square
+        plain = np.abs(second / square + drag * first).sum(axis=1)
+        dragged = np.abs((1.0 - 2.0 * a * drag) / square * second - drag / square * third).sum(axis=1)
+        width = self.found.half
+        if float(plain @ width) <= float(dragged @ width):
+            return g / square, first / square, plain
+        return (g - drag * first) / square, (first - drag * second) / square, dragged
+
+    def _size(self, states: Array) -> Array:
+        """Bound (n,) of |k z + c z'| over all later times, by `gain`, from states (2, n); it fades with `fading`."""
+        oscillator = self.oscillator
+        if self.swings:
+            return oscillator.bound(states)
+        # z = E z0 + S (v0 + rate z0), with S at most t exp(-gt) and exp(-gt)/2b
+        gentle, b, z, v = oscillator.fading, oscillator.split, *states
+        rate = oscillator.decay if oscillator.swings else oscillator.decay + b
+        longest = 2.0 / (math.e * gentle)
+        if not oscillator.swings and b > 0.0:
+            longest = min(longest, 0.5 / b)
+        longest = max(longest, 1.0 / rate)
+        # z' = -r^2 S z0 + S' v0
+        drag = self.train.damping * self._running.speed / self.gain
+        found: Array = np.abs(z) + longest * np.abs(v + rate * z)
+        found += drag * (oscillator.square * longest * np.abs(z) + 1.25 * np.abs(v))
+        return found
+
+    def _gain(self) -> float:
+        """Stiffness against free motion: |k + c lambda| where it swings."""
+        k, c = self.train.stiffness, self.train.damping * self._running.speed
+        a, b = self.oscillator.decay, self.oscillator.split
+        return abs(k + c * complex(-a, b)) if self.swings else k
+
+    @cached_property
+    def kicks(self) -> Array:
+        """Sizes (m,) of the kicks at the starts of the stretches, with those on the stretches themselves."""
+        start = np.stack([self._q @ AT_START, self._rate @ AT_START])
+        end = np.roll(np.stack([self._q.sum(axis=1), self._rate.sum(axis=1)]), 1, axis=1)
+        leap = end - start
+        leap[1] -= self.found.drive.jumps
+        found: Array = self._size(leap) + self.inner
+        return found
+
+    @cached_property
+    def _series(self) -> Array:
+        """Series of the force that goes with q."""
+        found: Array = -self.train.stiffness * self._q - self.train.damping * self._running.speed * self._rate
+        return found
+
+    @cached_property
+    def inertial(self) -> float:
+        """Greatest departure of that force from the preload spring's own."""
+        series = self._series - self.train.rate * self.found.drive.position
+        series[:, 0] -= self.train.preload
+        return float(np.abs(series).sum(axis=1).max())
+
+    @cached_property
+    def driven(self) -> Array:
+        """Lower bound (m, 32) of the force that goes with q, on the windows of each stretch."""
+        series = self._series
+        count = len(series)
+        at = evaluated(series, np.repeat(np.arange(count), PARTS + 1), np.tile(_GRID, count)).reshape(count, -1)
+        room = np.abs(series) @ _CURVED * (_GRID[1] - _GRID[0]) ** 2 / 8.0
+        lowest: Array = np.minimum(at[:, :-1], at[:, 1:]) - room[:, None]
+        return lowest
+
+    def summed(self, decay: float) -> tuple[Array, float]:
+        """Sum of the moduli of a turn's kicks (m,), as they have faded at each stretch; what a turn leaves of one."""
+        kicks = self.kicks.tolist()
+        fade = np.exp(-decay * np.diff(self.found.drive.knots)).tolist()
+        left = math.exp(-decay * TURN)
+        size = 0.0
+        for kick, share in zip(kicks, fade, strict=True):
+            size = (size + kick) * share
+        found = []
+        for kick, share in zip(kicks, fade, strict=True):
+            # the kick of a turn before goes out as this one comes in
+            size += kick * (1.0 - left)
+            found.append(size + kick * left)
+            size *= share
+        return np.array(found), left
+
+    @cached_property
+    def turn(self) -> Array:
+        """Sum of the moduli of the last turn's kicks at each stretch (m,)."""
+        return self.summed(self.fading)[0]
+
+    @cached_property
+    def states(self) -> Array:
+        """States at the starts of all stretches (2, m)."""
+        return self.found.starts(periodic(self._running, self.found), 0, len(self.found))
+
+    @cached_property
+    def rung(self) -> Array:
+        """Size (m,) of h at the start of each stretch."""
+        start = np.stack([self._q @ AT_START, self._rate @ AT_START])
+        return self._size(self.states - start)
+
+    def floor(self, rung: Array, driven: Array) -> Array:
+        """What the force cannot fall below (m, 32) on the windows of each stretch.
+
+        h is of the sizes `rung` (m,) at the starts, the force that goes with q at least `driven` (m, 32).
+        """
+        fade = np.exp(-self.fading * 2.0 * self.found.half[:, None] * np.arange(PARTS) / PARTS)
+        found: Array = driven - self.gain * (rung[:, None] * fade + self.inner[:, None])
+        return found
+
+    @cached_property
+    def surely(self) -> float:
+        """What the least force cannot fall below, whatever the phases: that is so at any lower speed too."""
+        sizes = self.turn / max(-math.expm1(-TURN * self.fading), 1e-300)
+        return float(self.floor(sizes, self.driven).min())
+
+    @cached_property
+    def least(self) -> float:
+        """The least force, or where that is above 0 what it cannot fall below; where it is below 0 what it reaches."""
+        floor = self.floor(self.rung, self.driven)
+        if floor.min() > 0.0:
+            return float(floor.min())
+        best = np.array([int(np.argmin(floor))])
+        reached = self._in(best)
+        if reached < 0.0:
+            return reached
+        others = np.flatnonzero(floor.ravel() < reached)
+        return min(reached, self._in(others)) if len(others) else reached
+
+    def _in(self, windows: Indices) -> float:
+        """Least force on windows (n,), rising, of all stretches in their order, each with a swing to either side."""
+        stretch, part = np.divmod(windows, PARTS)
+        begins = np.flatnonzero(np.diff(windows, prepend=-2) != 1)
+        begins = np.union1d(begins, np.flatnonzero(np.diff(stretch, prepend=-1)))
+        ends = np.append(begins[1:], len(windows)) - 1
+        owner = stretch[begins]
+        width = 2.0 * self.found.half[owner]
+        step = np.minimum(width / PARTS, _STEP / self.oscillator.fast)
+        low = np.maximum(width * part[begins] / PARTS - 4.0 * step, 0.0)
+        high = np.minimum(width * (part[ends] + 1) / PARTS + 4.0 * step, width)
+        count = np.ceil((high - low) / step).astype(np.intp) + 1
+        self.work.take(2 * int(count.sum()))
+        each = np.repeat(np.arange(len(owner)), count)
+        number = np.arange(len(each)) - np.repeat(np.cumsum(count) - count, count)
+        time = low[each] + (high - low)[each] * number / (count[each] - 1)
+        return self._figure.least(self.states, Samples(owner[each], time))
+
+
+@dataclass(frozen=True)
+class Range:
+    """Speeds from `low` to `high`, by looks at both."""
+
+    low: Look
+    high: Look
+
+    @property
+    def width(self) -> float:
+        """Of the natural frequency in turns of the shaft."""
+        return self.low.b - self.high.b
+
+    @property
+    def sure(self) -> bool:
+        """Whether contact holds whatever the phases."""
+        return self.high.surely > 0.0
+
+    @property
+    def holds(self) -> bool:
+        """Whether contact holds at all speeds between, by what is known at both ends."""
+        return self.by_size > 0.0 or min(self.low.least, self.high.least) > self.between
+
+    @cached_property
+    def detuning(self) -> float:
+        """Least |1 - w|, for a train that swings."""
+        low, high = self.low.oscillator, self.high.oscillator
+        sine = 0.0
+        if math.floor(low.split) < high.split:
+            sine = min(abs(math.sin(math.pi * (b - round(b)))) for b in (low.split, high.split))
+        left = math.exp(-TURN * low.decay)
+        return math.hypot(math.expm1(-TURN * high.decay), 2.0 * math.sqrt(left) * sine)
+
+    @cached_property
+    def by_size(self) -> float:
+        """What the least force cannot fall below, from the size of h alone."""
+        low, high = self.low, self.high
+        if not high.swings:
+            return -math.inf
+        sizes, driven = high.rung * high.oscillator.detuning, high.driven
+        room, power = self.width * (math.pi + _POWER / high.b), self.width * _POWER / high.b
+        if np.array_equal(low.found.slow, high.found.slow):
+            sizes = np.maximum(sizes, low.gain / high.gain * low.rung * low.oscillator.detuning)
+            driven = np.minimum(driven, low.driven)
+            room, power = room**2 / 8.0, power**2 / 4.0
+        return float(high.floor((sizes + room * high.turn) / self.detuning, driven).min()) - power * high.inertial
+
+    @cached_property
+    def between(self) -> float:
+        """How far the force at any angle can be below the lesser of its values at both ends."""
+        high = self.high
+        fading, power = high.fading, _POWER / high.b
+        # kicks of all turns; t^2 exp(-at/2) is at most (4/ea)^2, or lambda goes with b
+        sums, left = high.summed(0.5 * fading)
+        scale = (4.0 / fading if high.swings else 8.0 / high.b) / math.e + _PART / high.b + power
+        curved = float(sums.max()) / (1.0 - left) * scale**2 if left < 1.0 else math.inf
+        if high.swings:
+            # derivatives of exp(lambda t)/(1 - w)
+            share = math.exp(-TURN * fading) / self.detuning
+            rate = (TURN + power) ** 2 * (1.0 + share) * (1.0 + 2.0 * share)
+            curved = min(curved, float(high.turn.max()) / self.detuning * rate)
+        return self.width**2 / 8.0 * (high.gain * curved + 2.0 * power**2 * high.inertial)

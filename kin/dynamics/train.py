@@ -1,0 +1,207 @@
+"""Dynamics of a follower train with one degree of freedom, driven through its contact by a cam that turns steadily.
+
+    m x'' = N - F - k_p x      N = k (s - x) + c (s' - x'), or 0 where that would pull
+
+m mass, k and c stiffness and damping of contact or train, F the preload spring's force at s = 0 and k_p its rate; s is
+the position that the cam asks for, x the follower's. All in SI: kg, N s/m, N/m, N, m; or, for a follower that swings,
+kg m^2, N m s/rad, N m/rad, N m, rad. In radians of shaft angle and with z = x - s, while there is contact,
+
+    z'' + 2 a z' + r^2 z = -s'' - kappa s - f      N = -m W^2 (rho^2 z + 2 a z')
+
+with W the shaft's speed in rad/s, a = c/(2 m W), r^2 = (k + k_p)/(m W^2), rho^2 = k/(m W^2), kappa = k_p/(m W^2) and
+f = F/(m W^2). That is linear, and solved exactly (`kin.dynamics.response`); what happens where contact is lost is
+found event by event (`kin.dynamics.impacts`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.dynamics.oscillator import Oscillator
+from kin.dynamics.peaks import Figure, Peaks
+from kin.dynamics.response import Forcing, Response, response
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.dynamics.drive import Drive
+    from kin.numeric.arrays import Array
+
+
+_LEAST_DETUNING = 1e-9  # below, the amplitude at resonance is a matter of rounding
+MOST_DAMPING = 10.0  # times critical: beyond, the damper is the drive and the mass hardly counts
+
+
+class DynamicsError(ValueError):
+    """What keeps a train from having the figure that is asked for."""
+
+
+@dataclass(frozen=True)
+class Train:
+    """A follower train, in SI: see the module. Raises DynamicsError for figures that no train has."""
+
+    mass: float
+    damping: float
+    stiffness: float
+    preload: float = 0.0
+    rate: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, least in (("mass", None), ("damping", 0.0), ("stiffness", None), ("preload", 0.0), ("rate", 0.0)):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and (value > 0.0 if least is None else value >= least)):
+                raise DynamicsError(f"{name} must be {'above 0' if least is None else '0 or above'}, not {value!r}")
+        if self.damping_ratio > MOST_DAMPING:
+            raise DynamicsError(
+                f"the damping is {self.damping_ratio:.4g} times critical; beyond {MOST_DAMPING:g} times it is the "
+                "damper that drives"
+            )
+
+    @property
+    def natural(self) -> float:
+        """Undamped natural frequency in contact, rad/s."""
+        return math.sqrt((self.stiffness + self.rate) / self.mass)
+
+    @property
+    def damping_ratio(self) -> float:
+        """Damping as a share of the critical."""
+        return 0.5 * self.damping / math.sqrt((self.stiffness + self.rate) * self.mass)
+
+    def ratio(self, rpm: float) -> float:
+        """Natural frequency in turns of the shaft."""
+        return self.natural / speed(rpm)
+
+    def at(self, rpm: float) -> Running:
+        """The train at a shaft speed above 0, revolutions a minute; DynamicsError for another."""
+        if not (math.isfinite(rpm) and rpm > 0.0):
+            raise DynamicsError(f"the shaft speed must be above 0, not {rpm!r} rpm")
+        return Running(self, rpm)
+
+
+def speed(rpm: float) -> float:
+    """Revolutions a minute in rad/s."""
+    return rpm * TURN / 60.0
+
+
+@dataclass(frozen=True)
+class Running:
+    """A train at a shaft speed: its figures in radians of shaft angle."""
+
+    train: Train
+    rpm: float
+
+    @property
+    def speed(self) -> float:
+        """Shaft speed W, rad/s."""
+        return speed(self.rpm)
+
+    @property
+    def inertia(self) -> float:
+        """Mass times W^2: a force by an acceleration that is taken by radian of shaft."""
+        return self.train.mass * self.speed**2
+
+    @property
+    def forcing(self) -> Forcing:
+        """What drives z besides s''."""
+        return Forcing(self.train.rate / self.inertia, self.train.preload / self.inertia)
+
+    @property
+    def bound(self) -> Oscillator:
+        """The train in contact."""
+        square = (self.train.stiffness + self.train.rate) / self.inertia
+        return Oscillator(0.5 * self.train.damping / (self.train.mass * self.speed), square)
+
+    @property
+    def loose(self) -> Oscillator:
+        """The train without contact."""
+        return Oscillator(0.0, self.train.rate / self.inertia)
+
+    def response(self, drive: Drive) -> Response:
+        """Response in contact with one face that drives it."""
+        return response(self.bound, drive, self.forcing)
+
+    def force(self, found: Response, side: int = 1) -> Figure:
+        """Contact force of a response over the drive's face; `side` -1 for a face that pushes downward."""
+        k, c = self.train.stiffness, self.train.damping * self.speed
+        return Figure.of(found, -side * k, -side * c)
+
+    def static(self, position: float) -> float:
+        """Place z at rest on a face that stands still at a position."""
+        train = self.train
+        return -(train.preload + train.rate * position) / (train.stiffness + train.rate)
+
+
+class Residual(NamedTuple):
+    """Vibration in a dwell of the drive: its shaft angles (radians), and the greatest |z| beyond the static one."""
+
+    start: float
+    end: float
+    amplitude: float
+
+
+@dataclass(frozen=True)
+class Steady:
+    """The motion that repeats every turn, as long as contact holds: a contact force below 0 says that it does not.
+
+    force       extremes of the contact force, N (N m), with shaft angles in radians
+    residual    one for each rest that was asked about
+    state       z and z' at shaft angle 0, before any jump there
+    response    for values in between
+    """
+
+    force: Peaks
+    residual: tuple[Residual, ...]
+    state: tuple[float, float]
+    response: Response
+
+    @property
+    def holds(self) -> bool:
+        """Whether contact is never lost."""
+        return self.force.least >= 0.0
+
+    @property
+    def starts(self) -> Array:
+        """States at the starts of all stretches of the response (2, m)."""
+        return self.response.starts(np.array(self.state), 0, len(self.response))
+
+
+def steady(train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, float]] = ()) -> Steady:
+    """Find the steady state of a train in contact, exactly; `rests` are dwells (from, to) in radians.
+
+    The ends of rests should be knots of the drive (`drives(..., also=...)`). Raises DynamicsError at resonance without
+    damping, where there is no steady state.
+    """
+    running = train.at(rpm)
+    found = running.response(drive)
+    state = periodic(running, found)
+    starts = found.starts(state, 0, len(found))
+    force = running.force(found).peaks(starts, np.arange(len(found)))
+    residual = tuple(_residual(running, found, starts, begin, end) for begin, end in rests)
+    return Steady(force, residual, (float(state[0]), float(state[1])), found)
+
+
+def periodic(running: Running, found: Response) -> Array:
+    """State (2,) at shaft angle 0 that a turn brings back to itself; DynamicsError where there is none."""
+    oscillator = found.oscillator
+    if oscillator.detuning < _LEAST_DETUNING * max(1.0, 1e-6 * oscillator.natural):
+        raise DynamicsError(
+            f"no steady state: the natural frequency is {oscillator.split:.9g} times the shaft's, and without damping "
+            f"a whole multiple resonates; {running.rpm:.9g} rpm"
+        )
+    return found.periodic()
+
+
+def _residual(running: Running, found: Response, starts: Array, begin: float, end: float) -> Residual:
+    drive, train = found.drive, running.train
+    middle = 0.5 * (drive.knots[:-1] + drive.knots[1:])
+    inside = np.flatnonzero(np.mod(middle - begin, TURN) < end - begin)
+    share = 1.0 / (train.stiffness + train.rate)
+    more = share * train.rate * drive.position
+    more[:, 0] += share * train.preload
+    peaks = Figure.of(found, 1.0, 0.0, more).peaks(starts, inside)
+    return Residual(begin, end, max(peaks.greatest, -peaks.least, 0.0))

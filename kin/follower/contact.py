@@ -1,0 +1,142 @@
+"""First contact of a guided roller (`kin.follower.guide`) with the contour as it lies in a file.
+
+The roller's centre may not come closer than its radius to any point of the contour: it stays outside the dilated
+contour, whose pieces are the contour's own moved outward, and arcs of the roller's radius about convex corners. At a
+shaft angle the centre runs on a circle about the pivot, or on a line; a point at polar coordinates (r, t) is reached
+from exactly one shaft angle, for an arm
+
+    phi = t + acos((r^2 + L^2 - l^2)/(2 r L))   roller A, which trails the pivot;   minus for roller B, which leads it
+
+(L from shaft to pivot, l arm). So each piece covers an interval of shaft angles, found by sorting, and each pair of
+piece and angle is one intersection in closed form. The first contact from outside is that of largest r.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.arcs import Arcs, circle, cross, dot, left, right
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.follower.guide import Guide
+    from kin.numeric.arrays import Array, Indices
+
+STRAIGHT_ON = 1e-12  # corners that turn less, in radians, get no arc of their own
+MOST_TURN = np.pi / 8.0  # pieces are cut until each turns less
+PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask for
+
+
+def dilated(chain: Arcs, radius: float) -> Arcs:
+    """Return the pieces, in no order, that bound what a disc's centre cannot enter, from a closed chain."""
+    growth = 1.0 + chain.curvature * radius
+    fits = growth > 0.0
+    moved = chain.start + radius * right(chain.tangent)
+    pieces = Arcs(moved, chain.tangent, chain.curvature / np.where(fits, growth, 1.0), chain.length * growth).take(fits)
+    turns = chain.turns()
+    corner = turns > STRAIGHT_ON
+    before = np.roll(chain.end_tangents, 1, axis=0)[corner]
+    vertices = chain.start[corner]
+    bend = np.full(len(vertices), 1.0 / radius)
+    pieces = pieces.joined(Arcs(vertices + radius * right(before), before, bend, radius * turns[corner]))
+    if not fits.all():  # hollows too tight for the disc: it rests on their edges
+        edges = np.concatenate([chain.start[~fits], chain.ends[~fits]])
+        pieces = pieces.joined(circle(edges, np.full(len(edges), radius)))
+    return pieces
+
+
+def shortened(obstacle: Arcs, guide: Guide) -> tuple[Arcs, Indices]:
+    """Pieces of the obstacle short enough to be searched one by one, in order, and the piece each is part of (k,)."""
+    step = guide.step(extent(obstacle))
+    parts = np.maximum(
+        np.ceil(np.abs(obstacle.curvature) * obstacle.length / MOST_TURN), np.ceil(obstacle.length / step)
+    )
+    return obstacle.cut(np.maximum(parts, 1.0).astype(np.intp))
+
+
+def extent(pieces: Arcs) -> float:
+    """Greatest coordinate of a piece's start, mm."""
+    return float(np.abs(pieces.start).max())
+
+
+def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
+    """Find where the roller's centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
+
+    `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,) in mm and the index of the piece (n,):
+    nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle that can meet.
+    """
+    slack = guide.slack(extent(obstacle))
+    pieces, owner = shortened(obstacle, guide)
+    within = within_reach(pieces, guide, slack)
+    pieces, owner = pieces.take(within), owner[within]
+    middle, reach = angles_of(pieces, guide, slack)
+    turn = 2.0 * np.pi
+    order = np.argsort(np.mod(phi, turn), kind="stable")
+    angle = np.mod(phi, turn)[order]
+    low = np.mod(middle - reach, turn)
+    ring = np.concatenate([angle, angle + turn])
+    first = np.searchsorted(ring, low, side="left")
+    count = np.minimum(np.searchsorted(ring, low + 2.0 * reach, side="right") - first, len(angle))
+    best = np.full(len(angle), -np.inf)
+    met = np.full(len(angle), -1)
+    total = np.cumsum(count)
+    begin = 0
+    while begin < len(pieces):
+        end = max(begin + 1, int(np.searchsorted(total, total[begin] - count[begin] + PAIRS_AT_ONCE, side="right")))
+        chosen = np.arange(begin, end)
+        piece = np.repeat(chosen, count[chosen])
+        number = np.arange(len(piece)) - np.repeat(np.cumsum(count[chosen]) - count[chosen], count[chosen])
+        index = (first[piece] + number) % len(angle)
+        r = meet(pieces.take(piece), guide, angle[index], slack)
+        np.maximum.at(best, index, r)
+        won = (r == best[index]) & (r > 0.0)
+        met[index[won]] = piece[won]
+        begin = end
+    radius, piece_met = np.full(len(angle), np.nan), np.full(len(angle), -1)
+    touched = met >= 0
+    radius[order[touched]] = best[touched]
+    piece_met[order[touched]] = owner[met[touched]]
+    return radius, piece_met
+
+
+def within_reach(pieces: Arcs, guide: Guide, slack: float) -> NDArray[np.bool_]:
+    """Whether some point of each short piece may lie as far from the shaft as the roller's centre can."""
+    middle = pieces.points(0.5 * pieces.length)
+    r = np.hypot(middle[:, 0], middle[:, 1])
+    half = 0.5 * pieces.length + slack
+    least, most = guide.reach()
+    within: NDArray[np.bool_] = (r + half >= least) & (r - half <= most)
+    return within
+
+
+def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
+    """Middle and half-width of an interval of shaft angles that holds all from which each short piece is reached."""
+    middle = pieces.points(0.5 * pieces.length)
+    r = np.hypot(middle[:, 0], middle[:, 1])
+    half = 0.5 * pieces.length + slack
+    least, most = np.maximum(r - half, slack), r + half
+    with np.errstate(over="ignore"):
+        reach = half * np.hypot(1.0 / least, guide.lead_slope(least, most))
+    angle = np.arctan2(middle[:, 1], middle[:, 0]) - guide.lead(r)
+    return angle, np.fmin(reach, np.pi)
+
+
+def meet(pieces: Arcs, guide: Guide, phi: Array, slack: float) -> Array:
+    """Greatest distance from the shaft at which the centre meets each short piece at its angle (n,), else -inf."""
+    chord_turn = 0.5 * pieces.curvature * pieces.length
+    chord = pieces.length * np.sinc(chord_turn / np.pi)
+    along = np.cos(chord_turn)[:, None] * pieces.tangent + np.sin(chord_turn)[:, None] * left(pieces.tangent)
+    sagitta = np.abs(chord * np.tan(0.5 * chord_turn)) + slack
+    best = np.full(len(phi), -np.inf)
+    for found in guide.crossings(pieces, phi, slack):
+        s = dot(found, along)
+        point = pieces.start + found
+        with np.errstate(invalid="ignore"):
+            on_piece = (s >= -slack) & (s <= chord + slack) & (np.abs(cross(along, found)) <= sagitta)
+            on_side = guide.on_side(phi, point, slack)
+        r = np.hypot(point[:, 0], point[:, 1])
+        best = np.where(on_piece & on_side & (r > best), r, best)
+    return best

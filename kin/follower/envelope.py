@@ -1,0 +1,311 @@
+"""The exact contour that a follower's intended motion asks for, and how far any point lies outside it.
+
+A flat face whose intended support function is p(theta) must leave every point X of the cam with X.u(theta) <= p(theta):
+the excess of a point is the greatest X.u - p over theta, which for a convex contour is its signed distance, positive
+outside (docs/theory.md 2: the metal a face would feel). A roller of radius e whose centre runs on the pitch curve must
+leave every point at least e away from it: the excess is e less the distance to the pitch curve. Both definitions are
+global, so they hold for a trimmed undercut as well. Nothing but the intent is used.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from kin.contour.arcs import cross, dot, left, right, unit
+from kin.follower.projection import Feet, Inverse, better, climb, gauss, grid, searched_again, two_best
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array, Indices
+
+
+class Envelope(Protocol):
+    """An exact contour over a parameter of period 2 pi."""
+
+    @property
+    def regular(self) -> bool:
+        """Whether the contour is free of undercut, so that each point near it has one foot."""
+
+    def feet(self, points: Array) -> Feet:
+        """Feet of points (n, 2), mm. Raises UnsettledError where one is not found."""
+
+    def points(self, parameter: Array) -> Array:
+        """Points (n, 2) of the contour, mm, at parameters (n,); of an undercut one also of what is cut off."""
+
+    def radii(self) -> tuple[Array, Array]:
+        """Parameters (m,) closely round the turn, and radii of curvature there (m,), mm, negative where hollow."""
+
+    def area_and_perimeter(self) -> tuple[float, float]:
+        """Enclosed area and length of a regular contour, mm^2 and mm."""
+
+
+class SupportLaw(Protocol):
+    """A support function of period 2 pi; `kin.law.support_function.Lift` is one."""
+
+    @property
+    def breaks(self) -> Array:
+        """Angles in [0, 2 pi) where the second derivative may jump."""
+
+    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
+        """Return p, mm, and its derivatives by theta (n,), (order + 1, n); at a break from the right, or left (-1)."""
+
+
+@dataclass(frozen=True, eq=False)
+class PairSupport:
+    """W's polar pitch curve r(t) read as the support function of the cam of a flat pair (W section 5)."""
+
+    transmission: Transmission
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Angles in [0, 2 pi) where the second derivative may jump, rising."""
+        return np.sort(np.mod(self.transmission.pitch(self.transmission.breaks, 0)[1][0], TURN))
+
+    @cached_property
+    def _parameter(self) -> Callable[[Array], tuple[Array, Array]]:
+        polar = self.transmission.pitch(grid(self.transmission.breaks, 64), 0)[1][0]
+        if np.allclose(polar, grid(self.transmission.breaks, 64), rtol=0.0, atol=1e-13):  # tau is t itself
+            return lambda theta: (theta, np.zeros_like(theta))
+        return Inverse(lambda tau: self.transmission.pitch(tau, 2)[1], self.transmission.breaks)
+
+    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
+        """Return r, mm, and its derivatives by t, (order + 1, n), order at most 2."""
+        tau, step = self._parameter(np.asarray(theta, dtype=float))
+        tau = np.where(np.abs(step) < 1e-14, tau, tau + step)  # a break stays a break
+        r, t = self.transmission.pitch(tau, 2, side)
+        slope = r[1] / t[1]
+        return np.stack([r[0], slope, (r[2] - slope * t[2]) / t[1] ** 2])[: order + 1]
+
+
+@dataclass(frozen=True, eq=False)
+class Outset:
+    """A support function and a distance: that of the parallel curve outside, or inside if it is negative."""
+
+    support: SupportLaw
+    distance: float
+
+    @property
+    def breaks(self) -> Array:
+        """Breaks of the support function."""
+        return self.support.breaks
+
+    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
+        """Return p and the distance, and the derivatives of p, (order + 1, n)."""
+        found = self.support.derivatives(theta, order, side).copy()
+        found[0] += self.distance
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class FlatEnvelope:
+    """The contour enveloped by a flat face; its parameter is theta, the direction of the face's outward normal."""
+
+    support: SupportLaw
+
+    def points(self, parameter: Array) -> Array:
+        """Points c = p u + p' n at angles theta (n,): (n, 2)."""
+        p, slope = self.support.derivatives(parameter, 1)
+        u = unit(parameter)
+        points: Array = p[:, None] * u + slope[:, None] * left(u)
+        return points
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """theta, smaller radius of curvature rho of the two sides, p."""
+        theta = grid(self.support.breaks)
+        p, _, bend = self.support.derivatives(theta, 2)
+        left_bend = self.support.derivatives(self.support.breaks, 2, -1)[2]
+        rho = p + bend
+        at = np.searchsorted(theta, np.mod(self.support.breaks, TURN))
+        rho[at] = np.minimum(rho[at], p[at] + left_bend)
+        return theta, rho, p
+
+    def radii(self) -> tuple[Array, Array]:
+        """Angles theta (m,) closely round the turn, and rho (m,), mm."""
+        theta, rho, _ = self._table
+        return theta, rho
+
+    @cached_property
+    def regular(self) -> bool:
+        """Whether rho >= 0 all round."""
+        _, rho, p = self._table
+        return bool(rho.min() >= -1e-12 * np.abs(p).max())
+
+    @cached_property
+    def _start(self) -> tuple[Array, Array, Array]:
+        """A point inside (the mean of c(theta), Steiner's), and theta over the direction from there."""
+        theta, _, _ = self._table
+        point = self.points(theta)
+        inside = point.mean(axis=0)
+        away = np.unwrap(np.arctan2(point[:, 1] - inside[1], point[:, 0] - inside[0]))
+        away = np.maximum.accumulate(away)
+        turns = np.array([-TURN, 0.0, TURN])[:, None]
+        return inside, (away + turns).ravel(), (theta + turns).ravel()
+
+    def feet(self, points: Array) -> Feet:
+        """Feet of points (n, 2): where X.u - p is greatest."""
+        if not self.regular:
+            return self._search(points)
+        inside, direction, theta = self._start
+        feet = self._climb(points, np.interp(_angle(points - inside), direction, theta))
+        return searched_again(feet, points, self, self._search)
+
+    def _search(self, points: Array) -> Feet:
+        """Feet found from samples all round."""
+        theta, _, p = self._table
+        u = unit(theta)
+        first, second = two_best(lambda x: x @ u.T - p, points, len(theta))
+        return better(self._climb(points, theta[first]), self._climb(points, theta[second]))
+
+    def _climb(self, points: Array, theta: Array) -> Feet:
+        def slopes(x: Array, which: Indices) -> tuple[Array, Array, Array]:
+            p, slope, bend = self.support.derivatives(x, 2)
+            u = unit(x)
+            here = points[which]
+            away = dot(here, u)
+            return away - p, dot(here, left(u)) - slope, away + bend
+
+        theta, step, value, slope, bend = climb(slopes, theta, self.support.breaks)
+        curved = bend > 0.0
+        radius = np.where(curved, bend, 1.0)
+        excess = value + np.where(curved, 0.5 * slope * slope / radius, 0.0)
+        return Feet(theta + step, excess, unit(theta + step), np.where(curved, 1.0 / radius, 0.0))
+
+    def area_and_perimeter(self) -> tuple[float, float]:
+        """1/2 integral of (p^2 - p'^2), mm^2, and integral of p, mm (Cauchy)."""
+        theta, weight = gauss(self.support.breaks)
+        p, slope = self.support.derivatives(theta, 1)
+        return float(0.5 * weight @ (p * p - slope * slope)), float(weight @ p)
+
+
+class Pitch(Protocol):
+    """A closed pitch curve over a parameter of period 2 pi."""
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters in [0, 2 pi) where the second derivative may jump."""
+
+    def points(self, tau: Array) -> tuple[Array, Array, Array]:
+        """Give the roller's centre and its two derivatives by the parameter, each (n, 2)."""
+
+
+@dataclass(frozen=True, eq=False)
+class TransmissionPitch:
+    """Path of roller A (and of roller B) under a transmission law, polar r(t) of W 4.10."""
+
+    transmission: Transmission
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters where the second derivative may jump."""
+        return self.transmission.breaks
+
+    def points(self, tau: Array) -> tuple[Array, Array, Array]:
+        """Centre and two derivatives, each (n, 2)."""
+        r, t = self.transmission.pitch(tau, 2)
+        u = unit(t[0])
+        n = left(u)
+        first = r[1][:, None] * u + (r[0] * t[1])[:, None] * n
+        second = (r[2] - r[0] * t[1] ** 2)[:, None] * u + (2.0 * r[1] * t[1] + r[0] * t[2])[:, None] * n
+        return r[0][:, None] * u, first, second
+
+
+@dataclass(frozen=True, eq=False)
+class RollerEnvelope:
+    """The contour at the roller's `radius`, mm, inside a counter-clockwise pitch curve, over that curve's parameter."""
+
+    pitch: Pitch
+    radius: float
+
+    def points(self, parameter: Array) -> Array:
+        """Points (n, 2) at the radius inside the pitch curve."""
+        point, first, _ = self.pitch.points(parameter)
+        points: Array = point - self.radius * right(first) / np.hypot(first[:, 0], first[:, 1])[:, None]
+        return points
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """Parameter, pitch point, radius of curvature of the contour there, of the right side at a break."""
+        tau = grid(self.pitch.breaks)
+        point, first, second = self.pitch.points(tau)
+        speed = np.hypot(first[:, 0], first[:, 1])
+        bend = cross(first, second) / speed**3
+        radius = 1.0 / np.where(bend == 0.0, np.finfo(float).tiny, bend) - self.radius
+        return tau, point, radius
+
+    def radii(self) -> tuple[Array, Array]:
+        """Parameters (m,) closely round the turn, and radii of curvature (m,), mm, negative where hollow."""
+        tau, _, radius = self._table
+        return tau, radius
+
+    @cached_property
+    def _direction(self) -> Array:
+        return np.unwrap(_angle(self.points(self._table[0])))
+
+    @cached_property
+    def regular(self) -> bool:
+        """Whether the contour runs once round the shaft without turning back: then no part of it undercuts another."""
+        closed = np.append(self._direction, self._direction[0] + TURN)
+        return bool((np.diff(closed) > 0.0).all())
+
+    def feet(self, points: Array) -> Feet:
+        """Feet of points (n, 2): the nearest points of the pitch curve."""
+        if not self.regular:
+            return self._search(points)
+        tau = self._table[0]
+        away, turns = self._direction, np.array([-TURN, 0.0, TURN])[:, None]
+        feet = self._climb(points, np.interp(_angle(points), (away + turns).ravel(), (tau + turns).ravel()))
+        return searched_again(feet, points, self, self._search)
+
+    def _search(self, points: Array) -> Feet:
+        """Feet found from samples all round."""
+        tau, centre, _ = self._table
+        size = 0.5 * dot(centre, centre)
+        first, second = two_best(lambda x: x @ centre.T - size, points, len(tau))
+        feet = self._climb(points, tau[first]), self._climb(points, tau[second])
+        # Across a fold of the pitch curve the far side is seen from without: the nearer foot counts, not the higher.
+        near = [-np.abs(one.excess - self.radius) for one in feet]
+        return better(*feet, *near)
+
+    def _climb(self, points: Array, tau: Array) -> Feet:
+        reached = [np.empty_like(points) for _ in range(3)]
+
+        def slopes(x: Array, which: Indices) -> tuple[Array, Array, Array]:
+            centre, first, second = self.pitch.points(x)
+            for kept, new in zip(reached, (centre, first, second), strict=True):
+                kept[which] = new
+            gap = points[which] - centre
+            return -0.5 * dot(gap, gap), dot(gap, first), dot(first, first) - dot(gap, second)
+
+        tau, step, _, _, _ = climb(slopes, tau, self.pitch.breaks)
+        centre, first, second = reached
+        h = step[:, None]
+        centre, first = centre + h * (first + 0.5 * h * second), first + h * second
+        speed = np.hypot(first[:, 0], first[:, 1])
+        outward = right(first) / speed[:, None]
+        gap = points - centre
+        height = np.copysign(np.hypot(gap[:, 0], gap[:, 1]), dot(gap, outward))
+        bend = cross(first, second) / speed**3
+        widened = 1.0 + bend * height
+        curvature = np.where(widened > 0.0, bend / np.where(widened > 0.0, widened, 1.0), 0.0)
+        return Feet(tau + step, height + self.radius, outward, curvature)
+
+    def area_and_perimeter(self) -> tuple[float, float]:
+        """Steiner's formulas for the inner parallel curve: A - e P + pi e^2 and P - 2 pi e."""
+        tau, weight = gauss(self.pitch.breaks)
+        point, first, _ = self.pitch.points(tau)
+        area = float(0.5 * weight @ cross(point, first))
+        perimeter = float(weight @ np.hypot(first[:, 0], first[:, 1]))
+        return area - self.radius * perimeter + np.pi * self.radius**2, perimeter - TURN * self.radius
+
+
+def _angle(v: Array) -> Array:
+    angle: Array = np.arctan2(v[:, 1], v[:, 0])
+    return angle

@@ -1,0 +1,359 @@
+"""The square frame of a linkage judged on a contour from a file: error of the output, play, dwell.
+
+The contour drives the mechanism through contact with the frame's four faces (`kin.follower.frame_contact`). A real
+part is never of exactly constant breadth, so the frame can rest in four ways, or float between; the worst counts.
+Measured and intended output are compared at the same shaft angle, with the cam mounted as drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from kin.contour.contour import apart
+from kin.follower.frame_contact import CENTRED, WAYS, FrameError, Resting, driven
+from kin.follower.frame_dwell import Output, longest_dwell
+from kin.follower.motion_error import MotionError, Play, Unit, motion_error, with_steps
+from kin.follower.support import bearing_of
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.distinct import distinct
+from kin.numeric.elementary import Jet
+from kin.numeric.errors import UnsettledError
+from kin.numeric.extrema import Extremes, extremes
+from kin.numeric.longest_window import dwells
+from kin.numeric.monotone import between, cells, pieces
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.contour.contour import Contour
+    from kin.linkage.mechanism import Mechanism
+    from kin.numeric.arrays import Array, Indices
+
+__all__ = ["DwellFound", "FrameError", "LinkageVerdict", "implied_limit", "judge_frame"]
+
+Over = Literal["shaft", "relative"]
+RESOLUTION = 2e-13  # of the breadth: of lengths
+RESOLUTION_ANGLE = 1e-13  # rad
+ROUNDING = 64.0 * 2.0**-52  # of what is subtracted from one another, as a part of it
+SHARE = 1e-6  # of the greatest error: what is resolved at least
+FINE_STEP = 2e-4  # rad: within this a Taylor polynomial of third order is good to rounding
+BESIDE = 1e-13  # rad: from a break, less than which is rounding
+LIMIT_STEPS = 720  # of a turn, from which the limit's extremes are looked for
+CORNERS = ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0))
+
+
+@dataclass(frozen=True)
+class DwellFound:
+    """The longest dwell with the frame lying so (`rest`): `band` in degrees or mm, the shaft or the relative angle."""
+
+    over: Over
+    band: float
+    start_deg: float
+    length_deg: float
+    rest: str
+
+
+@dataclass(frozen=True)
+class LinkageVerdict:
+    """How a contour drives the mechanism; output in degrees or mm as the mechanism has it.
+
+    error         of the output, measured less intended at the same shaft angle: the worst of the ways the frame can
+                  rest and of the centred frame, rms over all; dwell_flatness over the longest intended dwell
+    centred       the same of the frame that floats midway between its contacts
+    limit         greatest error that a contour within the tolerance can give; None where the mechanism binds within it
+    play_across   between faces 1 and 3, mm; the places are shaft angles
+    play_along    between faces 2 and 4
+    least_rate    least rate of the shaft over the relative angle, 1 - theta_3', of all ways
+    dwells        the longest in each way, the shortest of them first; empty unless asked for
+    """
+
+    error: MotionError
+    centred: MotionError
+    limit: float | None
+    play_across: Play
+    play_along: Play
+    least_rate: float
+    dwells: tuple[DwellFound, ...]
+
+
+class _Intended(NamedTuple):
+    """The mechanism as meant: shaft angle and output (2, 4, n) at relative angles, with three derivatives."""
+
+    mechanism: Mechanism
+
+    def alike(self, error: Array) -> Array:
+        """Return errors of the output (n,) without whole turns, if it is an angle."""
+        return error - TURN * np.round(error / TURN) if self.mechanism.unit == "deg" else error
+
+    def rows(self, theta: Array) -> Array:
+        at = self.mechanism.at(theta, 3)
+        return np.stack([at.shaft, at.output])
+
+    def error(self, theta: Array, measured: Array, near: Array) -> Array:
+        """Error of the output and its derivatives by theta (3, n), from what was `measured` (2, 3, n) at theta (n,).
+
+        `near` (2, 4, n) are the rows at theta. Intended is the output at that t where the intended shaft angle is the
+        measured one: from Taylor polynomials about theta, or about t where that is far or beyond a break.
+        """
+        (phi, phi_slope, phi_bend), output = measured
+        step = _step(phi, near[0])
+        far = np.flatnonzero(np.logical_or(np.abs(step) > FINE_STEP, self._break_between(theta, theta + step)))
+        if len(far):
+            near = near.copy()
+            near[:, :, far] = self.rows(self.mechanism.relative(phi[far]))
+            step[far] = _step(phi[far], near[0][:, far])
+        shaft, meant = (_taylor(rows, step) for rows in near)
+        rate = phi_slope / shaft[1]
+        bend = (phi_bend - shaft[2] * rate**2) / shaft[1]
+        error = self.alike(output[0] - meant[0])
+        return np.stack([error, output[1] - meant[1] * rate, output[2] - meant[2] * rate**2 - meant[1] * bend])
+
+    def _break_between(self, a: Array, b: Array) -> NDArray[np.bool_]:
+        breaks = self.mechanism.breaks
+        ring = np.concatenate([breaks - TURN, breaks, breaks + TURN])
+        # what is beside a break by rounding alone may have been taken on its other side
+        before = np.searchsorted(ring, np.minimum(a, b) - BESIDE, side="left")
+        return np.not_equal(before, np.searchsorted(ring, np.maximum(a, b) + BESIDE, side="right"))
+
+
+def _step(phi: Array, shaft: Array) -> Array:
+    """Step from where the shaft angle has the derivatives (4, n) to where it is phi (n,), by its Taylor polynomial."""
+    step: Array = (phi - shaft[0]) / shaft[1]
+    for _ in range(2):
+        value, slope, _ = _taylor(shaft, step)
+        step = np.where(np.abs(step) <= FINE_STEP, step + (phi - value) / slope, step)
+    return step
+
+
+def _taylor(rows: Array, step: Array) -> tuple[Array, Array, Array]:
+    """Value and two derivatives (n,) each, a step (n,) on from where a function has the derivatives `rows` (4, n)."""
+    a, b, c, d = rows
+    value = a + step * (b + step * (c / 2.0 + step * d / 6.0))
+    return value, b + step * (c + step * d / 2.0), c + step * d
+
+
+def judge_frame(
+    contour: Contour,
+    mechanism: Mechanism,
+    shaft: Array,
+    tolerance: float,
+    *,
+    band: float | None = None,
+    over: Over = "shaft",
+) -> LinkageVerdict:
+    """Let a contour drive the mechanism: extremes over the whole turn, rms and increments from shaft angles (n,).
+
+    `band`, rad or mm, asks for dwells over the shaft angle or the relative one; None for none. Raises FrameError where
+    the contour does not drive it all round, or so suddenly that rounding hides the error, and BindingError where the
+    intended cam does not drive it. Cost: a position of the linkage for each break of the contour as each face has it,
+    in each way of resting.
+    """
+    try:
+        return _judged(contour, mechanism, shaft, tolerance, band=band, over=over)
+    except UnsettledError as error:
+        raise FrameError(f"the error of the output cannot be told: {error}") from error
+
+
+def _judged(
+    contour: Contour, mechanism: Mechanism, shaft: Array, tolerance: float, *, band: float | None, over: Over
+) -> LinkageVerdict:
+    bearing, intended = bearing_of(contour), _Intended(mechanism)
+    unit: Unit = "deg" if mechanism.unit == "deg" else "mm"
+    ways = [Resting.of(mechanism, bearing, rest) for rest in WAYS]
+    centred = Resting.of(mechanism, bearing, CENTRED)
+    every = [*ways, centred]
+    nodes = distinct(np.concatenate([way.nodes for way in every]))
+    rows = intended.rows(nodes)
+    worst = [_worst(way, intended, rows[:, :, np.searchsorted(nodes, way.nodes)]) for way in every]
+    angles = with_steps(shaft)
+    meant = intended.rows(mechanism.relative(angles))[1, 0]
+    errors = [intended.alike(way.over_shaft(angles, 0)[0] - meant) for way in every]
+    window = None if band is None else _intended_dwell(intended, band)
+    flat = [] if window is None else [_extremes(way, *way.relative(window)).span for way in every]
+    across, along = _plays(centred)
+    return LinkageVerdict(
+        error=motion_error(max(worst), np.stack(errors), max(flat, default=None), unit),
+        centred=motion_error(worst[-1], errors[-1], flat[-1] if flat else None, unit),
+        limit=implied_limit(mechanism, tolerance),
+        play_across=across,
+        play_along=along,
+        least_rate=min(way.least_rate[0] for way in every),
+        dwells=() if band is None else _dwells(ways, band, over),
+    )
+
+
+def _worst(way: Resting, intended: _Intended, rows: Array) -> tuple[float, float]:
+    """Greatest absolute error of the output and the shaft angle there; `rows` are the intended ones at the nodes."""
+    low, high = way.nodes[:-1], way.nodes[1:]
+    at_low = intended.error(low, way.low, rows[:, :, :-1])
+    at_high = intended.error(high, way.high, rows[:, :, 1:])
+
+    def error(theta: Array, of: Indices) -> Array:
+        return intended.error(theta, way.rows(theta, of), intended.rows(theta))
+
+    resolution = _resolution(intended.mechanism, rows[1, 0], at_low[0])
+    worst, at = extremes(low, high, at_low, at_high, error, resolution=resolution).worst
+    return worst, way.shaft_at(at)
+
+
+def _resolution(mechanism: Mechanism, output: Array, error: Array | None = None) -> float:
+    """What is to be resolved of the output, or of its error; their values at the nodes are given, rad or mm."""
+    least = RESOLUTION * mechanism.breadth if mechanism.unit == "mm" else RESOLUTION_ANGLE
+    share = 0.0 if error is None else SHARE * float(np.abs(error).max())
+    return max(least, ROUNDING * float(np.abs(output).max()), share)
+
+
+def implied_limit(mechanism: Mechanism, tolerance: float) -> float | None:
+    """Greatest error of the output that a contour within `tolerance` of the exact one can give; degrees or mm.
+
+    Both lifts off by the tolerance, in the four combinations of signs: to first order the tolerance times the greatest
+    |d output/dS| + |d output/dS1| at fixed shaft angle, and the term of second order. Between these corners the error
+    can be greater by its curvature along either lift alone, which is added. None where the mechanism may bind within
+    it: not at a corner, perhaps, but between them, when the point of a dyad can get to either side of its ground pivot.
+    """
+    intended = _Intended(mechanism)
+    nodes = apart(np.concatenate([mechanism.breaks, np.arange(LIMIT_STEPS) * (TURN / LIMIT_STEPS)]))
+    if _may_bind(mechanism, tolerance, nodes):
+        return None
+    nodes = np.append(nodes, nodes[0] + TURN)
+
+    def error(theta: Array, off: float, off1: float) -> Array:
+        s, s1 = (mechanism.lift.derivatives(theta + k, 2) for k in (0.0, 0.5 * np.pi))
+        s[0] += tolerance * off
+        s1[0] += tolerance * off1
+        return intended.error(theta, driven(mechanism, theta, s, s1), intended.rows(theta))
+
+    output = intended.rows(nodes)[1, 0]
+    try:
+        corners = []
+        for off, off1 in CORNERS:
+            at = error(nodes, off, off1)
+            found = extremes(
+                nodes[:-1],
+                nodes[1:],
+                at[:, :-1],
+                at[:, 1:],
+                lambda theta, _, off=off, off1=off1: error(theta, off, off1),  # type: ignore[misc]
+                resolution=_resolution(mechanism, output, at[0]),
+            )
+            corners.append(found.worst[0])
+        bulge = sum(np.abs(error(nodes, *d)[0] + error(nodes, -d[0], -d[1])[0]) for d in ((1.0, 0.0), (0.0, 1.0)))
+    except FrameError:
+        return None
+    limit = max(corners) + 0.5 * float(np.max(bulge))
+    return float(np.degrees(limit)) if mechanism.unit == "deg" else limit
+
+
+def _may_bind(mechanism: Mechanism, tolerance: float, nodes: Array) -> bool:
+    """Whether some loop is nearer to binding than both lifts, off by the tolerance, can move its point.
+
+    Looked for at relative angles (n,) and where the margin of a loop is least. No margin changes faster than its point.
+    """
+    chain, about = mechanism.chain, mechanism.about
+
+    def lifts(theta: Array) -> tuple[Array, Array]:
+        s, s1 = (mechanism.lift.derivatives(theta + k, 0)[0] for k in (0.0, 0.5 * np.pi))
+        return s, s1
+
+    for loop in range(mechanism.outputs):
+
+        def margin(theta: Array, loop: int = loop) -> Array:
+            return chain.margin(loop, *lifts(theta), about)[None]
+
+        least = pieces(cells(margin, between(0.0, TURN, mechanism.breaks.tolist()), 0.01 * tolerance)).x
+        theta = np.concatenate([nodes, least])
+        s, s1 = lifts(theta)
+        moved = np.full_like(theta, 2.0)
+        if loop > 0:
+            moved = np.zeros_like(theta)
+            for off, off1 in ((1.0, 0.0), (0.0, 1.0)):
+                s_jet, s1_jet = (Jet(np.stack([f, np.full_like(f, rate)])) for f, rate in ((s, off), (s1, off1)))
+                x, y = chain.hung(chain.solve(s_jet, s1_jet, about[: loop - 1]), loop - 1)
+                moved += np.hypot(x.c[1], y.c[1])
+        if (margin(theta)[0] <= tolerance * moved).any():
+            return True
+    return False
+
+
+def _plays(centred: Resting) -> tuple[Play, Play]:
+    """Play across and along the frame: one figure of the contour, a quarter turn on."""
+    bearing, breadth = centred.bearing, centred.mechanism.breadth
+    nodes = bearing.nodes(0.0, np.pi, np.mod(bearing.breaks - np.pi, TURN))
+    near, near_low, near_high = bearing.between(nodes)
+    far, far_low, far_high = bearing.between(nodes, np.pi)
+
+    def width(theta: Array, of: Indices) -> Array:
+        return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
+
+    resolution = RESOLUTION * breadth
+    found = extremes(nodes[:-1], nodes[1:], near_low + far_low, near_high + far_high, width, resolution=resolution)
+
+    def play(turned: float) -> Play:
+        least, most = (degrees(centred.shaft_at(at - turned)) for at in (found.greatest_at, found.least_at))
+        return Play(breadth - found.greatest, least, breadth - found.least, most, "mm")
+
+    return play(0.0), play(0.5 * np.pi)
+
+
+def _extremes(way: Resting, theta: Array, interval: Indices) -> Extremes:
+    """Extremes of the output from one relative angle to another (2,), less than a turn on, in the given intervals."""
+    count = len(way.nodes) - 1
+    further = int(interval[1] - interval[0]) % count
+    if further == 0 and theta[1] < theta[0]:
+        further = count - 1
+    of = (interval[0] + np.arange(further + 1)) % count
+    low, high = way.nodes[of], way.nodes[of + 1]
+    at_low, at_high = way.low[1][:, of], way.high[1][:, of]
+    if further < count - 1:
+        ends = way.rows(theta, interval)[1]
+        low[0], at_low[:, 0], high[-1], at_high[:, -1] = theta[0], ends[:, 0], theta[1], ends[:, 1]
+
+    def output(x: Array, i: Indices) -> Array:
+        rows: Array = way.rows(x, of[i])[1]
+        return rows
+
+    return extremes(low, high, at_low, at_high, output, resolution=_resolution(way.mechanism, at_low[0]))
+
+
+def _intended_dwell(intended: _Intended, band: float) -> Array:
+    """Shaft angles (2,) between which the intended output dwells longest."""
+    mechanism = intended.mechanism
+    breaks = np.mod(intended.rows(mechanism.breaks)[0, 0], TURN) if len(mechanism.breaks) else mechanism.breaks
+    found = dwells(lambda shaft, _: intended.rows(mechanism.relative(shaft))[1, :1], breaks, band, TURN, 1)[0]
+    return found.start + np.array([0.0, min(found.length, TURN * (1.0 - 1e-12))])
+
+
+def _dwells(ways: list[Resting], band: float, over: Over) -> tuple[DwellFound, ...]:
+    """Return the longest dwell of each way, the shortest of them first."""
+    found = []
+    for way in ways:
+        dwell = longest_dwell(_output(way, over), band)
+        degree = way.mechanism.unit == "deg"
+        told = float(np.degrees(band)) if degree else band
+        found.append(DwellFound(over, told, degrees(dwell.start), float(np.degrees(dwell.length)), way.rest.name))
+    return tuple(sorted(found, key=lambda dwell: dwell.length_deg))
+
+
+def _output(way: Resting, over: Over) -> Output:
+    """Output of a way over the shaft angle or over the relative one."""
+    value = np.append(way.low[1, 0], way.high[1, 0, -1])
+    (phi_low, low), (phi_high, high) = way.low, way.high
+
+    def between(a: float, b: float) -> tuple[float, float]:
+        at = np.array([a, b])
+        found = _extremes(way, *(way.relative(at) if over == "shaft" else way.place(at)))
+        return found.least, found.greatest
+
+    if over == "shaft":
+        bends = [(y[2] - y[1] / phi[1] * phi[2]) / phi[1] ** 2 for phi, y in ((phi_low, low), (phi_high, high))]
+        return Output(lambda x: way.over_shaft(x, 0)[0], between, way.shaft, value, _slack(way.shaft, *bends))
+    return Output(lambda x: way.over_relative(x, 0)[0], between, way.nodes, value, _slack(way.nodes, low[2], high[2]))
+
+
+def _slack(x: Array, low: Array, high: Array) -> float:
+    """How far a function strays from its range at the nodes x (m + 1,), by its second derivatives (m,), doubled."""
+    slack: Array = 0.25 * np.diff(x) ** 2 * np.maximum(np.abs(low), np.abs(high))
+    return float(slack.max())

@@ -1,0 +1,175 @@
+"""The longest dwell of an output that has thousands of breaks, as a polygon gives it, without looking everywhere.
+
+Blocks of the period are told apart by the least and greatest value at their nodes. Runs of whole blocks that surely
+stay within the band say how long the longest window is at least; runs that cannot be excluded and are long enough say
+where it may begin and end. Only there the output is followed exactly (`kin.numeric.longest_window`). What every such
+window contains counts by its extremes alone, and the rest of the period not at all.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.numeric.longest_window import Dwell, dwells
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.numeric.arrays import Array
+
+BLOCKS = 1024
+# Where the output is not to be looked at it is led away by so many ranges, over a ridge between two straight slopes
+# that begins at 1 width of what is looked at.
+ROOF, RIDGE = 16.0, (1.1, 1.25)
+# Shares of the core at which its extremes stand; no two slopes between them are alike, or many windows would be.
+PASSING = (0.001, 0.0025, 0.996, 0.9983)
+
+
+class Output(NamedTuple):
+    """An output of a period, by its nodes x (m + 1,) and the values there; f is smooth between them.
+
+    f(x (n,)) gives (n,) at any x; `extremes(a, b)` its least and greatest value over [a, b]. Between nodes it strays
+    from the range of their values by `slack` at most.
+    """
+
+    f: Callable[[Array], Array]
+    extremes: Callable[[float, float], tuple[float, float]]
+    x: Array
+    value: Array
+    slack: float
+
+    @property
+    def period(self) -> float:
+        """Length of the period."""
+        return float(self.x[-1] - self.x[0])
+
+
+class _Span(NamedTuple):
+    """Windows that may be the longest lie in [begin, end], and each contains [core, rest] if core < rest."""
+
+    begin: float
+    core: float
+    rest: float
+    end: float
+
+    def on(self, turn: float) -> _Span:
+        return _Span(*(x + turn for x in self))
+
+    def joined(self, other: _Span) -> _Span:
+        """Return what holds for windows of either; `other` begins no earlier."""
+        return _Span(self.begin, max(self.core, other.core), min(self.rest, other.rest), max(self.end, other.end))
+
+
+def longest_dwell(output: Output, band: float) -> Dwell:
+    """Find the longest window over which an output stays within the band; it begins in one period from 0."""
+    spans = _spans(output, band)
+    found = [_within(output, span, band) for span in spans] or [_anywhere(output, band)]
+    best = max(found, key=lambda dwell: dwell.length)
+    return Dwell(best.start % output.period, best.length, best.least, best.greatest)
+
+
+def _anywhere(output: Output, band: float) -> Dwell:
+    begin = float(output.x[0])
+    best = dwells(lambda t, _: output.f(t + begin)[None], output.x[1:-1] - begin, band, output.period, 1)[0]
+    return Dwell(best.start + begin, best.length, best.least, best.greatest)
+
+
+def _within(output: Output, span: _Span, band: float) -> Dwell:
+    """Find the longest window in a span, which may go on beyond the period's end; at its ends it leaves the band.
+
+    The rest of the period is cut out, and a roof that quickly leaves the band put in its place. In place of the core is
+    put what passes both its extremes at either end: a window contains all of that, or hardly any.
+    """
+    begin, core, rest, end = span
+    width, cored = end - begin, core < rest
+    nodes = np.concatenate([output.x[:-1], output.x[:-1] + output.period])
+    nodes = nodes[(nodes > begin) & (nodes < end)]
+    places, values = np.zeros(0), np.zeros(0)
+    if cored:
+        nodes = nodes[(nodes < core) | (nodes > rest)]
+        least, greatest = output.extremes(core, rest)
+        places = core + (rest - core) * np.array([0.0, *PASSING, 1.0])
+        first, last = output.f(places[[0, -1]])
+        values = np.array([first, greatest, least, greatest, least, last])
+    ends = output.f(np.array([begin, end]))
+    height = ROOF * max(float(np.ptp(output.value)), band)
+    roof = width * np.array([1.0, *RIDGE])
+
+    def cut(t: Array, _: int) -> Array:
+        value, x = np.empty_like(t), t + begin
+        outside = t >= width
+        inside = (x > core) & (x < rest) & cored
+        value[outside] = np.interp(t[outside], roof, (ends[1], ends[1] + height, ends[0]))
+        if cored:
+            value[inside] = np.interp(x[inside], places, values)
+        value[~outside & ~inside] = output.f(x[~outside & ~inside])
+        return value[None]
+
+    breaks = np.concatenate([nodes - begin, places - begin, roof[:2]])
+    best = dwells(cut, breaks, band, float(roof[2]), 1)[0]
+    return Dwell(best.start + begin, best.length, best.least, best.greatest)
+
+
+def _spans(output: Output, band: float) -> list[_Span]:
+    """Disjoint spans that hold every window that may be the longest; none if they would be all of the period."""
+    x, value, period = output.x, output.value, output.period
+    count = min(BLOCKS, len(x) - 1)
+    first = np.searchsorted(x, x[0] + period / count * np.arange(count))
+    first = np.append(first[first < len(x) - 1], len(x) - 1)
+    first = first[np.diff(first, prepend=-1) > 0]
+    count = len(first) - 1
+    # both ends of a block belong to it
+    high = np.maximum(np.maximum.reduceat(value[:-1], first[:-1]), value[first[1:]])
+    low = np.minimum(np.minimum.reduceat(value[:-1], first[:-1]), value[first[1:]])
+    edge = np.concatenate([x[first[:-1]] - period, x[first[:-1]], x[first] + period]).tolist()
+    sure = _runs(low, high, band - 2.0 * output.slack)
+    least = max(edge[count + i + n] - edge[count + i] for i, n in enumerate(sure))
+    spans: list[_Span] = []
+    for i, n in enumerate(_runs(low, high, band)):
+        # a window that contains block i, but not the one before, begins in that and may end in the one after the run
+        before = edge[count + i - 1]
+        span = _Span(before, edge[count + i], before + least, edge[min(count + i + n + 1, len(edge) - 1)])
+        if span.end - span.begin < least:
+            continue
+        if spans and span.begin <= spans[-1].end:
+            spans[-1] = spans[-1].joined(span)
+        else:
+            spans.append(span)
+    if len(spans) > 1 and spans[0].begin + period <= spans[-1].end:  # the last runs on in the first
+        spans[-1] = spans[-1].joined(spans[0].on(period))
+        del spans[0]
+    return spans if all(span.end - span.begin < period for span in spans) else []
+
+
+def _runs(low: Array, high: Array, band: float) -> list[int]:
+    """Of each block in a ring (m,) the number of blocks from it on, at most all, whose values stay within the band."""
+    count = len(low)
+    lows, highs = (np.concatenate([v, v]).tolist() for v in (low, high))
+    runs, end = [], 0
+    falls: list[
+        int
+    ] = []  # blocks ahead whose greatest value is greater than all that follow it, and likewise the least
+    rises: list[int] = []
+    for i in range(count):
+        if end <= i:
+            end, falls, rises = i, [], []
+        while falls and falls[0] < i:
+            falls.pop(0)
+        while rises and rises[0] < i:
+            rises.pop(0)
+        while end < i + count:
+            most = max(highs[end], highs[falls[0]] if falls else -np.inf)
+            least = min(lows[end], lows[rises[0]] if rises else np.inf)
+            if most - least > band:
+                break
+            while falls and highs[falls[-1]] <= highs[end]:
+                falls.pop()
+            while rises and lows[rises[-1]] >= lows[end]:
+                rises.pop()
+            falls.append(end)
+            rises.append(end)
+            end += 1
+        runs.append(end - i)
+    return runs

@@ -1,0 +1,376 @@
+"""How a roller's centre is guided: on an arm that swings about a pivot, or along a straight line of travel.
+
+The frame runs round the cam by the shaft angle phi. A point of the plane, at distance r from the shaft, is reached by
+the centre at exactly one position and one shaft angle: position(r), and phi = (polar angle of the point) - lead(r).
+Along a curve of arc length s, with u = r^2, a = P.T and c = P x T of its point P and tangent T,
+
+    position' = 2 a/S,    phi' = (c + 2 a m/S)/u
+
+where S^2 is a polynomial in u and m is linear in u: all that a guide has to tell of its derivatives. An arm of length
+L, its pivot at C: S^2 = 4 C^2 L^2 - (C^2 + L^2 - u)^2, 2 m = side (u + L^2 - C^2); a line of travel displaced by e:
+S^2 = 4 (u - e^2), m = e.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+import numpy as np
+
+from kin.contour.arcs import Arcs, cross, dot, left, right, unit
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array
+
+Side = Literal[-1, 1]
+Unit = Literal["mm", "deg"]
+TRAILING: Side = -1  # roller A
+LEADING: Side = 1  # roller B
+
+SLACK = 1e-12  # of the guide's reach, by which neighbouring pieces may overlap, against rounding at their joints
+MOST_SHARE = 0.1  # of the arm, or of the cam: pieces that are searched for contact are shorter
+
+
+class Guide(Protocol):
+    """How a roller's centre moves; `unit` is its position's as reported, radians being reported as degrees."""
+
+    @property
+    def unit(self) -> Unit:
+        """Unit of the position: mm, or deg for radians."""
+
+    def slack(self, extent: float) -> float:
+        """Length, mm, that rounding may make of nothing on a cam of that extent."""
+
+    def step(self, extent: float) -> float:
+        """Greatest length, mm, of the pieces in which a cam of that extent is searched."""
+
+    def reach(self) -> tuple[float, float]:
+        """Least and greatest distance of the centre from the shaft, mm."""
+
+    def shaft_angle(self, points: Array) -> Array:
+        """Shaft angle at which the centre comes to points (n, 2): (n,); nan out of reach."""
+
+    def lead(self, r: Array) -> Array:
+        """Polar angle of the centre less the shaft angle, at its distance r (n,); beyond the reach its end."""
+
+    def lead_slope(self, least: Array, most: Array) -> Array:
+        """Greatest change of the lead with r, rad/mm, for r between least and most (n,); infinite beyond the reach."""
+
+    def position(self, r: Array) -> Array:
+        """Position at distance r (n,) of the centre from the shaft, mm or radians; beyond the reach its end."""
+
+    def centre(self, phi: Array, position: Array) -> Array:
+        """Centre (n, 2) at shaft angles phi and positions (n,)."""
+
+    def path(self, phi: Array, position: Array) -> tuple[Array, Array, Array]:
+        """Centre and two derivatives by a parameter, (n, 2) each, from the rows (3, n) of phi and of the position."""
+
+    def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
+        """First and second derivative (n, 2) of the centre by its position."""
+
+    def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
+        """Both places (2, n, 2), seen from the starts of pieces, where the centre meets their circles; else nan."""
+
+    def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
+        """Whether points (n, 2) on the centre's path at phi (n,) are on the side where it runs."""
+
+    def square(self, u: Array) -> Array:
+        """S^2 at u (n,)."""
+
+    def square_slope(self, u: Array) -> Array:
+        """Derivative of S^2 by u at u (n,)."""
+
+    @property
+    def square_bend(self) -> float:
+        """Second derivative of S^2 by u, at most 0."""
+
+    def moment(self, u: Array) -> Array:
+        """The term m at u (n,)."""
+
+    @property
+    def moment_slope(self) -> float:
+        """Derivative of m by u."""
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A roller's arm: `length` l, `pivot` its distance L from the shaft, mm; `side` on which the roller lies.
+
+    The position is the arm's lean, the angle at the pivot between shaft and roller centre, radians.
+    """
+
+    length: float
+    pivot: float
+    side: Side = TRAILING
+
+    @property
+    def unit(self) -> Unit:
+        """Degrees."""
+        return "deg"
+
+    def slack(self, extent: float = 0.0) -> float:  # noqa: ARG002 - an arm knows its own size
+        """Length, mm, that rounding may make of nothing."""
+        return SLACK * (self.length + self.pivot)
+
+    def step(self, extent: float) -> float:  # noqa: ARG002
+        """Greatest length, mm, of the pieces in which a cam is searched."""
+        return MOST_SHARE * self.length
+
+    def reach(self) -> tuple[float, float]:
+        """Least and greatest distance of the roller's centre from the shaft, mm."""
+        return abs(self.pivot - self.length), self.pivot + self.length
+
+    def shaft_angle(self, points: Array) -> Array:
+        """Shaft angle at which the arm's end reaches points (n, 2): (n,); nan out of reach."""
+        r = np.hypot(points[:, 0], points[:, 1])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            lead = np.arccos((r * r + (self.pivot - self.length) * (self.pivot + self.length)) / (2.0 * r * self.pivot))
+        angle: Array = np.arctan2(points[:, 1], points[:, 0]) - self.side * lead
+        return angle
+
+    def lead(self, r: Array) -> Array:
+        """Polar angle of the roller's centre less the shaft angle, at its distance r (n,)."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            w = (r * r + (self.pivot**2 - self.length**2)) / (2.0 * r * self.pivot)
+        lead: Array = self.side * np.arccos(np.clip(w, -1.0, 1.0))
+        return lead
+
+    def lead_slope(self, least: Array, most: Array) -> Array:
+        """Greatest change of the lead with r, rad/mm, between distances least and most (n,)."""
+        # w = cos(phi - t) = (r^2 + L^2 - l^2)/(2 r L); its slope is steepest, and sqrt(1 - w^2) least, at an end
+        excess = self.pivot**2 - self.length**2
+
+        def w(x: Array) -> Array:
+            return (x * x + excess) / (2.0 * x * self.pivot)
+
+        turning = np.sqrt(max(excess, 0.0))  # where w is least, if at all
+        sine = np.sqrt(np.maximum(1.0 - np.maximum(np.abs(w(least)), np.abs(w(most))) ** 2, 0.0))
+        slope = np.maximum(np.abs(1.0 - excess / least**2), np.abs(1.0 - excess / most**2)) / (2.0 * self.pivot)
+        slope = np.where((least < turning) & (turning < most), np.maximum(slope, 1.0 / (2.0 * self.pivot)), slope)
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            steepest: Array = slope / sine
+        return steepest
+
+    def position(self, r: Array) -> Array:
+        """Angle at the pivot between shaft and roller centre, from the centre's distance r (n,) from the shaft.
+
+        A distance beyond the arm's reach counts as the end of it.
+        """
+        # Half-angle form: good digits at either end of the reach.
+        above = (r - (self.pivot - self.length)) * (r + (self.pivot - self.length))
+        below = ((self.pivot + self.length) - r) * ((self.pivot + self.length) + r)
+        angle: Array = 2.0 * np.arctan2(np.sqrt(np.maximum(above, 0.0)), np.sqrt(np.maximum(below, 0.0)))
+        return angle
+
+    def centre(self, phi: Array, position: Array) -> Array:
+        """Roller centre (n, 2) at shaft angles phi and leans (n,)."""
+        return self.pivot * unit(phi) - self.length * unit(phi - self.side * position)
+
+    def path(self, phi: Array, position: Array) -> tuple[Array, Array, Array]:
+        """Centre and two derivatives, (n, 2) each, from the rows (3, n) of phi and of the lean."""
+        pivot, arm = polar_rows(phi, self.pivot), polar_rows(phi - self.side * position, -self.length)
+        first, second, third = (p + a for p, a in zip(pivot, arm, strict=True))
+        return first, second, third
+
+    def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
+        """First and second derivative (n, 2) of the centre by its lean."""
+        arm = -self.length * unit(phi - self.side * position)
+        return -self.side * left(arm), -arm
+
+    def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
+        """Both places (2, n, 2), seen from the starts of pieces, where the arm's circle meets theirs.
+
+        From the start of the piece, its circle is 2 y.m + k y^2 = 0 and the arm's |y - q| = l; their difference is the
+        line both intersections lie on, y.(m + k q) = k (q^2 - l^2)/2, also for k = 0. Where on that line they lie is
+        asked of the smaller of the two circles: of the other one it would be a difference of large numbers.
+        """
+        q = self.pivot * unit(phi) - pieces.start
+        small = np.abs(pieces.curvature) * self.length > 1.0
+        y = np.empty((2, len(phi), 2))
+        for rows, crossings in ((np.flatnonzero(~small), _on_arm), (np.flatnonzero(small), _on_piece)):
+            if len(rows):
+                y[:, rows] = crossings(pieces.take(rows), q[rows], self.length, slack)
+        return y
+
+    def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
+        """Whether points (n, 2) are on the roller's side of the line from shaft to pivot."""
+        on_side: NDArray[np.bool_] = self.side * cross(self.pivot * unit(phi), points) >= -slack * self.pivot
+        return on_side
+
+    def square(self, u: Array) -> Array:
+        """S^2 at u (n,): (2 L l sin(lean))^2."""
+        square: Array = (u - (self.pivot - self.length) ** 2) * ((self.pivot + self.length) ** 2 - u)
+        return square
+
+    def square_slope(self, u: Array) -> Array:
+        """Derivative of S^2 by u at u (n,)."""
+        return 2.0 * (self.pivot**2 + self.length**2 - u)
+
+    @property
+    def square_bend(self) -> float:
+        """Second derivative of S^2 by u."""
+        return -2.0
+
+    def moment(self, u: Array) -> Array:
+        """The term m at u (n,)."""
+        return 0.5 * self.side * (u + (self.length - self.pivot) * (self.length + self.pivot))
+
+    @property
+    def moment_slope(self) -> float:
+        """Derivative of m by u."""
+        return 0.5 * self.side
+
+
+@dataclass(frozen=True)
+class Translating:
+    """A line of travel at the shaft angle, displaced by `offset` e, mm, towards its left.
+
+    The position is the centre's distance along it from the foot of the shaft, mm, positive outwards.
+    """
+
+    offset: float = 0.0
+
+    @property
+    def unit(self) -> Unit:
+        """Millimetres."""
+        return "mm"
+
+    def slack(self, extent: float) -> float:
+        """Length, mm, that rounding may make of nothing on a cam of that extent."""
+        return SLACK * (extent + abs(self.offset))
+
+    def step(self, extent: float) -> float:
+        """Greatest length, mm, of the pieces in which a cam of that extent is searched."""
+        return MOST_SHARE * extent
+
+    def reach(self) -> tuple[float, float]:
+        """Least and greatest distance of the centre from the shaft, mm."""
+        return abs(self.offset), float("inf")
+
+    def shaft_angle(self, points: Array) -> Array:
+        """Shaft angle at which the centre reaches points (n, 2): (n,); nan out of reach."""
+        r = np.hypot(points[:, 0], points[:, 1])
+        with np.errstate(invalid="ignore"):
+            along = np.sqrt((r - self.offset) * (r + self.offset))
+        angle: Array = np.arctan2(points[:, 1], points[:, 0]) - np.arctan2(self.offset, along)
+        return angle
+
+    def lead(self, r: Array) -> Array:
+        """Polar angle of the centre less the shaft angle, at its distance r (n,)."""
+        lead: Array = np.arctan2(self.offset, self.position(r))
+        return lead
+
+    def lead_slope(self, least: Array, most: Array) -> Array:  # noqa: ARG002 - steepest where it is nearest
+        """Greatest change of the lead with r, rad/mm, from the distance least (n,) on."""
+        e = abs(self.offset)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            steepest: Array = np.where(least > e, e / (least * np.sqrt(least**2 - e**2)), np.inf)
+        return steepest
+
+    def position(self, r: Array) -> Array:
+        """Distance along the line of travel, from the centre's distance r (n,) from the shaft."""
+        along: Array = np.sqrt(np.maximum((r - self.offset) * (r + self.offset), 0.0))
+        return along
+
+    def centre(self, phi: Array, position: Array) -> Array:
+        """Roller centre (n, 2) at shaft angles phi and positions (n,)."""
+        u = unit(phi)
+        return position[:, None] * u + self.offset * left(u)
+
+    def path(self, phi: Array, position: Array) -> tuple[Array, Array, Array]:
+        """Centre and two derivatives, (n, 2) each, from the rows (3, n) of phi and of the position."""
+        u, du, ddu = polar_rows(phi, 1.0)
+        p, dp, ddp = (row[:, None] for row in position)
+        first, second = p * u + self.offset * left(u), dp * u + p * du + self.offset * left(du)
+        return first, second, ddp * u + 2.0 * dp * du + p * ddu + self.offset * left(ddu)
+
+    def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
+        """First and second derivative (n, 2) of the centre by its position."""
+        u = unit(phi)
+        return u + 0.0 * position[:, None], np.zeros_like(u)
+
+    def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
+        """Both places (2, n, 2), seen from the starts of pieces, where the line of travel meets their circles.
+
+        With y = q + x d on the line, q at its foot, the circle 2 y.m + k y^2 = 0 is k x^2 + 2 x (d.m + k q.d) + (2 q.m
+        + k q^2) = 0, also for k = 0.
+        """
+        d, m, k = unit(phi), right(pieces.tangent), pieces.curvature
+        q = self.offset * left(d) - pieces.start
+        half, last = dot(d, m) + k * dot(q, d), 2.0 * dot(q, m) + k * dot(q, q)
+        square = half * half - k * last
+        touching = (square < 0.0) & (square >= -2.0 * slack * np.abs(k))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            big = -(half + np.copysign(np.sqrt(np.where(touching, 0.0, square)), half))
+            x = np.stack([big / k, last / big])
+        x[~np.isfinite(x)] = np.nan
+        return q + x[:, :, None] * d
+
+    def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
+        """Whether points (n, 2) lie outwards of the shaft's foot."""
+        on_side: NDArray[np.bool_] = dot(unit(phi), points) >= -slack
+        return on_side
+
+    def square(self, u: Array) -> Array:
+        """S^2 at u (n,): (2 position)^2."""
+        return 4.0 * (u - self.offset**2)
+
+    def square_slope(self, u: Array) -> Array:
+        """Derivative of S^2 by u at u (n,)."""
+        return np.full_like(u, 4.0)
+
+    @property
+    def square_bend(self) -> float:
+        """Second derivative of S^2 by u."""
+        return 0.0
+
+    def moment(self, u: Array) -> Array:
+        """The term m at u (n,)."""
+        return np.full_like(u, self.offset)
+
+    @property
+    def moment_slope(self) -> float:
+        """Derivative of m by u."""
+        return 0.0
+
+
+def polar_rows(angle: Array, length: float) -> tuple[Array, Array, Array]:
+    """Give length u(angle) and two derivatives, each (n, 2), from the angle's own, (3, n)."""
+    u = length * unit(angle[0])
+    n = left(u)
+    return u, angle[1][:, None] * n, angle[2][:, None] * n - (angle[1] ** 2)[:, None] * u
+
+
+def _on_arm(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
+    """Both crossings (2, n, 2), seen from the pieces' starts, nan where there are none; from the arm's circle."""
+    m, k = right(pieces.tangent), pieces.curvature
+    v = m + k[:, None] * q
+    size = np.hypot(v[:, 0], v[:, 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across = v / size[:, None]
+        depth = -(dot(q, m) + 0.5 * k * (dot(q, q) + length**2)) / size
+        square = (length - depth) * (length + depth)
+        touching = (square < 0.0) & (square >= -slack * length)
+        half = np.sqrt(np.where(touching, 0.0, square))
+    middle, aside = q + depth[:, None] * across, half[:, None] * left(across)
+    return np.stack([middle + aside, middle - aside])
+
+
+def _on_piece(pieces: Arcs, q: Array, length: float, slack: float) -> Array:
+    """The same from the piece's own circle, which is the smaller one."""
+    m, k = right(pieces.tangent), pieces.curvature
+    v = m + k[:, None] * q
+    size, away = np.hypot(v[:, 0], v[:, 1]), np.hypot(q[:, 0], q[:, 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across = v / size[:, None]
+        foot = 0.5 * k * (away - length) * (away + length) / size
+        cosine = dot(across, m) + k * foot
+        square = (1.0 - cosine) * (1.0 + cosine)
+        touching = (square < 0.0) & (square >= -2.0 * slack * np.abs(k))
+        half = np.sqrt(np.where(touching, 0.0, square)) / k
+    aside = left(across)
+    middle = foot[:, None] * across - (dot(aside, m) / k)[:, None] * aside
+    return np.stack([middle + half[:, None] * aside, middle - half[:, None] * aside])

@@ -1,0 +1,135 @@
+"""How far a follower's measured motion is from the intended one, and how much play it has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from kin.numeric.angles import degrees
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
+    from kin.numeric.extrema import Extremes
+
+Unit = Literal["mm", "deg"]
+Extreme = Literal["true", "sampled"]
+ALLOWANCE = 0.02  # of a sampled extreme, by which the true one is estimated to exceed it at most
+STEP_DEG = 1.0  # the shaft turns by this much in an increment
+
+
+@dataclass(frozen=True)
+class MotionError:
+    """Error of a follower's position over one turn, measured less intended; mm, or degrees where the follower swings.
+
+    max             greatest absolute error
+    rms             root mean square over the given shaft angles
+    at_deg          shaft angle of the greatest, [0, 360)
+    increment       greatest change of the error while the shaft turns by `step_deg`, starting from each given angle
+    dwell_flatness  greatest range of the measured position over a dwell of the intended motion; None without a dwell
+    extremes        "true": `max` is the greatest over all shaft angles; "sampled": over those that were looked at
+    remainder       by how much the greatest may exceed `max`: proved where extremes are true, else an estimate
+    """
+
+    max: float
+    rms: float
+    unit: Unit
+    at_deg: float
+    increment: float
+    step_deg: float
+    dwell_flatness: float | None = None
+    extremes: Extreme = "true"
+    remainder: float = 0.0
+
+    @property
+    def bound(self) -> float:
+        """What the greatest error does not exceed."""
+        return self.max + self.remainder
+
+    def less_sure(self, by: float) -> MotionError:
+        """Count in that every measured position may be off by as much."""
+        flat = self.dwell_flatness
+        return replace(
+            self,
+            max=self.max + by,
+            rms=self.rms + by,
+            increment=self.increment + 2.0 * by,
+            dwell_flatness=None if flat is None else flat + 2.0 * by,
+        )
+
+
+@dataclass(frozen=True)
+class Play:
+    """Clearance between contour and follower over one turn, negative where they interfere.
+
+    A yoke: the breadth of the frame less that of the contour, mm. A double roller: the gap at the second roller while
+    the first is held in contact, mm. A flat pair: the angle by which the faces stand wider than they need, degrees.
+    The angles are shaft angles, [0, 360). `extremes` as in `MotionError`.
+    """
+
+    least: float
+    least_at_deg: float
+    most: float
+    most_at_deg: float
+    unit: Unit
+    extremes: Extreme = "true"
+
+    def less_sure(self, by: float) -> Play:
+        """Count in that it may be off by as much."""
+        return replace(self, least=self.least - by, most=self.most + by)
+
+
+class Judged(NamedTuple):
+    """What a follower tells of a contour.
+
+    motion  its motion error
+    play    for the followers that are held from two sides, else None
+    reach   extremes over the shaft angle (radians) of how far the contour reaches beyond the intended position of a
+            flat face, mm; None for followers that feel something else
+    """
+
+    motion: MotionError
+    play: Play | None
+    reach: Extremes | None = None
+
+
+class ContactError(ValueError):
+    """The follower finds no contact; `at` is the shaft angle in radians where it was looked for."""
+
+    def __init__(self, message: str, at: float) -> None:
+        super().__init__(f"{message} at {degrees(at):.6g} degrees")
+        self.at = at
+
+
+def with_steps(phi: Array) -> Array:
+    """Return the given shaft angles (n,), and each of them an increment on: (2n,), for `motion_error`."""
+    return np.concatenate([phi, phi + np.radians(STEP_DEG)])
+
+
+def motion_error(
+    worst: tuple[float, float],
+    errors: Array,
+    flatness: float | None,
+    unit: Unit,
+    *,
+    remainder: float | None = 0.0,
+) -> MotionError:
+    """Sum up: `worst` error and where, `errors` (..., 2n) at `with_steps` of the given angles, dwell flatness.
+
+    `remainder` is by how much the worst may be exceeded, proved; None where it is but the worst of samples. Radians
+    become degrees if the unit says so.
+    """
+    scale = 180.0 / np.pi if unit == "deg" else 1.0
+    here, further = np.split(errors, 2, axis=-1)
+    return MotionError(
+        max=scale * worst[0],
+        rms=scale * float(np.sqrt(np.mean(here * here))),
+        unit=unit,
+        at_deg=degrees(worst[1]),
+        increment=scale * float(np.abs(further - here).max()),
+        step_deg=STEP_DEG,
+        dwell_flatness=None if flatness is None else scale * flatness,
+        extremes="sampled" if remainder is None else "true",
+        remainder=scale * (ALLOWANCE * worst[0] if remainder is None else remainder),
+    )

@@ -1,0 +1,213 @@
+"""Feet of points on a closed curve: where a function over one turn is greatest, for thousands of points at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.distinct import distinct
+from kin.numeric.errors import UnsettledError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array, Indices
+
+COARSE = 4096  # samples of one turn from which a search starts
+FINE_STEP = 1e-5  # rad: a Newton step below this leaves the value good to a third power of it
+MOST_STEPS = 60
+LONGEST_STEP = 0.2  # rad
+CORNER_REACH = 8.0  # depths of a point: farther from a tight corner than this, it has one foot only
+CHUNK = 4_000_000  # entries of a matrix of points against samples held at a time
+
+
+@dataclass(frozen=True, eq=False)
+class Feet:
+    """The feet of n points on an exact contour.
+
+    parameter (n,)      of the foot
+    excess (n,)         of the point, mm
+    normal (n, 2)       gradient of the excess
+    curvature (n,)      of the line of equal excess through the point, 1/mm
+    """
+
+    parameter: Array
+    excess: Array
+    normal: Array
+    curvature: Array
+
+    @property
+    def rows(self) -> tuple[Array, Array, Array, Array]:
+        """All four arrays."""
+        return self.parameter, self.excess, self.normal, self.curvature
+
+
+def grid(breaks: Array, count: int = COARSE) -> Array:
+    """`count` equal steps of [0, 2 pi) and the breaks, rising and distinct."""
+    return distinct(np.concatenate([np.arange(count) * (TURN / count), np.mod(breaks, TURN)]))
+
+
+def climb(
+    slopes: Callable[[Array, Indices], tuple[Array, Array, Array]], x: Array, breaks: Array
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Climb to the maximum nearest uphill from x (n,) by Newton's method, bracketed and with bounded steps.
+
+    `slopes(x, which)` gives f, f' and -f''; `breaks`, in [0, 2 pi), are where f'' jumps. Returns x, the step that
+    remains (below FINE_STEP and across no break, unless the bracket closed first), and f, f', -f'' at x: (n,) each.
+    """
+    x = x.copy()
+    f, slope, bend = slopes(x, np.arange(len(x)))
+    step = _newton(slope, bend)
+
+    def far(at: Array, by: Array) -> NDArray[np.bool_]:
+        large: NDArray[np.bool_] = np.abs(by) > FINE_STEP
+        return large | ((by != 0.0) & across(breaks, at, by)) if len(breaks) else large
+
+    todo = np.flatnonzero(far(x, step))
+    low, high = np.full(len(x), -np.inf), np.full(len(x), np.inf)
+    for _ in range(MOST_STEPS):
+        if not len(todo):
+            break
+        uphill = slope[todo] > 0.0
+        low[todo] = np.where(uphill, x[todo], low[todo])
+        high[todo] = np.where(uphill, high[todo], x[todo])
+        new = x[todo] + step[todo]
+        out = ~((new > low[todo]) & (new < high[todo]))
+        new[out] = 0.5 * (low[todo] + high[todo])[out]
+        x[todo] = new
+        f[todo], slope[todo], bend[todo] = slopes(new, todo)
+        step[todo] = _newton(slope[todo], bend[todo])
+        closed = high[todo] - low[todo] <= 1e-15 * TURN
+        step[todo[closed]] = 0.0
+        todo = todo[far(x[todo], step[todo])]
+    if len(todo):
+        left = float(np.abs(step[todo]).max())
+        raise UnsettledError(f"{len(todo)} feet were not found in {MOST_STEPS} steps; the last was of {left:.3g} rad")
+    return x, step, f, slope, bend
+
+
+def across(breaks: Array, x: Array, step: Array) -> NDArray[np.bool_]:
+    """Whether a break in [0, 2 pi) lies between x and x + step, (n,) each; a step of less than half a turn.
+
+    Derivatives at a break are those behind it, so that a step back from one leads across it.
+    """
+    low, high = np.minimum(x, x + step), np.maximum(x, x + step)
+    turns = TURN * np.floor(low / TURN)
+    ring = np.concatenate([breaks, breaks + TURN])
+    return np.searchsorted(ring, low - turns, side="right") < np.searchsorted(ring, high - turns, side="right")
+
+
+def _newton(slope: Array, bend: Array) -> Array:
+    """Newton's step, no longer than LONGEST_STEP; uphill by that much where the function is not bent the right way."""
+    most = LONGEST_STEP
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = np.where(bend > 0.0, slope / bend, np.copysign(most, slope))
+    step = np.where(slope == 0.0, 0.0, step)
+    return np.clip(step, -most, most)
+
+
+def two_best(score: Callable[[Array], Array], points: Array, count: int) -> tuple[Indices, Indices]:
+    """For each point the sample of highest score, and the best of those well away from it: (n,) each.
+
+    Near a corner of a trimmed contour two feet count, and coarse samples cannot tell which one wins.
+    """
+    first, second = np.empty(len(points), dtype=np.intp), np.empty(len(points), dtype=np.intp)
+    away = count // 64
+    near = np.arange(-away, away + 1)
+    size = max(1, CHUNK // count)
+    for begin in range(0, len(points), size):
+        part = slice(begin, begin + size)
+        value = score(points[part])
+        first[part] = value.argmax(axis=1)
+        np.put_along_axis(value, (first[part][:, None] + near) % count, -np.inf, axis=1)
+        second[part] = value.argmax(axis=1)
+    return first, second
+
+
+class Tight(Protocol):
+    """A contour that knows where it is tight; see `kin.follower.envelope.Envelope`."""
+
+    def points(self, parameter: Array) -> Array:
+        """Points (n, 2) of the contour."""
+
+    def radii(self) -> tuple[Array, Array]:
+        """Parameters (m,) closely round the turn, and radii of curvature there (m,), mm, negative where hollow."""
+
+
+def searched_again(feet: Feet, points: Array, contour: Tight, search: Callable[[Array], Feet]) -> Feet:
+    """Replace the feet of points that lie inside a tight corner of the contour, nearly as deep as they are near to it.
+
+    There two feet compete, one on either side of the corner, and the nearer one has to be looked for.
+    """
+    parameter, radius = contour.radii()
+    deep = np.flatnonzero(feet.excess < -radius[radius >= 0.0].min(initial=np.inf))
+    if not len(deep):
+        return feet
+    corner = (radius >= 0.0) & (radius < -feet.excess[deep].min())
+    place = contour.points(parameter)
+    step = np.hypot(*(np.roll(place, -1, axis=0) - place).T)
+    along = np.concatenate([[0.0], np.cumsum(step)])
+    at = np.interp(np.mod(feet.parameter[deep], TURN), np.append(parameter, TURN), along)
+    marks = (along[:-1][corner] + along[-1] * np.array([-1.0, 0.0, 1.0])[:, None]).ravel()
+    after = np.clip(np.searchsorted(marks, at), 1, len(marks) - 1)
+    apart = np.minimum(at - marks[after - 1], marks[after] - at)
+    deep = deep[apart <= CORNER_REACH * -feet.excess[deep]]
+    other = search(points[deep])
+    for mine, new in zip(feet.rows, other.rows, strict=True):
+        mine[deep] = new
+    return feet
+
+
+def better(one: Feet, two: Feet, score_one: Array | None = None, score_two: Array | None = None) -> Feet:
+    """For each point the foot of the greater score (n,), by default of the greater excess."""
+    wins = (one.excess if score_one is None else score_one) >= (two.excess if score_two is None else score_two)
+    pairs = zip(one.rows, two.rows, strict=True)
+    return Feet(*(np.where(wins if a.ndim == 1 else wins[:, None], a, b) for a, b in pairs))
+
+
+class Inverse:
+    """Inverse of a rising function that gains 2 pi over its period 2 pi, from a table and one Newton step or more."""
+
+    def __init__(self, function: Callable[[Array], Array], breaks: Array) -> None:
+        """`function(x)` gives value and two derivatives, (3, n); `breaks` are where the second one jumps."""
+        self._function = function
+        x = grid(breaks)
+        y = function(x)[0]
+        self._x = np.concatenate([x - TURN, x, x + TURN])
+        self._y = np.concatenate([y - TURN, y, y + TURN])
+        self._middle = float(y[0]) + 0.5 * TURN
+
+    def __call__(self, y: Array) -> tuple[Array, Array]:
+        """Return x near the solutions, and the remaining steps to them, |step| below FINE_STEP: each (n,)."""
+        base = TURN * np.round((y - self._middle) / TURN)
+        x = np.interp(y - base, self._y, self._x)
+        step = np.zeros_like(x)
+        todo = np.arange(len(x))
+        for _ in range(MOST_STEPS):
+            value, slope, bend = self._function(x[todo])
+            miss = y[todo] - base[todo] - value
+            first = miss / slope
+            step[todo] = first - 0.5 * bend * first * first / slope
+            todo = todo[np.abs(step[todo]) > FINE_STEP]
+            if not len(todo):
+                break
+            x[todo] += step[todo]
+        if len(todo):
+            left = float(np.abs(step[todo]).max())
+            raise UnsettledError(f"{len(todo)} angles were not found in {MOST_STEPS} steps; {left:.3g} rad are left")
+        return x + base, step
+
+
+def gauss(breaks: Array) -> tuple[Array, Array]:
+    """Nodes and weights (m,) that integrate over one turn a function smooth between the breaks."""
+    ends = grid(breaks, 64)
+    ends = np.append(ends, ends[0] + TURN)
+    node, weight = np.polynomial.legendre.leggauss(16)
+    half = 0.5 * np.diff(ends)
+    at = (0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * node
+    return at.ravel(), (half[:, None] * weight).ravel()

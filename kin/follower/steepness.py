@@ -1,0 +1,149 @@
+"""How steep an intended motion is at most: proved bounds of its first three derivatives over ranges of shaft angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.jet import BallJet
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.law.piecewise import Piecewise
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array, Indices
+
+CELLS = 256  # in a turn, besides those that breaks add
+ROUNDING = 1e-12  # rad; a break this near counts as inside
+SMOOTH = 1e-9  # of the derivative's greatest, below which a jump of it is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Steepness:
+    """Bounds of |f'|, |f''|, |f'''| of a periodic function, over cells of the shaft angle.
+
+    edges (m + 1,)  ends of the cells, rising over one period, radians
+    most (3, m)     the bounds in each cell, for limits from within it
+    breaks (m,)     lowest derivative, 1 or 2, that jumps at the lower edge of each cell; 3 where neither does
+    """
+
+    edges: Array
+    most: Array
+    breaks: Array
+
+    @property
+    def _period(self) -> float:
+        return float(self.edges[-1] - self.edges[0])
+
+    @cached_property
+    def _tiled(self) -> Array:
+        """Edges over three periods, the first of them before the cells' own."""
+        return np.concatenate([self.edges[:-1] + turn * self._period for turn in (-1, 0, 1)])
+
+    @cached_property
+    def _table(self) -> Array:
+        """Bounds over 2^k cells from each cell on, over three periods: (k, 3, 3 m)."""
+        levels = [np.tile(self.most, 3)]
+        while 2 ** len(levels) <= self.most.shape[1]:
+            last, step = levels[-1], 2 ** (len(levels) - 1)
+            levels.append(np.maximum(last, np.roll(last, -step, axis=1)))
+        return np.stack(levels)
+
+    def over(self, low: Array, high: Array) -> Array:
+        """Bounds of the three derivatives over [low, high], each (n,): (3, n).
+
+        Infinite for the derivative after one that jumps inside: there is no such bound.
+        """
+        count = self.most.shape[1]
+        width = np.where(np.isfinite(high - low), high - low, np.inf)
+        wide = ~(width < self._period)
+        begin = np.where(wide, 0.0, np.mod(np.where(wide, 0.0, low) - self.edges[0], self._period)) + self.edges[0]
+        end = begin + np.where(wide, 0.0, width) + ROUNDING
+        first = np.searchsorted(self._tiled, begin - ROUNDING, side="right") - 1
+        last = np.searchsorted(self._tiled, end, side="right") - 1
+        cells = np.where(wide, count, np.minimum(last - first + 1, count))
+        level = np.log2(cells).astype(np.intp)
+        found: Array = np.maximum(self._table[level, :, first], self._table[level, :, first + cells - 2**level]).T
+        for order in (1, 2):
+            at = np.append(0, np.cumsum(np.tile(self.breaks == order, 3)))
+            found[order:, wide & bool(at[-1]) | (at[last + 1] > at[first + 1])] = np.inf
+        return found
+
+
+def steepness_of_law(law: Piecewise) -> Steepness:
+    """Bounds of a law over the shaft angle itself."""
+    edges, at_knot = _cells(law.knots)
+    mid, rad = law.enclosure(edges[:-1], edges[1:], 3)
+    jumps = np.abs(law.derivatives(edges[:-1], 2) - law.derivatives(edges[:-1], 2, -1))
+    return _steepness(edges, (np.abs(mid) + rad)[1:], jumps, at_knot)
+
+
+@lru_cache(maxsize=8)  # the files of one cam are judged one after another
+def steepness_of_transmission(transmission: Transmission) -> Steepness:
+    """Bounds of psi over the shaft angle, which rises with the parameter of the law."""
+    edges, at_knot = _cells(transmission.psi.knots)
+    shaft, psi = transmission.jets(BallJet.variable(edges[:-1], edges[1:], 3))
+    rate, most = shaft.derivative(), []
+    for _ in range(3):
+        psi = psi.derivative()
+        psi = psi / BallJet.of(rate.rows[: psi.order + 1])
+        most.append(psi.rows[0].magnitude)
+    phi = transmission.at(edges, 0)[0][0]
+    phi[-1] = phi[0] + 2.0 * transmission.delta
+    jumps = np.abs(transmission.psi_of_shaft(phi[:-1], 2) - transmission.psi_of_shaft(phi[:-1], 2, -1))
+    return _steepness(phi, np.stack(most), jumps, at_knot)
+
+
+@dataclass(frozen=True, eq=False)
+class ParameterTable:
+    """A transmission's parameter over the shaft angle, by cubics between ends of cells: for a start, not for an end.
+
+    phi, tau (m + 1,)       shaft angle and parameter at the ends of cells, rising over one period
+    after, before (m,)      derivative of tau by phi at the lower and at the upper end of each cell, from within
+    """
+
+    phi: Array
+    tau: Array
+    after: Array
+    before: Array
+
+    @staticmethod
+    @lru_cache(maxsize=8)
+    def of(transmission: Transmission) -> ParameterTable:
+        """Tabulate."""
+        tau, _ = _cells(transmission.psi.knots)
+        phi = transmission.at(tau, 0)[0][0]
+        phi[-1] = phi[0] + 2.0 * transmission.delta
+        after, before = transmission.at(tau[:-1], 1)[0][1], transmission.at(tau[1:], 1, -1)[0][1]
+        return ParameterTable(phi, tau, 1.0 / after, 1.0 / before)
+
+    def at(self, phi: Array) -> tuple[Array, Indices]:
+        """Parameter near that of shaft angles phi (n,), in the same stretch of the law, and its side if at a break."""
+        x = np.mod(phi - self.phi[0], self.phi[-1] - self.phi[0]) + self.phi[0]
+        cell = np.clip(np.searchsorted(self.phi, x, side="right") - 1, 0, len(self.after) - 1)
+        low, high, width = self.tau[cell], self.tau[cell + 1], self.phi[cell + 1] - self.phi[cell]
+        u = (x - self.phi[cell]) / width
+        begin, end = u * (1.0 - u) ** 2 * self.after[cell], u * u * (1.0 - u) * self.before[cell]
+        tau = low + (high - low) * u * u * (3.0 - 2.0 * u) + width * (begin - end)
+        tau = np.clip(tau, low, high) + (phi - x)
+        return tau, np.where(u < 0.5, 1, -1)
+
+
+def _cells(knots: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Edges of cells between knots, and whether each but the last is a knot."""
+    step = 2.0 * np.pi / CELLS
+    parts = [np.linspace(a, b, int(np.ceil((b - a) / step)) + 1)[:-1] for a, b in pairwise(knots.tolist())]
+    at_knot = np.concatenate([np.arange(len(part)) == 0 for part in parts])
+    return np.append(np.concatenate(parts), knots[-1]), at_knot
+
+
+def _steepness(edges: Array, most: Array, jumps: Array, at_knot: NDArray[np.bool_]) -> Steepness:
+    most = np.where(np.isfinite(most), most, np.inf)
+    size = np.append(1.0, np.where(np.isfinite(most[:2]), most[:2], 0.0).max(axis=1))[:, None]
+    real = (jumps > SMOOTH * (size + 1.0)) & at_knot
+    return Steepness(edges, most, np.where(real[:2].any(axis=0), 1, np.where(real[2], 2, 3)))

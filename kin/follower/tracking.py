@@ -1,0 +1,380 @@
+"""How far a roller is off its intended motion at most: over all shaft angles, with a proved remainder.
+
+Along a piece of what bounds the roller's centre (a line or arc of arc length s) position and shaft angle are closed
+forms of s (`kin.follower.guide`), so the error f(s) = position - intended(shaft angle) is known with f' and f'', and
+f''' is bounded over an interval by magnitudes of its terms. About the middle of an interval of half-width h
+
+    f <= max over |x| <= h of (f + f' x + f'' x^2/2) + B3 h^3/6,
+
+with B2 in place of f'' and B3 where the intended acceleration jumps inside. Intervals whose bound exceeds the greatest
+error found so far are halved. The roller's position is the greatest that any piece gives, so
+
+- the greatest error is the greatest over all pieces, touched or not;
+- the error is nowhere below that of a piece which spans a range of shaft angles, whether it is touched there or not:
+  the least error is bounded over the pieces that are touched from one sample to the next, where two of them change
+  over somewhere between samples by each up to about their crossing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from kin.contour.arcs import Arcs, cross, dot, nearest_on
+from kin.follower.contact import angles_of, extent, first_contact, meet, within_reach
+from kin.numeric.angles import TURN
+from kin.numeric.errors import UnsettledError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from kin.follower.guide import Guide
+    from kin.numeric.arrays import Array, Indices
+
+SHARE = 1e-3  # of the error, to which it is found
+RESOLUTION = 1e-12  # of a radian, or of the cam's extent: what rounding leaves of nothing
+OUTWARD = 1.0 + 1e-9  # by which bounds are widened against their own rounding
+MOST_HALVINGS = 60
+MOST_OPEN = 100_000  # intervals, beside four times those given, that may stay undecided
+MORE = 24  # contacts that may be added where pieces hide one another
+TRIES = 4  # to find the pieces that are touched between samples
+STEPS = 40  # towards the crossing of two pieces
+
+
+class Law(Protocol):
+    """An intended motion over the shaft angle."""
+
+    def rows(self, phi: Array) -> Array:
+        """Position, mm or radians, and two derivatives at shaft angles phi (n,): (3, n)."""
+
+    def steepest(self, low: Array, high: Array) -> Array:
+        """Bounds of the magnitudes of three derivatives over shaft angles from low to high, each (n,): (3, n)."""
+
+
+class Greatest(NamedTuple):
+    """An error that is reached, its shaft angle, and by how much the greatest of all may exceed it, proved."""
+
+    error: float
+    at: float
+    remainder: float
+
+
+class _Changes(NamedTuple):
+    """Contacts before and after each change of the piece touched: numbers, shaft angles a <= b, and pieces, (n,)."""
+
+    change: Indices
+    after: Indices
+    a: Array
+    b: Array
+    one: Indices
+    other: Indices
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """A guided roller held on `pieces`, short ones (`kin.follower.contact.shortened`), that bound its centre.
+
+    At shaft angles phi (n,) it touches pieces `piece` (n,) at distances r (n,) from the shaft; among them are the ends
+    of all pieces. It is meant to be at offset + sense * law.
+    """
+
+    pieces: Arcs
+    guide: Guide
+    phi: Array
+    r: Array
+    piece: Indices
+    offset: float = 0.0
+    sense: int = 1
+
+    @cached_property
+    def position(self) -> Array:
+        """Position (n,), mm or radians."""
+        return self.guide.position(self.r)
+
+    def errors(self, law: Law) -> Array:
+        """Errors of position (n,)."""
+        errors: Array = self.position - self.meant(law.rows(self.phi))[0]
+        return errors
+
+    def meant(self, rows: Array) -> Array:
+        """Intended position and its derivatives (m, n) from the law's."""
+        meant = self.sense * rows
+        meant[0] += self.offset
+        return meant
+
+    @cached_property
+    def slack(self) -> float:
+        """Length, mm, that rounding may make of nothing."""
+        return self.guide.slack(extent(self.pieces))
+
+    @cached_property
+    def resolution(self) -> float:
+        """What rounding may make of no error, mm or radians."""
+        return RESOLUTION * (extent(self.pieces) if self.guide.unit == "mm" else 1.0)
+
+    def everywhere(self) -> Spans:
+        """Spans of all pieces."""
+        near = np.flatnonzero(within_reach(self.pieces, self.guide, self.slack))
+        half = 0.5 * self.pieces.length[near]
+        return Spans(self, 1.0, near, half, half)
+
+    def touched(self) -> Spans:
+        """Spans of the pieces that are touched, over the whole turn."""
+        phi, r, piece = self.phi, self.r, self.piece
+        for _ in range(TRIES):
+            change, after, a, b, one, other = changes = _changes(phi, piece)
+            spanned = self._meet(one, b), self._meet(other, a)
+            leap = ~(np.isfinite(spanned[0]) | np.isfinite(spanned[1]))
+            if not leap.any():
+                return self._spans(changes, self.guide.position(r[change]), self.guide.position(r[after]), spanned)
+            lone = 0.5 * (a + b)[leap]  # between its ends a short arc stands out alone
+            more, met = first_contact(self.pieces, self.guide, lone)
+            if (met < 0).any():
+                break
+            phi, r, piece = np.append(phi, lone), np.append(r, more), np.append(piece, met)
+        raise UnsettledError("the motion error is not proved: the roller leaps from piece to piece")
+
+    def _spans(self, changes: _Changes, here: Array, there: Array, spanned: tuple[Array, Array]) -> Spans:
+        """Spans of touched pieces: of each from where it comes to be touched to where it is left, and between."""
+        _, _, a, b, one, other = changes
+        far, near = spanned
+        spans = [(one, np.roll(self._place(other, b, there), 1), self._place(one, a, here))]
+        both = np.isfinite(far) & np.isfinite(near)
+        # where just one of them spans the gap it is taken over all of it, else each up to about the crossing
+        switch = np.where(np.isfinite(far), b, a)
+        gaps = np.maximum(here - near, 0.0)[both], np.minimum(far - there, 0.0)[both]
+        switch[both] = self._crossing((one[both], other[both]), (a[both], b[both]), gaps)
+        for real, number, known, position in ((switch > a, one, a, here), (switch < b, other, b, there)):
+            to = self._place(number[real], switch[real], self._meet(number[real], switch[real]))
+            spans.append((number[real], self._place(number[real], known[real], position[real]), to))
+        number, begin, end = (np.concatenate(rows) for rows in zip(*spans, strict=True))
+        _, reach = angles_of(self.pieces.take(number), self.guide, self.slack)
+        if not (reach < 0.5 * np.pi).all():  # else there is one way only along it from one shaft angle to another
+            raise UnsettledError("the motion error is not proved: a piece is reached from half the turn")
+        half = 0.5 * np.abs(end - begin) + 1e-15 * self.pieces.length[number]
+        return Spans(self, -1.0, number, 0.5 * (begin + end), half)
+
+    def _crossing(self, pair: tuple[Indices, Indices], ends: tuple[Array, Array], gaps: tuple[Array, Array]) -> Array:
+        """About where the second of a pair of pieces comes to stand out beyond the first: shaft angles (n,).
+
+        `gaps` is how far the first stands beyond the second at both ends, >= 0 and <= 0. Any angle between is right.
+        """
+        (low, high), (f, g) = ends, gaps
+        middle = 0.5 * (low + high)
+        for _ in range(STEPS if len(middle) else 0):
+            with np.errstate(divide="ignore", invalid="ignore"):
+                middle = low + (high - low) * np.where(f > g, f / (f - g), 0.5)
+            gap = self._meet(pair[0], middle) - self._meet(pair[1], middle)
+            if not np.isfinite(gap).all():
+                raise UnsettledError("the motion error is not proved: a piece is left between its ends")
+            if (np.abs(gap) <= self.resolution).all():
+                break
+            up = gap > 0.0
+            # Illinois: an end that stays is trusted half as much
+            low, f, g = np.where(up, middle, low), np.where(up, gap, 0.5 * f), np.where(up, 0.5 * g, gap)
+            high = np.where(up, high, middle)
+        return middle
+
+    def _meet(self, piece: Indices, phi: Array) -> Array:
+        """Position with the centre on pieces (n,) at shaft angles phi (n,), -inf where it does not come there."""
+        r = meet(self.pieces.take(piece), self.guide, phi, self.slack)
+        return np.where(np.isfinite(r), self.guide.position(np.maximum(r, 0.0)), -np.inf)
+
+    def _place(self, piece: Indices, phi: Array, position: Array) -> Array:
+        """Arc length on pieces (n,) of the centre at shaft angles phi and positions (n,)."""
+        return nearest_on(self.pieces.take(piece), self.guide.centre(phi, position))[0]
+
+
+def _changes(phi: Array, piece: Indices) -> _Changes:
+    """Changes of the piece (n,) touched at phi (n,), going round the turn. UnsettledError where there are none."""
+    order = np.argsort(np.mod(phi, TURN), kind="stable")
+    met, at = piece[order], np.mod(phi, TURN)[order]
+    change = np.flatnonzero(met != np.roll(met, -1))
+    if len(change) < 2:
+        raise UnsettledError("the motion error is not proved: one piece is touched all round")
+    after = (change + 1) % len(at)
+    a, b = at[change], at[after]
+    return _Changes(order[change], order[after], a, np.where(b < a, b + TURN, b), met[change], met[after])
+
+
+@dataclass(frozen=True, eq=False)
+class Spans:
+    """Intervals middle +- half of arc length, each (n,), on the pieces of these numbers (n,) that a roller is held on.
+
+    `sign` is -1 where errors inwards are asked for.
+    """
+
+    held: Held
+    sign: float
+    piece: Indices
+    middle: Array
+    half: Array
+
+    def halves(self, which: NDArray[np.bool_]) -> Spans:
+        """Both halves of some."""
+        half = 0.5 * self.half[which]
+        middle = np.concatenate([self.middle[which] - half, self.middle[which] + half])
+        return replace(self, piece=np.tile(self.piece[which], 2), middle=middle, half=np.tile(half, 2))
+
+    def state(self) -> _State:
+        """The roller's centre at the middles."""
+        return _State.of(self.held.pieces.take(self.piece), self.middle, self.held.guide)
+
+    def bounds(self, state: _State, most: tuple[Array, Array, Array], rows: Array) -> tuple[Array, Array, Array]:
+        """Upper bounds of sign * error, an error reached in each span, and where, off the middle: (n,) each.
+
+        `most` bounds the error's three derivatives, `rows` (3, n) are the law's at the middles.
+        """
+        f, slope, bend = self.sign * state.error(self.held.meant(rows))
+        h = self.half
+        first, second, third = most
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            where = np.where(bend < 0.0, np.clip(-slope / bend, -h, h), np.copysign(h, slope))
+            top = f + where * (slope + 0.5 * where * bend)
+            bound = top + third * h**3 / 6.0
+            bound = np.fmin(bound, f + np.abs(slope) * h + 0.5 * second * h**2)
+            bound = np.fmin(bound, f + first * h)
+            reached = top - third * np.abs(where) ** 3 / 6.0
+        better = reached > f
+        return np.where(np.isnan(bound), np.inf, bound), np.where(better, reached, f), np.where(better, where, 0.0)
+
+
+def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int = MORE) -> Greatest:
+    """Greatest absolute error of rollers, which is at least that `found`. UnsettledError where it is not proved."""
+    groups = [one.everywhere() for one in held] + [one.touched() for one in held]
+    resolution = held[0].resolution
+    most = 4 * sum(len(group.piece) for group in groups) + MOST_OPEN
+    error, best, ceiling = found.error, None, found.error
+    for _ in range(MOST_HALVINGS):
+        states = [group.state() for group in groups]
+        limits = [state.limits(group.half) for state, group in zip(states, groups, strict=True)]
+        phi = np.concatenate([state.phi for state in states])
+        reach = np.concatenate([one.angle[0] * group.half for one, group in zip(limits, groups, strict=True)])
+        cuts = np.cumsum([len(group.piece) for group in groups])[:-1]
+        rows, steepest = law.rows(phi), law.steepest(phi - reach, phi + reach)
+        given = zip(groups, states, limits, np.split(rows, cuts, axis=1), np.split(steepest, cuts, axis=1), strict=True)
+        upper = []
+        for group, state, limit, meant, steep in given:
+            bound, reached, where = group.bounds(state, limit.of_error(steep), meant)
+            upper.append(bound)
+            i = int(np.argmax(reached)) if len(reached) else -1
+            if i >= 0 and reached[i] > error:
+                error = float(reached[i])
+                best = replace(group, piece=group.piece[[i]], middle=group.middle[[i]] + where[i], half=np.zeros(1))
+        enough = error + max(SHARE * error, resolution)
+        open_ = [~(bound <= enough) for bound in upper]
+        ceiling = max(ceiling, *(float(b[~o].max(initial=ceiling)) for b, o in zip(upper, open_, strict=True)))
+        count = sum(int(np.count_nonzero(one)) for one in open_)
+        if not count:
+            break
+        if 2 * count > most:
+            raise UnsettledError("the motion error is not proved: too many intervals stay undecided")
+        groups = [group.halves(which) for group, which in zip(groups, open_, strict=True)]
+    else:
+        raise UnsettledError("the motion error is not proved: it is rougher than rounding")
+    if best is not None:
+        # a piece may stand back behind another one there: what counts is where the roller is
+        phi = best.state().phi
+        r, piece = first_contact(best.held.pieces, best.held.guide, phi)
+        claimed, error = error, float(np.abs(best.held.guide.position(r) - best.held.meant(law.rows(phi))[0])[0])
+        if not claimed <= error + SHARE * claimed + resolution:
+            if not tries:
+                raise UnsettledError("the motion error is not proved: pieces hide one another")
+            seen = [
+                replace(one, phi=np.append(one.phi, phi), r=np.append(one.r, r), piece=np.append(one.piece, piece))
+                if one is best.held
+                else one
+                for one in held
+            ]
+            return greatest_error(seen, law, found, tries - 1)
+        if error > found.error:
+            found = Greatest(error, float(phi[0]), 0.0)
+    return found._replace(remainder=max(ceiling - found.error, 0.0))
+
+
+class _Limits(NamedTuple):
+    """Bounds of the magnitudes of three derivatives by s of the position and of the shaft angle, over spans: (n,)."""
+
+    position: tuple[Array, Array, Array]
+    angle: tuple[Array, Array, Array]
+
+    def of_error(self, steepest: Array) -> tuple[Array, Array, Array]:
+        """Bounds of the error's derivatives, from bounds (3, n) of the law's."""
+        (q, q_1, q_2), (phi_1, phi_2, phi_3) = self
+        first, second, third = steepest
+        with np.errstate(invalid="ignore", over="ignore"):
+            return (
+                OUTWARD * (q + first * phi_1),
+                OUTWARD * (q_1 + second * phi_1**2 + first * phi_2),
+                OUTWARD * (q_2 + third * phi_1**3 + 3.0 * second * phi_1 * phi_2 + first * phi_3),
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """The centre at n places on pieces: what position and shaft angle and their derivatives by s are made of.
+
+    With P, T and k point, tangent and curvature of the piece: r = |P|, a = P.T, c = P x T, b = 1 - k c, so that
+    a' = b, c' = k a, (r^2)' = 2 a. q is the derivative of the position, phi_1 that of the shaft angle.
+    """
+
+    guide: Guide
+    k: Array
+    r: Array
+    a: Array
+    c: Array
+    b: Array
+    phi: Array
+    position: tuple[Array, Array, Array]
+    angle: tuple[Array, Array]
+
+    @staticmethod
+    def of(pieces: Arcs, s: Array, guide: Guide) -> _State:
+        """State at s (n,) on each of the pieces."""
+        point, tangent, k = pieces.points(s), pieces.tangents(s), pieces.curvature
+        a, c, r = dot(point, tangent), cross(point, tangent), np.hypot(point[:, 0], point[:, 1])
+        b, u = 1.0 - k * c, r * r
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            size = np.sqrt(np.maximum(guide.square(u), 0.0))
+            m, m_slope = guide.moment(u), 2.0 * guide.moment_slope * a
+            q = 2.0 * a / size
+            q_1 = (2.0 * b - 0.5 * guide.square_slope(u) * q * q) / size
+            phi_1 = (c + m * q) / u
+            phi_2 = (k * a + m_slope * q + m * q_1 - 2.0 * a * phi_1) / u
+        phi = np.nan_to_num(np.arctan2(point[:, 1], point[:, 0]) - guide.lead(r))
+        return _State(guide, k, r, a, c, b, phi, (guide.position(r), q, q_1), (phi_1, phi_2))
+
+    def error(self, meant: Array) -> Array:
+        """Error and two derivatives by s, (3, n), from the intended position's rows (3, n) by the shaft angle."""
+        (place, q, q_1), (phi_1, phi_2) = self.position, self.angle
+        with np.errstate(invalid="ignore", over="ignore"):
+            return np.stack([place - meant[0], q - meant[1] * phi_1, q_1 - meant[2] * phi_1**2 - meant[1] * phi_2])
+
+    def limits(self, half: Array) -> _Limits:
+        """Bounds of three derivatives by s of the position, and of the shaft angle, within `half` (n,): (n,) each."""
+        guide, k, h = self.guide, np.abs(self.k), half * OUTWARD
+        far, near = self.r + h, np.maximum(self.r - h, 0.0)
+        c = np.abs(self.c) + k * h * far
+        b = np.abs(self.b) + k * k * h * far
+        a = np.minimum(np.abs(self.a) + b * h, far)
+        least, most = near**2, far**2
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            # S^2 bends downwards, its slope and m are linear: each is worst at an end
+            size = np.sqrt(np.maximum(np.minimum(guide.square(least), guide.square(most)), 0.0))
+            slope = np.maximum(np.abs(guide.square_slope(least)), np.abs(guide.square_slope(most)))
+            m = np.maximum(np.abs(guide.moment(least)), np.abs(guide.moment(most)))
+            m_1, m_2 = 2.0 * a * abs(guide.moment_slope), 2.0 * b * abs(guide.moment_slope)
+            q = 2.0 * a / size
+            q_1 = (2.0 * b + 0.5 * slope * q * q) / size
+            q_2 = (2.0 * k * k * a + abs(guide.square_bend) * a * q * q + 1.5 * slope * q * q_1) / size
+            phi_1 = (c + m * q) / least
+            phi_2 = (k * a + m_1 * q + m * q_1 + 2.0 * a * phi_1) / least
+            phi_1 = np.fmin(phi_1, np.abs(self.angle[0]) + phi_2 * h)
+            q = np.fmin(q, np.abs(self.position[1]) + q_1 * h)
+            phi_3 = (k * b + m_2 * q + 2.0 * m_1 * q_1 + m * q_2 + 2.0 * b * phi_1 + 4.0 * a * phi_2) / least
+        return _Limits((q, q_1, q_2), (phi_1, phi_2, phi_3))

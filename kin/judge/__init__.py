@@ -1,0 +1,1 @@
+"""From a file and an intent to a verdict."""

@@ -1,0 +1,69 @@
+"""One check of a verdict: what was measured, what is allowed, and where."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from kin.numeric.angles import degrees
+
+Sense = Literal["at_least", "at_most"]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A figure held against its limit.
+
+    `value` is None where there was nothing to measure (a file that cannot be read); such a check does not hold, and
+    `detail` says why. `at_deg` is the shaft angle of the worst place, in [0, 360), None where there is no such place.
+    """
+
+    name: str
+    ok: bool
+    value: float | None
+    limit: float | None
+    unit: str
+    at_deg: float | None = None
+    sense: Sense = "at_most"
+    file: str | None = None
+    detail: str = ""
+
+
+def at_most(
+    name: str,
+    value: float,
+    limit: float,
+    unit: str,
+    *,
+    at: float | None = None,
+    detail: str = "",
+    slack: float = 0.0,
+) -> Check:
+    """Check that `value` does not exceed `limit`; `at` is a shaft angle in radians. A value that is nan fails.
+
+    `slack` is the rounding of the measurement itself, by which it may exceed.
+    """
+    measured = None if math.isnan(value) else float(value)
+    at_deg = None if at is None or not math.isfinite(at) else degrees(at)
+    return Check(name, bool(value <= limit + slack), measured, float(limit), unit, at_deg, detail=detail)
+
+
+def failed(name: str, detail: str, *, unit: str = "", limit: float | None = None) -> Check:
+    """Build a check that fails for a reason, with no figure of its own."""
+    return Check(name, ok=False, value=None, limit=limit, unit=unit, detail=detail)
+
+
+def less_sure(check: Check, by: float) -> Check:
+    """Count into an `at_most` what the measured thing itself may be off by; a check without a figure stays."""
+    if not by or check.value is None or check.limit is None:
+        return check
+    value = check.value + by
+    told = f"heights differ by up to {by:.3g} {check.unit} through rounding"
+    detail = f"{check.detail}; {told}" if check.detail else told
+    return replace(check, ok=check.ok and value <= check.limit, value=value, detail=detail)
+
+
+def about(check: Check, file: str) -> Check:
+    """Name the file that a check concerns."""
+    return replace(check, file=file)

@@ -1,0 +1,170 @@
+"""Openings that are meant to be in a part, each found once at its place: matched with what a file holds, and measured.
+
+Distances between two closed chains of lines and arcs are taken at points so close that nothing between them is farther
+off by more than `FINE` of the tolerance; ends and middles of all pieces are among them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.contour import Contour
+from kin.contour.nearest import nearest
+from kin.judge.check import Check, at_most
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.contour.arcs import Arcs
+    from kin.numeric.arrays import Array
+
+FINE = 1e-2
+MOST_PARTS = 20_000  # of one piece
+ROUNDING = 1e-12
+MOST_NAMED = 5  # faults named in a message
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A closed outline that is meant to be, counter-clockwise, mm: points and bulges as in a DXF polyline.
+
+    name    to tell it by
+    kind    the check that tells of it: bore, holes or mark
+    depth   below the upper face of the disc, mm; None through everything
+    """
+
+    name: str
+    kind: str
+    points: tuple[tuple[float, float], ...]
+    bulges: tuple[float, ...]
+    depth: float | None = None
+
+    @cached_property
+    def contour(self) -> Contour:
+        """The outline."""
+        return Contour.from_bulges(np.array(self.points), np.array(self.bulges))
+
+
+def round_hole(name: str, kind: str, centre: tuple[float, float], diameter: float) -> Hole:
+    """A circle, as two halves."""
+    x, y = centre
+    return Hole(name, kind, ((x + 0.5 * diameter, y), (x - 0.5 * diameter, y)), (1.0, 1.0))
+
+
+@dataclass
+class Tally:
+    """What was found of one kind of opening or outline, over all sections of a part."""
+
+    worst: float = 0.0
+    detail: str = ""
+    faults: list[str] = field(default_factory=list)
+
+    def measured(self, off: float, detail: str) -> None:
+        """Take in a deviation, mm."""
+        if off >= self.worst:
+            self.worst, self.detail = off, detail
+
+    def check(self, name: str, tolerance: float) -> Check:
+        """Make the check."""
+        if self.faults:
+            more = f"; and {len(self.faults) - MOST_NAMED} more" if len(self.faults) > MOST_NAMED else ""
+            detail = "; ".join(self.faults[:MOST_NAMED]) + more
+            return Check(name, ok=False, value=None, limit=tolerance, unit="mm", detail=detail)
+        return at_most(name, self.worst, tolerance, "mm", detail=self.detail, slack=ROUNDING)
+
+
+Tallies = dict[str, Tally]
+
+
+def tally(
+    tallies: Tallies,
+    found: Sequence[Contour],
+    meant: Sequence[Hole],
+    tolerance: float,
+    *,
+    where: str = "",
+    known: Sequence[Hole] = (),
+) -> None:
+    """Match the openings that were found with those that are meant, and take in how far each is off.
+
+    Each kind that is meant gets its tally. An opening that none is meant for goes to the kind of the one of `known`
+    that it looks like, else to `holes`, or to `bore` where nothing else is meant.
+    """
+    pairs, left_over = _matched(found, meant)
+    for hole, contour in pairs:
+        told = tallies.setdefault(hole.kind, Tally())
+        if contour is None:
+            x, y = _middle(hole.contour)
+            told.faults.append(f"{hole.name} at ({x:.6g}, {y:.6g}) is missing{where}")
+            continue
+        off = apart(contour, hole.contour, FINE * tolerance)
+        x, y = _middle(contour)
+        told.measured(off, f"{hole.name}, about ({x:.6g}, {y:.6g}){where}, is off by {off:.3g} mm")
+    for contour in left_over:
+        x, y = _middle(contour)
+        alike = [hole for hole, one in _matched([contour], known)[0] if one is not None]
+        if alike:
+            kind = alike[0].kind
+        else:
+            kind = "holes" if "holes" in tallies or len(tallies) > 1 else next(iter(tallies), "bore")
+        fault = f"an opening of {abs(contour.area):.6g} mm^2 about ({x:.6g}, {y:.6g}){where}, where none is meant to be"
+        tallies.setdefault(kind, Tally()).faults.append(fault)
+
+
+def _matched(
+    found: Sequence[Contour], meant: Sequence[Hole]
+) -> tuple[list[tuple[Hole, Contour | None]], list[Contour]]:
+    """Each opening that is meant with the one found there, None if there is none; and those found besides.
+
+    Two belong together if the middles of their boxes lie within half the size of the one that is meant; nearest first.
+    """
+    size = [_size(hole.contour) for hole in meant]
+    place = [_middle(hole.contour) for hole in meant]
+    ranked = []
+    for k, contour in enumerate(found):
+        (x, y), large = _middle(contour), _size(contour)
+        for j, (u, v) in enumerate(place):
+            gap = float(np.hypot(x - u, y - v))
+            if gap <= 0.5 * size[j]:
+                ranked.append((gap + abs(large - size[j]), j, k))
+    partner: dict[int, int] = {}
+    taken: set[int] = set()
+    for _, j, k in sorted(ranked):
+        if j not in partner and k not in taken:
+            partner[j] = k
+            taken.add(k)
+    pairs = [(hole, found[partner[j]] if j in partner else None) for j, hole in enumerate(meant)]
+    return pairs, [contour for k, contour in enumerate(found) if k not in taken]
+
+
+def _middle(contour: Contour) -> tuple[float, float]:
+    box = contour.box
+    return 0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)
+
+
+def _size(contour: Contour) -> float:
+    box = contour.box
+    return float(np.hypot(box.x_max - box.x_min, box.y_max - box.y_min))
+
+
+def apart(one: Contour, other: Contour, fine: float) -> float:
+    """Two-sided distance of two closed contours, mm, to within `fine`."""
+    first, second = one.as_arcs()[0], other.as_arcs()[0]
+    bend = float(max(np.abs(first.curvature).max(), np.abs(second.curvature).max()))
+    return max(_farthest(first, second, bend, fine), _farthest(second, first, bend, fine))
+
+
+def _farthest(chain: Arcs, other: Arcs, bend: float, fine: float) -> float:
+    """Greatest distance of a chain's points from another chain.
+
+    Along a piece the distance bends by no more than the curvatures of both, so it exceeds its values at the ends of a
+    part of length h by h^2/8 of that at most.
+    """
+    step = np.sqrt(4.0 * fine / max(bend, 1e-12))
+    parts = np.clip(2.0 * np.ceil(0.5 * chain.length / step), 2, MOST_PARTS).astype(np.intp)
+    points: Array = chain.cut(parts)[0].start
+    return float(nearest(other, points)[1].max())

@@ -1,0 +1,250 @@
+"""A solid in layers: between two heights every section is meant to be the same, or to shrink evenly along a chamfer.
+
+A layer's outline is the cam's contour, moved inside by `inset`, or an outline of its own such as a hub. A cross hole
+runs along a radius through layers with an outline of their own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.arcs import cross
+from kin.contour.contour import Contour
+from kin.follower.envelope import FlatEnvelope, Outset, RollerEnvelope
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.follower.envelope import Envelope
+    from kin.judge.holes import Hole
+    from kin.numeric.arrays import Array, Indices
+
+GAUSS = 48  # nodes for each smooth part of a cross hole
+AT_CHAMFER = (0.25, 0.75)  # of a layer that shrinks: where it is looked at
+ACROSS = (0.1, 0.5, -0.5)  # of a cross hole's radius
+
+
+@dataclass(frozen=True)
+class Layer:
+    """What a solid is meant to be from z = low to high, mm.
+
+    outline     None for the cam's contour, `inset` (at low, at high) inside it
+    holes       openings through the layer
+    """
+
+    low: float
+    high: float
+    holes: tuple[Hole, ...] = ()
+    outline: Hole | None = None
+    inset: tuple[float, float] = (0.0, 0.0)
+
+    def inset_at(self, z: float) -> float:
+        """How far inside the contour the outline lies at a height."""
+        share = (z - self.low) / (self.high - self.low)
+        return self.inset[0] + share * (self.inset[1] - self.inset[0])
+
+
+@dataclass(frozen=True)
+class CrossHole:
+    """A radial hole of this diameter, mm, in direction `at`, rad, its axis at height z, from the first hole outward."""
+
+    name: str
+    at: float
+    diameter: float
+    z: float
+
+    def half_width(self, z: float) -> float:
+        """Half its width in the section at a height; 0 beyond it."""
+        return float(np.sqrt(max(0.25 * self.diameter**2 - (z - self.z) ** 2, 0.0)))
+
+
+def heights(layers: Sequence[Layer], cross_holes: Sequence[CrossHole]) -> list[tuple[float, Layer]]:
+    """Heights at which a solid is looked at, the plain disc's first, with their layers."""
+    found = []
+    main = max((layer for layer in layers if layer.outline is None and layer.inset == (0.0, 0.0)), key=_height)
+    for layer in (main, *(other for other in layers if other is not main)):
+        shares: tuple[float, ...] = (0.5,) if layer.inset == (0.0, 0.0) else AT_CHAMFER
+        inside = [one for one in cross_holes if layer.outline is not None and layer.low < one.z < layer.high]
+        if inside:
+            one = inside[0]
+            found += [(one.z + share * 0.5 * one.diameter, layer) for share in ACROSS]
+            below, above = one.z - 0.5 * one.diameter, one.z + 0.5 * one.diameter
+            found += [(0.5 * (layer.low + below), layer), (0.5 * (above + layer.high), layer)]
+        else:
+            found += [(layer.low + share * _height(layer), layer) for share in shares]
+    return found
+
+
+def _height(layer: Layer) -> float:
+    return layer.high - layer.low
+
+
+def faces(layers: Sequence[Layer]) -> list[tuple[str, float]]:
+    """Heights of the horizontal faces, each with the check that tells of it: thickness, hub or mark."""
+    rising = sorted(layers, key=lambda layer: layer.low)
+    found = []
+    for below, above in zip([None, *rising], [*rising, None], strict=True):
+        one = below or above
+        if one is None:
+            continue
+        z = one.high if one is below else one.low
+        if below is None or above is None:
+            found.append(("hub" if one.outline is not None else "thickness", z))
+        elif below.outline != above.outline or below.inset[1] != above.inset[0]:
+            found.append(("thickness", z))
+        elif below.holes != above.holes:
+            found.append(("mark", z))
+    return found
+
+
+def volume(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], area: float, perimeter: float) -> float:
+    """Volume, mm^3, of layers round a contour of this area and perimeter; that of a parallel is A - d P + pi d^2."""
+    total = 0.0
+    for layer in layers:
+        a, b = layer.inset
+        solid = (
+            layer.outline.contour.area
+            if layer.outline is not None
+            else (area - perimeter * (a + b) / 2.0 + np.pi * (a * a + a * b + b * b) / 3.0)
+        )
+        total += (solid - sum(hole.contour.area for hole in layer.holes)) * _height(layer)
+        if layer.outline is not None:
+            inside = [one for one in cross_holes if layer.low < one.z < layer.high]
+            total -= sum(_bored(one, layer.outline, layer.holes[0]) for one in inside)
+    return float(total)
+
+
+def wall_area(layers: Sequence[Layer], cross_holes: Sequence[CrossHole], perimeter: float) -> float:
+    """Area of all walls, mm^2, and of the horizontal faces' rims: what a volume gains by 1 mm all over, or more."""
+    total = 0.0
+    for layer in layers:
+        length = perimeter if layer.outline is None else layer.outline.contour.length
+        slant = np.sqrt(2.0) if layer.inset != (0.0, 0.0) else 1.0
+        total += (length * slant + sum(hole.contour.length for hole in layer.holes)) * _height(layer)
+        if layer.outline is not None:
+            reach = 0.5 * (layer.outline.contour.box.x_max - layer.outline.contour.box.x_min)
+            total += sum(np.pi * one.diameter * reach for one in cross_holes if layer.low < one.z < layer.high)
+    return float(total)
+
+
+def slotted(outline: Hole, hole: Hole, at: float, half: float) -> Contour:
+    """The section of a ring between two outlines, cut open by a slot of half width `half` along a radius.
+
+    Raises ValueError where the slot's sides do not meet both outlines.
+    """
+    outer, inner = _turned(outline, -at), _turned(hole, -at)
+    ends = np.array([half, -half])
+    out_x, out_piece = reach(outer, ends)
+    in_x, in_piece = reach(inner, ends)
+    if not np.isfinite([*out_x, *in_x]).all():
+        raise ValueError("the slot does not meet both outlines")
+    outside = _part(outer, (float(out_x[0]), half, int(out_piece[0])), (float(out_x[1]), -half, int(out_piece[1])))
+    inside = _part(inner, (float(in_x[0]), half, int(in_piece[0])), (float(in_x[1]), -half, int(in_piece[1])))
+    # round the outline, in along the lower side, back round the hole, out along the upper side
+    (outer_points, outer_bulges), (inner_points, inner_bulges) = outside, inside
+    points = np.concatenate([outer_points, inner_points[::-1]])
+    bulges = np.concatenate([outer_bulges, [0.0], -inner_bulges[::-1], [0.0]])
+    c, s = np.cos(at), np.sin(at)
+    return Contour.from_bulges(points @ np.array([[c, s], [-s, c]]), bulges)
+
+
+def _turned(hole: Hole, angle: float) -> tuple[Array, Array]:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array(hole.points) @ np.array([[c, s], [-s, c]]), np.array(hole.bulges)
+
+
+def _part(
+    outline: tuple[Array, Array], first: tuple[float, float, int], last: tuple[float, float, int]
+) -> tuple[Array, Array]:
+    """Points (m, 2) and bulges (m - 1,) of an outline from a point on it, counter-clockwise, to another."""
+    points, bulges = outline
+    n = len(points)
+    start, end = np.array(first[:2]), np.array(last[:2])
+    i, j = first[2], last[2]
+    follows = (j - i) % n
+    if follows == 0 and _along(points, bulges, i, start) > _along(points, bulges, i, end):
+        follows = n
+    between = [(i + k) % n for k in range(1, follows + 1)]
+    rows = np.array([start, *(points[k] for k in between), end])
+    whole = [float(bulges[(i + k) % n]) for k in range(follows + 1)]
+    sweeps = 4.0 * np.arctan(np.array(whole))
+    if follows == 0:
+        shares = [(_along(points, bulges, i, end) - _along(points, bulges, i, start))]
+    else:
+        shares = [1.0 - _along(points, bulges, i, start), *([1.0] * (follows - 1)), _along(points, bulges, j, end)]
+    return rows, np.tan(0.25 * sweeps * np.array(shares))
+
+
+def _along(points: Array, bulges: Array, k: int, place: Array) -> float:
+    """How far along piece k a point of it lies, as a share of its sweep or length."""
+    start, end, bulge = points[k], points[(k + 1) % len(points)], float(bulges[k])
+    chord, part = end - start, place - start
+    if bulge == 0.0:
+        return float(part @ chord / (chord @ chord))
+    # the angle between chord and part is half of what is left of the sweep
+    turn = float(np.arctan2(part[0] * chord[1] - part[1] * chord[0], part @ chord))
+    sweep = 4.0 * float(np.arctan(bulge))
+    return 2.0 * (0.5 * sweep - turn) / sweep
+
+
+def reach(outline: tuple[Array, Array], y: Array) -> tuple[Array, Indices]:
+    """Greatest x at which an outline meets lines of given y (k,), and the piece that does; -inf where none does."""
+    points, bulges = outline
+    best, which = np.full(len(y), -np.inf), np.zeros(len(y), dtype=np.intp)
+    for k, bulge in enumerate(bulges.tolist()):
+        start, end = points[k], points[(k + 1) % len(points)]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            if bulge == 0.0:
+                share = (y - start[1]) / (end[1] - start[1])
+                tried = [np.where((share >= 0.0) & (share <= 1.0), start[0] + share * (end[0] - start[0]), -np.inf)]
+            else:
+                tried = _on_arc(start, end, bulge, y)
+        for x in tried:
+            ahead = x > best
+            best, which = np.where(ahead, x, best), np.where(ahead, k, which)
+    return best, which
+
+
+def _on_arc(start: Array, end: Array, bulge: float, y: Array) -> list[Array]:
+    chord = end - start
+    middle, left_of = 0.5 * (start + end), np.array([-chord[1], chord[0]])
+    centre = middle + left_of * (1.0 - bulge * bulge) / (4.0 * bulge)
+    radius = float(np.hypot(*(start - centre)))
+    half = np.sqrt(radius**2 - (y - centre[1]) ** 2)
+    found = []
+    for x in (centre[0] - half, centre[0] + half):
+        place = np.stack([x, y], axis=-1)
+        beside = cross(chord[None, :], place - start) * np.sign(bulge) <= 1e-12 * radius**2
+        found.append(np.where(np.isfinite(x) & beside, x, -np.inf))
+    return found
+
+
+def _bored(one: CrossHole, outline: Hole, hole: Hole) -> float:
+    """Volume that a cross hole takes from between a hole and an outline.
+
+    The integral of the height of the bore times the way from hole to outline over its width, y = r sin a, by Gauss's
+    rule between the corners of the hole.
+    """
+    outer, inner = _turned(outline, -one.at), _turned(hole, -one.at)
+    radius = 0.5 * one.diameter
+    corners = inner[0][:, 1] / radius
+    knots = np.unique(np.concatenate([[-0.5 * np.pi, 0.5 * np.pi], np.arcsin(corners[np.abs(corners) < 1.0])]))
+    node, weight = np.polynomial.legendre.leggauss(GAUSS)
+    low, width = knots[:-1, None], np.diff(knots)[:, None]
+    angle = (low + 0.5 * width * (node + 1.0)).ravel()
+    share = (0.5 * width * weight).ravel()
+    y = radius * np.sin(angle)
+    way = reach(outer, y)[0] - reach(inner, y)[0]
+    return float(np.sum(share * 2.0 * (radius * np.cos(angle)) ** 2 * way))
+
+
+def inset(envelope: Envelope, distance: float) -> Envelope:
+    """The exact contour's parallel inside it."""
+    if isinstance(envelope, FlatEnvelope):
+        return FlatEnvelope(Outset(envelope.support, -distance))
+    if isinstance(envelope, RollerEnvelope):
+        return replace(envelope, radius=envelope.radius + distance)
+    raise TypeError(f"no parallel of a {type(envelope).__name__}")

@@ -1,0 +1,100 @@
+"""A printable body judged from its triangles: closed, its heights, and every level of it against the slabs meant."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.contour import Contour
+from kin.judge.check import Check, at_most
+from kin.numeric.distinct import distinct
+from kin.read.errors import ReadError
+from kin.read.mesh.mesh import welded
+from kin.read.mesh.stl import rings, section
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.clearance.clearance import Slab
+    from kin.numeric.arrays import Array
+    from kin.read.mesh.mesh import Mesh
+
+__all__ = ["judge_body"]
+
+ROUNDING = 1e-9  # mm
+INSIDE = 1.5  # times the tolerance: a section is looked at so far within two levels, which may be off by one themselves
+
+
+def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: float, path: Path) -> list[Check]:
+    """Judge a body's triangles (t, 3, 3), in its own axes, mm.
+
+    watertight  every edge has two triangles, facing outward, none without area
+    thickness   it reaches from the lowest slab's lower face to the highest one's upper face
+    outline     just within any two levels farther apart than twice the tolerance the corners of its section, and
+                the middles of its edges, lie on the edge of the union of the slabs there, and the slabs' corners on
+                that of the section; where there is one slab alone the area is its own
+    """
+    mesh = welded(corners)
+    faults = [*mesh.edge_faults, mesh.degenerate, mesh.duplicate, int(mesh.volume <= 0.0)]
+    low, high = min(slab.low for slab in slabs), max(slab.high for slab in slabs)
+    z = mesh.points[:, 2]
+    off = max(abs(float(z.min()) - low), abs(float(z.max()) - high))
+    told = f"{name}: z from {z.min():.9g} to {z.max():.9g} mm, {low:.9g} to {high:.9g} mm is meant"
+    checks = [
+        at_most("watertight", sum(faults), 0, "faults", detail=name),
+        at_most("thickness", off, tolerance, "mm", detail=told, slack=ROUNDING),
+    ]
+    if checks[0].ok and checks[1].ok:
+        checks.append(_outline(name, mesh, slabs, tolerance, path))
+    return checks
+
+
+def _outline(name: str, mesh: Mesh, slabs: Sequence[Slab], tolerance: float, path: Path) -> Check:
+    """Hold sections between any two levels against the slabs that pass there, of which there is one at least."""
+    levels = distinct(np.array([level for slab in slabs for level in (slab.low, slab.high)]))
+    worst, where = 0.0, ""
+    for below, above in zip(levels[:-1].tolist(), levels[1:].tolist(), strict=True):
+        if above - below <= 2.0 * tolerance:
+            continue
+        there = [slab for slab in slabs if slab.low <= below and slab.high >= above]
+        room = min(INSIDE * tolerance, 0.5 * (above - below))
+        for height in (below + room, above - room):
+            try:
+                off = _off(mesh, height, there, path)
+            except ReadError as error:
+                told = f"{name}: {error.message}"
+                return Check("outline", ok=False, value=None, limit=tolerance, unit="mm", detail=told)
+            if off > worst:
+                worst, where = off, f" at z = {height:.6g} mm"
+    return at_most("outline", worst, tolerance, "mm", detail=f"{name}{where}", slack=ROUNDING)
+
+
+def _off(mesh: Mesh, height: float, slabs: Sequence[Slab], path: Path) -> float:
+    """How far the section at a height is from the union of the slabs there."""
+    _, outline = section(mesh, height)
+    loops = [outline.points[ring] for ring in rings(outline, path)]
+    if not loops or not slabs:
+        return np.inf
+    middles = [0.5 * (loop + np.roll(loop, -1, axis=0)) for loop in loops]
+    off = float(np.abs(_signed(slabs, np.concatenate(loops + middles))).max())
+    drawn = [Contour.from_vertices(loop) for loop in loops]
+    for slab in slabs:
+        points = np.concatenate([edge.vertices for edge in (slab.outer, *slab.holes)])
+        others = [other for other in slabs if other is not slab]
+        if others:  # what lies in another slab, or on its edge, need not be an edge of the body
+            points = points[_signed(others, points) > ROUNDING]
+        if len(points):
+            off = max(off, float(np.min([contour.distance(points) for contour in drawn], axis=0).max()))
+    if len(slabs) == 1:
+        edges = (slabs[0].outer, *slabs[0].holes)
+        meant = abs(slabs[0].outer.area) - sum(abs(hole.area) for hole in slabs[0].holes)
+        off = max(off, abs(sum(contour.area for contour in drawn) - meant) / sum(edge.length for edge in edges))
+    return off
+
+
+def _signed(slabs: Sequence[Slab], points: Array) -> Array:
+    """Distance (n,) of points (n, 2) from the union of slabs, negative inside it; below 0 it is only a bound."""
+    found: Array = np.min([slab.region.signed(points) for slab in slabs], axis=0)
+    return found

@@ -1,0 +1,117 @@
+"""Proved bounds of functions over stretches, by halving what is not decided yet."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.elementary import BallJet, Jet
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from kin.law.piecewise import Piecewise
+    from kin.law.segment import Stretch
+    from kin.numeric.arrays import Array, Mask
+
+
+_CELLS = 32  # a stretch is bounded in so many parts first
+_HALVINGS = 40
+_MOST_CELLS = 20000  # open at a time; more than a few mean that the answer is no
+
+
+def undecided(
+    function: Stretch, begin: float, end: float, limits: Mapping[int, tuple[float, float]]
+) -> tuple[int, float] | None:
+    """Prove that each derivative k in `limits` stays between its two limits over [begin, end].
+
+    Returns None, or the k and a place where that is false or will not be proved. A cell is bounded directly, and where
+    that is not enough by Taylor's formula about its middle, of which the error falls with the cube of the width.
+    """
+    top = max(limits)
+
+    def settled(lower: Array, upper: Array) -> tuple[Mask, Mask]:
+        low, high = function(BallJet.variable(lower, upper, top + 2)).bounds()
+        yes, no = _within(low, high, limits)
+        open_ = np.flatnonzero(~(yes | no))
+        if len(open_):
+            sharper = _about_middle(function, lower[open_], upper[open_], low[:, open_], high[:, open_])
+            yes[open_], no[open_] = _within(*sharper, limits)
+        return yes, no
+
+    at = _halve(settled, begin, end)
+    if at is None:
+        return None
+    value = function(BallJet.variable(at, at, top))
+    (low, high), blame = value.bounds(), top
+    for k, (least, most) in limits.items():
+        if not (low[k, 0] > least and high[k, 0] < most):
+            blame = k
+            break
+    return blame, at
+
+
+def _within(low: Array, high: Array, limits: Mapping[int, tuple[float, float]]) -> tuple[Mask, Mask]:
+    """Where all derivatives keep the limits for certain, and where one breaks them for certain."""
+    yes, no = np.ones(low.shape[1], dtype=bool), np.zeros(low.shape[1], dtype=bool)
+    for k, (least, most) in limits.items():
+        yes &= (low[k] > least) & (high[k] < most)
+        no |= (high[k] <= least) | (low[k] >= most)
+    return yes, no
+
+
+def _about_middle(function: Stretch, lower: Array, upper: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """Sharpen bounds `low`, `high` (m + 2, n) of derivatives over cells to (m, n), from values at the middles."""
+    middle = 0.5 * (lower + upper)
+    half = np.maximum(upper - middle, middle - lower) * (1 + 1e-12)
+    near_low, near_high = function(BallJet.variable(middle, middle, len(low) - 2)).bounds()
+    with np.errstate(invalid="ignore"):  # inf - inf where nothing is known: the direct bound is taken
+        bend = np.maximum(np.abs(low[2:]), np.abs(high[2:])) * half**2 * (0.5 + 1e-12)
+        reach = np.maximum(np.abs(near_low[1:]), np.abs(near_high[1:])) * half * (1 + 1e-12) + bend
+        return np.fmax(low[:-2], near_low[:-1] - reach), np.fmin(high[:-2], near_high[:-1] + reach)
+
+
+def unbounded(function: Stretch, begin: float, end: float, order: int) -> float | None:
+    """Prove that derivatives 0..order are finite over [begin, end]; else give a place where that fails."""
+
+    def settled(lower: Array, upper: Array) -> tuple[Mask, Mask]:
+        finite = np.isfinite(function(BallJet.variable(lower, upper, order)).rad).all(axis=0)
+        return np.asarray(finite), np.zeros(len(lower), dtype=bool)
+
+    return _halve(settled, begin, end)
+
+
+def _halve(settled: Callable[[Array, Array], tuple[Mask, Mask]], begin: float, end: float) -> float | None:
+    """Halve cells until `settled` says yes of all (None), or no of one, or it will not end: the place of that."""
+    ends = np.linspace(begin, end, _CELLS + 1)
+    lower, upper = ends[:-1], ends[1:]
+    for _ in range(_HALVINGS):
+        yes, no = settled(lower, upper)
+        if yes.all():
+            return None
+        if no.any():
+            first = int(np.argmax(no))
+            return float(0.5 * (lower[first] + upper[first]))
+        lower, upper = lower[~yes], upper[~yes]
+        if len(lower) > _MOST_CELLS:
+            break
+        middle = 0.5 * (lower + upper)
+        lower, upper = np.concatenate((lower, middle)), np.concatenate((middle, upper))
+    return float(0.5 * (lower[0] + upper[0]))
+
+
+def highest(law: Piecewise, weights: Sequence[float], k: int) -> tuple[float, float]:
+    """Find where the k-th derivative, times a weight a stretch, is largest, and that value; by sampling, no proof."""
+    best = (float(law.knots[0]), -math.inf)
+    for weight, function, begin, end in zip(weights, law.functions, law.knots[:-1], law.knots[1:], strict=True):
+        low, high = begin, end
+        for _ in range(8):
+            points = np.linspace(low, high, 257)
+            values = weight * function(Jet.variable(points, k)).derivatives()[k]
+            top = int(np.argmax(values))
+            if values[top] > best[1]:
+                best = (float(points[top]), float(values[top]))
+            low, high = points[max(top - 1, 0)], points[min(top + 1, 256)]
+    return best

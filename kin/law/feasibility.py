@@ -1,0 +1,143 @@
+"""Which transmission laws a cam can have: ratio, swing, slope and joints, each proved or refused with its figure."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.bounds import highest, undecided
+from kin.law.programme import IntentError
+from kin.law.segment import Constant
+from kin.numeric.elementary import DomainError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.segment import Stretch
+    from kin.law.transmission_law import Transmission
+    from kin.numeric.arrays import Array
+
+
+JOIN = 1e-11  # rad: a jump in psi that is a formula's rounding
+_SLOPE_JOIN = 1e-9  # a jump in psi'(phi), likewise
+
+
+def demand_ratio(lam: int, mu: int, arm: float) -> None:
+    """Refuse a ratio that W's conditions exclude (W 2.2, section 3), or an arm that is none."""
+    if not (math.isfinite(arm) and arm > 0):
+        raise IntentError(f"the arm must be above 0, not {arm:.6g} mm", "arm")
+    if mu < 1 or lam <= mu:
+        raise IntentError(f"pi/alpha = lam/mu must be above 1, not {lam}/{mu} (W 2.2)", "ratio")
+    common = math.gcd(lam, mu)
+    if common > 1:
+        raise IntentError(f"{lam}/{mu} is not in lowest terms; write {lam // common}/{mu // common}", "ratio")
+    if mu % 2 == 0:
+        raise IntentError(f"the denominator of {lam}/{mu} is even: the pitch curve would cross itself (W 3)", "ratio")
+
+
+def checked(law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str) -> Transmission:
+    """Return the law, given its stretches over delta, if psi exists and it is possible and joins; else IntentError."""
+    try:
+        _demand_possible(law, knots, functions, field)
+        _demand_joined(law, field)
+    except DomainError as error:
+        raise IntentError(f"there is no such law: {error.operation}", field) from error
+    return law
+
+
+def _demand_possible(law: Transmission, knots: Sequence[float], functions: Sequence[Stretch], field: str) -> None:
+    """Prove 0 < r < 2l and psi'(phi) < 1 over the whole period, or refuse with the angle and the figure.
+
+    With W 4.9 all of it shows in the stretches over delta. |psi| must stay below alpha and pi - alpha. psi'(phi) < 1 is
+    psi' < 1 by phi on the given stretch (w = 0; the image has -psi'/(1 - psi') there), and |psi'| < 2 by t on a polar
+    one (w = 1/2). It also makes phi rise with tau all round.
+    """
+    limit = min(law.alpha, math.pi - law.alpha)
+    steep = (-2.0, 2.0) if law.lean[0] == 0.5 else (-math.inf, 1.0)
+    for function, begin, end in zip(functions, knots[:-1], knots[1:], strict=True):
+        if isinstance(function, Constant) and abs(function.value) < limit:
+            continue
+        found = undecided(function, begin, end, {0: (-limit, limit), 1: steep})
+        if found is None:
+            continue
+        if found[0] == 1:
+            raise too_steep(law, field)
+        at, swing = highest(law.psi, [1.0] * len(law.lean), 0)
+        raise too_wide(law, at, swing, field)
+
+
+def too_wide(law: Transmission, at: float, swing: float, field: str) -> IntentError:
+    """Say that the swing (rad), reached at tau, leads out of 0 < r < 2l."""
+    limit = min(law.alpha, math.pi - law.alpha)
+    end = "2l" if law.alpha < math.pi / 2 else "0"
+    return IntentError(
+        f"the follower would swing {math.degrees(swing):.6g} degrees to each side; below {math.degrees(limit):.6g} is "
+        f"possible with lam/mu = {law.lam}/{law.mu}, there roller A's distance from the shaft reaches {end}",
+        field,
+        _shaft_deg(law, at),
+    )
+
+
+def _shaft_deg(law: Transmission, tau: float) -> float:
+    return math.degrees(float(law.at(tau, 0)[0][0, 0])) % 360
+
+
+def steepest(law: Transmission) -> tuple[float, float]:
+    """Where psi'(phi) is largest, a parameter tau, and how large: found, however short the stretch that has it."""
+    weights = [1 - w for w in law.lean]
+    weight = max(weights)  # 1/2 on every polar stretch; 1 on a given law, 0 on its image
+    at, most = highest(law.psi, weights, 1)
+    slope = most / weight
+    return at, slope / (1 + (1 - weight) * slope)
+
+
+def too_steep(law: Transmission, field: str) -> IntentError:
+    """Say where psi'(phi) is largest, and how large."""
+    at, figure = steepest(law)
+    degrees = _shaft_deg(law, at)
+    return IntentError(
+        f"psi'(phi) must stay below 1, else the cam cannot be turned through; it reaches {figure:.9g} at a shaft angle "
+        f"of {degrees:.6g} degrees",
+        field,
+        degrees,
+    )
+
+
+def _demand_joined(law: Transmission, field: str) -> None:
+    """Refuse a jump of psi, or of its slope psi'(phi), between stretches."""
+    knots = law.psi.knots[:-1]
+    both = law.at(np.tile(knots, 2), 1, np.repeat([1, -1], knots.size))
+    (phi, phi_left), (psi, psi_left) = (np.hsplit(rows, 2) for rows in both)
+    slope, slope_left = psi[1] / phi[1] + 0.0, psi_left[1] / phi_left[1] + 0.0  # no -0 in a message
+    for i in range(len(knots)):
+        at = math.degrees(phi[0, i]) % 360
+        if abs(psi[0, i] - psi_left[0, i]) > JOIN:
+            before, after = math.degrees(psi_left[0, i]), math.degrees(psi[0, i])
+            raise IntentError(f"psi jumps from {before:.9g} to {after:.9g} degrees at {at:.6g} degrees", field, at)
+        if abs(slope[i] - slope_left[i]) > _SLOPE_JOIN * (1 + abs(slope[i])):
+            raise IntentError(
+                f"psi'(phi) jumps from {slope_left[i]:.9g} to {slope[i]:.9g} at a shaft angle of {at:.6g} degrees: the "
+                "pitch curve would have a corner",
+                field,
+                at,
+            )
+
+
+def demand_leaf(x: Array, distance: Array, arm: float, most: float) -> None:
+    """Refuse |OQ| below 0, not 0 where the leaf begins and ends, or so long that no swing leads there."""
+    field = "rosette.leaf"
+    ends = np.flatnonzero(((x == 0) | (x == 1)) & (np.abs(distance) > JOIN * arm))
+    low, high = int(np.argmin(distance)), int(np.argmax(distance))
+    if len(ends):
+        at, found = x[ends[0]], distance[ends[0]]
+        raise IntentError(f"the leaf must begin and end in the shaft; |OQ| is {found:.9g} mm at x = {at:.6g}", field)
+    if distance[low] < -JOIN * arm:
+        raise IntentError(f"|OQ| is a distance; it is {distance[low]:.9g} mm at x = {x[low]:.6g}", field)
+    if distance[high] >= most:
+        raise IntentError(
+            f"|OQ| must stay below {most:.9g} mm, where an arm would meet the shaft or stretch out; it is "
+            f"{distance[high]:.9g} mm at x = {x[high]:.6g}",
+            field,
+        )

@@ -1,0 +1,1 @@
+"""Formulas as a recipe writes them: parsed, differentiated, bounded."""

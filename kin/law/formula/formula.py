@@ -1,0 +1,100 @@
+"""A recipe's formula: exact derivatives, proved bounds, and the parameters at which it switches.
+
+abs, sign, min and max make cases, and atan2 jumps where it crosses its cut. `Formula.pieces` takes a formula apart at
+those switches into expressions without any, each of them smooth up to and beyond its own ends: that is the way to
+one-sided derivatives at a break, which rounding would smear in the formula itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kin.law.formula.expression import Expression, FormulaDomainError, FormulaError
+from kin.law.formula.parser import parse
+from kin.law.formula.switches import branches, innermost
+
+if TYPE_CHECKING:
+    from kin.law.formula.expression import Series
+    from kin.numeric.arrays import Array
+    from kin.numeric.elementary import BallJet, Jet
+
+__all__ = ["Expression", "Formula", "FormulaDomainError", "FormulaError"]
+
+
+# Stretches looked at while a formula is taken apart; some milliseconds each.
+_MOST_STRETCHES = 500
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A text in one variable or more, read by the grammar of `kin.law.formula.parser`.
+
+    Raises FormulaError for a text that is no formula. Evaluation raises FormulaDomainError where the formula has no
+    value (or no derivative, if one is asked for); the enclosure of a ball is unbounded there instead.
+    """
+
+    text: str
+    variables: tuple[str, ...] = ("t",)
+    expression: Expression = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "expression", parse(self.text, self.variables))
+
+    def __call__(self, *arguments: Any) -> Any:  # noqa: ANN401 -- the kind that came in, see `on`
+        """Return the value at numbers or arrays (any shape), or the series of a jet or ball jet."""
+        return self.expression(*arguments)
+
+    def jet(self, t: float | Array, order: int) -> Jet:
+        """Return the Taylor coefficients up to an order at t (n,)."""
+        return self.expression.jet(t, order)
+
+    def ball(self, lower: float | Array, upper: float | Array, order: int) -> BallJet:
+        """Return proved enclosures of the Taylor coefficients up to an order over the intervals [lower, upper] (n,)."""
+        return self.expression.ball(lower, upper, order)
+
+    def on(self, *series: Series) -> Series:
+        """Apply to jets or ball jets, one for each variable."""
+        return self.expression.on(*series)
+
+    def breaks(self, lower: float, upper: float) -> Array:
+        """Return the parameters in [lower, upper] at which abs, sign, min or max switch, or atan2 jumps, rising (k,).
+
+        They are isolated with balls, none is missed, and found to the last places. An end belongs to them if the
+        switch lies on it. Raises FormulaError where a switch cannot be told from a near miss, or there are too many.
+        """
+        knots, _, ends = self._take_apart(lower, upper)
+        return np.array([*([lower] if ends[0] else []), *knots[1:-1], *([upper] if ends[1] else [])])
+
+    def pieces(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...]]:
+        """Return knots (k + 1,) from lower to upper and k expressions without switches, one between each two knots."""
+        knots, expressions, _ = self._take_apart(lower, upper)
+        return knots, expressions
+
+    def _take_apart(self, lower: float, upper: float) -> tuple[Array, tuple[Expression, ...], tuple[bool, bool]]:
+        """Settle the innermost switches over the whole interval, then what is left over each part."""
+        if not lower < upper:
+            raise ValueError(f"no interval from {lower} to {upper}")
+        waiting, knots, done = [(lower, upper, self.expression)], [lower], []
+        at_lower = at_upper = False
+        seen = 0
+        while waiting:
+            seen += 1
+            a, b, expression = waiting.pop()
+            places = innermost(expression)
+            if not places:
+                knots.append(b)
+                done.append(expression)
+                continue
+            found = branches(expression, places, a, b)
+            at_lower |= found.at_start and a == lower
+            at_upper |= found.at_end and b == upper
+            ends = pairwise((a, *found.inside, b))
+            waiting += [(*end, part) for end, part in zip(ends, found.expressions, strict=True)][::-1]
+            if seen + len(waiting) > _MOST_STRETCHES:
+                message = f"the formula switches too often to be taken apart: more than {_MOST_STRETCHES} stretches"
+                raise FormulaError(message, expression.steps[places[0]].column)
+        return np.array(knots, dtype=float), tuple(done), (at_lower, at_upper)

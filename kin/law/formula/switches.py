@@ -1,0 +1,162 @@
+"""Taking an expression apart at its switches: abs, sign, min, max at the zeros of what decides, atan2 at its cut."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from kin.law.formula.expression import ANGLE, Builder, Expression, FormulaError, Instruction
+from kin.law.formula.roots import Signs, signs, snap
+from kin.numeric.errors import UnsettledError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    # Builds on the places of a switch's arguments what takes its place.
+    Build = Callable[[Builder, tuple[int, ...]], int]
+
+_SWITCHES = ("abs", "sign", "min", "max", "atan2")
+
+
+@dataclass(frozen=True)
+class Branches:
+    """What an expression is on each stretch of an interval, the innermost switches gone.
+
+    `inside` are the parameters between the stretches; `at_start` and `at_end` say that a switch also lies on the
+    interval's ends.
+    """
+
+    inside: tuple[float, ...]
+    expressions: tuple[Expression, ...]
+    at_start: bool
+    at_end: bool
+
+
+@dataclass(frozen=True)
+class _Settled:
+    """One switch over an interval: its changes, and what it amounts to on each stretch between them."""
+
+    changes: tuple[float, ...]
+    builds: tuple[Build, ...]
+    at_start: bool
+    at_end: bool
+
+
+def innermost(expression: Expression) -> list[int]:
+    """Return the places of the switches whose arguments hold no switch; none if the expression has none at all."""
+    holding: set[int] = set()
+    found = []
+    for place, step in enumerate(expression.steps):
+        inner = any(i in holding for i in step.args)
+        if step.op in _SWITCHES and not inner:
+            found.append(place)
+        if inner or step.op in _SWITCHES:
+            holding.add(place)
+    return found
+
+
+def branches(expression: Expression, places: list[int], lower: float, upper: float) -> Branches:
+    """Settle the innermost switches at the given places over [lower, upper].
+
+    Raises FormulaError where a sign that decides cannot be settled.
+    """
+    settled = {place: _settle(expression, place, lower, upper) for place in places}
+    room = snap(lower, upper)
+    inside: list[float] = []
+    for change in sorted(change for switch in settled.values() for change in switch.changes):
+        if not inside or change - inside[-1] > room:
+            inside.append(change)
+    expressions = []
+    for a, b in pairwise((lower, *inside, upper)):
+        middle = a + 0.5 * (b - a)
+        builds = {place: switch.builds[bisect(switch.changes, middle)] for place, switch in settled.items()}
+        expressions.append(_replaced(expression, builds))
+    at_start = any(switch.at_start for switch in settled.values())
+    return Branches(tuple(inside), tuple(expressions), at_start, any(switch.at_end for switch in settled.values()))
+
+
+def _settle(expression: Expression, place: int, lower: float, upper: float) -> _Settled:
+    step = expression.steps[place]
+    try:
+        if step.op == "atan2":
+            return _settle_angle(expression, step, lower, upper)
+        found = signs(_deciding(expression, step), lower, upper)
+    except UnsettledError as error:
+        what = "the difference of the arguments" if step.op in {"min", "max"} else "the argument"
+        at = f"{expression.variables[0]} = {error.at:.12g}"
+        raise FormulaError(f"{step.op} cannot be settled: {what} {error.reason} near {at}", step.column) from None
+    return _settled(found, lambda sign: _case(step, sign))
+
+
+def _settled(found: Signs, build: Callable[[int], Build]) -> _Settled:
+    return _Settled(found.changes, tuple(build(sign) for sign in found.signs), found.at_start, found.at_end)
+
+
+def _deciding(expression: Expression, step: Instruction) -> Expression:
+    """Return what is compared with 0: the argument, or the difference of two."""
+    builder, places = _copied(expression, {})
+    args = tuple(places[i] for i in step.args)
+    return builder.expression(builder.apply("sub", args, step.column) if step.op in {"min", "max"} else args[0])
+
+
+def _case(step: Instruction, sign: int) -> Build:
+    """Return what a switch amounts to where the deciding expression has a sign."""
+
+    def build(builder: Builder, args: tuple[int, ...]) -> int:
+        if step.op == "sign":
+            return builder.constant(sign, 0.0, step.column)
+        if step.op == "abs":
+            if sign == 0:
+                return builder.constant(0.0, 0.0, step.column)
+            return args[0] if sign > 0 else builder.apply("neg", args, step.column)
+        return args[0] if (sign >= 0) == (step.op == "max") else args[1]
+
+    return build
+
+
+def _settle_angle(expression: Expression, step: Instruction, lower: float, upper: float) -> _Settled:
+    """Turn by a quarter where y keeps its sign: atan2(y, x) = pi/2 + atan2(-x, y) for y > 0, the cut out of reach."""
+    builder, places = _copied(expression, {})
+    y, x = (builder.expression(places[i]) for i in step.args)
+    found = signs(y, lower, upper)
+
+    def plain(builder: Builder, args: tuple[int, ...]) -> int:
+        return builder.apply(ANGLE, args, step.column)
+
+    zeros = [*found.changes, *([lower] if found.at_start else []), *([upper] if found.at_end else [])]
+    if 0 in found.signs or not any(_may_be_left(x, zero) for zero in zeros):
+        return _settled(Signs((), (0,), at_start=False, at_end=False), lambda _: plain)
+
+    def turned(sign: int) -> Build:
+        def build(builder: Builder, args: tuple[int, ...]) -> int:
+            y, x = args
+            across = builder.apply("neg", (x if sign > 0 else y,), step.column)
+            turn = builder.apply(ANGLE, (across, y) if sign > 0 else (x, across), step.column)
+            quarter = builder.constant(sign * math.pi / 2, math.ulp(2.0), step.column)
+            return builder.apply("add", (turn, quarter), step.column)
+
+        return build
+
+    return _settled(found, turned)
+
+
+def _may_be_left(x: Expression, at: float) -> bool:
+    return not bool(x.ball(at, at, 0).rows.positive.all())
+
+
+def _copied(expression: Expression, builds: Mapping[int, Build]) -> tuple[Builder, list[int]]:
+    """Return a builder with the expression in it, some steps built otherwise, and where each step now stands."""
+    builder = Builder(expression.variables)
+    places: list[int] = []
+    for i, step in enumerate(expression.steps):
+        args = tuple(places[j] for j in step.args)
+        places.append(builds[i](builder, args) if i in builds else builder.copy(step, args))
+    return builder, places
+
+
+def _replaced(expression: Expression, builds: Mapping[int, Build]) -> Expression:
+    builder, places = _copied(expression, builds)
+    return builder.expression(places[-1])

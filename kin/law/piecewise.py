@@ -1,0 +1,357 @@
+"""Piecewise functions: stretches written in jet arithmetic between knots, folded by a period, with a side at a knot.
+
+A stretch (`kin.law.segment`) is never evaluated beyond its own knots: a parameter within a few ulp of a knot is the
+knot, and belongs to the side asked for. So a jump of a derivative is given as its two limits and never smeared.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.segment import Affine, Power, Round
+from kin.numeric.arrays import Array, Indices
+from kin.numeric.elementary import BallJet, DomainError, Jet, cos, sin
+from kin.numeric.interval import Ball, hull
+from kin.numeric.jet import finite
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kin.law.segment import Series, Stretch
+
+Side = int | Indices  # 1 or -1 for all, or for each parameter (n,)
+
+# Folding by the period, and the sums and products behind a knot, are each good to about an ulp; what lies closer to a
+# knot than this many ulps of the parameter is the knot.
+_SNAP_ULPS = 8.0
+# Stretches shorter than this, relative to the whole, would be lost in that.
+_LEAST_STRETCH = 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """Stretches that are one function moved in several ways: the way of each, rows of (offset, scale, start, 1/width).
+
+    `ways` is (4, m) over all the stretches of a piecewise function; None where the function stands as it is.
+    """
+
+    function: Stretch
+    ways: Array | None
+
+    @staticmethod
+    def of(function: Stretch, members: list[Stretch], places: list[int], count: int) -> _Group:
+        """Group stretches that share a function, at `places` among `count`."""
+        if not any(isinstance(member, Affine) for member in members):
+            return _Group(function, None)
+        return _Group(function, _ways(members, places, count))
+
+    def __call__(self, t: Series, index: Indices) -> Series:
+        """Apply the function to points or intervals t (n,), each in its stretch (n,)."""
+        if self.ways is None:
+            return self.function(t)
+        return _moved(self.function, self.ways[:, index], t)
+
+
+_AS_IS = (0.0, 1.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Powers:
+    """Stretches that are polynomials of one length, each moved its own way; `coefficients` is (k, m), lowest first."""
+
+    coefficients: Array
+    ways: Array
+
+    def __call__(self, t: Series, index: Indices) -> Series:
+        """Apply each stretch's polynomial to its points or intervals t (n,), in stretches (n,)."""
+        return _moved(_Horner(self.coefficients[:, index]), self.ways[:, index], t)
+
+
+@dataclass(frozen=True, eq=False)
+class _Horner:
+    """Polynomials by their rows of coefficients (k, n), each at its own point or interval."""
+
+    rows: Array
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give each polynomial."""
+        total = u.constant(self.rows[-1])
+        for row in self.rows[-2::-1]:
+            total = total * u + row
+        return total
+
+
+def _moved(function: Stretch, ways: Array, t: Series) -> Series:
+    """Apply a function moved in the ways (4, n) to t (n,)."""
+    offset, scale, start, rate = ways
+    if isinstance(t, BallJet):
+        value: BallJet = function((t - start) * rate) * scale + offset
+        return value
+    c = t.c.copy()
+    with np.errstate(all="ignore"):
+        c[0] -= start
+        c *= rate
+        c = function(finite(c, "overflow")).c * scale
+        c[0] += offset
+        return finite(c, "overflow")
+
+
+def _ways(members: list[Stretch], places: list[int], count: int) -> Array:
+    """Collect the ways of stretches at `places` among `count`, (4, count)."""
+    ways = np.empty((4, count))
+    for place, member in zip(places, members, strict=True):
+        ways[:, place] = _AS_IS
+        if isinstance(member, Affine):
+            ways[:, place] = member.offset, member.scale, member.start, 1 / member.width
+    return ways
+
+
+@dataclass(frozen=True, eq=False)
+class _Round:
+    """Stretches mean + x cos t + y sin t: rows (3, m) of mean, x and y over all the stretches."""
+
+    parts: Array
+
+    def __call__(self, t: Series, index: Indices) -> Series:
+        """Apply each stretch's function to its points or intervals t (n,), in stretches (n,)."""
+        mean, x, y = self.parts[:, index]
+        total = t.constant(mean)
+        return total + cos(t) * x + sin(t) * y if self.parts[1:].any() else total
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where points or intervals (n,) lie among the stretches of a piecewise function.
+
+    Each begins at `low` in the stretch `first` and ends at `high`, `steps` stretches further on; the ends are folded.
+    """
+
+    first: Indices
+    low: Array
+    high: Array
+    steps: Indices
+
+    def each(self, count: int) -> Iterator[tuple[int, Indices, Indices]]:
+        """List by rising steps those that reach so far, and the stretch there, out of `count` in a period."""
+        for step in range(int(self.steps.max(initial=0)) + 1):
+            active = np.flatnonzero(self.steps >= step)
+            yield step, active, (self.first[active] + step) % count
+
+    def weigh(self, series: Series, numbers: Array) -> Series:
+        """Multiply by the number that belongs to each place, out of one for each stretch (m,)."""
+        least, most = numbers[self.first], numbers[self.first]
+        if isinstance(series, Jet) or not self.steps.any():
+            return series * least
+        for _, active, index in self.each(len(numbers)):
+            least[active] = np.minimum(least[active], numbers[index])
+            most[active] = np.maximum(most[active], numbers[index])
+        return series * Ball.between(least, most)
+
+
+@dataclass(frozen=True, eq=False)
+class Piecewise:
+    """m functions on the stretches between m + 1 rising knots; `period` is None where the function just ends.
+
+    With a period, knots[-1] = knots[0] + period, the parameter is any real number, and `smooth_seam` says that
+    knots[0] is where the description begins and no break. Raises ValueError for knots that do not rise, a count of
+    functions that does not fit, or a period that the knots do not span.
+    """
+
+    knots: Array
+    functions: tuple[Stretch, ...]
+    period: float | None = None
+    smooth_seam: bool = False
+
+    def __post_init__(self) -> None:
+        knots = np.array(self.knots, dtype=float)
+        knots.setflags(write=False)
+        object.__setattr__(self, "knots", knots)
+        if knots.ndim != 1 or len(knots) < 2 or len(self.functions) != len(knots) - 1:
+            raise ValueError(f"{len(self.functions)} functions cannot lie between knots of shape {knots.shape}")
+        least = _LEAST_STRETCH * max(abs(knots[0]), abs(knots[-1]))
+        if not (np.isfinite(knots).all() and (np.diff(knots) > least).all()):
+            raise ValueError("knots must be finite and rise")
+        if self.period is not None and abs(knots[-1] - knots[0] - self.period) > self._snap(knots[-1:])[0]:
+            raise ValueError(f"the knots span {knots[-1] - knots[0]!r}, the period is {self.period!r}")
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Parameters where the function changes, rising: in [0, period), or inside the ends without a period."""
+        if self.period is None:
+            return self.knots[1:-1]
+        first = 1 if self.smooth_seam else 0
+        folded = np.mod(self.knots[first:-1], self.period)
+        folded[self.period - folded <= self._snap(folded)] = 0.0
+        folded.sort()
+        folded.setflags(write=False)
+        return folded
+
+    def derivatives(self, t: float | Array, order: int, side: Side = 1) -> Array:
+        """Give derivatives 0..order at t (n,) as (order + 1, n); at a knot the right-hand limit, or left (side -1).
+
+        Raises ValueError outside the knots where there is no period, DomainError where a function does not exist.
+        """
+        return self.on(Jet.variable(t, order), side).derivatives()
+
+    def enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
+        """Balls mid +- rad, each (order + 1, n), that hold every derivative 0..order over [lower, upper], each (n,).
+
+        At an end of the interval only the limit from within counts; a knot inside counts with both. An interval no
+        longer than the rounding of a knot in it holds both limits.
+        """
+        rows = self.on(BallJet.variable(lower, upper, order)).bounds()
+        enclosed = Ball.between(*rows)
+        return enclosed.mid, enclosed.rad
+
+    def jumps(self, order: int) -> tuple[Array, Array]:
+        """Break parameters (b,) and the jump of each derivative 0..order over them, right less left, (order + 1, b)."""
+        at = self.breaks
+        return at, self.derivatives(at, order, 1) - self.derivatives(at, order, -1)
+
+    def on(self, t: Series, side: Side = 1) -> Series:
+        """Apply the function to any jet or ball jet; `side` decides for jets whose value is a knot."""
+        return self.at(t, self.places(t, side))
+
+    def at(self, t: Series, places: Places) -> Series:
+        """Apply the function to a jet or ball jet whose places are known."""
+        if isinstance(t, Jet):
+            c = t.c.copy()
+            c[0] = places.low
+            return self._apply(Jet(c), places.first)
+        return self._on_intervals(t, places)
+
+    def places(self, t: Series, side: Side = 1) -> Places:
+        """Tell in which stretches a jet's points lie, or which ones a ball jet's intervals meet."""
+        if isinstance(t, Jet):
+            index, x = self.locate(t.c[0], side)
+            return Places(index, x, x, np.zeros_like(index))
+        lower, upper = t.rows[0].bounds()
+        span = math.inf if self.period is None else self.period
+        unbounded = ~(upper - lower < span)
+        lower = np.where(unbounded, self.knots[0], lower)
+        upper = np.where(unbounded, self.knots[-1], upper)
+        index, x, turns = self._place(np.concatenate([lower, upper]), np.repeat([1, -1], lower.size))
+        (first, last), (low, high) = index.reshape(2, -1), x.reshape(2, -1)
+        steps = last - first + len(self.functions) * np.diff(turns.reshape(2, -1), axis=0)[0].astype(np.intp)
+        # An interval within the rounding of one knot: both of its sides.
+        tiny = steps < 0
+        if tiny.any():
+            first, low, high = np.where(tiny, last, first), np.where(tiny, high, low), np.where(tiny, low, high)
+        return Places(first, low, high, np.abs(steps))
+
+    def _snap(self, t: Array) -> Array:
+        scale = np.maximum(np.abs(t), max(abs(self.knots[0]), abs(self.knots[-1])))
+        ulps: Array = np.spacing(scale)
+        return _SNAP_ULPS * ulps
+
+    def locate(self, t: Array, side: Side = 1) -> tuple[Indices, Array]:
+        """For each t (n,): the index of its stretch on the side asked for, and t folded into that stretch."""
+        index, x, _ = self._place(np.asarray(t, dtype=float), side)
+        return index, x
+
+    def _place(self, t: Array, side: Side) -> tuple[Indices, Array, Array]:
+        """Stretch, folded parameter, and the whole periods taken off."""
+        knots, last = self.knots, len(self.functions) - 1
+        if not np.isfinite(t).all():
+            raise ValueError("a parameter is not finite")
+        turns = np.zeros_like(t) if self.period is None else np.floor((t - knots[0]) / self.period)
+        x = t if self.period is None else t - turns * self.period
+        snap = self._snap(t)
+        if self.period is None and ((x < knots[0] - snap) | (x > knots[-1] + snap)).any():
+            raise ValueError(f"a parameter lies outside {knots[0]} to {knots[-1]}")
+        inside = np.minimum(np.maximum(np.searchsorted(knots, x, side="right") - 1, 0), last)
+        below, above = np.abs(x - knots[inside]), np.abs(knots[inside + 1] - x)
+        on_knot = np.minimum(below, above) <= snap
+        if not on_knot.any():
+            return inside, x, turns
+        near = np.where(below < above, inside, inside + 1)
+        right = np.asarray(side) > 0
+        index = np.where(on_knot, near - 1 + right, inside)
+        if self.period is not None:  # the seam belongs to either end
+            wrap = np.floor_divide(index, last + 1)
+            index = index - wrap * (last + 1)
+            turns = turns + wrap
+            near = np.where(on_knot, index + 1 - right, near)
+        index = np.minimum(np.maximum(index, 0), last)
+        return index, np.where(on_knot, knots[near], x), turns
+
+    @cached_property
+    def _groups(self) -> tuple[Indices, tuple[_Group | _Powers | _Round, ...]]:
+        """For each stretch its group, and the groups: stretches that are one function moved in several ways."""
+        found: dict[Stretch | int, list[int]] = {}  # polynomials by their length
+        owner = np.zeros(len(self.functions), dtype=np.intp)
+        parts, arcs = np.zeros((3, owner.size)), []
+        for i, function in enumerate(self.functions):
+            if isinstance(function, Round):
+                parts[:, i] = function.first_harmonic
+                arcs.append(i)
+            else:
+                bare = _bare(function)
+                key = len(bare.coefficients) if isinstance(bare, Power) else bare
+                found.setdefault(key, []).append(i)
+        groups: list[_Group | _Powers | _Round] = []
+        for number, (shared, members) in enumerate(found.items()):
+            owner[members] = number
+            stretches = [self.functions[i] for i in members]
+            if isinstance(shared, int):
+                rows = np.zeros((shared, owner.size))
+                rows[:, members] = np.transpose([_bare(f).coefficients for f in stretches])  # type: ignore[attr-defined]
+                groups.append(_Powers(rows, _ways(stretches, members, owner.size)))
+            else:
+                groups.append(_Group.of(shared, stretches, members, owner.size))
+        if arcs:
+            owner[arcs] = len(groups)
+            groups.append(_Round(parts))
+        return owner, tuple(groups)
+
+    def _on_intervals(self, t: BallJet, places: Places) -> BallJet:
+        mid, rad = np.zeros_like(t.mid), np.full_like(t.rad, math.inf)
+        for step, active, index in places.each(len(self.functions)):
+            begin = places.low[active] if step == 0 else self.knots[index]
+            end = np.where(places.steps[active] == step, places.high[active], self.knots[index + 1])
+            part = self._apply(self._within(index, begin, end, t, active), index).rows
+            if step:
+                part = hull(Ball(mid[:, active], rad[:, active]), part)
+            mid[:, active], rad[:, active] = part.mid, part.rad
+        return BallJet(mid, rad)
+
+    def _within(self, index: Indices, begin: Array, end: Array, t: BallJet, here: Indices) -> BallJet:
+        """Take those intervals of t with their values replaced by [begin, end], each inside its stretch."""
+        # The fold t - turns * period is rounded; its ulp is covered, within the stretch.
+        room = np.where(np.abs(begin) > 0, np.spacing(np.maximum(np.abs(t.mid[0, here]), np.abs(begin))), 0.0)
+        interval = Ball.between(
+            np.maximum(begin - room, self.knots[index]), np.minimum(end + room, self.knots[index + 1])
+        )
+        mid, rad = t.mid[:, here], t.rad[:, here]
+        mid[0], rad[0] = interval.mid, interval.rad
+        return BallJet(mid, rad)
+
+    def _apply(self, t: Series, index: Indices) -> Series:
+        """Apply to each of the points or intervals t (n,) the function of its stretch (n,)."""
+        owner, groups = self._groups
+        if len(groups) == 1:
+            return groups[0](t, index)
+        which, kind, rows = owner[index], type(t), _rows(t)
+        out = [np.empty_like(row) for row in rows]
+        for number in np.flatnonzero(np.bincount(which)):
+            here = np.flatnonzero(which == number)
+            try:
+                part = groups[number](kind(*(row[:, here] for row in rows)), index[here])
+            except DomainError as error:
+                raise DomainError(error.operation, here[error.indices]) from None
+            for row, found in zip(out, _rows(part), strict=True):
+                row[:, here] = found
+        return kind(*out)
+
+
+def _bare(function: Stretch) -> Stretch:
+    return function.function if isinstance(function, Affine) else function
+
+
+def _rows(t: Jet | BallJet) -> tuple[Array, ...]:
+    return (t.c,) if isinstance(t, Jet) else (t.mid, t.rad)

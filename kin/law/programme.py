@@ -1,0 +1,330 @@
+"""Motion laws, and motion programmes made of them.
+
+A normalised law s(u) leads from s(0) = 0 to s(1) = 1. The standard ones are symmetric, s(u) + s(1 - u) = 1; those of
+several runs are written as one half and its image. Names and peaks: H. A. Rothbart, Cam Design Handbook, chapters 2
+and 3. The constants of the "modified" laws follow here from their accelerations and s(1) = 1.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from kin.law.piecewise import Piecewise
+from kin.law.segment import Affine, Constant, Series, Stretch
+from kin.numeric.elementary import Jet, cos, sin
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kin.numeric.arrays import Array
+
+
+_END_TOLERANCE = 1e-12  # of a polynomial law at u = 0 and 1
+_ANGLE_TOLERANCE = 1e-9  # rad: of the sum of a programme's segments, and the least segment
+
+
+class IntentError(ValueError):
+    """An intended motion that no cam can have, with the reason and the figure.
+
+    `field` is the path of what is at fault below the recipe's `cam`; `at_deg` the shaft angle, if there is one.
+    """
+
+    def __init__(self, message: str, field: str, at_deg: float | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.field = field
+        self.at_deg = at_deg
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Largest velocity, acceleration and jerk of a law for unit stroke over unit interval, from rest to rest.
+
+    `jerk` is infinite where the acceleration steps, at the ends too.
+    """
+
+    velocity: float
+    acceleration: float
+    jerk: float
+
+
+@dataclass(frozen=True)
+class Law:
+    """A normalised motion law s(u) on [0, 1] with its peaks.
+
+    A return falls by s(u), or with `reverses` runs the law backwards, s(1 - u): the same for a symmetric law.
+    """
+
+    name: str
+    motion: Piecewise
+    peaks: Peaks
+    reverses: bool = False
+
+    def derivatives(self, u: float | Array, order: int, side: int = 1) -> Array:
+        """Give s and its derivatives by u, (order + 1, n), at u (n,) in [0, 1]; `side` as for `Piecewise`."""
+        return self.motion.derivatives(u, order, side)
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """Sum of coefficient[k] (u - centre)**k, by Horner's scheme."""
+
+    coefficients: tuple[float, ...]
+    centre: float = 0.0
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the displacement."""
+        x = u - self.centre if self.centre else u
+        total = u.constant(self.coefficients[-1])
+        for coefficient in self.coefficients[-2::-1]:
+            total = total * x + coefficient
+        return total
+
+
+@dataclass(frozen=True)
+class Run:
+    """Displacement under a given acceleration: s and s' at `start`, then peak sin(rate x), peak cos(rate x) or peak."""
+
+    start: float
+    s: float
+    v: float
+    peak: float
+    rate: float
+    shape: Literal["sin", "cos", "flat"]
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the displacement."""
+        x = u - self.start if self.start else u
+        if self.shape == "flat":
+            return (x * (self.peak / 2) + self.v) * x + self.s
+        angle, k = x * self.rate, self.peak / self.rate**2
+        rest = angle - sin(angle) if self.shape == "sin" else 1.0 - cos(angle)  # at rest at the start, to the last bit
+        path = rest * k
+        if self.v:
+            path = path + x * self.v
+        return path + self.s if self.s else path
+
+
+def first_harmonic(stretch: Affine) -> tuple[float, float, float] | None:
+    """Mean, and coefficients of cos t and sin t, where a stretch of a programme is nothing else; None where it is not.
+
+    That is the harmonic law over a half turn: the eccentric, of which the radius of curvature is constant.
+    """
+    run = stretch.function
+    if not (isinstance(run, Run) and run.shape == "cos" and run.start == run.s == run.v == 0.0):
+        return None
+    if abs(run.rate / abs(stretch.width) - 1.0) > 4.0 * 2.0**-52:
+        return None
+    half = stretch.scale * run.peak / run.rate**2
+    return stretch.offset + half, -half * math.cos(stretch.start), -half * math.sin(stretch.start)
+
+
+def mirrored(function: Stretch) -> Stretch:
+    """1 - f(1 - u): the other half of a symmetric law."""
+    return Affine(function, offset=1.0, scale=-1.0, start=1.0, width=-1.0)
+
+
+def symmetric(
+    knots: Sequence[float], runs: Sequence[tuple[float, float, Literal["sin", "cos", "flat"]]], centre: bool
+) -> Piecewise:
+    """Build a law from the accelerations (peak, rate, shape) of its first half, each beginning as the last one ends.
+
+    `knots` begin at 0; with `centre` the last run is its own image and reaches over the middle.
+    """
+    half: list[Stretch] = []
+    s = v = 0.0
+    for (begin, end), (peak, rate, shape) in zip(pairwise(knots), runs, strict=True):
+        run = Run(begin, s, v, peak, rate, shape)
+        half.append(run)
+        (s,), (v,) = run(Jet.variable(end, 1)).c
+    images = [mirrored(function) for function in reversed(half[:-1] if centre else half)]
+    first = knots[:-1] if centre else knots
+    return Piecewise(np.array([*first, *(1 - u for u in reversed(knots[:-1]))]), (*half, *images))
+
+
+def _law(
+    name: str,
+    knots: Sequence[float],
+    runs: Sequence[tuple[float, float, Literal["sin", "cos", "flat"]]],
+    peaks: Peaks,
+    *,
+    centre: bool = True,
+) -> Law:
+    return Law(name, symmetric(knots, runs, centre), peaks)
+
+
+def _standard_laws() -> dict[str, Law]:
+    pi = math.pi
+    trapezoid, sine, constant = 8 * pi / (pi + 2), 4 * pi**2 / (pi + 4), 16 * pi**2 / (5 * pi + 4)
+    laws = [
+        _law("parabolic", (0, 0.5), [(4.0, 0.0, "flat")], Peaks(2.0, 4.0, math.inf), centre=False),
+        _law("harmonic", (0, 1), [(pi**2 / 2, pi, "cos")], Peaks(pi / 2, pi**2 / 2, math.inf)),
+        _law("cycloidal", (0, 1), [(2 * pi, 2 * pi, "sin")], Peaks(2.0, 2 * pi, 4 * pi**2)),
+        _law(
+            "modified-trapezoid",
+            (0, 1 / 8, 3 / 8, 5 / 8),
+            [(trapezoid, 4 * pi, "sin"), (trapezoid, 0.0, "flat"), (trapezoid, 4 * pi, "cos")],
+            Peaks(2.0, trapezoid, 4 * pi * trapezoid),
+        ),
+        _law(
+            "modified-sine",
+            (0, 1 / 8, 7 / 8),
+            [(sine, 4 * pi, "sin"), (sine, 4 * pi / 3, "cos")],
+            Peaks(sine / pi, sine, 4 * pi * sine),
+        ),
+        # Ramp of 1/16 + 3/16: velocity a/8pi + 3a/8pi = a/2pi, path (a/8pi)(1/4 + 1/pi); twice that path and half a
+        # unit at a/2pi make 1, so a = 16 pi^2/(5 pi + 4).
+        _law(
+            "modified-constant-velocity",
+            (0, 1 / 16, 1 / 4, 3 / 4),
+            [(constant, 8 * pi, "sin"), (constant, 8 * pi / 3, "cos"), (0.0, 0.0, "flat")],
+            Peaks(constant / (2 * pi), constant, 8 * pi * constant),
+        ),
+        # 10 u^3 - 15 u^4 + 6 u^5 and 35 u^4 - 84 u^5 + 70 u^6 - 20 u^7, about the middle: no cancellation at u = 1.
+        _smooth("polynomial-345", (0.5, 15 / 8, 0, -5, 0, 6), 0.5, Peaks(15 / 8, 10 / math.sqrt(3), 60.0)),
+        _smooth(
+            "polynomial-4567",
+            (0.5, 35 / 16, 0, -35 / 4, 0, 21, 0, -20),
+            0.5,
+            Peaks(35 / 16, 84 / math.sqrt(125), 52.5),
+        ),
+    ]
+    return {law.name: law for law in laws}
+
+
+def _smooth(name: str, coefficients: Sequence[float], centre: float, peaks: Peaks) -> Law:
+    polynomial = Polynomial(tuple(map(float, coefficients)), centre)
+    return Law(name, Piecewise(np.array([0.0, 1.0]), (polynomial,)), peaks)
+
+
+def polynomial_law(coefficients: Sequence[float], field: str = "motion") -> Law:
+    """Make the law c0 + c1 u + c2 u**2 + ... from its coefficients.
+
+    It must lead from 0 to 1 within 1e-12, else IntentError with the figures; rest at the ends is not asked for. Its
+    peaks count steps from and to rest at the ends.
+    """
+    values = tuple(float(c) for c in coefficients)
+    if not values or not np.isfinite(values).all():
+        raise IntentError("a polynomial law needs finite coefficients c0, c1, ... of u", field)
+    start, end = values[0], math.fsum(values)
+    if abs(start) > _END_TOLERANCE or abs(end - 1) > _END_TOLERANCE:
+        raise IntentError(
+            f"a polynomial law must lead from 0 to 1; this one leads from s(0) = {start:.12g} to s(1) = {end:.12g}",
+            field,
+        )
+    return _smooth(f"polynomial {list(values)}", values, 0.0, _polynomial_peaks(values))
+
+
+def _polynomial_peaks(coefficients: tuple[float, ...]) -> Peaks:
+    s = np.polynomial.Polynomial(coefficients)
+    tops = []
+    for k in (1, 2, 3):
+        level = s.deriv(k)
+        extrema = level.deriv().roots()
+        real = extrema[np.abs(extrema.imag) <= 1e-9 * (1 + np.abs(extrema))].real
+        u = np.concatenate(([0.0, 1.0], real[(real > 0) & (real < 1)]))
+        tops.append(float(np.abs(level(u)).max()))
+    ends = np.array([[abs(s.deriv(k)(u)) for u in (0.0, 1.0)] for k in (1, 2)]).max(axis=1)
+    moving, pushed = ends > _END_TOLERANCE * np.array(tops[:2]).clip(min=1)
+    velocity, acceleration, jerk = tops
+    return Peaks(velocity, math.inf if moving else acceleration, math.inf if moving or pushed else jerk)
+
+
+LAWS: Mapping[str, Law] = _standard_laws()
+
+
+def law(name: str, field: str = "motion") -> Law:
+    """Look up a standard law; IntentError lists the names if there is none such."""
+    if name not in LAWS:
+        from difflib import get_close_matches  # for the message alone
+
+        close = get_close_matches(name, LAWS, 1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        raise IntentError(f"no law is called {name!r}{hint} (laws: {', '.join(LAWS)})", field)
+    return LAWS[name]
+
+
+@dataclass(frozen=True)
+class Segment:
+    """One segment of a motion programme: over an angle (rad), by a stroke (mm or rad, above 0; 0 for a dwell)."""
+
+    kind: Literal["rise", "return", "dwell"]
+    over: float
+    stroke: float = 0.0
+    law: Law | None = None
+
+
+@dataclass(frozen=True)
+class Programme:
+    """Displacement over [0, total] rad, from 0; no period."""
+
+    motion: Piecewise
+
+    @property
+    def total(self) -> float:
+        """Angle covered, rad."""
+        return float(self.motion.knots[-1])
+
+    def at_start(self, order: int) -> Array:
+        """Give the derivatives 0..order at the first angle, (order + 1,)."""
+        return self.motion.derivatives(0.0, order, 1)[:, 0]
+
+    def at_end(self, order: int) -> Array:
+        """Give the derivatives 0..order at the last angle, (order + 1,)."""
+        return self.motion.derivatives(self.total, order, -1)[:, 0]
+
+
+def programme(segments: Sequence[Segment], total: float, field: str = "motion") -> Programme:
+    """Join segments into the displacement over [0, total] rad.
+
+    Raises IntentError if the angles do not sum to `total` within 1e-9 rad, or a segment has no angle, no stroke or no
+    law. Whether the segments join in velocity is asked by the cam that takes the programme.
+    """
+    if not segments:
+        raise IntentError("a motion needs at least one segment", field)
+    for i, segment in enumerate(segments):
+        _check(segment, f"{field}[{i}]")
+    covered = math.fsum(segment.over for segment in segments)
+    if not abs(covered - total) <= _ANGLE_TOLERANCE:
+        raise IntentError(
+            f"the segments cover {math.degrees(covered):.10g} degrees, {math.degrees(total):.10g} are wanted", field
+        )
+    ends = [math.fsum(segment.over for segment in segments[:i]) for i in range(len(segments))] + [total]
+    knots: list[float] = [0.0]
+    functions: list[Stretch] = []
+    strokes: list[float] = []
+    for segment, (begin, end) in zip(segments, pairwise(ends), strict=True):
+        level = math.fsum(strokes)
+        if segment.law is None:
+            if functions and functions[-1] == Constant(level):
+                knots[-1] = end
+                continue
+            functions.append(Constant(level))
+        else:
+            strokes.append(segment.stroke if segment.kind == "rise" else -segment.stroke)
+            motion = segment.law.motion
+            place = {"offset": level, "scale": strokes[-1], "start": begin, "width": end - begin}
+            functions += [Affine.of(f, **place) for f in motion.functions]
+            knots += [begin + u * (end - begin) for u in motion.knots[1:-1].tolist()]
+        knots.append(end)
+    return Programme(Piecewise(np.array(knots), tuple(functions)))
+
+
+def _check(segment: Segment, field: str) -> None:
+    if not (math.isfinite(segment.over) and segment.over > _ANGLE_TOLERANCE):
+        raise IntentError(f"the angle of a {segment.kind} must be above 0, not {math.degrees(segment.over):.6g}", field)
+    if segment.kind == "dwell":
+        if segment.law is not None or segment.stroke != 0:
+            raise IntentError("a dwell has neither stroke nor law", field)
+        return
+    if segment.law is None:
+        raise IntentError(f"a {segment.kind} needs a law", field)
+    if not (math.isfinite(segment.stroke) and segment.stroke > 0):
+        other = "return" if segment.kind == "rise" else "rise"
+        hint = f" (a negative one is a {other})" if segment.stroke < 0 else ""
+        raise IntentError(f"the stroke of a {segment.kind} must be above 0, not {segment.stroke:.6g}{hint}", field)

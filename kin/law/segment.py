@@ -1,0 +1,134 @@
+"""Functions of one variable in jet arithmetic, of which stretches of piecewise functions are made.
+
+One function object serves points (`kin.numeric.elementary.Jet`: exact derivatives) and intervals
+(`kin.numeric.elementary.BallJet`: proved enclosures).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+from kin.numeric.elementary import BallJet, Jet, cos, sin
+
+Series = TypeVar("Series", Jet, BallJet)
+
+
+class Stretch(Protocol):
+    """A function of one variable in jet arithmetic."""
+
+    def __call__(self, t: Series, /) -> Series:
+        """Apply the function to a jet or ball jet."""
+
+
+class Round(ABC):
+    """A stretch mean + x cos t + y sin t; such stretches are worked out together."""
+
+    @property
+    @abstractmethod
+    def first_harmonic(self) -> tuple[float, float, float]:
+        """Mean, x and y."""
+
+
+@dataclass(frozen=True)
+class Constant(Round):
+    """The same value everywhere."""
+
+    value: float
+
+    @property
+    def first_harmonic(self) -> tuple[float, float, float]:
+        """The value, and nothing more."""
+        return self.value, 0.0, 0.0
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give the value, constant over t."""
+        return t.constant(self.value)
+
+
+@dataclass(frozen=True)
+class Affine:
+    """offset + scale f((t - start)/width): a function moved and stretched along both axes."""
+
+    function: Stretch
+    offset: float = 0.0
+    scale: float = 1.0
+    start: float = 0.0
+    width: float = 1.0
+
+    @staticmethod
+    def of(
+        function: Stretch, *, offset: float = 0.0, scale: float = 1.0, start: float = 0.0, width: float = 1.0
+    ) -> Affine:
+        """Move a function; one that is already moved is moved once, not twice."""
+        if not isinstance(function, Affine):
+            return Affine(function, offset, scale, start, width)
+        return Affine(
+            function.function,
+            offset + scale * function.offset,
+            scale * function.scale,
+            start + width * function.start,
+            width * function.width,
+        )
+
+    def __call__(self, t: Series, /) -> Series:
+        """Apply the moved function."""
+        x = t - self.start if self.start else t
+        value = self.function(x * (1 / self.width) if self.width != 1 else x)
+        if self.scale == -1:
+            value = -value
+        elif self.scale != 1:
+            value = value * self.scale
+        return value + self.offset if self.offset else value
+
+
+@dataclass(frozen=True)
+class Power:
+    """Sum of coefficient[k] u**k by Horner's scheme; polynomials of one length are worked out together."""
+
+    coefficients: tuple[float, ...]
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the polynomial."""
+        total = u.constant(self.coefficients[-1])
+        for coefficient in self.coefficients[-2::-1]:
+            total = total * u + coefficient
+        return total
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """mean + sum of a cos(k t) + b sin(k t) over the terms (k, a, b), k a whole number."""
+
+    mean: float
+    terms: tuple[tuple[int, float, float], ...]
+
+    def __call__(self, t: Series, /) -> Series:
+        """Sum the series."""
+        if isinstance(t, Jet) and len(self.terms) > 0 and not t.c[2:].any():
+            return self._at_points(t)
+        total = t.constant(self.mean)
+        for k, a, b in self.terms:
+            angle = t * float(k) if k > 1 else t
+            if a:
+                total = total + cos(angle) * a
+            if b:
+                total = total + sin(angle) * b
+        return total
+
+    def _at_points(self, t: Jet) -> Jet:
+        """Sum the series of t = t0 + t1 x: all terms at once, as d/dt turns (sin, cos) and multiplies by k."""
+        k, a, b = np.array(self.terms)[:, :, None].transpose(1, 0, 2)
+        sine, cosine = np.sin(k * t.c[0]), np.cos(k * t.c[0])
+        even, odd = a * cosine + b * sine, b * cosine - a * sine
+        c = np.empty_like(t.c)
+        c[0] = self.mean + even.sum(axis=0)
+        power, scale = k, 1.0
+        for order in range(1, len(c)):
+            scale = scale * t.c[1] / order
+            c[order] = (power * (odd if order % 2 else even)).sum(axis=0) * (scale if order % 4 < 2 else -scale)
+            power = power * k
+        return Jet(c)

@@ -1,0 +1,139 @@
+"""Functions that motions are made of, in jet arithmetic; each is exact at the ends where it rests."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import comb
+from typing import TYPE_CHECKING
+
+from kin.numeric.elementary import cos, sin
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.segment import Series, Stretch
+
+
+@dataclass(frozen=True)
+class Sines:
+    """Sum of a (k u - sin k u) over the terms (k, a): at rest at u = 0 to the last bit."""
+
+    terms: tuple[tuple[float, float], ...]
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the displacement."""
+        total = u.constant(0.0)
+        for k, a in self.terms:
+            angle = u * k
+            total = total + (angle - sin(angle)) * a
+        return total
+
+
+@dataclass(frozen=True)
+class Cosines:
+    """Sum of square u**2 and of a (1 - cos k u) over the terms (k, a)."""
+
+    terms: tuple[tuple[float, float], ...]
+    square: float = 0.0
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the displacement."""
+        total = u * u * self.square if self.square else u.constant(0.0)
+        for k, a in self.terms:
+            total = total + (1.0 - cos(u * k)) * a
+        return total
+
+
+@dataclass(frozen=True)
+class RiseFall:
+    """64 u**3 (1 - u)**3: up and down again, v, a at rest at both ends (3-4-5-6)."""
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the displacement, 1 at the middle."""
+        return (u * (1.0 - u)) ** 3.0 * 64.0
+
+
+@dataclass(frozen=True)
+class TwoPoint:
+    """Polynomial of degree 2 m + 1 by its derivatives 0..m at u = 0 and 1.
+
+    s = (1 - u)**(m + 1) P(u) + u**(m + 1) Q(1 - u), P and Q of degree m (Hermite's two-point form), so that either
+    end has its derivatives to the last bit. `first` and `last` are the coefficients of P and Q.
+    """
+
+    first: tuple[float, ...]
+    last: tuple[float, ...]
+
+    @staticmethod
+    def of(start: Sequence[float], end: Sequence[float]) -> TwoPoint:
+        """Make it from the derivatives 0..m at u = 0 and u = 1, by u."""
+        turned = [-x if k % 2 else x for k, x in enumerate(end)]
+        return TwoPoint(_over_power(start), _over_power(turned))
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the displacement."""
+        v, power = 1.0 - u, float(len(self.first))
+        return v**power * _horner(self.first, u) + u**power * _horner(self.last, v)
+
+
+def _over_power(derivatives: Sequence[float]) -> tuple[float, ...]:
+    """Taylor coefficients to order m of f(u)/(1 - u)**(m + 1), from the derivatives of f at 0."""
+    m = len(derivatives) - 1
+    taylor, factorial = [], 1
+    for k, value in enumerate(derivatives):
+        factorial *= k or 1
+        taylor.append(Fraction(value) / factorial)
+    return tuple(float(sum(taylor[i] * comb(m + k - i, m) for i in range(k + 1))) for k in range(m + 1))
+
+
+@dataclass(frozen=True)
+class Flank:
+    """v**5 Q(1 - v): a lobe's flank up to its nose, v = 1, with derivatives 0..4 that vanish at v = 0."""
+
+    coefficients: tuple[float, ...]
+
+    @staticmethod
+    def of(powers: Sequence[int]) -> tuple[Flank, tuple[float, ...]]:
+        """Make 1 + C2 u**2 + ..., u = 1 - v, from its five powers, and give the C as well.
+
+        C_k is the product over the other powers l of l/(l - k), negated: the s-fold zero at u = 1. The
+        division by (1 - u)**5 is done in whole fractions, so that nothing cancels near u = 1.
+        """
+        full = [Fraction(0)] * (powers[-1] + 1)
+        full[0] = Fraction(1)
+        for k in powers:
+            c = Fraction(-1)
+            for other in powers:
+                if other != k:
+                    c *= Fraction(other, other - k)
+            full[k] = c
+        quotient = [
+            sum((full[i] * comb(m - i + 4, 4) for i in range(m + 1)), Fraction(0)) for m in range(powers[-1] - 4)
+        ]
+        return Flank(tuple(map(float, quotient))), tuple(float(full[k]) for k in powers)
+
+    def __call__(self, v: Series, /) -> Series:
+        """Give the displacement, 1 at the nose."""
+        return v**5.0 * _horner(self.coefficients, 1.0 - v)
+
+
+@dataclass(frozen=True)
+class Together:
+    """Sum of functions."""
+
+    parts: tuple[Stretch, ...]
+
+    def __call__(self, u: Series, /) -> Series:
+        """Give the sum."""
+        total = self.parts[0](u)
+        for part in self.parts[1:]:
+            total = total + part(u)
+        return total
+
+
+def _horner(coefficients: Sequence[float], x: Series) -> Series:
+    total = x.constant(coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        total = total * x + coefficient
+    return total

@@ -1,0 +1,257 @@
+"""The catalogue of motion laws, and laws made to measure: SCCA, trapezoids, boundary values, an unequal split.
+
+SCCA (sine, constant, cosine acceleration): R. L. Norton, Cam Design and Manufacturing Handbook, chapter 4. Harmonics:
+F. Freudenstein, On the dynamics of high-speed cam profiles, 1960; A. S. Gutman, 1961. Cubics, harmonics, trapezoids:
+H. A. Rothbart, Cam Design Handbook, chapters 2 and 3. Polynomials by boundary values: VDI 2143.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from kin.law.piecewise import Piecewise
+from kin.law.programme import LAWS, IntentError, Law, Polynomial, mirrored, symmetric
+from kin.law.segment import Affine, Stretch
+from kin.law.sources.functions import Cosines, Sines, TwoPoint
+from kin.law.sources.peaks import peaks
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+Shape = Literal["sin", "cos", "flat"]
+
+_PI = math.pi
+_SAME = 4 * 2.0**-52  # shares that differ by less are the same
+_LEAST_SHARE = 1e-6  # of a run: a shorter one is a jump in all but name
+
+
+def scca(sine: float, constant: float, velocity: float = 0.0, field: str = "law") -> Law:
+    """Make the law of sine, constant and cosine acceleration, shares of the accelerating half, with constant velocity.
+
+    `sine` and `constant` are b and c, d = 1 - b - c is the cosine's; `velocity` is the share of the whole segment in
+    the middle at constant velocity. A member that has a name is that law. IntentError for shares out of bounds.
+    """
+    b, c, x = float(sine), float(constant), float(velocity)
+    d = 1.0 - b - c
+    d = 0.0 if abs(d) <= _SAME else d
+    for name, share in (("sine", b), ("constant", c), ("velocity", x)):
+        if not (share == 0.0 or _LEAST_SHARE <= share <= 1.0):
+            raise IntentError(f"`{name}` is a share: 0, or {_LEAST_SHARE:g} to 1, not {share:.9g}", f"{field}.{name}")
+    if d and d < _LEAST_SHARE:
+        raise IntentError(f"`sine` and `constant` together are at most 1, not {b + c:.9g}", field)
+    if 1.0 - x < _LEAST_SHARE:
+        raise IntentError("with `velocity: 1` nothing accelerates; the law is `constant-velocity`", f"{field}.velocity")
+    for name, member in _MEMBERS.items():
+        if name in LAWS and max(abs(m - s) for m, s in zip(member, (b, c, x), strict=True)) <= _SAME:
+            return LAWS[name]
+    motion = scca_motion(b, c, x)
+    shares = f"sine {b:.6g}, constant {c:.6g}, velocity {x:.6g}"
+    return Law(f"scca ({shares})", motion, peaks(motion))
+
+
+def scca_motion(b: float, c: float, x: float) -> Piecewise:
+    """Displacement of a member of the SCCA family, by its three shares."""
+    d = max(1.0 - b - c, 0.0) if b + c < 1.0 - _SAME else 0.0
+    # Norton's Ca and Cv without constant velocity; with it V = Cv/(1 + x (Cv - 1)) and A = V Ca/(Cv (1 - x)).
+    plain = 4 * _PI**2 / ((_PI**2 - 8) * (b * b - d * d) - 2 * _PI * (_PI - 2) * b + _PI**2)
+    top = plain * ((b + d) / _PI + c / 2)
+    peak = plain / ((1 + x * (top - 1)) * (1 - x))
+    half = (1 - x) / 2
+    runs: list[tuple[float, float, Shape]] = []
+    knots = [0.0]
+    for share, shape in ((b, "sin"), (c, "flat"), (d, "cos")):
+        if share:
+            rate = 0.0 if shape == "flat" else _PI / (2 * share * half)
+            runs.append((peak, rate, shape))  # type: ignore[arg-type]
+            knots.append(knots[-1] + share * half)
+    if x:
+        runs.append((0.0, 0.0, "flat"))
+        knots[-1] = half
+        return symmetric([*knots, 1 - half], runs, centre=True)
+    knots[-1] = 0.5
+    if d:  # the cosine runs on over the middle
+        knots[-1] = 1 - knots[-2]
+        return symmetric(knots, runs, centre=True)
+    return symmetric(knots, runs, centre=False)
+
+
+_MEMBERS: dict[str, tuple[float, float, float]] = {
+    "parabolic": (0.0, 1.0, 0.0),
+    "harmonic": (0.0, 0.0, 0.0),
+    "cycloidal": (0.5, 0.0, 0.0),
+    "modified-trapezoid": (0.25, 0.5, 0.0),
+    "modified-sine": (0.25, 0.0, 0.0),
+    "modified-constant-velocity": (0.25, 0.0, 0.5),
+    "scca-20": (0.25, 0.0, 0.2),
+    "scca-33": (0.25, 0.0, 1 / 3),
+    "scca-66": (0.25, 0.0, 2 / 3),
+    "cycloidal-cv50": (0.5, 0.0, 0.5),
+}
+
+
+def trapezoid(ramp: float = 0.125, field: str = "law") -> Law:
+    """Make the law of trapezoidal acceleration: straight ramps over `ramp` of the segment, constant between them.
+
+    The ramp of 1/4 is a triangle. IntentError unless it is above 0 and at most 1/4.
+    """
+    if not _LEAST_SHARE <= ramp <= 0.25:
+        raise IntentError(f"a ramp takes at most a quarter of the segment, not {ramp:.9g}", field)
+    # velocity at the middle 2 = A (1/2 - ramp)
+    peak = 2 / (0.5 - ramp)
+    ramps = [(0.0, peak / ramp), (peak, 0.0), (peak, -peak / ramp)]
+    knots = [0.0, ramp, 0.5 - ramp, 0.5]
+    if ramp == 0.25:
+        del ramps[1], knots[1]
+    half: list[Stretch] = []
+    s = v = 0.0
+    for (begin, end), (a, j) in zip(pairwise(knots), ramps, strict=True):
+        half.append(Polynomial((s, v, a / 2, j / 6), begin))
+        x = end - begin
+        s, v = s + x * (v + x * (a / 2 + x * j / 6)), v + x * (a + x * j / 2)
+    return _of("trapezoid", _imaged(knots, half))
+
+
+def boundary(start: Sequence[float], end: Sequence[float], name: str = "boundary") -> Law:
+    """Make the polynomial from 0 to 1 with given v, a (and j) at u = 0 and at u = 1, each by u; degree 2 n + 1."""
+    function = TwoPoint.of((0.0, *start), (1.0, *end))
+    return _of(name, Piecewise(np.array([0.0, 1.0]), (function,)), reverses=True)
+
+
+def split(law: Law, share: float, field: str = "law") -> Law:
+    """Take a symmetric law so that it accelerates over `share` of the segment and decelerates over the rest.
+
+    Either part is half the law, stretched alike in time and stroke: velocity stays joined at Cv, and acceleration,
+    which falls to 1/(2 share) and 1/(2 - 2 share) of what it was. IntentError for a law that is not symmetric.
+    """
+    if not (math.isfinite(share) and 0.01 <= share <= 0.99):
+        raise IntentError(f"`split` lies between 0.01 and 0.99, not {share:.9g}", f"{field}.split")
+    u = np.linspace(0.0, 1.0, 33)
+    s = law.motion.derivatives(u, 0)[0]
+    if np.abs(s + s[::-1] - 1.0).max() > 1e-12:
+        raise IntentError(f"{law.name} is not symmetric: its acceleration cannot be split", f"{field}.split")
+    if share == 0.5:
+        return law
+    before, after = 2 * share, 2 * (1 - share)
+    knots, functions = [0.0], []
+    pieces = list(zip(law.motion.functions, pairwise(law.motion.knots.tolist()), strict=True))
+    for function, (begin, end) in pieces:
+        if begin < 0.5:
+            functions.append(Affine.of(function, scale=before, width=before))
+            knots.append(before * min(end, 0.5))
+    knots[-1] = share
+    for function, (_, end) in pieces:
+        if end > 0.5:
+            functions.append(Affine.of(function, offset=1 - after, scale=after, start=1 - after, width=after))
+            knots.append(1 - after * (1 - end))
+    knots[-1] = 1.0
+    motion = Piecewise(np.array(knots), tuple(functions))
+    return Law(f"{law.name} (split {share:.6g})", motion, peaks(motion), law.reverses)
+
+
+def sines(weights: Mapping[int, float], name: str) -> Law:
+    """Make s = u - sum of w_k sin(2 pi k u)/(2 pi k), at rest at both ends: all w_k together are 1."""
+    terms = tuple((2 * _PI * k, w / (2 * _PI * k)) for k, w in weights.items())
+    return _of(name, Piecewise(np.array([0.0, 1.0]), (Sines(terms),)))
+
+
+def _of(name: str, motion: Piecewise, *, reverses: bool = False) -> Law:
+    return Law(name, motion, peaks(motion), reverses)
+
+
+def _imaged(knots: Sequence[float], half: Sequence[Stretch]) -> Piecewise:
+    """A symmetric law from its first half."""
+    images = [mirrored(function) for function in reversed(half)]
+    return Piecewise(np.array([*knots, *(1 - u for u in reversed(knots[:-1]))]), (*half, *images))
+
+
+def _single(name: str, function: Stretch, *, reverses: bool = False) -> Law:
+    return _of(name, Piecewise(np.array([0.0, 1.0]), (function,)), reverses=reverses)
+
+
+def _member(name: str) -> Law:
+    motion = scca_motion(*_MEMBERS[name])
+    return Law(name, motion, peaks(motion))
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A law of the catalogue: how it is made, and its displacement in a line."""
+
+    make: Callable[[], Law]
+    formula: str
+
+
+def _catalogue() -> dict[str, _Entry]:
+    half = (0.0, 0.5)
+    double = Cosines(((_PI, 0.5), (2 * _PI, -0.125)))
+    square = Cosines(((4 * _PI, -1 / (4 * _PI**2)),), square=2.0)
+    return {
+        "constant-velocity": _Entry(lambda: _single("constant-velocity", Polynomial((0.0, 1.0))), "u"),
+        **{name: _Entry(lambda name=name: LAWS[name], text) for name, text in _TODAY.items()},  # type: ignore[misc]
+        **{
+            name: _Entry(lambda name=name: _member(name), f"scca: sine {b:.3g}, constant {c:.3g}, velocity {x:.3g}")  # type: ignore[misc]
+            for name, (b, c, x) in _MEMBERS.items()
+            if name not in LAWS
+        },
+        "double-harmonic": _Entry(
+            lambda: _single("double-harmonic", double, reverses=True), "(1 - cos pi u)/2 - (1 - cos 2 pi u)/8"
+        ),
+        "trapezoid": _Entry(trapezoid, "acceleration a trapezoid, ramps of 1/8"),
+        "sine-squared": _Entry(
+            lambda: _of("sine-squared", _imaged(half, [square])), "acceleration 8 sin^2 2 pi u, and its image"
+        ),
+        "polynomial-23": _Entry(
+            lambda: _single("polynomial-23", Polynomial((0.5, 1.5, 0.0, -2.0), 0.5)), "3 u^2 - 2 u^3"
+        ),
+        "cubic": _Entry(
+            lambda: _of("cubic", _imaged(half, [Polynomial((0.0, 0.0, 0.0, 4.0))])), "4 u^3, and its image"
+        ),
+        "freudenstein-13": _Entry(
+            lambda: sines({1: 27 / 28, 3: 1 / 28}, "freudenstein-13"), "u - 27/(56 pi) (sin 2 pi u + sin 6 pi u/81)"
+        ),
+        "freudenstein-135": _Entry(
+            lambda: sines({1: 1125 / 1192, 3: 1125 / 1192 / 18, 5: 1125 / 1192 / 250}, "freudenstein-135"),
+            "u - 1125/(2384 pi) (sin 2 pi u + sin 6 pi u/54 + sin 10 pi u/1250)",
+        ),
+        "gutman-13": _Entry(
+            lambda: sines({1: 15 / 16, 3: 1 / 16}, "gutman-13"), "u - 15/(32 pi) sin 2 pi u - sin 6 pi u/(96 pi)"
+        ),
+    }
+
+
+_TODAY = {
+    "parabolic": "2 u^2, and its image",
+    "harmonic": "(1 - cos pi u)/2",
+    "cycloidal": "u - sin 2 pi u/(2 pi)",
+    "modified-trapezoid": "scca: sine 0.25, constant 0.5",
+    "modified-sine": "scca: sine 0.25, constant 0",
+    "modified-constant-velocity": "scca: sine 0.25, constant 0, velocity 0.5",
+    "polynomial-345": "10 u^3 - 15 u^4 + 6 u^5",
+    "polynomial-4567": "35 u^4 - 84 u^5 + 70 u^6 - 20 u^7",
+}
+_ENTRIES = _catalogue()
+
+NAMES: tuple[str, ...] = tuple(_ENTRIES)
+
+
+def formula(name: str) -> str:
+    """The displacement of a law of the catalogue, in a line of text."""
+    return _ENTRIES[name].formula
+
+
+@cache
+def named(name: str, field: str = "motion") -> Law:
+    """Look up a law of the catalogue, made when first asked for; IntentError lists the names if there is none such."""
+    if name not in _ENTRIES:
+        from difflib import get_close_matches  # for the message alone
+
+        close = get_close_matches(name, NAMES, 1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        raise IntentError(f"no law is called {name!r}{hint} (laws: {', '.join(NAMES)})", field)
+    return _ENTRIES[name].make()

@@ -1,0 +1,202 @@
+"""A motion over an angle, from whatever source: derivatives, bounds, breaks, dwells, and how its parts join."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.law.piecewise import Piecewise, Side
+from kin.law.programme import IntentError, Programme
+from kin.law.segment import Affine, Constant
+from kin.law.sources.peaks import extremes
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.segment import Series, Stretch
+    from kin.numeric.arrays import Array
+
+
+ORDERS = 3  # displacement, velocity, acceleration and jerk are held together at the joints
+_JOIN = 1e-9  # of the greatest value of a derivative: a jump below this is rounding
+_CLOSED = 1e-11  # of the greatest of S, S', S'': a jump of S or S' below this is rounding, as for a lift
+_NAMES = ("S", "S'", "S''", "S'''")
+_LOOKS = 64  # places at which the size of a derivative is looked at, besides the knots
+_SEAM_ORDER = 6  # derivatives that agree where a function runs on over the seam
+
+
+class Rest(NamedTuple):
+    """A dwell from `begin` to `end` (rad, `end` may lie beyond a turn) at a displacement."""
+
+    begin: float
+    end: float
+    level: float
+
+
+@dataclass(frozen=True)
+class Joint:
+    """An angle (rad) at which derivatives jump: for each that does its order, and the limits before and after."""
+
+    at: float
+    jumps: tuple[tuple[int, float, float], ...]
+
+    def said(self, unit: str = "mm") -> str:
+        """Say what jumps, lowest derivative first, by how much, and where."""
+        per = ("", "/rad", "/rad^2", "/rad^3")
+        parts = [f"{_NAMES[k]} jumps from {_figure(a)} to {_figure(b)} {unit}{per[k]}" for k, a, b in self.jumps]
+        return f"{' and '.join(parts)} at {math.degrees(self.at):.6g} degrees"
+
+
+def _figure(value: float) -> str:
+    return f"{value + 0.0:.6g}"
+
+
+@dataclass(frozen=True)
+class Motion(Programme):
+    """Displacement S over [0, total] rad, mm or rad; `around` tells how the end is followed by the beginning.
+
+    With 1 the motion repeats. With -1 it goes on as S(total) - S(t - total), as a constant-breadth cam does after its
+    half turn. With None nothing is said.
+    """
+
+    around: int | None = 1
+
+    def derivatives(self, theta: float | Array, order: int, side: Side = 1) -> Array:
+        """Give S and its derivatives at theta (n,) in [0, total], (order + 1, n); at a break the limit from `side`."""
+        return self.motion.derivatives(theta, order, side)
+
+    def enclosure(self, lower: float | Array, upper: float | Array, order: int) -> tuple[Array, Array]:
+        """Enclose S and its derivatives over [lower, upper]: mid, rad, (order + 1, n) each; see `Piecewise`."""
+        return self.motion.enclosure(lower, upper, order)
+
+    def on(self, t: Series, side: Side = 1) -> Series:
+        """Apply S to jets (Taylor series at points) or ball jets (proved Taylor series over intervals)."""
+        return self.motion.on(t, side)
+
+    @property
+    def breaks(self) -> Array:
+        """Angles inside (0, total) at which a derivative may jump, rising."""
+        return self.motion.breaks
+
+    @cached_property
+    def rests(self) -> tuple[Rest, ...]:
+        """Dwells, exact ones, rising; one that runs over the end of a repeating motion is one."""
+        knots = self.motion.knots.tolist()
+        found = [
+            Rest(knots[i], knots[i + 1], f.value)
+            for i, f in enumerate(self.motion.functions)
+            if isinstance(f, Constant)
+        ]
+        over = self.around == 1 and len(found) > 1 and found[0].begin == 0.0 and found[-1].end == knots[-1]
+        if over and abs(found[0].level - found[-1].level) <= _CLOSED * self._size:
+            first, last = found.pop(0), found.pop()
+            found.append(Rest(last.begin, self.total + first.end, last.level))
+        return tuple(found)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Angles at which S, S', S'' or S''' jump, with what jumps; the end of a motion that goes on is at 0."""
+        knots = self.motion.knots
+        right, left = self.motion.derivatives(knots[:-1], ORDERS, 1), self.motion.derivatives(knots[1:], ORDERS, -1)
+        size = np.maximum(np.abs(right).max(axis=1), np.abs(left).max(axis=1))
+        between = self.motion.derivatives(np.linspace(knots[0], knots[-1], _LOOKS), ORDERS)
+        size = np.maximum(size, np.abs(between).max(axis=1))
+        found = []
+        if self.around is not None:
+            end = left[:, -1] * self.around
+            if self.around < 0:
+                end[0] = right[0, 0]  # S begins anew at the end's own level
+            found.append((0.0, end, right[:, 0]))
+        found += [(float(knots[i]), left[:, i - 1], right[:, i]) for i in range(1, len(knots) - 1)]
+        joints = []
+        for at, before, after in found:
+            jumps = np.flatnonzero(np.abs(after - before) > _JOIN * size)
+            if len(jumps):
+                joints.append(Joint(at, tuple((int(k), float(before[k]), float(after[k])) for k in jumps)))
+        return tuple(joints)
+
+    @cached_property
+    def _size(self) -> float:
+        knots = self.motion.knots
+        return float(np.abs(self.motion.derivatives(np.linspace(knots[0], knots[-1], _LOOKS), 2)).max())
+
+    def demand_joined(self, field: str = "motion", unit: str = "mm") -> Motion:
+        """Return the motion if S and S' join all round, else raise IntentError with the first place where not."""
+        for joint in self.joints:
+            low = [(k, a, b) for k, a, b in joint.jumps if k < 2 and abs(b - a) > _CLOSED * self._size]
+            if low:
+                at = math.degrees(joint.at)
+                said = Joint(joint.at, tuple(low)).said(unit)
+                raise IntentError(f"the motion does not join: {said}", field, at)
+        return self
+
+    @cached_property
+    def range(self) -> tuple[float, float]:
+        """Least and greatest displacement."""
+        least, _, greatest, _ = extremes(self.motion, 0)
+        return least, greatest
+
+    def raised(self, by: float) -> Motion:
+        """The motion with a constant added."""
+        if by == 0.0:
+            return self
+        functions = tuple(_raised(f, by) for f in self.motion.functions)
+        return Motion(Piecewise(self.motion.knots, functions), self.around)
+
+    def from_lowest(self) -> Motion:
+        """The motion less its least value, so that it stands at 0 where it is lowest."""
+        least = self.range[0]
+        return self if abs(least) <= _CLOSED * self._size else self.raised(-least)
+
+    def repeated(self, count: int) -> Motion:
+        """The motion `count` times over, one after another."""
+        if count == 1:
+            return self
+        knots, functions = self.motion.knots, self.motion.functions
+        total = self.total * count
+        places = np.concatenate([knots[:-1] + i * (total / count) for i in range(count)] + [np.array([total])])
+        moved = [_later(f, i * (total / count)) for i in range(count) for f in functions]
+        return Motion(Piecewise(places, tuple(moved)), self.around)
+
+    def periodic(self, field: str = "motion", unit: str = "mm") -> Piecewise:
+        """S with period `total`, joined in S and S'; a dwell or a function that runs over the end is one stretch."""
+        self.demand_joined(field, unit)
+        knots, functions = self.motion.knots.tolist(), list(self.motion.functions)
+        if len(functions) > 1 and isinstance(functions[0], Constant) and isinstance(functions[-1], Constant):
+            begin = knots[-2] - self.total
+            return Piecewise(np.array([begin, *knots[1:-2], begin + self.total]), tuple(functions[:-1]), self.total)
+        return Piecewise(self.motion.knots, self.motion.functions, self.total, self._runs_on())
+
+    def _runs_on(self) -> bool:
+        """Tell whether one function alone goes on over the end as it began."""
+        if len(self.motion.functions) > 1:
+            return False
+        begin, end = self.at_start(_SEAM_ORDER), self.at_end(_SEAM_ORDER)
+        return bool((np.abs(end - begin) <= _JOIN * (1 + np.abs(begin).max())).all())
+
+
+def _raised(function: Stretch, by: float) -> Stretch:
+    return Constant(function.value + by) if isinstance(function, Constant) else Affine.of(function, offset=by)
+
+
+def _later(function: Stretch, by: float) -> Stretch:
+    if isinstance(function, Constant) or by == 0.0:
+        return function
+    return Affine.of(function, start=by)
+
+
+def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | None = 1) -> Motion:
+    """Make a motion from stretches; neighbouring dwells at one level become one."""
+    kept: list[Stretch] = []
+    at = [float(knots[0])]
+    for function, end in zip(functions, knots[1:], strict=True):
+        if kept and isinstance(function, Constant) and kept[-1] == function:
+            at[-1] = float(end)
+            continue
+        kept.append(function)
+        at.append(float(end))
+    return Motion(Piecewise(np.array(at), tuple(kept)), around)

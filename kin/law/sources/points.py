@@ -1,0 +1,93 @@
+"""A motion through points: a quintic spline, periodic or at rest beside dwells."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.programme import IntentError
+from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, demand_whole, laid
+from kin.law.sources.spline import Ends, through
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.segment import Stretch
+    from kin.law.sources.motion import Motion
+    from kin.numeric.arrays import Array
+
+
+MOST_POINTS = 1000
+_LEAST = 3  # points of a motion without a dwell
+
+
+def from_points(
+    theta: Sequence[float] | Array,
+    s: Sequence[float] | Array,
+    total: float = 2 * math.pi,
+    *,
+    dwells: Sequence[tuple[float, float]] = (),
+    around: int | None = 1,
+    field: str = "motion.points",
+) -> Motion:
+    """Make the C4 quintic spline through displacements s at angles theta (rad, rising, in [0, total]).
+
+    Each of `dwells` runs from a point to the next one (beyond `total` over the end), both of one displacement: there
+    S rests, and S' = S'' = 0 at its ends. Without any, and `around` 1, the spline is periodic. Raises IntentError for
+    angles that do not rise, a dwell that no points bound, and too few or too many points.
+    """
+    angles, values = np.asarray(theta, dtype=float), np.asarray(s, dtype=float)
+    if angles.shape != values.shape or angles.ndim != 1 or len(angles) > MOST_POINTS:
+        raise IntentError(f"points are at most {MOST_POINTS} pairs of an angle and a displacement", field)
+    if not (np.isfinite(angles).all() and np.isfinite(values).all()):
+        raise IntentError("angles and displacements are finite numbers", field)
+    falls = np.flatnonzero(np.diff(angles) <= SAME_ANGLE)
+    if len(falls):
+        i = int(falls[0]) + 1
+        before, here = np.degrees(angles[i - 1 : i + 1])
+        raise IntentError(f"the angles must rise; {here:.6g} follows {before:.6g} degrees", f"{field}[{i}]")
+    if len(angles) and (angles[0] < -SAME_ANGLE or angles[-1] > total + SAME_ANGLE):
+        raise IntentError(f"the angles lie between 0 and {math.degrees(total):.6g} degrees", field)
+    if around == 1 and len(angles) > 1 and angles[-1] - angles[0] > total - SAME_ANGLE:
+        if abs(values[-1] - values[0]) > 1e-9 * max(1.0, float(np.abs(values).max())):
+            raise IntentError(
+                f"the motion does not close: it is {values[0]:.6g} at the first point, {values[-1]:.6g} a turn later",
+                f"{field}[{len(values) - 1}]",
+            )
+        angles, values = angles[:-1], values[:-1]
+    rows = Samples(angles, values, np.arange(len(angles)))
+    demand_whole(rows, total, around, field)
+    if len(angles) < (2 if dwells else _LEAST):
+        raise IntentError(f"a motion needs {_LEAST} points, or two and a dwell", field)
+    found = sorted(_dwelling(rows, dwell, total, around, field) for dwell in dwells)
+    return laid(rows, found, total, around, _exact)
+
+
+def _exact(rows: Samples, ends: Ends | None, between: tuple[float, float], /) -> tuple[Array, Sequence[Stretch]]:
+    if ends is not None:
+        return rows.theta, through(rows.theta, rows.s, ends)
+    sites = np.append(rows.theta, between[1])
+    return sites, through(sites, np.append(rows.s, rows.s[0]), None)
+
+
+def _dwelling(rows: Samples, dwell: tuple[float, float], total: float, around: int | None, field: str) -> Dwelling:
+    n, ends = len(rows.theta), []
+    for angle in dwell:
+        turns = math.floor((angle + SAME_ANGLE) / total) if around == 1 else 0
+        i = int(np.argmin(np.abs(rows.theta - (angle - turns * total))))
+        if abs(rows.theta[i] - (angle - turns * total)) > SAME_ANGLE:
+            raise IntentError(f"no point stands at {math.degrees(angle):.6g} degrees, where a dwell ends", field)
+        ends.append(i + turns * n)
+    first, last = ends
+    if last != first + 1:
+        at = [math.degrees(a) for a in dwell]
+        raise IntentError(f"a dwell runs from a point to the next; from {at[0]:.6g} to {at[1]:.6g} is none", field)
+    a, b = float(rows.s[first % n]), float(rows.s[last % n])
+    if a != b:
+        at = [math.degrees(x) for x in dwell]
+        raise IntentError(
+            f"no dwell from {at[0]:.6g} to {at[1]:.6g} degrees: it would climb from {a:.6g} to {b:.6g}", field
+        )
+    return Dwelling(first, last, a)

@@ -1,0 +1,256 @@
+"""A programme of segments: rises, returns, dwells, absolute strokes, matched segments, formulas, one after another."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.piecewise import Piecewise
+from kin.law.programme import IntentError, Law
+from kin.law.segment import Affine, Constant, Stretch
+from kin.law.sources.functions import RiseFall, TwoPoint
+from kin.law.sources.motion import Motion, joined
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.formula.formula import Formula
+    from kin.numeric.arrays import Array
+
+
+_ANGLE_TOLERANCE = 1e-9  # rad: of the sum of a programme's segments, and the least segment
+_START = 1e-12  # of a formula's greatest value: a value at u = 0 below this is rounding
+
+
+@dataclass(frozen=True)
+class State:
+    """Velocity, acceleration and jerk at a joint, per rad, rad^2, rad^3."""
+
+    v: float = 0.0
+    a: float = 0.0
+    j: float = 0.0
+
+
+@dataclass(frozen=True)
+class Matched:
+    """Law of a segment that takes v and a (degree 7: and j) from its neighbours, or where given from `at_*`.
+
+    Two of them in a row need the state between them given by one: with v = 0 and an acceleration that is the quick
+    return (VDI 2143, R, G, U, B).
+    """
+
+    degree: int = 5
+    at_start: State | None = None
+    at_end: State | None = None
+
+
+@dataclass(frozen=True)
+class Dwell:
+    """A rest over an angle, rad."""
+
+    over: float
+
+
+@dataclass(frozen=True)
+class Move:
+    """A stroke over an angle (rad): `by` a signed stroke, or `to` an absolute displacement, exactly one of them."""
+
+    over: float
+    law: Law | Matched
+    by: float | None = None
+    to: float | None = None
+
+
+@dataclass(frozen=True)
+class RiseAndFall:
+    """Up by `by` and back again over an angle (rad), by the polynomial 3-4-5-6."""
+
+    over: float
+    by: float
+
+
+@dataclass(frozen=True)
+class Given:
+    """A formula f(u), u from 0 to 1 over an angle (rad), counted from the segment's start, times `scale`."""
+
+    over: float
+    formula: Formula
+    scale: float = 1.0
+
+
+Step = Dwell | Move | RiseAndFall | Given
+
+
+@dataclass
+class _Part:
+    """A segment in the making, over [begin, end], from `level` to `level + by`; its stretches, once they are known."""
+
+    field: str
+    step: Step
+    begin: float
+    end: float
+    level: float = 0.0
+    by: float = 0.0
+    built: Piecewise | None = None
+
+    def lay(self, knots: Sequence[float], functions: Sequence[Stretch]) -> None:
+        self.built = Piecewise(np.array(knots), tuple(functions))
+
+
+def programme(segments: Sequence[Step], total: float, *, around: int | None = 1, field: str = "motion") -> Motion:
+    """Join segments into a motion over [0, total] rad.
+
+    `around` is as for `Motion`; a matched segment at an end takes its neighbour across it, and rest where it is None.
+    Raises IntentError if the angles do not sum to `total` within 1e-9 rad, for a segment that cannot be, and where
+    two matched segments meet with no state given. Velocities that jump are left to `Motion.joints`.
+    """
+    if not segments:
+        raise IntentError("a motion needs at least one segment", field)
+    for i, segment in enumerate(segments):
+        if not (math.isfinite(segment.over) and segment.over > _ANGLE_TOLERANCE):
+            degrees = math.degrees(segment.over)
+            raise IntentError(f"the angle of a segment must be above 0, not {degrees:.6g} degrees", f"{field}[{i}]")
+    covered = math.fsum(segment.over for segment in segments)
+    if not abs(covered - total) <= _ANGLE_TOLERANCE:
+        raise IntentError(
+            f"the segments cover {math.degrees(covered):.10g} degrees, {math.degrees(total):.10g} are wanted", field
+        )
+    ends = [math.fsum(segment.over for segment in segments[:i]) for i in range(len(segments))] + [total]
+    parts: list[_Part] = []
+    strokes: list[float] = []
+    for i, (step, (begin, end)) in enumerate(zip(segments, pairwise(ends), strict=True)):
+        part = _Part(f"{field}[{i}]", step, begin, end, level=math.fsum(strokes))
+        _build(part)
+        strokes.append(part.by)
+        parts.append(part)
+    for i, part in enumerate(parts):
+        if part.built is None:
+            _match(parts, i, around)
+    knots: list[float] = [0.0]
+    functions: list[Stretch] = []
+    for part in parts:
+        assert part.built is not None
+        functions += part.built.functions
+        knots += part.built.knots[1:].tolist()
+    return joined(knots, functions, around)
+
+
+def _build(part: _Part) -> None:
+    """Lay the stretches of a segment, all but a matched one's, and tell its stroke."""
+    step, begin, end = part.step, part.begin, part.end
+    if isinstance(step, Dwell):
+        part.lay([begin, end], [Constant(part.level)])
+    elif isinstance(step, RiseAndFall):
+        _demand_stroke(step.by, part.field)
+        moved = Affine(RiseFall(), offset=part.level, scale=step.by, start=begin, width=end - begin)
+        part.lay([begin, end], [moved])
+    elif isinstance(step, Given):
+        _formula(part, step)
+    else:
+        part.by = _stroke(step, part)
+        if isinstance(step.law, Law):
+            _lay_law(part, step.law)
+
+
+def _stroke(step: Move, part: _Part) -> float:
+    if (step.by is None) == (step.to is None):
+        raise IntentError("a segment has either a stroke or an absolute displacement", part.field)
+    by = step.by if step.by is not None else step.to - part.level  # type: ignore[operator]
+    if step.to is not None and abs(by) <= 1e-12 * max(abs(step.to), abs(part.level)):
+        raise IntentError(f"the motion is at {step.to:.6g} already; write a dwell", f"{part.field}.to")
+    _demand_stroke(by, part.field)
+    return by
+
+
+def _demand_stroke(by: float, field: str) -> None:
+    if not (math.isfinite(by) and by != 0.0):
+        raise IntentError(f"the stroke of a segment must be a number other than 0, not {by:.6g}", field)
+
+
+def _lay_law(part: _Part, law: Law) -> None:
+    begin, width = part.begin, part.end - part.begin
+    motion, u = law.motion, law.motion.knots[1:-1].tolist()
+    if part.by < 0 and law.reverses:  # s(1 - u), from the foot of the return
+        place = {"offset": part.level + part.by, "scale": -part.by, "start": part.end, "width": -width}
+        functions = [Affine.of(f, **place) for f in reversed(motion.functions)]
+        part.lay([begin, *(part.end - x * width for x in reversed(u)), part.end], functions)
+        return
+    place = {"offset": part.level, "scale": part.by, "start": begin, "width": width}
+    part.lay([begin, *(begin + x * width for x in u), part.end], [Affine.of(f, **place) for f in motion.functions])
+
+
+def _formula(part: _Part, step: Given) -> None:
+    from kin.law.sources.whole_turn import pieces_of
+
+    field = f"{part.field}.displacement"
+    knots, functions = pieces_of(step.formula, 0.0, 1.0, field, "u")
+    whole = Piecewise(np.array(knots), tuple(functions))
+    ends = step.scale * whole.derivatives(np.array([0.0, 1.0]), 0, np.array([1, -1]))[0]
+    size = step.scale * np.abs(whole.derivatives(np.linspace(0.0, 1.0, 33), 0)[0]).max()
+    if abs(ends[0]) > _START * size:
+        raise IntentError(
+            f"a displacement counts from the segment's start: f(0) must be 0, not {ends[0] / step.scale:.6g}", field
+        )
+    width = part.end - part.begin
+    place = {"offset": part.level, "scale": step.scale, "start": part.begin, "width": width}
+    inner = [part.begin + u * width for u in knots[1:-1]]
+    part.lay([part.begin, *inner, part.end], [Affine.of(f, **place) for f in functions])
+    part.by = float(ends[1])
+
+
+def _match(parts: Sequence[_Part], i: int, around: int | None) -> None:
+    """Lay a matched segment between its neighbours' states, or those given."""
+    part = parts[i]
+    step = part.step
+    assert isinstance(step, Move)
+    assert isinstance(step.law, Matched)
+    if step.law.degree not in (5, 7):
+        raise IntentError(f"a matched segment has degree 5 or 7, not {step.law.degree}", f"{part.field}.law")
+    order = (step.law.degree - 1) // 2
+    width = part.end - part.begin
+    scales = np.array([width**k for k in range(1, order + 1)])
+    start, end = (_state(parts, i, way, around)[:order] * scales for way in (-1, 1))
+    function = TwoPoint.of((0.0, *start.tolist()), (part.by, *end.tolist()))
+    part.lay([part.begin, part.end], [Affine(function, offset=part.level, start=part.begin, width=width)])
+
+
+def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Array:
+    """v, a and j at the end of matched segment i on the side `way` (-1 its start), (3,)."""
+    given = _given(parts[i], way)
+    if given is not None:
+        return given
+    sign, n = 1.0, i + way
+    if not 0 <= n < len(parts):
+        if around is None:
+            return np.zeros(3)
+        sign, n = float(around), n % len(parts)
+    other = parts[n]
+    if other.built is not None and not _is_matched(other):
+        at, side = (other.end, -1) if way < 0 else (other.begin, 1)
+        return sign * other.built.derivatives(at, 3, side)[1:, 0]
+    state = _given(other, -way)
+    if state is None:
+        first = parts[i] if way > 0 else other
+        where = math.degrees(first.end)
+        raise IntentError(
+            f"two matched segments meet at {where:.6g} degrees: give the first one `at_end: {{v: ..., a: ...}}`",
+            first.field,
+            where,
+        )
+    return sign * state
+
+
+def _is_matched(part: _Part) -> bool:
+    return isinstance(part.step, Move) and isinstance(part.step.law, Matched)
+
+
+def _given(part: _Part, way: int) -> Array | None:
+    """The state that a matched segment has been given at its end on a side, if it is matched and has."""
+    if not (isinstance(part.step, Move) and isinstance(part.step.law, Matched)):
+        return None
+    state = part.step.law.at_start if way < 0 else part.step.law.at_end
+    return None if state is None else np.array([state.v, state.a, state.j])

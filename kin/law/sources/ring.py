@@ -1,0 +1,179 @@
+"""Motions from samples: what lies between the dwells is fitted stretch by stretch, and laid round the turn."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from kin.law.programme import IntentError
+from kin.law.segment import Affine, Constant, Stretch
+from kin.law.sources.motion import Motion, joined
+from kin.law.sources.spline import Ends
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array
+
+
+SAME_ANGLE = 1e-9  # rad
+_FOLDED = 1e-13  # rad: by so much at most folding by a turn rounds
+
+
+class Samples(NamedTuple):
+    """Angles (rad, rising), displacements, and the line of each in its file, each (n,)."""
+
+    theta: Array
+    s: Array
+    lines: NDArray[np.intp]
+
+    def part(self, which: slice) -> Samples:
+        """Some of the rows."""
+        return Samples(self.theta[which], self.s[which], self.lines[which])
+
+
+class Dwelling(NamedTuple):
+    """A dwell from row `first` to row `last` (counted on beyond the turn) at a level."""
+
+    first: int
+    last: int
+    level: float
+
+
+class Fit(Protocol):
+    """How the rows of one moving stretch become spans."""
+
+    def __call__(
+        self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
+    ) -> tuple[Array, Sequence[Stretch]]:
+        """Give the sites (m + 1,) and m functions."""
+
+
+def laid(rows: Samples, dwells: Sequence[Dwelling], total: float, around: int | None, fit: Fit) -> Motion:
+    """Fit the rows between the dwells and lay everything over [0, total].
+
+    Rows of a motion that repeats (`around` 1) lie within one turn, rows of the others reach from 0 to `total`. With
+    -1 the motion is fitted over two halves, the second one upside down; with None it rests at both ends.
+    """
+    if around == 1:
+        return _settled(*_round(rows, dwells, total, fit), total, total)
+    if around is None:
+        return _open(rows, dwells, fit)
+    n = len(rows.theta) - 1
+    other = rows.s[0] + rows.s[-1] - rows.s[:-1]
+    both = Samples(
+        np.concatenate([rows.theta[:-1], rows.theta[:-1] + total]),
+        np.concatenate([rows.s[:-1], other]),
+        np.concatenate([rows.lines[:-1], rows.lines[:-1]]),
+    )
+    again = [Dwelling(d.first + n, d.last + n, rows.s[0] + rows.s[-1] - d.level) for d in dwells]
+    knots, functions = _round(both, merged([*dwells, *again], 2 * n), 2 * total, fit)
+    half = _settled(knots, functions, 2 * total, total)
+    start = float(half.derivatives(0.0, 0)[0, 0])
+    return Motion(half.raised(-start).motion, -1)
+
+
+def merged(dwells: Sequence[Dwelling], count: int) -> list[Dwelling]:
+    """Dwells that touch become one, across the end of the turn too."""
+    found: list[Dwelling] = []
+    for dwell in dwells:
+        if found and found[-1].last == dwell.first:
+            found[-1] = Dwelling(found[-1].first, dwell.last, dwell.level)
+        else:
+            found.append(dwell)
+    if len(found) > 1 and found[-1].last == found[0].first + count:
+        first = found.pop(0)
+        found[-1] = Dwelling(found[-1].first, first.last + count, first.level)
+    return found
+
+
+def _round(rows: Samples, dwells: Sequence[Dwelling], turn: float, fit: Fit) -> tuple[list[float], list[Stretch]]:
+    """Stretches round a turn, from the first row or the first dwell on."""
+    n = len(rows.theta)
+    if not dwells:
+        sites, spans = fit(rows, None, (float(rows.theta[0]), float(rows.theta[0]) + turn))
+        return sites.tolist(), list(spans)
+    knots: list[float] = []
+    functions: list[Stretch] = []
+    following = [*dwells[1:], Dwelling(dwells[0].first + n, dwells[0].last + n, dwells[0].level)]
+    for dwell, after in zip(dwells, following, strict=True):
+        knots.append(_angle(rows, dwell.first, turn))
+        functions.append(Constant(dwell.level))
+        index = np.arange(dwell.last, after.first + 1)
+        part = Samples(rows.theta[index % n] + turn * (index // n), rows.s[index % n], rows.lines[index % n])
+        between = float(part.theta[0]), float(part.theta[-1])
+        sites, spans = fit(part, Ends(dwell.level, after.level), between)
+        knots += sites[:-1].tolist()
+        functions += spans
+    return [*knots, knots[0] + turn], functions
+
+
+def _angle(rows: Samples, index: int, turn: float) -> float:
+    n = len(rows.theta)
+    return float(rows.theta[index % n]) + turn * (index // n)
+
+
+def _open(rows: Samples, dwells: Sequence[Dwelling], fit: Fit) -> Motion:
+    knots, functions = [float(rows.theta[0])], []
+    last, level = 0, float(rows.s[0])
+    stops = [*dwells, Dwelling(len(rows.s) - 1, len(rows.s) - 1, float(rows.s[-1]))]
+    for dwell in stops:
+        if dwell.first > last:
+            part = rows.part(slice(last, dwell.first + 1))
+            sites, spans = fit(part, Ends(level, dwell.level), (float(part.theta[0]), float(part.theta[-1])))
+            knots += sites[1:].tolist()
+            functions += list(spans)
+        if dwell.last > dwell.first:
+            knots.append(float(rows.theta[dwell.last]))
+            functions.append(Constant(dwell.level))
+        last, level = dwell.last, dwell.level
+    return joined(knots, functions, None).raised(-float(rows.s[0]))
+
+
+def _settled(knots: Sequence[float], functions: Sequence[Stretch], turn: float, total: float) -> Motion:
+    """Fold stretches that cover one turn from anywhere into [0, turn], and keep [0, total]."""
+    pieces: list[tuple[float, float, Stretch]] = []
+    for function, begin, end in zip(functions, knots[:-1], knots[1:], strict=True):
+        shift = turn * math.floor((begin + SAME_ANGLE) / turn)
+        low, high, moved = begin - shift, end - shift, _shifted(function, -shift)
+        if high > turn + SAME_ANGLE:
+            pieces += [(low, turn, moved), (0.0, high - turn, _shifted(moved, -turn))]
+        else:
+            pieces.append((max(low, 0.0), high, moved))
+    pieces.sort(key=lambda piece: piece[0])
+    kept = [piece for piece in pieces if piece[0] < total - SAME_ANGLE]
+    at = [0.0, *(piece[0] for piece in kept[1:]), total]
+    return joined(at, [_on_knots(piece[2], ends) for piece, ends in zip(kept, pairwise(at), strict=True)])
+
+
+def _on_knots(function: Stretch, ends: tuple[float, float]) -> Stretch:
+    """The function counted from a knot of its own exactly, where folding has rounded that."""
+    if isinstance(function, Affine):
+        for knot in ends:
+            if abs(function.start - knot) <= _FOLDED:
+                return replace(function, start=knot)
+    return function
+
+
+def _shifted(function: Stretch, by: float) -> Stretch:
+    if by == 0.0 or isinstance(function, Constant):
+        return function
+    return Affine.of(function, start=by)
+
+
+def demand_whole(rows: Samples, total: float, around: int | None, field: str) -> None:
+    """Refuse rows that do not reach from 0 to `total`, where the motion does not repeat."""
+    if around == 1:
+        return
+    if abs(rows.theta[0]) > SAME_ANGLE or abs(rows.theta[-1] - total) > SAME_ANGLE:
+        first, last = np.degrees(rows.theta[[0, -1]])
+        raise IntentError(
+            f"the angles must reach from 0 to {math.degrees(total):.6g} degrees, these from {first:.6g} to {last:.6g}",
+            field,
+        )

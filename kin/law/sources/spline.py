@@ -1,0 +1,147 @@
+"""Quintic splines: through points, or nearest to many; C4, with rest at an end where the motion dwells beside it.
+
+B-splines by the recurrence of C. de Boor, A Practical Guide to Splines, chapters 9 to 11 and 14. A clamped spline
+whose three first coefficients are one number has that value and S' = S'' = 0 at its start, exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.segment import Affine, Power
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array, Indices
+
+DEGREE = 5
+_AT_REST = 3  # coefficients that one level takes at an end
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Quintic B-splines over sites a = x0 < x1 < ... < xm = b: clamped at both ends, or of period b - a.
+
+    Clamped there are m + 5 coefficients, with a period m of them.
+    """
+
+    sites: Array
+    periodic: bool
+
+    @cached_property
+    def knots(self) -> Array:
+        """All knots, five more to each side."""
+        x, m = self.sites, len(self.sites) - 1
+        if not self.periodic:
+            return np.concatenate([[x[0]] * DEGREE, x, [x[-1]] * DEGREE])
+        i = np.arange(-DEGREE, m + DEGREE + 1)
+        knots: Array = x[i % m] + (x[-1] - x[0]) * (i // m)
+        return knots
+
+    @property
+    def size(self) -> int:
+        """How many coefficients there are."""
+        m = len(self.sites) - 1
+        return m if self.periodic else m + DEGREE
+
+    def rows(self, x: Array) -> tuple[Indices, Array]:
+        """Span of each x (n,) and the six B-splines that do not vanish there, (6, n)."""
+        span = np.clip(np.searchsorted(self.sites, x, side="right") - 1, 0, len(self.sites) - 2)
+        return span, _values(self.knots, span + DEGREE, x, DEGREE)
+
+    def columns(self, span: Indices) -> Indices:
+        """Coefficients that the six B-splines of spans (n,) take, (6, n)."""
+        return (span + np.arange(DEGREE + 1)[:, None]) % self.size
+
+    def spans(self, coefficients: Array) -> tuple[Affine, ...]:
+        """The spline as polynomials, one a span, about its start; the last clamped one about its end."""
+        c = coefficients[np.arange(len(self.sites) - 1 + DEGREE) % self.size]
+        knots, index = self.knots, np.arange(len(self.sites) - 1) + DEGREE
+        starts, width = self.sites[:-1].copy(), np.diff(self.sites)
+        if not self.periodic:
+            starts[-1] = self.sites[-1]
+        taylor, factorial = np.empty((DEGREE + 1, len(starts))), 1.0
+        for k in range(DEGREE + 1):
+            low = DEGREE - k
+            factorial *= k or 1
+            values = _values(knots, index, starts, low)
+            at = np.arange(low + 1)[:, None] + np.arange(len(starts)) + k
+            taylor[k] = (values * c[at]).sum(axis=0) * width**k / factorial
+            if k < DEGREE:  # coefficients of the derivative, a spline one degree lower over the same knots
+                i = np.arange(k + 1, len(c))
+                c = np.concatenate([np.zeros(k + 1), low * (c[i] - c[i - 1]) / (knots[i + low] - knots[i])])
+        rows = zip(taylor.T.tolist(), starts.tolist(), width.tolist(), strict=True)
+        return tuple(Affine(Power(tuple(row)), start=start, width=w) for row, start, w in rows)
+
+
+def _values(knots: Array, index: Indices, x: Array, degree: int) -> Array:
+    """B-splines of a degree that do not vanish between knots[index] and the next, at x (n,); (degree + 1, n)."""
+    values = np.ones((1, len(x)))
+    for d in range(1, degree + 1):
+        offset = np.arange(d)[:, None]
+        low, high = knots[index - d + 1 + offset], knots[index + 1 + offset]
+        share = values / (high - low)
+        values = np.zeros((d + 1, len(x)))
+        values[:-1] += share * (high - x)
+        values[1:] += share * (x - low)
+    return values
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Levels at which a spline rests at its ends; None: it has a period instead."""
+
+    start: float
+    end: float
+
+
+def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
+    """Spline with its sites at x (m + 1,) and the values s there; with a period s[-1] is s[0]."""
+    basis = Basis(x, ends is None)
+    inner = slice(1, -1) if ends else slice(0, -1)
+    span, rows = basis.rows(x[inner])
+    matrix = np.zeros((len(span), basis.size))
+    np.add.at(matrix, (np.arange(len(span)), basis.columns(span)), rows)
+    fixed = _fixed(basis, ends)
+    free = np.isnan(fixed)
+    known = np.where(free, 0.0, fixed)
+    fixed[free] = np.linalg.solve(matrix[:, free], s[inner] - matrix @ known)
+    return basis.spans(fixed)
+
+
+def nearest(
+    x: Array, s: Array, count: int, ends: Ends | None, between: tuple[float, float]
+) -> tuple[Basis, Array, Array]:
+    """Least-squares spline of `count` equal spans `between` two angles: basis, coefficients, residuals (n,)."""
+    basis = Basis(np.linspace(*between, count + 1), ends is None)
+    span, rows = basis.rows(x)
+    fixed = _fixed(basis, ends)
+    free = np.isnan(fixed)
+    known = np.where(free, 0.0, fixed)
+    taken = basis.columns(span)
+    rest = s - (rows * known[taken]).sum(axis=0)
+    size, spans = basis.size, len(basis.sites) - 1
+    matrix, right = np.zeros((size, size)), np.zeros(size)
+    columns = basis.columns(np.arange(spans))
+    for i in range(DEGREE + 1):
+        np.add.at(right, columns[i], np.bincount(span, rows[i] * rest, spans))
+        for j in range(i, DEGREE + 1):
+            product = np.bincount(span, rows[i] * rows[j], spans)
+            np.add.at(matrix, (columns[i], columns[j]), product)
+            if i != j:
+                np.add.at(matrix, (columns[j], columns[i]), product)
+    if free.any():
+        kept = np.flatnonzero(free)
+        fixed[free] = np.linalg.solve(matrix[np.ix_(kept, kept)], right[free])
+    return basis, fixed, s - (rows * fixed[taken]).sum(axis=0)
+
+
+def _fixed(basis: Basis, ends: Ends | None) -> Array:
+    """Coefficients that the ends settle, nan where they are free."""
+    fixed = np.full(basis.size, np.nan)
+    if ends is not None:
+        fixed[:_AT_REST], fixed[-_AT_REST:] = ends.start, ends.end
+    return fixed

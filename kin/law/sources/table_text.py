@@ -1,0 +1,94 @@
+"""Lift tables as text: two columns, decimal points or commas, cam or crank degrees, millimetres or inches."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Literal
+
+import numpy as np
+
+from kin.law.programme import IntentError
+from kin.law.sources.ring import Samples
+from kin.law.sources.table import TableError
+
+MM_PER_INCH = 25.4
+
+_SEPARATORS = {";": "semicolons", "\t": "tabs", " ": "blanks", ",": "commas"}
+
+
+def read_table(
+    text: str,
+    *,
+    angles: Literal["cam", "crank"] = "cam",
+    unit: Literal["mm", "inch", "degrees"] = "mm",
+    field: str = "motion.table",
+) -> tuple[Samples, float]:
+    """Read rows `angle, displacement`: angles become radians of the cam, displacements mm (degrees: radians).
+
+    Also returns the unit of the last place that any displacement shows. Columns are parted by semicolons, tabs or
+    blanks (a comma is then the decimal mark where it is one), or else by commas. Empty lines, lines that start with #
+    and one heading are passed over. Crank degrees are twice the cam's. Raises TableError with the line.
+    """
+    lines = text.lstrip("\ufeff").splitlines()
+    kept = [(i, line.strip()) for i, line in enumerate(lines, 1)]
+    kept = [(i, line) for i, line in kept if line and not line.startswith("#")]
+    if not kept:
+        raise IntentError("the table is empty", field)
+    separator = _separator([line for _, line in kept])
+    if not re.match(r'["\s]*[+-]?[.,]?\d', kept[0][1]):
+        kept = kept[1:]  # a heading
+    theta, s, places = np.empty(len(kept)), np.empty(len(kept)), 0
+    for row, (i, line) in enumerate(kept):
+        cells = _numbers(line, separator)
+        if not cells:
+            raise _unread(line, separator, i, field)
+        try:
+            theta[row], s[row] = float(cells[0]), float(cells[1])
+        except ValueError:
+            raise _unread(line, separator, i, field) from None
+        places = max(places, _places(cells[1]))
+    theta *= math.pi / 180 / (2 if angles == "crank" else 1)
+    scale = {"mm": 1.0, "inch": MM_PER_INCH, "degrees": math.pi / 180}[unit]
+    return Samples(theta, s * scale, np.array([i for i, _ in kept], dtype=np.intp)), scale * 10.0**-places
+
+
+def _separator(lines: list[str]) -> str:
+    """The mark between columns, by the first twenty lines."""
+    head = lines[:20]
+    for mark in (";", "\t"):
+        if sum(mark in line for line in head) * 2 > len(head):
+            return mark
+    if all(re.search(r",\s", line) for line in head[1:] or head):
+        return ","
+    parted = sum(bool(re.search(r"\S\s+\S", line)) for line in head[1:] or head)
+    return " " if parted * 2 > len(head[1:] or head) else ","
+
+
+def _numbers(line: str, separator: str) -> tuple[str, str] | None:
+    """The two cells of a line as numbers are written in Python, or None where there are not two numbers."""
+    cells = line.split() if separator == " " else line.split(separator)
+    while len(cells) > 1 and not cells[-1].strip():
+        cells.pop()
+    if len(cells) != 2:
+        return None
+    first, second = (cell.strip().strip('"').replace(",", ".") for cell in cells)
+    try:
+        float(first), float(second)
+    except ValueError:
+        return None
+    return first, second
+
+
+def _unread(line: str, separator: str, number: int, field: str) -> TableError:
+    shown = line if len(line) <= 40 else f"{line[:37]}..."
+    hint = "an angle and a displacement are expected"
+    if separator == "," and line.count(",") > 1:
+        hint += ": with decimal commas, part the columns by semicolons"
+    return TableError(f"{shown!r} is no row parted by {_SEPARATORS[separator]}: {hint}", field, number)
+
+
+def _places(cell: str) -> int:
+    """Decimal places that a number shows."""
+    mantissa, _, exponent = cell.lower().partition("e")
+    return len(mantissa.partition(".")[2]) - int(exponent or 0)

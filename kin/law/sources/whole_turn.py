@@ -1,0 +1,76 @@
+"""Motions by a formula: over a whole turn, or the pieces of one for a segment."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.bounds import unbounded
+from kin.law.formula.expression import Expression, FormulaDomainError, FormulaError
+from kin.law.programme import IntentError
+from kin.law.segment import Affine, Constant, Stretch
+from kin.law.sources.motion import Motion, joined
+
+if TYPE_CHECKING:
+    from kin.law.formula.formula import Formula
+
+
+_SLIVER = 1e-11  # of the variable: switches closer than this are one, found twice
+_LOOKS = 65
+
+
+def from_formula(
+    formula: Formula, total: float = 2 * math.pi, *, scale: float = 1.0, around: int | None = 1, field: str = "formula"
+) -> Motion:
+    """Make S = scale times a formula in t (radians) over [0, total].
+
+    Raises IntentError, with the angle, where the formula has no value or S, S', S'' no bound. How it closes is told
+    by `Motion.joints`.
+    """
+    knots, functions = pieces_of(formula, 0.0, total, field, formula.variables[0])
+    scaled = [_scaled(f, scale) for f in functions] if scale != 1 else functions
+    return joined(knots, scaled, around)
+
+
+def _scaled(function: Stretch, scale: float) -> Stretch:
+    return Constant(function.value * scale) if isinstance(function, Constant) else Affine(function, scale=scale)
+
+
+def pieces_of(
+    formula: Formula, begin: float, end: float, field: str, variable: str
+) -> tuple[list[float], list[Stretch]]:
+    """Knots and stretches of a formula without its switches, each finite with two derivatives, or IntentError."""
+
+    def place(x: float) -> str:
+        return f"{math.degrees(x):.6g} degrees" if variable == "t" else f"{variable} = {x:.6g}"
+
+    try:
+        places, parts = formula.pieces(begin, end)
+        wide = np.flatnonzero(np.diff(places) > _SLIVER)
+        parts = tuple(parts[i] for i in wide)
+        knots = [begin, *places[wide[1:]].tolist(), end]
+        for part, low, high in zip(parts, knots[:-1], knots[1:], strict=True):
+            part.jet(np.linspace(low, high, _LOOKS), 2)  # raises where there is no value
+            at = unbounded(part, low, high, 2)
+            if at is not None:
+                raise IntentError(
+                    f"the displacement or its first two derivatives cannot be bounded near {place(at)}", field
+                )
+    except FormulaDomainError as error:
+        what = "the displacement or a derivative of it" if "derivative" in error.operation else "the displacement"
+        raise IntentError(f"{what} does not exist at {place(error.at)}: {error.operation}", field) from error
+    except FormulaError as error:
+        raise IntentError(error.message, field) from error
+    return knots, [_plain(part, low) for part, low in zip(parts, knots[:-1], strict=True)]
+
+
+def _plain(part: Expression, at: float) -> Stretch:
+    """The expression, or the constant that it is if it does not depend on its variable from `at` on."""
+    if part.jet(at, 1).c[1].any():
+        return part
+    enclosed = part.ball(at, at + 1.0, 1)
+    if not enclosed.mid[1].any() and not enclosed.rad[1].any():
+        return Constant(float(enclosed.mid[0, 0]))
+    return part

@@ -1,0 +1,210 @@
+"""Transmission laws by every route: from D, a programme, an arc of the pitch curve, or a leaf of the rosette.
+
+Each builder gives a `Transmission` (`kin.law.transmission_law`) that a cam can have, or raises IntentError.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from kin.law.bounds import highest, undecided
+from kin.law.feasibility import JOIN, checked, demand_leaf, demand_ratio, too_steep, too_wide
+from kin.law.formula.expression import FormulaError
+from kin.law.piecewise import Piecewise
+from kin.law.programme import IntentError, Programme
+from kin.law.routes import FromArc, FromDelta, FromLeaf, steepness
+from kin.law.segment import Affine, Constant, Harmonics, Stretch
+from kin.law.transmission_law import Transmission
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kin.law.formula.formula import Formula
+
+__all__ = ["IntentError", "Transmission", "from_arc", "from_delta", "from_law", "from_rosette"]
+
+
+_ABOVE = 1 + 1e-9  # of a least radius: a figure told with nine digits is not below it
+
+
+def _over_period(
+    delta: float, knots: Sequence[float], functions: Sequence[Stretch], lean: tuple[float, float]
+) -> tuple[Piecewise, tuple[float, ...]]:
+    """Complete psi over 2 delta, with w for each stretch, from delta; rests at psi = 0 run on over the joints."""
+    begin = knots[0]
+    images = [
+        Constant(-f.value) if isinstance(f, Constant) else Affine.of(f, scale=-1.0, start=delta) for f in functions
+    ]
+    all_knots = [*knots[:-1], *(k + delta for k in knots)]
+    all_knots[-1] = begin + 2 * delta
+    stretches: list[Stretch] = [*functions, *images]
+    leans = [lean[0]] * len(functions) + [lean[1]] * len(images)
+    count = len(functions)
+    if isinstance(functions[0], Constant) and isinstance(functions[-1], Constant):
+        if count == 1:
+            rest = Piecewise(np.array([begin, begin + 2 * delta]), (Constant(0.0),), 2 * delta, smooth_seam=True)
+            return rest, lean[:1]
+        del stretches[count], leans[count], all_knots[count]
+        del stretches[-1], leans[-1], all_knots[-1]
+        all_knots[0] = all_knots[-1] - 2 * delta
+    return Piecewise(np.array(all_knots), tuple(stretches), 2 * delta), tuple(leans)
+
+
+def from_delta(lam: int, mu: int, arm: float, cos: Mapping[int, float], sin: Mapping[int, float]) -> Transmission:
+    """Make the law of D = sum of cos[j] cos(j lam t) + sin[j] sin(j lam t), mm^2, j odd (W 5.10, 6.5).
+
+    Raises IntentError for a ratio that W's conditions exclude, an even j, |D| not below l^2 or so large that an arm
+    meets the shaft, and psi'(phi) not below 1. The last is proved as 4 D^2 + D'^2 < 4 l^4, with psi' = -D'/sqrt(l^4 -
+    D^2) and |psi'| < 2 by t: a Fourier series, sharp also where |D| comes close to l^2.
+    """
+    demand_ratio(lam, mu, arm)
+    for name, series in (("cos", cos), ("sin", sin)):
+        for j in series:
+            if j < 1 or j % 2 == 0:
+                raise IntentError(f"D(t + delta) = -D(t) allows odd harmonics only, not {j}", f"delta.{name}")
+    found = [(j * lam, float(cos.get(j, 0.0)), float(sin.get(j, 0.0))) for j in sorted({*cos, *sin})]
+    terms = tuple(term for term in found if term[1] or term[2])
+    period, offset, square = 2 * math.pi / lam, math.pi * mu / lam / 2, arm * arm
+    knots = np.array([0.0, period])
+    if not terms:
+        return Transmission(lam, mu, arm, Piecewise(knots, (Constant(0.0),), period, smooth_seam=True), (0.5,), offset)
+    wave = Harmonics(0.0, terms)
+    law = Transmission(
+        lam, mu, arm, Piecewise(knots, (FromDelta(wave, square),), period, smooth_seam=True), (0.5,), offset
+    )
+    most = square * math.sin(min(law.alpha, math.pi - law.alpha))
+    if undecided(wave, 0.0, period, {0: (-math.inf, most)}) is not None:
+        at, reached = highest(Piecewise(knots, (wave,), period), [1.0], 0)
+        if reached < square and most < square:
+            raise too_wide(law, at, math.asin(reached / square), "delta")
+        degrees = math.degrees(at + offset - math.pi / 4) % 360
+        close = f", {square - reached:.3g} below it, which rounding does not tell apart" if reached < square else ""
+        said = f"|D| must stay below l^2 = {square:.9g} mm^2; it reaches {reached:.9g}{close}"
+        raise IntentError(said, "delta", degrees)
+    limit = 4 * square * square * (1 - 1e-14)  # the series' own rounding left out
+    if undecided(steepness(terms), 0.0, period, {0: (-math.inf, limit)}) is not None:
+        raise too_steep(law, "delta")
+    return law
+
+
+def from_law(
+    lam: int, mu: int, arm: float, programme: Programme, swing_of: Literal["arm", "pair"] = "arm"
+) -> Transmission:
+    """Make the law that a programme prescribes over the first delta of shaft angle, from psi = 0 (W 4.9, 4.10).
+
+    With `swing_of` "pair" the programme gives the swing of a flat pair, psi/2. Raises IntentError if the ratio is
+    excluded, psi does not end at 0, its slopes do not join (psi' at delta must be -psi'(0)/(1 - psi'(0))), an arm would
+    meet the shaft, or psi'(phi) is not below 1; ValueError unless the programme covers delta.
+    """
+    demand_ratio(lam, mu, arm)
+    delta = math.pi / lam
+    if abs(programme.total - delta) > 4 * math.ulp(delta):
+        raise ValueError(f"the programme covers {programme.total!r} rad, not delta = {delta!r}")
+    scale = 2.0 if swing_of == "pair" else 1.0
+    end = scale * float(programme.at_end(0)[0])
+    if abs(end) > JOIN:
+        raise IntentError(f"psi must come back to 0 at the end of the law; it is {math.degrees(end):.9g} deg", "law")
+    functions = [_scaled(f, scale) for f in programme.motion.functions]
+    psi, lean = _over_period(delta, programme.motion.knots.tolist(), functions, (0.0, 1.0))
+    return checked(Transmission(lam, mu, arm, psi, lean, 0.0), programme.motion.knots.tolist(), functions, "law")
+
+
+def _scaled(function: Stretch, scale: float) -> Stretch:
+    if isinstance(function, Constant):
+        value = function.value * scale
+        return Constant(0.0 if abs(value) <= JOIN else value)
+    return Affine.of(function, scale=scale) if scale != 1 else function
+
+
+def from_arc(
+    lam: int, mu: int, arm: float, radius: float, side: Literal["convex", "concave"] = "convex"
+) -> Transmission:
+    """Make the law of a pitch curve that begins with a circular arc over t in [0, delta] (W sections 3, 7a; Figure 5).
+
+    The arc joins two mean positions, psi = 0 and r = R = 2 l cos(alpha/2), bulging outwards (convex) or inwards. Being
+    symmetric about its bisector it meets its image with a common tangent. Raises IntentError for an excluded ratio, a
+    radius below half the chord (concave: up to `_least_concave`), and a law that swings too far or turns the cam back.
+    """
+    demand_ratio(lam, mu, arm)
+    alpha, delta = math.pi * mu / lam, math.pi / lam
+    mean = 2 * arm * math.cos(alpha / 2)
+    chord, height = mean * math.sin(delta / 2), mean * math.cos(delta / 2)
+    least = chord if side == "convex" else _least_concave(lam, mu, mean)
+    if not (math.isfinite(radius) and (radius >= least if side == "convex" else radius > least)):
+        raise IntentError(
+            f"a {side} arc needs a radius of at least {least:.9g} mm to join the mean positions, not {radius:.9g} mm"
+            if side == "convex"
+            else f"a concave arc needs a radius above {least * _ABOVE:.9g} mm, not {radius:.9g} mm: below, psi'(phi) "
+            "reaches 1 where the arc begins, and the cam cannot be turned through",
+            "arc.radius",
+        )
+    sagitta = math.sqrt((radius - chord) * (radius + chord))  # from the centre to the chord
+    if side == "convex":
+        centre, power = height - sagitta, chord**2 - height**2 + 2 * height * sagitta
+    else:
+        centre, power = height + sagitta, height**2 - chord**2 + 2 * height * sagitta
+    top = centre + radius if side == "convex" else centre - radius
+    if not 0 < top < 2 * arm:
+        where = f"the middle of the arc is {top:.9g} mm from the shaft"
+        raise IntentError(f"{where}; it must lie between 0 and 2 l = {2 * arm:.9g} mm", "arc.radius")
+    arc = FromArc(arm, alpha, delta, centre, radius, power, side == "convex")
+    psi, lean = _over_period(delta, [0.0, delta], [arc], (0.5, 0.5))
+    place = (centre * math.cos(delta / 2), centre * math.sin(delta / 2), radius if side == "convex" else -radius)
+    return checked(Transmission(lam, mu, arm, psi, lean, alpha / 2, place), [0.0, delta], [arc], "arc")
+
+
+def _least_concave(lam: int, mu: int, mean: float) -> float:
+    """Radius at which psi'(phi) is 1 where a concave arc begins; it must be larger. IntentError where none will do.
+
+    By t psi' is there 2 steep/(steep + room), steep = c sin(delta/2) R and room = (c cos(delta/2) - R) R tan(alpha/2),
+    with the centre at c on the bisector and R the mean distance: 2 for c = R sin(alpha/2)/sin((alpha - delta)/2). With
+    mu = 1, alpha = delta, that is a straight line, which the arc's other side alone is less steep than.
+    """
+    alpha, delta = math.pi * mu / lam, math.pi / lam
+    if mu == 1:
+        raise IntentError(
+            f"psi'(phi) must stay below 1, else the cam cannot be turned through; with a whole ratio such as {lam} a "
+            "straight first line reaches 1 where it begins, and a concave arc of any radius more; a convex arc would "
+            "do, or a ratio such as 5/3",
+            "arc.side",
+            math.degrees(alpha / 2),
+        )
+    centre = mean * math.sin(alpha / 2) / math.sin((alpha - delta) / 2)
+    return math.hypot(centre - mean * math.cos(delta / 2), mean * math.sin(delta / 2))
+
+
+def from_rosette(lam: int, mu: int, arm: float, leaf: Formula, scale: float = 1.0) -> Transmission:
+    """Make the law from one leaf of the third arm's path: |OQ| as `scale` times a formula in x, mm, 0 <= x <= 1.
+
+    The third arm PQ, of length l, lies on the bisector and points to the shaft while psi = 0, so Q = 2 l sin(psi/2)
+    n(phi - psi/2). As phi - psi/2 = t + alpha/2, x is (t + alpha/2)/delta: the first leaf begins at phi = 0 and has psi
+    above 0 (W section 5). Raises IntentError if the leaf does not begin and end in the shaft with slopes that join
+    (leaf'(1) = -leaf'(0)), has no value somewhere, falls below 0 or makes no possible law.
+    """
+    demand_ratio(lam, mu, arm)
+    alpha, delta, field = math.pi * mu / lam, math.pi / lam, "rosette.leaf"
+    start = -alpha / 2
+    try:
+        places, pieces = leaf.pieces(0.0, 1.0)
+        most = 2 * arm * math.sin(min(alpha, math.pi - alpha) / 2)
+        for begin, end, piece in zip(places[:-1], places[1:], pieces, strict=True):
+            x = np.linspace(begin, end, 257)
+            demand_leaf(x, piece.jet(x, 1).c[0] * scale, arm, most)
+    except FormulaError as error:
+        raise IntentError(error.message, field) from error
+    knots = [start + float(x) * delta for x in places]
+    functions = [_leaf_stretch(FromLeaf(piece, scale / (2 * arm), start, delta)) for piece in pieces]
+    psi, lean = _over_period(delta, knots, functions, (0.5, 0.5))
+    return checked(Transmission(lam, mu, arm, psi, lean, alpha / 2), knots, functions, field)
+
+
+def _leaf_stretch(stretch: FromLeaf) -> Stretch:
+    """Return the stretch, or the rest that it is if the leaf does not depend on x there."""
+    enclosed = stretch.leaf.ball(0.0, 1.0, 1)
+    if enclosed.mid[1].any() or enclosed.rad[1].any():
+        return stretch
+    psi = 2 * math.asin(float(enclosed.mid[0, 0]) * stretch.scale)
+    return Constant(0.0 if abs(psi) <= JOIN else psi)

@@ -1,0 +1,246 @@
+"""Transmission laws of a single-disk cam with an oscillating double follower (W), by every route.
+
+The follower's two arms of length l include 2 alpha, alpha = pi mu/lam, its pivot stands at distance l from the shaft.
+phi is the shaft angle, psi the follower's (positive clockwise). The law has period 2 delta = 2 pi/lam and maps onto
+itself by (phi, psi) -> (phi - psi + delta, -psi) (W 4.9). A law is held over a parameter tau in which psi just changes
+its sign, psi(tau + delta) = -psi(tau), and
+
+    phi = tau + w psi + c.
+
+Polar routes: tau is the polar angle t of roller A, w = 1/2, c = alpha/2 (W 4.4). A given law: tau is phi itself on
+[0, delta], w = c = 0, and w = 1 on the next delta, which is W 4.9.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.piecewise import Piecewise, Places, Side
+from kin.law.routes import DeltaDistance, FromDelta, FromLeaf
+from kin.law.segment import Affine, Constant, Series
+from kin.numeric.elementary import Ball, BallJet, Jet, cos
+from kin.numeric.newton import zeros
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array
+
+_TURN = 2 * math.pi
+_LOOKS = 1024  # parameters at which a formula's rounding is asked for
+
+
+@dataclass(frozen=True, eq=False)
+class Transmission:
+    """psi and phi over the parameter tau; see the module. `arm` is l, mm.
+
+    `psi` has period 2 delta; `lean` holds w for each of its stretches, `offset` is c. `arc` is, for routes that give
+    roller A a circular arc, (x, y, signed radius) for the first stretch of psi, the arc standing as at its first place.
+
+    Over the whole turn, stretch i runs from breaks[i] to the next break, the last one over 2 pi; without breaks there
+    is one stretch.
+    """
+
+    lam: int
+    mu: int
+    arm: float
+    psi: Piecewise
+    lean: tuple[float, ...]
+    offset: float
+    arc: tuple[float, float, float] | None = None
+
+    def scaled(self, scale: float) -> Transmission:
+        """The same motion of a mechanism `scale` times as large."""
+        functions = tuple(f.scaled(scale) if isinstance(f, FromDelta) else f for f in self.psi.functions)
+        arc = None if self.arc is None else (scale * self.arc[0], scale * self.arc[1], scale * self.arc[2])
+        return replace(self, arm=scale * self.arm, psi=replace(self.psi, functions=functions), arc=arc)
+
+    @property
+    def alpha(self) -> float:
+        """Half the angle between the arms, rad."""
+        return math.pi * self.mu / self.lam
+
+    @property
+    def delta(self) -> float:
+        """Half the period of the law, rad."""
+        return math.pi / self.lam
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Parameters tau in [0, 2 pi) at which the second or a higher derivative may jump, rising."""
+        turns = np.arange(self.lam) * (_TURN / self.lam)
+        return np.sort((self.psi.breaks[None, :] + turns[:, None]).ravel())
+
+    @property
+    def level(self) -> Array:
+        """For each stretch the value of psi if it is exactly constant there, a dwell, else nan."""
+        functions = [self.psi.functions[i] for i in self._stretches()]
+        return np.array([f.value if isinstance(f, Constant) else math.nan for f in functions])
+
+    @property
+    def steady(self) -> NDArray[np.bool_]:
+        """For each stretch whether psi is exactly constant: the pitch curve is an arc about the shaft."""
+        return ~np.isnan(self.level)
+
+    @property
+    def radius(self) -> Array:
+        """For each stretch the radius of the pitch curve about the shaft, mm, if psi is constant there, else nan."""
+        return 2 * self.arm * np.cos((self.level + self.alpha) / 2)
+
+    @property
+    def pitch_arcs(self) -> Array:
+        """For each stretch the arc that the pitch curve exactly is: centre x, y and radius, mm, else nan; (m, 3).
+
+        The radius is negative where the arc is hollow. Dwells count, and the given arcs of that route.
+        """
+        stretches, at = self._stretches(), self.breaks if len(self.breaks) else np.zeros(1)
+        arcs = np.column_stack((np.zeros((len(at), 2)), self.radius))
+        arcs[~self.steady] = math.nan
+        if self.arc is not None:
+            x, y, radius = self.arc
+            given = np.flatnonzero(stretches == 0)
+            turn = np.round((at[given] - self.psi.knots[0]) / (2 * self.delta)) * (2 * self.delta)
+            c, s = np.cos(turn), np.sin(turn)
+            arcs[given] = np.column_stack((x * c - y * s, x * s + y * c, np.full(len(given), radius)))
+        return arcs
+
+    def _stretches(self) -> NDArray[np.intp]:
+        at = self.breaks if len(self.breaks) else np.zeros(1)
+        return self.psi.locate(at, 1)[0]
+
+    @cached_property
+    def _lead(self) -> _Lead:
+        """The angle phi - tau."""
+        return _Lead.of(self.lean, self.offset)
+
+    @cached_property
+    def _polar_lead(self) -> _Lead:
+        """The angle t - tau, t = phi - (psi + alpha)/2: nothing at all where tau is t."""
+        return _Lead.of(tuple(w - 0.5 for w in self.lean), self.offset - self.alpha / 2)
+
+    def jets(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Give phi and psi of a jet or ball jet tau; `side` decides at breaks."""
+        places = self.psi.places(tau, side)
+        psi = self.psi.at(tau, places)
+        return self._lead.on(tau, psi, places), psi
+
+    @cached_property
+    def _distance(self) -> Piecewise | None:
+        """The polar radius r over tau = t where it is told without psi."""
+        first = self.psi.functions[0]
+        if not isinstance(first, FromDelta):
+            return None
+        distance = DeltaDistance(first, self.alpha)
+        return Piecewise(self.psi.knots, (distance,), self.psi.period, self.psi.smooth_seam)
+
+    def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Give r and t of roller A's centre, of a jet or ball jet tau (W 4.10); `side` decides at breaks.
+
+        t is formed from tau, not as phi - (psi + alpha)/2: where psi leaps, those two leap alike.
+        """
+        if self._distance is not None:
+            return self._distance.on(tau, side), tau
+        places = self.psi.places(tau, side)
+        psi = self.psi.at(tau, places)
+        return cos(psi * 0.5 + self.alpha / 2) * (2 * self.arm), self._polar_lead.on(tau, psi, places)
+
+    def at(self, tau: float | Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Give phi and psi with their derivatives by tau at tau (n,), (order + 1, n) each."""
+        phi, psi = self.jets(Jet.variable(tau, order), side)
+        return phi.derivatives(), psi.derivatives()
+
+    def enclosure(
+        self, lower: float | Array, upper: float | Array, order: int
+    ) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Enclose phi, and psi, with their derivatives by tau over [lower, upper]: (mid, rad), (order + 1, n) each."""
+        balls = [Ball.between(*jet.bounds()) for jet in self.jets(BallJet.variable(lower, upper, order))]
+        return (balls[0].mid, balls[0].rad), (balls[1].mid, balls[1].rad)
+
+    def pitch(self, tau: float | Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Give r and t of roller A's centre with their derivatives by tau, (order + 1, n) each (W 4.10)."""
+        r, t = self.polar(Jet.variable(tau, order), side)
+        return r.derivatives(), t.derivatives()
+
+    @cached_property
+    def rounding(self) -> float:
+        """By how much the pitch curve may be off through the rounding of a recipe's own formula, mm; else 0.
+
+        As `Lift.rounding`, at `_LOOKS` parameters of the law's period.
+        """
+        bare = [f.function if isinstance(f, Affine) else f for f in self.psi.functions]
+        if not any(isinstance(f, FromLeaf) for f in bare):
+            return 0.0
+        tau = self.psi.knots[0] + np.arange(_LOOKS) * (2 * self.delta / _LOOKS)
+        (_, phi), (_, psi) = self.enclosure(tau, tau, 0)
+        return 2 * self.arm * float((phi + psi).max())
+
+    def psi_of_shaft(self, phi: float | Array, order: int, side: int = 1) -> Array:
+        """Give psi and its derivatives by phi at shaft angles phi (n,), (order + 1, n); at a break by side."""
+        tau = self.parameter(phi, side)
+        shaft, psi = self.jets(Jet.variable(tau, order), side)
+        out = np.empty((order + 1, len(tau)))
+        out[0] = psi.c[0]
+        for k in range(1, order + 1):
+            psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1 - k])
+            out[k] = psi.c[0]
+        return out
+
+    def parameter(self, phi: float | Array, side: int = 1) -> Array:
+        """Solve phi(tau) = phi for tau, (n,)."""
+        return self._solved(self._lead, phi, side)
+
+    def polar_parameter(self, t: float | Array, side: int = 1) -> Array:
+        """Solve t(tau) = t, the polar angle of roller A, for tau, (n,): well posed however steep psi is over phi."""
+        return self._solved(self._polar_lead, t, side)
+
+    def _solved(self, lead: _Lead, angle: float | Array, side: int) -> Array:
+        """Solve tau + lead = angle for tau, (n,): Newton's steps inside the stretch, halving where they leave it."""
+        angle = np.atleast_1d(np.asarray(angle, dtype=float))
+        knots, period = self.psi.knots, 2 * self.delta
+
+        def at(tau: Array, order: int) -> Array:
+            variable = Jet.variable(tau, order)
+            places = self.psi.places(variable)
+            return lead.on(variable, self.psi.at(variable, places), places).c
+
+        ends = np.append(at(knots[:-1], 0)[0], 0.0)
+        ends[-1] = ends[0] + period
+        places = Piecewise(ends, (Constant(0.0),) * (len(ends) - 1), period)
+        index, x = places.locate(angle, side)
+        low, high = knots[index], knots[index + 1]
+        tau = low + (x - ends[index]) * (high - low) / (ends[index + 1] - ends[index])
+
+        def over(tau: Array) -> tuple[Array, Array]:
+            value, slope = at(tau, 1)
+            return value - x, slope
+
+        tau = zeros(over, low, high, tau, 2 * np.spacing(np.maximum(np.abs(tau), period)))
+        tau = np.where(x == ends[index], knots[index], np.where(x == ends[index + 1], knots[index + 1], tau))
+        turns = np.round((angle - x) / period)
+        return tau + turns * period
+
+
+@dataclass(frozen=True, eq=False)
+class _Lead:
+    """An angle less tau: psi times `weight`, or times one of `weights` for each stretch, and `offset`."""
+
+    weight: float
+    offset: float
+    weights: Array | None
+
+    @staticmethod
+    def of(weights: tuple[float, ...], offset: float) -> _Lead:
+        alike = len(set(weights)) == 1
+        return _Lead(weights[0], offset, None if alike else np.array(weights))
+
+    def on(self, tau: Series, psi: Series, places: Places) -> Series:
+        """Give the angle, psi being the law's at tau, which lies at these places of the law."""
+        if self.weights is not None:
+            return tau + (places.weigh(psi, self.weights) + self.offset)
+        found = tau + psi * self.weight if self.weight else tau
+        return found + self.offset if self.offset else found

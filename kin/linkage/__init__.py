@@ -1,0 +1,1 @@
+"""Loops and dyads: positions, extreme positions, mobility, transmission angle."""

@@ -1,0 +1,238 @@
+"""Further links: dyads, of two links and three joints each, hung on a point of an earlier link (AS section 4).
+
+A point P of the earlier link drives each dyad: RRR (two bars to a ground pivot G), RRP (a bar to a slide on a fixed
+line) and RPR (a block at P in a slotted rocker about G). All are triangles or right triangles, solved and
+differentiated as in `kin.linkage.loop`. Angles are counter-clockwise from the x axis.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
+
+import numpy as np
+
+from kin.linkage.loop import (
+    Assembly,
+    BindingError,
+    Triangle,
+    Vector,
+    bearing,
+    demand_lengths,
+    demand_mobile,
+    excess,
+    longer,
+    side_of,
+    triangle_margin,
+    with_value,
+)
+from kin.numeric.elementary import Jet, cos, sin, sqrt
+
+if TYPE_CHECKING:
+    from kin.linkage.four_bar import Positions
+    from kin.numeric.arrays import Array
+
+__all__ = ["RPR", "RRP", "RRR", "Assembly", "BindingError", "Dyad", "Link", "On", "Reached", "coupler", "output_link"]
+
+On = Literal["output", "coupler", "previous"]
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A moving link as jets: its origin in the fixed frame, mm, and the direction of its x axis, rad (None: fixed)."""
+
+    origin: tuple[Jet, Jet]
+    direction: Jet | None
+
+    def point(self, x: float, y: float) -> tuple[Jet, Jet]:
+        """Position of the point (x, y) of the link, mm."""
+        a, b = self.origin
+        if self.direction is None:
+            return a + x, b + y
+        c, s = cos(self.direction), sin(self.direction)
+        return a + c * x - s * y, b + s * x + c * y
+
+
+def coupler(at: Positions) -> Link:
+    """Return the frame as a link: origin D, x along u(theta_3), away from the frame."""
+    return Link(at.joint, at.frame)
+
+
+def output_link(at: Positions) -> Link:
+    """Return the output link of a linkage: a rocker has its origin in B and x towards D, a slide its origin in D."""
+    if at.ground is None:
+        return Link(at.joint, None)
+    x, y = at.ground
+    return Link((at.output.constant(x), at.output.constant(y)), math.pi - at.output)
+
+
+class Reached(NamedTuple):
+    """A dyad at n points, as jets: its output (rad or mm), and the joint Q that the point P drives (RPR: P itself)."""
+
+    output: Jet
+    joint: tuple[Jet, Jet]
+
+
+@dataclass(frozen=True)
+class RRR:
+    """Bars PQ and QG of the lengths `links`, mm; the output is the angle of GQ.
+
+    Open has Q on the left of the line from G to P, crossed on the right. The output link's origin is G, x towards Q.
+    """
+
+    on: On
+    point: Point
+    ground: Point
+    links: tuple[float, float]
+    assembly: Assembly
+    unit: ClassVar[str] = "deg"
+
+    def __post_init__(self) -> None:
+        _demand_place(self.on, self.point, self.ground)
+        demand_lengths(self.assembly, **{"first link": self.links[0], "second link": self.links[1]})
+
+    def margin(self, x: float | Array, y: float | Array) -> Array:
+        """How far GP is from the least and greatest length that the bars span, mm (n,), for P at x, y (n,)."""
+        a, b = self.links[1], self.links[0]
+        terms = _arm_terms(x, y, self.ground)
+        return triangle_margin(a, b, _square(*terms), excess(*terms, (a, -b)), -excess(*terms, (a, b)))
+
+    def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:
+        """Solve the triangle GQP for P at x, y; GP's direction is taken within pi of `about`. Raises BindingError."""
+        side = side_of(self.assembly)
+        arm = _arm(x, y, self.ground)
+        gqp = Triangle.of(self.links[1], self.links[0], arm)
+        along, across = gqp.along / (2.0 * arm.q), gqp.root * (side / 2) / arm.q
+        joint = arm.x * along - arm.y * across + self.ground[0], arm.y * along + arm.x * across + self.ground[1]
+        return Reached(arm.bearing(about) + gqp.beside * side, joint)
+
+    def output_link(self, reached: Reached) -> Link:
+        """Return the output link, QG."""
+        return _rocker(self.ground, reached.output)
+
+    def middle(self, x: Array, y: Array) -> float:
+        """Direction to take GP about, for P on the closed path x, y (n,): the output is then continuous on it."""
+        return _middle(x, y, self.ground)
+
+
+@dataclass(frozen=True)
+class RRP:
+    """A bar PQ of length `link`, mm, and a slide for Q on the line through `through` in `direction`, rad.
+
+    The output is how far Q stands from `through` along the direction, mm; open has Q farther along than the foot of P
+    on the line, crossed less far. The output link's origin is Q, its axes fixed.
+    """
+
+    on: On
+    point: Point
+    link: float
+    through: Point
+    direction: float
+    assembly: Assembly
+    unit: ClassVar[str] = "mm"
+
+    def __post_init__(self) -> None:
+        _demand_place(self.on, self.point, (*self.through, self.direction))
+        demand_lengths(self.assembly, link=self.link)
+
+    def margin(self, x: float | Array, y: float | Array) -> Array:
+        """How much longer the bar is than P's distance from the line, mm (n,), for P at x, y (n,)."""
+        c, s = math.cos(self.direction), math.sin(self.direction)
+        across = (y - self.through[1]) * c - (x - self.through[0]) * s
+        margin: Array = np.atleast_1d(self.link - np.abs(across))
+        return margin
+
+    def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:  # noqa: ARG002 - one call for all dyads
+        """Solve along the line and across it: (output - along P)^2 = link^2 - (across P)^2. Raises BindingError."""
+        c, s = math.cos(self.direction), math.sin(self.direction)
+        x, y = x - self.through[0], y - self.through[1]
+        across = y * c - x * s
+        height = across.c[0]
+        demand_mobile(self.link - np.abs(height), order=x.order)
+        square = with_value(-(across * across), (self.link - height) * (self.link + height))
+        output = x * c + y * s + sqrt(square) * side_of(self.assembly)
+        return Reached(output, (output * c + self.through[0], output * s + self.through[1]))
+
+    def output_link(self, reached: Reached) -> Link:
+        """Return the slide."""
+        return Link(reached.joint, None)
+
+    def middle(self, x: Array, y: Array) -> float:  # noqa: ARG002 - one call for all dyads
+        """Return 0: no angle is taken."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class RPR:
+    """A block at P in a slotted rocker about G; the output is the direction of the slot, away from G.
+
+    The slot's line passes G at the distance `offset`, mm, which is positive where P lies on the left of the line
+    through G. The output link's origin is G, its x axis along the slot.
+    """
+
+    on: On
+    point: Point
+    ground: Point
+    offset: float
+    unit: ClassVar[str] = "deg"
+
+    def __post_init__(self) -> None:
+        _demand_place(self.on, self.point, (*self.ground, self.offset))
+
+    def margin(self, x: float | Array, y: float | Array) -> Array:
+        """How much farther P is from G than the slot's line, mm (n,), for P at x, y (n,)."""
+        terms = _arm_terms(x, y, self.ground)
+        return longer(_square(*terms), excess(*terms, (self.offset,)), self.offset)
+
+    def solve(self, x: Jet, y: Jet, about: float = 0.0) -> Reached:
+        """Solve GP^2 = slide^2 + offset^2; the direction of GP is taken within pi of `about`. Raises BindingError."""
+        arm = _arm(x, y, self.ground)
+        square = excess(arm.x_terms, arm.y_terms, (self.offset,))
+        demand_mobile(longer(arm.q.c[0], square, self.offset), order=x.order, fixed=arm.q.c[0] == 0)
+        slide = sqrt(with_value(arm.q, square))
+        return Reached(arm.bearing(about) - bearing(slide, slide.constant(self.offset), arm.q), (x, y))
+
+    def output_link(self, reached: Reached) -> Link:
+        """Return the slotted rocker."""
+        return _rocker(self.ground, reached.output)
+
+    def middle(self, x: Array, y: Array) -> float:
+        """Direction to take GP about, for P on the closed path x, y (n,): the output is then continuous on it."""
+        return _middle(x, y, self.ground)
+
+
+Dyad = RRR | RRP | RPR
+
+
+def _demand_place(on: str, point: Point, numbers: tuple[float, ...]) -> None:
+    if on not in {"output", "coupler", "previous"}:
+        raise ValueError(f"a dyad hangs on the output, the coupler or the previous dyad, not on {on!r}")
+    if not all(math.isfinite(number) for number in (*point, *numbers)):
+        raise ValueError(f"the place of a dyad must be finite, not {(*point, *numbers)!r}")
+
+
+def _arm_terms(
+    x: float | Array, y: float | Array, ground: Point
+) -> tuple[tuple[float | Array, float], tuple[float | Array, float]]:
+    return (x, -ground[0]), (y, -ground[1])
+
+
+def _arm(x: Jet, y: Jet, ground: Point) -> Vector:
+    return Vector.of(x, y, (x.c[0], -ground[0]), (y.c[0], -ground[1]))
+
+
+def _square(x_terms: tuple[float | Array, float], y_terms: tuple[float | Array, float]) -> Array:
+    square: Array = np.atleast_1d(sum(x_terms) ** 2 + sum(y_terms) ** 2)
+    return square
+
+
+def _rocker(ground: Point, direction: Jet) -> Link:
+    return Link((direction.constant(ground[0]), direction.constant(ground[1])), direction)
+
+
+def _middle(x: Array, y: Array, ground: Point) -> float:
+    """Middle of the range of directions; a path once round the ground pivot has none that is continuous."""
+    directions = np.unwrap(np.arctan2(y - ground[1], x - ground[0]))
+    return float(directions.min() + directions.max()) / 2

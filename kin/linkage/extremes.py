@@ -1,0 +1,139 @@
+"""Figures of a mechanism that turns: extremes of its motion over a whole turn, and where they are."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.monotone import between, cells, pieces
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.numeric.arrays import Array
+
+__all__ = ["Figures", "Place", "Rows", "figures"]
+
+# What is resolved, as a part of the greatest value of each row.
+_SHARE = 1e-12
+# Changes of the output below this part of it, or of 1 rad or mm, are rounding: an output may stand still but for that.
+_ROUNDED = 64.0 * 2.0**-52
+
+
+class Place(NamedTuple):
+    """A value, rad or mm or their derivatives by rad, and where: relative angle and shaft angle, rad in [0, 2 pi)."""
+
+    value: float
+    relative: float
+    shaft: float
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Extremes over one turn; angles are radians, the output is rad or mm.
+
+    least, greatest           of the output
+    frame_least, frame_greatest                         of theta_3
+    transmission_least, transmission_greatest           of the angle between frame and rocker, 0 to pi/2
+    force_least               of the force angle, 0 to pi/2 (`kin.linkage.transmission_angle`)
+    velocity, acceleration    of the output by the shaft angle: the greatest absolute value, with its sign
+    velocity_relative, acceleration_relative            likewise by the relative angle
+    dead_centres              where the joint D stands in the middle between faces 1 and 3, S = w/2; where it rests
+                              there, both ends of the rest. Each with the value 0
+    """
+
+    least: Place
+    greatest: Place
+    frame_least: Place
+    frame_greatest: Place
+    transmission_least: Place
+    transmission_greatest: Place
+    force_least: Place
+    velocity: Place
+    acceleration: Place
+    velocity_relative: Place
+    acceleration_relative: Place
+    dead_centres: tuple[Place, ...]
+
+    @property
+    def swing(self) -> float:
+        """Range of the output."""
+        return self.greatest.value - self.least.value
+
+
+class Rows(NamedTuple):
+    """What figures are made of, at relative angles (n,), each (n,): sines, cosines as in `transmission_angle`."""
+
+    output: Array
+    velocity_relative: Array
+    acceleration_relative: Array
+    velocity: Array
+    acceleration: Array
+    frame: Array
+    transmission_sine: Array
+    transmission_cosine: Array
+    force_sine: Array
+    force_cosine: Array
+    offset: Array  # of D from the middle of the frame
+
+
+_OF_OUTPUT = {"output", "velocity_relative", "acceleration_relative", "velocity", "acceleration"}
+
+
+def figures(rows: Callable[[Array], Rows], shaft: Callable[[float], float], breaks: Array) -> Figures:
+    """Find the figures from the rows, smooth between breaks, and the shaft angle at a relative angle."""
+    places = between(0.0, TURN, breaks.tolist())
+    size = max(1.0, float(np.abs(rows(0.5 * (places[:-1] + places[1:])).output).max()))
+    rounded = np.array([_ROUNDED * size if name in _OF_OUTPUT else 0.0 for name in Rows._fields])
+    of = cells(lambda theta: np.stack(rows(theta)), places, rounded, share=_SHARE)
+    by = dict(zip(Rows._fields, (pieces(of, row) for row in range(len(Rows._fields))), strict=True))
+
+    def place(found: tuple[float, float]) -> Place:
+        value, at = found
+        at = at % TURN
+        turned = shaft(at) % TURN
+        return Place(value, at, 0.0 if turned >= TURN else turned)
+
+    def peak(name: str) -> Place:
+        return place(max(by[name].greatest(), by[name].least(), key=lambda found: abs(found[0])))
+
+    def nearest_zero(name: str) -> float:
+        """Where the absolute value is least."""
+        of = by[name]
+        least, greatest = of.least(), of.greatest()
+        if least[0] >= 0:
+            return least[1]
+        return greatest[1] if greatest[0] <= 0 else float(of.crossings(0.0)[0])
+
+    def acute(name: str, at: float) -> Place:
+        here = rows(np.array([at % TURN]))
+        sine, cosine = (abs(float(getattr(here, f"{name}_{part}")[0])) for part in ("sine", "cosine"))
+        return place((math.atan2(sine, cosine), at))
+
+    return Figures(
+        least=place(by["output"].least()),
+        greatest=place(by["output"].greatest()),
+        frame_least=place(by["frame"].least()),
+        frame_greatest=place(by["frame"].greatest()),
+        transmission_least=acute("transmission", nearest_zero("transmission_sine")),
+        transmission_greatest=acute("transmission", nearest_zero("transmission_cosine")),
+        force_least=acute("force", nearest_zero("force_sine")),
+        velocity=peak("velocity"),
+        acceleration=peak("acceleration"),
+        velocity_relative=peak("velocity_relative"),
+        acceleration_relative=peak("acceleration_relative"),
+        dead_centres=_once([place((0.0, at)) for at in by["offset"].crossings(0.0).tolist()]),
+    )
+
+
+def _once(places: list[Place]) -> tuple[Place, ...]:
+    """Leave out the one at 2 pi where 0 has been found too; rising."""
+    kept: list[Place] = []
+    for place in sorted(places, key=lambda place: place.relative):
+        if not any(abs(math.remainder(place.relative - other.relative, TURN)) < 1e-9 for other in kept):
+            kept.append(place)
+    return tuple(kept)

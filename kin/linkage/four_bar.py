@@ -1,0 +1,186 @@
+"""Linkages driven by a constant-breadth cam in a square frame (AS sections 3 to 5): positions and their derivatives.
+
+The frame is the coupler. Its axes u(theta_3), n(theta_3) carry the joint D at X = w + r3 - S1, Y = S - w/2 from the
+shaft A, where S, S1 are the support of the cam at theta and a quarter turn on. So D = X u + Y n, and no cotangent of
+theta_3 occurs anywhere (AS 11-13, 19, 22 have it). B = (r1, 0) is the fixed pivot, and theta_4 the angle at B from BA
+to BD, clockwise as in AS Figure 7. Each loop is a triangle or a right triangle, solved by half angles and
+differentiated implicitly (`kin.linkage.loop`); AS 34 is 0/0 at theta_3 = theta_4 and theta_4 + pi, the forms here are
+not.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from kin.linkage.loop import (
+    Assembly,
+    BindingError,
+    Triangle,
+    Vector,
+    bearing,
+    demand_lengths,
+    demand_mobile,
+    excess,
+    longer,
+    lower,
+    side_of,
+    total,
+    triangle_margin,
+    with_value,
+)
+from kin.numeric.elementary import Jet, sqrt
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
+
+__all__ = ["Assembly", "BindingError", "FourBar", "InvertedSliderCrank", "Linkage", "Positions", "SliderCrank"]
+
+
+@dataclass(frozen=True, eq=False)
+class Positions:
+    """A linkage at n points, as jets in whatever parameter the lifts were given.
+
+    `frame` is theta_3 (rad), continuous round a turn; `output` is theta_4 (rad) or D_x (mm); `joint` is D (mm);
+    `ground` is B (mm), None where the output slides; `slide` is the X of D along the frame (mm).
+    """
+
+    frame: Jet
+    output: Jet
+    joint: tuple[Jet, Jet]
+    ground: tuple[float, float] | None
+    slide: Jet
+
+
+@dataclass(frozen=True)
+class FourBar:
+    """AB = ground r1, coupler r3 from the frame's face to D, rocker BD = r4; mm.
+
+    Open is the (+) root of AS 18, D above AB (Figure 7); crossed has D below. ValueError unless all are positive.
+    """
+
+    ground: float
+    coupler: float
+    rocker: float
+    assembly: Assembly = "open"
+    unit: ClassVar[str] = "deg"
+
+    def __post_init__(self) -> None:
+        demand_lengths(self.assembly, ground=self.ground, coupler=self.coupler, rocker=self.rocker)
+
+    def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:
+        """How far AD is from |r1 - r4| and from r1 + r4, mm (n,): negative where the loop cannot close."""
+        x, y = _frame_terms(s, s1, w, self.coupler)
+        q = total(*x) ** 2 + total(*y) ** 2
+        a, b = self.ground, self.rocker
+        return triangle_margin(a, b, np.atleast_1d(q), excess(x, y, (a, -b)), -excess(x, y, (a, b)))
+
+    def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
+        """Solve the triangle ABD of r1, r4 and AD; in place of AS 13-18, 19-20 and 34. Raises BindingError.
+
+        AS 20 takes theta_4 from its sine, which loses the branch beyond 90 degrees; here it is 2 atan2 of the roots of
+        AD^2 - (r1 - r4)^2 and (r1 + r4)^2 - AD^2, and 2 r1 r4 sin theta_4 theta_4' = (AD^2)'.
+        """
+        r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
+        ad = _frame_vector(s, s1, w, self.coupler)
+        abd = Triangle.of(r1, r4, ad)
+        joint = abd.along / (2 * r1), abd.root * (side / (2 * r1))
+        frame = abd.beside * side - ad.bearing()
+        return Positions(frame, abd.between * side, joint, (r1, 0.0), ad.x)
+
+
+@dataclass(frozen=True)
+class InvertedSliderCrank:
+    """AB = ground r1, and a rocker r4 whose end D slides along the frame's u: theta_3 + theta_4 = 90 degrees; mm.
+
+    r4 = 0 is the oscillating yoke. Open is the root of AS 27, theta_4 from 0 to 180 degrees; crossed is its negative:
+    the mirror image, with D on the other side of the shaft along u. ValueError unless r1 > 0 and r4 >= 0.
+    """
+
+    ground: float
+    rocker: float
+    assembly: Assembly = "open"
+    unit: ClassVar[str] = "deg"
+
+    def __post_init__(self) -> None:
+        demand_lengths(self.assembly, ground=self.ground)
+        if not (math.isfinite(self.rocker) and self.rocker >= 0):
+            raise ValueError(f"the rocker must be 0 or longer, not {self.rocker!r} mm")
+
+    def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:  # noqa: ARG002 - one call for all linkages
+        """How far Y is from the ends of its range, r4 - r1 and r4 + r1, mm (n,): negative out of reach."""
+        margin: Array = np.minimum(*self._room(s, w))
+        return margin
+
+    def _room(self, s: float | Array, w: float) -> tuple[Array, Array]:
+        """r1 (1 - cos theta_4) and r1 (1 + cos theta_4), each (n,)."""
+        r1, r4 = self.ground, self.rocker
+        near, far = total(r1, -r4, s, -w / 2), total(r1, r4, -s, w / 2)
+        return np.atleast_1d(near), np.atleast_1d(far)
+
+    def solve(self, s: Jet, s1: Jet, w: float) -> Positions:  # noqa: ARG002 - one call for all linkages
+        """Solve r1 cos theta_4 = r4 - Y (AS 24-27), r1 sin theta_4 theta_4' = S' (AS 29). Raises BindingError.
+
+        AS 30 has the wrong sign before r1 omega_4^2 cos theta_4; AS 31 is right.
+        """
+        r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
+        near_value, far_value = self._room(s.c[0], w)
+        demand_mobile(np.minimum(near_value, far_value), order=s.order)
+        near, far = with_value(s, near_value), with_value(-s, far_value)
+        slide = sqrt(near * far) * side
+        value = 2 * side * np.arctan2(np.sqrt(near_value), np.sqrt(far_value))
+        output = (s.derivative() / lower(slide)).integral(value) if s.order else Jet(value[None])
+        joint = near * (r4 / r1) + (r1 - r4), slide * (r4 / r1)
+        return Positions(math.pi / 2 - output, output, joint, (r1, 0.0), slide)
+
+
+@dataclass(frozen=True)
+class SliderCrank:
+    """A slide for D along the fixed x axis at height `offset`, coupler r3 from the frame's face to D; mm.
+
+    Open has D at positive x, crossed at negative. ValueError unless the coupler is positive and the offset finite.
+    """
+
+    coupler: float
+    offset: float
+    assembly: Assembly = "open"
+    unit: ClassVar[str] = "mm"
+
+    def __post_init__(self) -> None:
+        demand_lengths(self.assembly, coupler=self.coupler)
+        if not math.isfinite(self.offset):
+            raise ValueError(f"the offset must be finite, not {self.offset!r} mm")
+
+    def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:
+        """How much AD is longer than the offset, mm (n,): negative out of reach."""
+        x, y = _frame_terms(s, s1, w, self.coupler)
+        q = np.atleast_1d(total(*x) ** 2 + total(*y) ** 2)
+        return longer(q, excess(x, y, (self.offset,)), self.offset)
+
+    def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
+        """Solve D_x^2 = AD^2 - offset^2, D_x D_x' = (AD^2)'/2. Raises BindingError."""
+        offset, side = self.offset + 0.0, side_of(self.assembly)  # no -0, whose polar angle is -pi
+        ad = _frame_vector(s, s1, w, self.coupler)
+        q = ad.q
+        square = excess(ad.x_terms, ad.y_terms, (offset,))
+        demand_mobile(longer(q.c[0], square, offset), order=q.order, fixed=q.c[0] == 0)
+        output = sqrt(with_value(q, square)) * side
+        height = output.constant(offset)
+        return Positions(bearing(output, height, q) - ad.bearing(), output, (output, height), None, ad.x)
+
+
+Linkage = FourBar | InvertedSliderCrank | SliderCrank
+
+
+def _frame_terms(
+    s: float | Array, s1: float | Array, w: float, r3: float
+) -> tuple[tuple[float | Array, ...], tuple[float | Array, ...]]:
+    """X and Y of D in the frame's axes, as the terms of which they are the sums."""
+    return (r3, w, -s1), (s, -w / 2)
+
+
+def _frame_vector(s: Jet, s1: Jet, w: float, r3: float) -> Vector:
+    return Vector.of(-s1, s, *_frame_terms(s.c[0], s1.c[0], w, r3))

@@ -1,0 +1,373 @@
+"""A cam in a square frame driving a linkage: its motion over the relative angle and over the shaft angle.
+
+theta is the cam's angle relative to the frame, which AS plot over. The frame itself turns by theta_3, so the shaft has
+turned by phi = theta - (theta_3(theta) - theta_3(0)), clockwise positive: phi' = 1 - theta_3'. Results are given over
+either angle. Derivatives are exact (`kin.numeric.elementary`), extremes and roots those of monotone pieces
+(`kin.numeric.monotone`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from kin.law.programme import IntentError
+from kin.linkage.chain import Chain, Solved
+from kin.linkage.dyad import RRP
+from kin.linkage.extremes import Figures, Rows, figures
+from kin.linkage.loop import BindingError
+from kin.linkage.mobility import Mobility, mobility
+from kin.linkage.transmission_angle import force, transmission
+from kin.numeric.angles import TURN
+from kin.numeric.distinct import distinct
+from kin.numeric.elementary import Jet
+from kin.numeric.longest_window import Dwell, dwells
+from kin.numeric.monotone import between, cells, pieces
+from kin.numeric.newton import zeros
+from kin.numeric.taylor import factorials
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.law.piecewise import Side
+    from kin.law.support_function import Lift
+    from kin.linkage.dyad import Dyad
+    from kin.linkage.four_bar import Linkage
+    from kin.numeric.arrays import Array, Indices
+
+__all__ = ["Mechanism", "Motion", "PlaceError"]
+
+QUARTER = 0.5 * math.pi
+# Rounding of a lift's own constants, as a part of the breadth.
+_ROUNDED = 1e-9
+_EDGE = 1e-12
+_TABLE = 256  # steps of the table that Newton's method for phi(theta) begins from
+_SETTLED = 1e-9  # rad: after a Newton step below this the next is lost in rounding
+
+
+class PlaceError(BindingError):
+    """A mechanism that binds, or would turn its shaft back, at the relative angle `at`, rad."""
+
+    def __init__(self, message: str, at: float, indices: Indices) -> None:
+        super().__init__(message, indices)
+        self.at = at
+
+    def __str__(self) -> str:
+        return f"{self.message}, at a relative angle of {math.degrees(self.at % TURN):.6g} degrees"
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A mechanism at relative angles theta (n,): derivatives by theta, (order + 1, n) each; rad and mm.
+
+    `shaft` is phi; `frame` is theta_3; `output` is that of the last link; `outputs` are those of the linkage and of
+    each dyad; `joints` (2, order + 1, n) each are D and the joint that each dyad's point drives, in the fixed axes;
+    `faces` (2, order + 1, n) are the lifts S and S1.
+    """
+
+    theta: Array
+    shaft: Array
+    frame: Array
+    outputs: tuple[Array, ...]
+    joints: tuple[Array, ...]
+    faces: Array
+
+    @property
+    def joint(self) -> Array:
+        """Joint D between frame and output link."""
+        return self.joints[0]
+
+    @property
+    def output(self) -> Array:
+        """Output of the last link."""
+        return self.outputs[-1]
+
+    def over_shaft(self, row: Array) -> Array:
+        """Derivatives by the shaft angle, of what has the derivatives `row` (order + 1, n) by theta."""
+        scale = factorials(len(row) - 1)
+        f, rate = Jet(row / scale), Jet(self.shaft[: len(row)] / scale)
+        found = [f.c[0]]
+        if len(row) > 1:
+            rate = rate.derivative()
+        while f.order > 0:
+            f = f.derivative() / Jet(rate.c[: f.order])
+            found.append(f.c[0])
+        return np.stack(found)
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """A linkage whose frame holds the cam of a lift, and further links.
+
+    `breadth` is that of the frame and the cam, mm; `chain` is all the links. ValueError if the first dyad hangs on a
+    previous one. IntentError if the breadth is not above 0 or p(theta) + p(theta + pi) is not the breadth all round
+    (field "p"), or if the shaft is not within the cam (field "pivot"): on its edge is allowed; or if the point a dyad
+    hangs on goes right round the dyad's ground pivot (field "dyads").
+    """
+
+    linkage: Linkage
+    lift: Lift
+    breadth: float
+    dyads: tuple[Dyad, ...] = ()
+
+    chain: Chain = field(init=False)
+
+    def __post_init__(self) -> None:
+        if not self.breadth > 0:
+            raise IntentError(f"no frame has a breadth of {self.breadth:.6g} mm: it must be above 0", "p")
+        object.__setattr__(self, "chain", Chain(self.linkage, self.breadth, self.dyads))
+        self._demand_constant_breadth()
+        self._demand_shaft_within()
+        _ = self.about
+
+    @property
+    def unit(self) -> str:
+        """Unit of the output as reported, deg or mm; in here it is rad or mm."""
+        return self.chain.unit
+
+    @property
+    def outputs(self) -> int:
+        """Number of outputs: the linkage's and each dyad's."""
+        return 1 + len(self.dyads)
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Relative angles in [0, 2 pi), rising, at which a derivative may jump: breaks of S or of S1."""
+        own = self.lift.breaks
+        turned = np.mod(own - QUARTER, TURN)
+        near = np.abs(turned[:, None] - own) <= _EDGE  # one break, found from both sides
+        return distinct(np.concatenate([own, turned[~near.any(axis=1)]]))
+
+    @cached_property
+    def start(self) -> float:
+        """theta_3 at theta = 0, where the shaft angle begins. PlaceError if the linkage binds there."""
+        frame, _ = self._driven(np.zeros(1), 0)
+        return float(frame.c[0, 0])
+
+    def at(self, theta: float | Array, order: int, side: Side = 1) -> Motion:
+        """Give the motion at relative angles theta (n,); at a break the right-hand limits, or left (side -1).
+
+        PlaceError where a loop cannot be closed, or has no derivative.
+        """
+        theta = np.atleast_1d(np.asarray(theta, dtype=float))
+        s, s1 = self._lifts(theta, order, side)
+        solved = self._solved(theta, s, s1)
+        return self._motion(theta, s, s1, solved)
+
+    def _motion(self, theta: Array, s: Jet, s1: Jet, solved: Solved) -> Motion:
+        frame = solved.linkage.frame
+        shaft = -frame.derivatives()
+        shaft[0] += theta + self.start
+        if frame.order > 0:
+            shaft[1] += 1.0
+        return Motion(
+            theta,
+            shaft,
+            frame.derivatives(),
+            tuple(output.derivatives() for output in solved.outputs),
+            tuple(np.stack([row.derivatives() for row in joint]) for joint in solved.joints),
+            np.stack([s.derivatives(), s1.derivatives()]),
+        )
+
+    def driven(self, s: Jet, s1: Jet) -> tuple[Jet, Jet]:
+        """theta_3 and output for any lifts of the frame's faces 1 and 2, as jets at n points. Raises BindingError."""
+        solved = self.chain.solve(s, s1, self.about)
+        return solved.linkage.frame, solved.outputs[-1]
+
+    def relative(self, shaft: float | Array) -> Array:
+        """Relative angles (n,) at shaft angles (n,), any real numbers. PlaceError unless the mechanism turns."""
+        shaft = np.atleast_1d(np.asarray(shaft, dtype=float))
+        theta, phi, rate = self._table
+        turns = np.floor(shaft / TURN)
+        goal = shaft - turns * TURN
+        k = np.clip(np.searchsorted(phi, goal, side="right") - 1, 0, len(phi) - 2)
+        low, high = theta[k], theta[k + 1]
+        # first guess: the cubic through both ends of theta(phi)
+        h, first, last = phi[k + 1] - phi[k], 1.0 / rate[k], 1.0 / rate[k + 1]
+        x, rise = (goal - phi[k]) / h, high - low
+        x = low + x * (h * first + x * (3 * rise - h * (2 * first + last) + x * (h * (first + last) - 2 * rise)))
+        x = np.clip(x, low, high)
+
+        def over(x: Array) -> tuple[Array, Array]:
+            at = self.at(x, 1).shaft
+            return at[0] - goal, at[1]
+
+        return zeros(over, low, high, x, _SETTLED) + turns * TURN
+
+    @cached_property
+    def _mobility(self) -> Mobility:
+        return mobility(
+            [self._margin(loop) for loop in range(self.outputs)],
+            lambda theta: 1.0 - self._driven(theta, 1)[0].c[1],
+            self._sense,
+            self.breaks,
+            self.breadth,
+        )
+
+    def _margin(self, loop: int) -> Callable[[Array], Array]:
+        """Margin of a loop, mm, over the relative angle."""
+
+        def margin(theta: Array) -> Array:
+            s, s1 = self._lifts(theta, 0)
+            return self.chain.margin(loop, s.c[0], s1.c[0], self.about)
+
+        return margin
+
+    def mobility(self) -> Mobility:
+        """Tell where the mechanism binds or turns back, or how far it is from that."""
+        return self._mobility
+
+    def figures(self) -> Figures:
+        """Give the extremes of the motion over a turn.
+
+        PlaceError unless the mechanism turns; RoughError where it comes so close to binding that rounding hides them.
+        """
+        self._demand_turning()
+        return figures(self._rows, lambda theta: float(self.at(theta, 0).shaft[0, 0]), self.breaks)
+
+    def dwells(self, band: float, over: Literal["shaft", "relative"] = "shaft", most: int = 8) -> tuple[Dwell, ...]:
+        """Find the longest dwells of the output, band in rad or mm, over either angle (`longest_window.dwells`).
+
+        PlaceError unless the mechanism turns (over the relative angle: unless its loops can be closed all round).
+        """
+        if over == "relative":
+            return dwells(lambda theta, order: self.at(theta, order).output, self.breaks, band, TURN, most)
+
+        def output(shaft: Array, order: int) -> Array:
+            at = self.at(self.relative(shaft), order)
+            return at.over_shaft(at.output)
+
+        return dwells(output, self.at(self.breaks, 0).shaft[0], band, TURN, most)
+
+    def _rows(self, theta: Array) -> Rows:
+        s, s1 = self._lifts(theta, 2)
+        solved = self._solved(theta, s, s1)
+        at = solved.linkage
+        motion = self._motion(theta, s, s1, solved)
+        over = motion.over_shaft(motion.output)
+        sine, cosine = transmission(self.linkage, at)
+        force_sine, force_cosine = force(self.linkage, at, s.c[1], s1.c[1])
+        return Rows(
+            output=motion.output[0],
+            velocity_relative=motion.output[1],
+            acceleration_relative=motion.output[2],
+            velocity=over[1],
+            acceleration=over[2],
+            frame=motion.frame[0],
+            transmission_sine=sine,
+            transmission_cosine=cosine,
+            force_sine=force_sine,
+            force_cosine=force_cosine,
+            offset=s.c[0] - 0.5 * self.breadth,
+        )
+
+    def _lifts(self, theta: Array, order: int, side: Side = 1) -> tuple[Jet, Jet]:
+        t = Jet.variable(theta, order)
+        return self.lift.law.on(t, side), self.lift.law.on(t + QUARTER, side)
+
+    def _driven(self, theta: Array, order: int) -> tuple[Jet, Jet]:
+        """theta_3 and the linkage's own output as jets."""
+        s, s1 = self._lifts(theta, order)
+        try:
+            at = self.linkage.solve(s, s1, self.breadth)
+        except BindingError as error:
+            raise _placed(error, theta) from error
+        return at.frame, at.output
+
+    def _solved(self, theta: Array, s: Jet, s1: Jet) -> Solved:
+        try:
+            return self.chain.solve(s, s1, self.about)
+        except BindingError as error:
+            raise _placed(error, theta) from error
+
+    def _sense(self, theta: Array) -> Array:
+        """Sine of the force angle (n,): bounded, and of the sign of phi'."""
+        s, s1 = self._lifts(theta, 1)
+        at = self.linkage.solve(Jet(s.c[:1]), Jet(s1.c[:1]), self.breadth)
+        return force(self.linkage, at, s.c[1], s1.c[1])[0]
+
+    @cached_property
+    def about(self) -> tuple[float, ...]:
+        """Direction that each dyad takes the direction of its point about, for an output without a jump."""
+        found: tuple[float, ...] = ()
+        theta: Array = np.linspace(0.0, TURN, _TABLE, endpoint=False)
+        for loop, dyad in enumerate(self.dyads):
+            s, s1 = (lift.c[0] for lift in self._lifts(theta, 0))
+            theta = theta[self.chain.margin(loop, s, s1, found) > 0]
+            if not len(theta):
+                return (*found, *(0.0,) * (len(self.dyads) - loop))
+            s0, s01 = self._lifts(theta, 0)
+            x, y = self.chain.hung(self.chain.solve(s0, s01, found), loop)
+            if not isinstance(dyad, RRP) and len(theta) == _TABLE:
+                self._demand_swinging(loop, x.c[0] - dyad.ground[0], y.c[0] - dyad.ground[1])
+            found = (*found, dyad.middle(x.c[0], y.c[0]))
+        return found
+
+    def _demand_swinging(self, loop: int, x: Array, y: Array) -> None:
+        """Refuse a dyad whose point, at x, y (n,) from its ground pivot, goes right round that."""
+        steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
+        turned = float(np.sum(steps - TURN * np.round(steps / TURN)))
+        if abs(turned) > math.pi:
+            raise IntentError(
+                f"the point that dyad {loop + 1} hangs on goes right round the dyad's ground pivot: its output would "
+                "turn on and on, not swing",
+                "dyads",
+            )
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """Relative angles from 0 to 2 pi beyond, their shaft angles and the rate of these, (m,) each."""
+        self._demand_turning()
+        steps = np.linspace(-math.pi, 2 * TURN - math.pi, 2 * _TABLE + 1)
+        theta = distinct(np.concatenate([steps, self.breaks]))
+        at = self.at(theta, 1)
+        return theta, at.shaft[0], at.shaft[1]
+
+    def _demand_turning(self) -> None:
+        mobile = self._mobility
+        if not mobile.turns:
+            what, place = "the shaft would have to turn back", mobile.rate_at
+            if mobile.binds:
+                what, place = "a loop cannot be closed", mobile.margin_at
+            elif math.isnan(mobile.least_rate):
+                what = "the linkage is so close to binding that the rate of the shaft is lost in rounding"
+            raise PlaceError(what, place, np.zeros(0, dtype=np.intp))
+
+    def _demand_constant_breadth(self) -> None:
+        law, places = self.lift.law, between(0.0, math.pi, [*self.lift.breaks, *(self.lift.breaks - math.pi)])
+        off = pieces(
+            cells(
+                lambda x: (law.derivatives(x, 0) + law.derivatives(x + math.pi, 0)) - self.breadth,
+                places,
+                0.01 * _ROUNDED * self.breadth,
+            )
+        )
+        miss, at = max(off.greatest(), off.least(), key=lambda found: abs(found[0]))
+        if not abs(miss) <= _ROUNDED * self.breadth:
+            degrees = math.degrees(at) % 360
+            raise IntentError(
+                f"a frame holds cams of constant breadth alone: p(t) + p(t + 180 deg) is {self.breadth + miss:.9g} mm "
+                f"at {degrees:.6g} degrees, the breadth of the frame {self.breadth:.9g} mm",
+                "p",
+                degrees,
+            )
+
+    def _demand_shaft_within(self) -> None:
+        places = between(0.0, TURN, self.lift.breaks)
+        of = pieces(cells(lambda x: self.lift.derivatives(x, 0), places, 1e-3 * _EDGE * self.breadth))
+        least, at = of.least()
+        if least < -_EDGE * self.breadth:
+            degrees = math.degrees(at) % 360
+            raise IntentError(
+                f"the shaft lies outside the cam, by {-least:.6g} mm in the direction of {degrees:.6g} degrees",
+                "pivot",
+                degrees,
+            )
+
+
+def _placed(error: BindingError, theta: Array) -> PlaceError:
+    return PlaceError(error.message, float(theta[error.indices[0]]), error.indices)

@@ -1,0 +1,151 @@
+"""Whether a mechanism turns: how far its loops are from binding, and the least rate of the shaft over the cam's angle.
+
+Two things stop a mechanism: a loop that cannot be closed (AS: a negative discriminant), and a shaft that would have to
+turn back, phi' = 1 - theta_3' < 0, which the papers leave out. The second comes first: close to where a loop binds the
+frame turns faster than any bound, one way or the other.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+from kin.numeric.monotone import SAME, Pieces, RoughError, between, cells, pieces
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kin.numeric.arrays import Array
+
+__all__ = ["Mobility", "Span", "mobility"]
+
+Span = tuple[float, float]
+
+_RESOLUTION = 1e-12  # of margins, as a part of the breadth; of the rate of the shaft, which is 1 on average
+# Spans begin and end this close to where a loop binds; there the rate of the shaft has no bound.
+_BESIDE = 1e-9
+
+
+@dataclass(frozen=True)
+class Mobility:
+    """Where and by how much a mechanism binds or turns back; angles are relative ones, rad.
+
+    margin      least distance from binding of any loop, mm, negative or lost in rounding where one binds; of the loops
+                after a binding one nothing is known
+    margin_at   where in [0, 2 pi)
+    loop        which loop it is: 0 the linkage, k the k-th dyad
+    binds       spans (from, to) in which that loop cannot be closed; those that run through 0 end beyond 2 pi
+    least_rate  least 1 - theta_3'; nan where the linkage binds, and there is no least, or is so close to that that the
+                rate is lost in rounding
+    rate_at     where in [0, 2 pi)
+    reverses    spans in which the shaft would turn back, as far as the linkage can be closed
+    """
+
+    margin: float
+    margin_at: float
+    loop: int
+    binds: tuple[Span, ...]
+    least_rate: float
+    rate_at: float
+    reverses: tuple[Span, ...]
+
+    @property
+    def turns(self) -> bool:
+        """Whether the cam can be turned right round by its shaft."""
+        return not self.binds and self.least_rate > 0
+
+
+def mobility(
+    margins: Sequence[Callable[[Array], Array]],
+    rate: Callable[[Array], Array],
+    sense: Callable[[Array], Array],
+    breaks: Array,
+    breadth: float,
+) -> Mobility:
+    """Find the margins of the loops, and the rate of the shaft, all round.
+
+    `margins` give a loop's margin, mm (n,), at relative angles (n,), each called only where those before it do not
+    bind; `rate` gives 1 - theta_3', asked for only where the linkage does not bind anywhere; `sense` a bounded function
+    of its sign, asked for where the linkage can be closed.
+    """
+    found: tuple[float, float, int] = (math.inf, math.nan, 0)
+    binds: tuple[Span, ...] = ()
+    for loop, margin in enumerate(margins):
+        of = _all_round(margin, breaks, _RESOLUTION * breadth)
+        least, at = of.least()
+        if least < found[0]:
+            found = (least, at % TURN, loop)
+        rounding = float(of.blur.min())
+        if least <= rounding:
+            binds = _below(of, 0.0 if least < -2 * rounding else 4 * rounding)
+            break
+    if binds and found[2] == 0:
+        free = _others(binds)
+        reverses = tuple(_reduced(span) for begin, end in free for span in _reversing(sense, begin, end, breaks))
+        return Mobility(*found, binds, math.nan, math.nan, reverses)
+    try:
+        of = _all_round(rate, breaks, _RESOLUTION)
+    except RoughError as error:
+        return Mobility(*found, binds, math.nan, error.at % TURN, ())
+    least, at = of.least()
+    return Mobility(*found, binds, least, at % TURN, _below(of, 0.0))
+
+
+def _all_round(f: Callable[[Array], Array], breaks: Array, resolution: float) -> Pieces:
+    return pieces(cells(lambda x: f(x)[None], between(0.0, TURN, breaks.tolist()), resolution))
+
+
+def _below(of: Pieces, level: float) -> tuple[Span, ...]:
+    """Spans of a turn in which a function is at or below a level."""
+    places = of.crossings(level).tolist()
+    if len(places) > 1 and places[0] + TURN - places[-1] <= _BESIDE:
+        places.pop()  # 0, found again at 2 pi
+    if not places:
+        return ((0.0, TURN),) if of.values[0] <= level else ()
+    ends = np.array([*places, places[0] + TURN])
+    middle = np.mod(0.5 * (ends[:-1] + ends[1:]), TURN)
+    piece = np.clip(np.searchsorted(of.x, middle, side="right") - 1, 0, len(of.coefficients) - 1)
+    low = of.at(piece, middle) <= level
+    return _merged([(float(a), float(b)) for a, b, inside in zip(ends[:-1], ends[1:], low, strict=True) if inside])
+
+
+def _merged(spans: list[Span]) -> tuple[Span, ...]:
+    """Join spans that meet, the last with the first among them."""
+    joined: list[Span] = []
+    for begin, end in spans:
+        if joined and begin - joined[-1][1] <= SAME:
+            joined[-1] = (joined[-1][0], end)
+        else:
+            joined.append((begin, end))
+    if len(joined) > 1 and joined[0][0] + TURN - joined[-1][1] <= SAME:
+        begin, _ = joined.pop()
+        joined[0] = (begin, joined[0][1] + TURN)
+        joined.append(joined.pop(0))
+    return tuple(joined)
+
+
+def _reduced(span: Span) -> Span:
+    turns = math.floor(span[0] / TURN) * TURN
+    return span[0] - turns, span[1] - turns
+
+
+def _others(spans: tuple[Span, ...]) -> list[Span]:
+    """Spans between the given ones, a little narrower."""
+    ends = [*spans, (spans[0][0] + TURN, math.nan)]
+    free = [(a[1] + _BESIDE, b[0] - _BESIDE) for a, b in pairwise(ends)]
+    return [(begin, end) for begin, end in free if begin < end]
+
+
+def _reversing(sense: Callable[[Array], Array], begin: float, end: float, breaks: Array) -> list[Span]:
+    places = between(begin, end, [*breaks.tolist(), *(breaks + TURN).tolist()])
+    of = pieces(cells(lambda x: sense(np.mod(x, TURN))[None], places, 1e-9))
+    ends = np.array([begin, *of.crossings(0.0).tolist(), end])
+    middle = 0.5 * (ends[:-1] + ends[1:])
+    piece = np.clip(np.searchsorted(of.x, middle, side="right") - 1, 0, len(of.coefficients) - 1)
+    back = of.at(piece, middle) <= 0
+    return [(float(a), float(b)) for a, b, turned in zip(ends[:-1], ends[1:], back, strict=True) if turned and b > a]

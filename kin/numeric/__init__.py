@@ -1,0 +1,1 @@
+"""Jets, Taylor and interval arithmetic, Chebyshev interpolation, roots and extrema."""

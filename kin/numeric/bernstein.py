@@ -1,0 +1,147 @@
+"""Polynomials on [0, 1] by their Bernstein coefficients, many at a time: values, products, parts, roots."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import comb
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.newton import zeros
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
+
+__all__ = ["bernstein_product", "halves", "restrict", "rising_root", "roots", "split", "values"]
+
+# Roots closer to an end than this are taken for the end itself.
+END_MARGIN = 1e-12
+# An interval this narrow whose coefficients still change sign more than once holds a touching root, for our purposes.
+TOUCHING = 1e-9
+# Newton's steps double their digits: after one this short the next would be below rounding.
+SETTLED = 1e-12
+# Below the spacing of floating-point numbers next to 1.
+NARROWEST = 2e-16
+
+
+def values(coefficients: Array, t: Array) -> Array:
+    """Values of Bernstein polynomials: coefficients (n, k+1, ...), t (n,) in [0, 1] -> (n, ...); exact at both ends.
+
+    By Horner's rule in t/(1 - t) or its inverse, whichever is at most 1 (Schumaker and Volk, CAGD 3, 1986): the cost
+    grows with k, not with its square, and the rounding is that of de Casteljau's scheme within a factor of two.
+    """
+    k = coefficients.shape[1] - 1
+    rows = np.moveaxis(coefficients, 0, -1)  # the loops of numpy run along the polynomials
+    late = t > 0.5
+    if bool(late.any()):
+        rows = np.where(late, rows[::-1], rows)
+    away = np.where(late, 1.0 - t, t)
+    near = 1.0 - away
+    ratio = away / near
+    value = rows[k]
+    for i, share in reversed(list(enumerate(binomials(k)[:-1]))):
+        value = value * ratio + share * rows[i]
+    out: Array = np.moveaxis(value * near**k, -1, 0)
+    return out
+
+
+@lru_cache
+def binomials(k: int) -> tuple[float, ...]:
+    """Binomial coefficients k over 0 .. k."""
+    return tuple(float(comb(k, i)) for i in range(k + 1))
+
+
+@lru_cache
+def shares(j: int, k: int) -> Array:
+    """What products of two coefficients count for in those of a product of degrees j and k, (j+1, k+1)."""
+    i, m = np.arange(j + 1)[:, None], np.arange(k + 1)
+    found: Array = np.outer(binomials(j), binomials(k)) / np.array(binomials(j + k))[i + m]
+    found.flags.writeable = False
+    return found
+
+
+def bernstein_product(f: Array, g: Array) -> Array:
+    """Bernstein coefficients of products, f (n, j+1) and g (n, k+1) -> (n, j+k+1)."""
+    j, k = f.shape[1] - 1, g.shape[1] - 1
+    if j > k:
+        f, g, j, k = g, f, k, j
+    first, second = np.ascontiguousarray(f.T), np.ascontiguousarray(g.T)
+    out = np.zeros((j + k + 1, f.shape[0]))
+    for i, weights in enumerate(shares(j, k)):
+        out[i : i + k + 1] += first[i] * (second * weights[:, None])
+    return out.T
+
+
+def halves(coefficients: Array) -> tuple[Array, Array]:
+    """Coefficients (n, k+1, ...) over [0, 1/2] and over [1/2, 1]."""
+    k = coefficients.shape[1]
+    left, right = np.empty_like(coefficients), np.empty_like(coefficients)
+    b = coefficients
+    for level in range(k):
+        left[:, level] = b[:, 0]
+        right[:, k - 1 - level] = b[:, -1]
+        b = (b[:, :-1] + b[:, 1:]) / 2.0
+    return left, right
+
+
+def split(coefficients: Array, at: Array) -> tuple[Array, Array]:
+    """Coefficients (n, k+1, ...) over [0, at] and over [at, 1], `at` (n,)."""
+    rows = np.array(np.moveaxis(coefficients, 0, -1), order="C")
+    left, back = np.empty_like(rows), 1.0 - at
+    left[0] = rows[0]
+    for level in range(1, len(rows)):
+        rows[:-level] = rows[:-level] * back + rows[1 : len(rows) - level + 1] * at
+        left[level] = rows[0]
+    return np.ascontiguousarray(np.moveaxis(left, -1, 0)), np.ascontiguousarray(np.moveaxis(rows, -1, 0))
+
+
+def restrict(coefficients: Array, a: Array, b: Array) -> Array:
+    """Coefficients (n, k+1, ...) over the intervals [a, b] (n,) instead of [0, 1]."""
+    rows = np.array(np.moveaxis(coefficients, 0, -1), order="C")
+    for level in range(1, len(rows)):  # what lies right of a
+        rows[:-level] = rows[:-level] * (1.0 - a) + rows[1 : len(rows) - level + 1] * a
+    with np.errstate(invalid="ignore", divide="ignore"):
+        s = np.where(a < 1.0, (b - a) / (1.0 - a), 0.0)
+    for level in range(1, len(rows)):  # and of that, what lies left of b
+        rows[level:] = rows[level - 1 : -1] * (1.0 - s) + rows[level:] * s
+    out: Array = np.ascontiguousarray(np.moveaxis(rows, -1, 0))
+    return out
+
+
+def rising_root(coefficients: Array) -> Array:
+    """Where polynomials (n, k+1) that rise through zero at most once do so: t (n,), 0 or 1 where they do not.
+
+    To within `SETTLED`, mostly to rounding. Raises UnsettledError where a coefficient is not a number.
+    """
+    n, k = len(coefficients), coefficients.shape[1] - 1
+    slope = k * np.diff(coefficients, axis=1) if k else np.zeros((n, 1))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        t = coefficients[:, 0] / (coefficients[:, 0] - coefficients[:, -1])
+    t = np.where((t > 0.0) & (t < 1.0), t, 0.5)
+    return zeros(lambda t: (values(coefficients, t), values(slope, t)), np.zeros(n), np.ones(n), t, SETTLED)
+
+
+def roots(coefficients: Array) -> list[float]:
+    """Where a Bernstein polynomial (k+1,) changes sign inside (0, 1), rising; a touching root may be listed too.
+
+    The number of sign changes of the coefficients bounds the number of roots (variation diminishing): none or one is
+    decided at once, more are halved.
+    """
+    found: list[float] = []
+    stack = [(coefficients, 0.0, 1.0)]
+    while stack:
+        c, a, b = stack.pop()
+        signs = np.sign(c[c != 0.0])
+        changes = int(np.count_nonzero(signs[1:] != signs[:-1]))
+        if changes == 0:
+            continue
+        if b - a < NARROWEST or (changes > 1 and b - a < TOUCHING):
+            found.append((a + b) / 2.0)
+            continue
+        left, right = halves(c[None])
+        if left[0, -1] == 0.0:
+            found.append((a + b) / 2.0)
+        stack.append((right[0], (a + b) / 2.0, b))
+        stack.append((left[0], a, (a + b) / 2.0))
+    return sorted({t for t in found if END_MARGIN < t < 1.0 - END_MARGIN})

@@ -1,0 +1,266 @@
+"""Piecewise smooth functions cut into polynomials that are monotone, and so are their slopes: nothing is sampled past.
+
+Between breaks each function is interpolated at Chebyshev points, on cells that are halved until the last Chebyshev
+coefficients are below the resolution; the polynomial then stands for the function to about the next coefficient. In
+Bernstein form its turning points and points of inflection are counted by the signs of the coefficients (variation
+diminishing), so none is missed, and the polynomial is cut at them. What is left are pieces on which every question
+has one answer: the extremes of a function are at ends of pieces, a level is crossed once or not at all.
+
+Points of a cell are inside it, so one-sided values at a break are never asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import comb
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.numeric.bernstein import halves, restrict, rising_root, values
+from kin.numeric.distinct import distinct
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from kin.numeric.arrays import Array, Indices
+
+__all__ = ["Cells", "Pieces", "RoughError", "between", "cells", "pieces"]
+
+DEGREE = 10
+FIRST_CELLS = 32
+# Cells no wider than this part of the whole are taken as they are: a corner or step nobody declared lies in them.
+LEAST_CELL = 2.0**-34
+# More unresolved cells than this, and than twice the first ones, are not a corner or two: the function is rough.
+MOST_UNRESOLVED = 2048
+# Interpolation and the change of basis are good to about this part of the greatest value.
+NOISE = 64.0 * 2.0**-52
+# What is left of a cell is rounding of the function itself if it is small, a part of the greatest value, and has not
+# gone down to a share of what was left some generations ago, in either half of a cell: a corner is in one half alone.
+MOST_NOISE = 1e-6
+# Where a function is steep, its argument's rounding counts: this part of the whole.
+BLUR = 2.0**-43
+GENERATIONS = 3
+STAGNANT = 0.25
+AMPLIFIED = 16.0  # by the change of basis, and from one place to another
+# Cuts closer than this to an end of a cell, as a share of it, are the end.
+END_MARGIN = 1e-9
+# A run along a level no longer than this part of the whole is one point.
+SAME = 1e-6
+
+
+class RoughError(ArithmeticError):
+    """A function that no polynomials follow to the resolution asked for; `at` is one of the places."""
+
+    def __init__(self, at: float, resolution: float) -> None:
+        super().__init__(f"the function is too rough to be resolved to {resolution:.3g} near {at:.9g}")
+        self.at = at
+        self.resolution = resolution
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Polynomials for r functions on m cells [low, high] (m,), rising: Bernstein `coefficients` (r, m, DEGREE + 1).
+
+    `noise` (r, m) is how far the coefficients may be off by rounding.
+    """
+
+    low: Array
+    high: Array
+    coefficients: Array
+    noise: Array
+
+
+class _Basis(NamedTuple):
+    """Chebyshev points in (0, 1) (k,), and what takes values there to Bernstein and last two Chebyshev coefficients."""
+
+    points: Array
+    bernstein: Array
+    last: Array
+
+
+@lru_cache(maxsize=1)
+def _basis() -> _Basis:
+    n = DEGREE + 1
+    angle = np.pi * (2 * np.arange(n) + 1) / (2 * n)
+    x = 0.5 - 0.5 * np.cos(angle)
+    k = np.arange(n)
+    weights = np.array([float(comb(DEGREE, i)) for i in range(n)])
+    table = weights * x[:, None] ** k * (1 - x[:, None]) ** (DEGREE - k)
+    last = 2.0 / n * np.cos(np.outer([DEGREE - 1, DEGREE], angle))
+    return _Basis(x, np.asarray(np.linalg.inv(table), dtype=float), last)
+
+
+def cells(f: Callable[[Array], Array], places: Array, resolution: float | Array = 0.0, *, share: float = 0.0) -> Cells:
+    """Interpolate r functions, f(x (n,)) -> (r, n), between places (m + 1,) that rise, breaks among them.
+
+    Each is resolved to `resolution` ((r,) or one for all), or to a share of its greatest absolute value, or to its own
+    rounding, whichever is most. Rounding is known by its not going down as cells are halved. Raises RoughError.
+    """
+    basis = _basis()
+    widest = (places[-1] - places[0]) / FIRST_CELLS
+    counts = np.maximum(np.ceil(np.diff(places) / widest - 1e-9), 1).astype(int)
+    parts = [np.linspace(a, b, n + 1) for a, b, n in zip(places[:-1], places[1:], counts, strict=True)]
+    low, high = np.concatenate([p[:-1] for p in parts]), np.concatenate([p[1:] for p in parts])
+    least = LEAST_CELL * (places[-1] - places[0])
+    most = max(MOST_UNRESOLVED, 2 * len(low))
+    blur = BLUR * (places[-1] - places[0])
+    scale = np.zeros(1)
+    before = np.full((GENERATIONS, len(low)), np.inf)  # what was left of each cell's forebears, the oldest first
+    done = []
+    while len(low):
+        at = low[:, None] + (high - low)[:, None] * basis.points
+        y = f(at.ravel())
+        y = y.reshape(len(y), *at.shape)
+        scale = np.maximum(scale, np.abs(y).max(axis=(1, 2)))
+        allowed = np.maximum(resolution, max(share, 0.25 * NOISE) * scale)[:, None]
+        last = np.abs(y @ basis.last.T).max(axis=2)
+        allowed = np.maximum(allowed, np.ptp(y, axis=2) * (blur / (high - low)))
+        excess = np.divide(last, allowed, out=np.zeros_like(last), where=last > 0).max(axis=0)
+        rounding = (excess > STAGNANT * before[0]) & (last <= MOST_NOISE * scale[:, None]).all(axis=0)
+        rounding &= np.roll(rounding, len(low) // 2)  # in both halves of a cell
+        unresolved = (excess > 1.0) & ~rounding & (high - low > least)
+        done.append((low[~unresolved], high[~unresolved], y[:, ~unresolved], (last * rounding)[:, ~unresolved]))
+        low, high = low[unresolved], high[unresolved]
+        before = np.tile(np.vstack([before[1:, unresolved], excess[unresolved]]), 2)
+        if len(low) > most:
+            raise RoughError(float(low[0]), float(allowed.max()))
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    low, high = np.concatenate([d[0] for d in done]), np.concatenate([d[1] for d in done])
+    y, left = np.concatenate([d[2] for d in done], axis=1), np.concatenate([d[3] for d in done], axis=1)
+    order = np.argsort(low)
+    y, noise = y[:, order], NOISE * scale[:, None] + AMPLIFIED * left[:, order]
+    base = y[..., DEGREE // 2, None]  # rounding in the change of basis is then that of the change within the cell
+    return Cells(low[order], high[order], base + (y - base) @ basis.bernstein.T, noise)
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """A function on n pieces between nodes x (n + 1,), each a polynomial, monotone and with a monotone slope.
+
+    `coefficients` (n, k + 1) are Bernstein coefficients over each piece, `blur` (n,) how far rounding may put them off.
+    """
+
+    x: Array
+    coefficients: Array
+    blur: Array
+
+    @cached_property
+    def noise(self) -> float:
+        """How far rounding may put values off anywhere."""
+        return float(self.blur.max())
+
+    @property
+    def width(self) -> Array:
+        """Width of each piece (n,)."""
+        return np.diff(self.x)
+
+    @property
+    def values(self) -> Array:
+        """Value at each node (n + 1,), that of the piece that begins there."""
+        return np.append(self.coefficients[:, 0], self.coefficients[-1, -1])
+
+    def at(self, piece: Indices, x: Array) -> Array:
+        """Values (n,) at x (n,) of the given pieces (n,)."""
+        return values(self.coefficients[piece], (x - self.x[piece]) / self.width[piece])
+
+    def slope(self, piece: Indices, x: Array) -> Array:
+        """Slopes (n,) at x (n,) of the given pieces (n,)."""
+        c = np.diff(self.coefficients[piece], axis=1) * (self.coefficients.shape[1] - 1)
+        width = self.width[piece]
+        return values(c, (x - self.x[piece]) / width) / width
+
+    def crossing(self, piece: Indices, level: Array) -> Array:
+        """Where the given pieces (n,) reach levels (n,): x (n,), the nearer end of a piece that does not."""
+        c = self.coefficients[piece]
+        rising = np.where(c[:, -1] >= c[:, 0], 1.0, -1.0)
+        t = rising_root((c - level[:, None]) * rising[:, None])
+        return self.x[piece] + np.clip(t, 0.0, 1.0) * self.width[piece]
+
+    def crossings(self, level: float) -> Array:
+        """Every x at which the function passes or touches a level, rising; of a run along it the ends, within noise."""
+        value = self.values - level
+        zero = np.abs(value) <= np.maximum(np.append(self.blur, 0.0), np.append(0.0, self.blur))
+        through = np.flatnonzero((value[:-1] * value[1:] < 0) & ~zero[:-1] & ~zero[1:])
+        edge = np.flatnonzero(np.diff(np.concatenate([[0], zero, [0]])))
+        begin, end = self.x[edge[::2]], self.x[edge[1::2] - 1]
+        short = end - begin <= SAME * (self.x[-1] - self.x[0])
+        runs = np.concatenate([0.5 * (begin + end)[short], begin[~short], end[~short]])
+        return distinct(np.concatenate([runs, self.crossing(through, np.full(len(through), level))]))
+
+    def least(self) -> tuple[float, float]:
+        """Least value and where."""
+        ends = self.coefficients[:, [0, -1]]
+        k, end = divmod(int(ends.argmin()), 2)
+        return float(ends[k, end]), float(self.x[k + end])
+
+    def greatest(self) -> tuple[float, float]:
+        """Greatest value and where."""
+        ends = self.coefficients[:, [0, -1]]
+        k, end = divmod(int(ends.argmax()), 2)
+        return float(ends[k, end]), float(self.x[k + end])
+
+
+def pieces(of: Cells, row: int = 0) -> Pieces:
+    """Cut one of the functions into pieces."""
+    low, high, c, noise = of.low, of.high, of.coefficients[row], of.noise[row]
+    least = LEAST_CELL * (high[-1] - low[0])
+    done = []
+    while len(low):
+        single = (_changes(c, 1, noise) <= 1) & (_changes(c, 2, noise) <= 1) | (high - low <= least)
+        done.append((low[single], high[single], c[single], noise[single]))
+        low, high, c, noise = low[~single], high[~single], c[~single], np.tile(noise[~single], 2)
+        middle = 0.5 * (low + high)
+        c = np.concatenate(halves(c))
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    low, high, c, noise = (np.concatenate(list(part)) for part in zip(*done, strict=True))
+    for order in (1, 2):
+        low, high, c, noise = _cut(low, high, c, noise, order)
+    rank = np.argsort(low)
+    return Pieces(np.append(low[rank], high.max()), c[rank], noise[rank])
+
+
+def _differences(c: Array, order: int, noise: Array) -> Array:
+    """Differences of coefficients (n, k + 1), those that may be rounding set to 0."""
+    d = np.diff(c, order, axis=1)
+    d[np.abs(d) <= 2.0**order * noise[:, None]] = 0.0
+    return d
+
+
+def _changes(c: Array, order: int, noise: Array) -> Indices:
+    """How often the differences of each row change sign (n,)."""
+    signs = np.sign(_differences(c, order, noise))
+    # a zero takes the sign before it
+    last = np.maximum.accumulate(np.where(signs != 0, np.arange(signs.shape[1]), 0), axis=1)
+    filled = np.take_along_axis(signs, last, axis=1)
+    changed: Indices = np.count_nonzero(filled[:, 1:] * filled[:, :-1] < 0, axis=1)
+    return changed
+
+
+def _cut(low: Array, high: Array, c: Array, noise: Array, order: int) -> tuple[Array, Array, Array, Array]:
+    """Cut where the derivative of the given order changes sign."""
+    turning = np.flatnonzero(_changes(c, order, noise) == 1)
+    d = np.diff(c[turning], order, axis=1)
+    kept = _differences(c[turning], order, noise[turning])
+    first = kept[np.arange(len(kept)), np.argmax(kept != 0, axis=1)]
+    t = rising_root(d * -np.sign(first)[:, None])
+    inside = (t > END_MARGIN) & (t < 1.0 - END_MARGIN)
+    turning, t = turning[inside], t[inside]
+    at = low[turning] + t * (high[turning] - low[turning])
+    left, right = restrict(c[turning], np.zeros_like(t), t), restrict(c[turning], t, np.ones_like(t))
+    rest = np.ones(len(low), dtype=np.bool_)
+    rest[turning] = False
+    return (
+        np.concatenate([low[rest], low[turning], at]),
+        np.concatenate([high[rest], at, high[turning]]),
+        np.concatenate([c[rest], left, right]),
+        np.concatenate([noise[rest], noise[turning], noise[turning]]),
+    )
+
+
+def between(begin: float, end: float, breaks: Iterable[float]) -> Array:
+    """Places to interpolate between: the ends, and the breaks (any order) that are inside."""
+    inside = [x for x in breaks if begin < x < end]
+    return distinct(np.array([begin, *inside, end]))

@@ -1,0 +1,1 @@
+"""Files as numbers, whoever wrote them."""

@@ -1,0 +1,43 @@
+"""Bodies that do not belong to a part: which, where and how large they are, in one error for every format."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.numeric.arrays import Array
+
+__all__ = ["MOST_BODIES", "beside"]
+
+MOST_BODIES = 5  # that are named in a message
+
+
+def beside(bodies: Sequence[tuple[str, tuple[Array, Array] | None]], count: int, path: Path) -> ReadError:
+    """Make the error for a file of `count` bodies, of which some are given: names, and boxes (3,), (3,), mm, if known.
+
+    The one with the largest box is taken for the part, the others for what does not belong there.
+    """
+    sizes = [-1.0 if box is None else float(np.prod(box[1] - box[0])) for _, box in bodies]
+    part = int(np.argmax(sizes))
+    others = [told(*one) for k, one in enumerate(bodies) if k != part]
+    more = f", and {count - len(bodies)} more" if count > len(bodies) else ""
+    name = bodies[part][0]
+    message = f"it holds {count} bodies, where one is meant to be; beside {name} there is {'; '.join(others)}{more}"
+    return ReadError("several", f"{message}; take out what does not belong", path)
+
+
+def told(name: str, box: tuple[Array, Array] | None) -> str:
+    """A body's name, size and place in words."""
+    if box is None:
+        return name
+    low, high = box
+    size = " x ".join(f"{side:.6g}" for side in (high - low).tolist())
+    spans = (f"{axis} {a:.6g} to {b:.6g}" for axis, a, b in zip("xyz", low.tolist(), high.tolist(), strict=True))
+    return f"{name} of {size} mm at {', '.join(spans)} mm"

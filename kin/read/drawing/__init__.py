@@ -1,0 +1,1 @@
+"""Drawings: DXF and SVG as closed contours."""

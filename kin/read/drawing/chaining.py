@@ -1,0 +1,141 @@
+"""Loose runs of pieces, in any order and direction, joined end to end into closed loops within a stated gap."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array, Indices
+
+__all__ = ["Loop", "close_pairs", "loops"]
+
+# Ends closer than this, mm, are one point; only ends that find no partner here look farther, up to the permitted gap.
+SAME_POINT = 1e-9
+# A drawing smaller than 50 mm is read as closely for its size: what is one point, and what gap is permitted by default.
+SAME_SHARE = SAME_POINT / 50.0
+GAP, GAP_SHARE = 1e-6, 1e-6 / 50.0
+# An opening wider than this share of the drawing is called a missing segment, a smaller one a gap.
+MISSING_SHARE = 0.01
+# Rounding of a point computed from an arc's centre, radius and angle, in units of its coordinates.
+ROUNDING = 8.0 * np.finfo(float).eps
+# Openings that an error looks at.
+MOST_SHOWN = 500
+MOST_TOGETHER = 64  # pieces or ends at one place
+# A direction in which no drawing puts many of its points on one line: sorting along it keeps candidates few.
+SLANT = 0.5370795
+
+
+class Loop(NamedTuple):
+    """Runs (k,) in order round a closed loop, which of them are taken backwards (k,), and the widest gap in it."""
+
+    runs: Indices
+    backwards: NDArray[np.bool_]
+    gap: float
+
+
+def close_pairs(points: Array, tolerance: float, path: Path | None = None) -> tuple[Indices, Indices]:
+    """Pairs i, j (k,), (k,) of points (n, m) no farther apart than `tolerance` in any coordinate; each pair once.
+
+    Those of a file, `path`, are refused where so many lie together that their pairs are beyond number.
+    """
+    direction = np.cos(SLANT * np.arange(1, points.shape[1] + 1) ** 2)
+    along = points @ direction
+    order = np.argsort(along, kind="stable")
+    along = along[order]
+    rounding = 8.0 * np.finfo(float).eps * float(np.abs(along).max(initial=0.0))
+    reach = tolerance * float(np.abs(direction).sum()) + rounding
+    first, second = [order[:0]], [order[:0]]
+    step = 1
+    candidates = np.arange(len(order))
+    while True:
+        candidates = candidates[candidates + step < len(order)]
+        candidates = candidates[along[candidates + step] - along[candidates] <= reach]
+        if not candidates.size:
+            break
+        i, j = order[candidates], order[candidates + step]
+        close = (np.abs(points[i] - points[j]) <= tolerance).all(axis=1)
+        first.append(i[close])
+        second.append(j[close])
+        step += 1
+        if path is not None and step > MOST_TOGETHER:
+            raise ReadError("range", f"more than {MOST_TOGETHER} pieces are drawn over one another", path)
+    return np.concatenate(first), np.concatenate(second)
+
+
+def loops(start: Array, end: Array, gap: float, same: float, path: Path) -> list[Loop]:
+    """Join runs into closed loops: runs with these starts and ends (n, 2), where ends lie within `gap` of each other.
+
+    Ends within `same` are one point. A gap smaller than the rounding of the ends themselves counts as that. Raises
+    ReadError: "branch" where more than two ends meet, "gap" or "open" where an end finds no partner.
+    """
+    count = len(start)
+    ends = np.concatenate([start, end])  # end k of run k % count
+    gap = max(gap, ROUNDING * float(np.abs(ends).max()))
+    partner = np.full(2 * count, -1, dtype=np.intp)
+    closed = np.flatnonzero((np.abs(start - end) <= min(same, gap)).all(axis=1))
+    partner[closed], partner[closed + count] = closed + count, closed
+    for tolerance in (min(same, gap), gap):
+        free = np.flatnonzero(partner < 0)
+        join(free, ends, tolerance, partner, path)
+    free = np.flatnonzero(partner < 0)
+    if free.size:
+        raise opening(free, ends, gap, path)
+    follow = partner.tolist()
+    seen = bytearray(count)
+    found = []
+    for first in range(count):
+        if seen[first]:
+            continue
+        runs, backwards = [], []
+        run, back = first, False
+        while not seen[run]:
+            seen[run] = 1
+            runs.append(run)
+            backwards.append(back)
+            leaves = run if back else run + count
+            enters = follow[leaves]
+            run, back = enters % count, enters >= count
+        index, flip = np.array(runs, dtype=np.intp), np.array(backwards)
+        out = ends[np.where(flip, index, index + count)]
+        into = np.roll(ends[np.where(flip, index + count, index)], -1, axis=0)
+        found.append(Loop(index, flip, float(np.hypot(*(out - into).T).max())))
+    return found
+
+
+def join(free: Indices, ends: Array, tolerance: float, partner: Indices, path: Path) -> None:
+    """Make partners of the `free` ends that lie within `tolerance` of one other free end."""
+    i, j = close_pairs(ends[free], tolerance, path)
+    met = np.bincount(np.concatenate([i, j]), minlength=len(free))
+    crowded = np.flatnonzero(met > 1)
+    if crowded.size:
+        x, y = ends[free[crowded[0]]].tolist()
+        message = f"{met[crowded[0]] + 1} ends meet at ({x:.9g}, {y:.9g}), where two should"
+        raise ReadError("branch", message, path, (x, y))
+    partner[free[i]], partner[free[j]] = free[j], free[i]
+
+
+def opening(free: Indices, ends: Array, gap: float, path: Path) -> ReadError:
+    """Return the error for ends without a partner: the widest of the openings, each taken to the nearest other end."""
+    points = ends[free]
+    shown = points[:MOST_SHOWN]
+    apart = np.hypot(*np.moveaxis(shown[:, None] - points[None], 2, 0))
+    apart[np.arange(len(shown)), np.arange(len(shown))] = np.inf
+    nearest = apart.argmin(axis=1)
+    width = apart.min(axis=1)
+    worst = int(width.argmax())
+    (x, y), (x2, y2), wide = points[worst].tolist(), points[nearest[worst]].tolist(), float(width[worst])
+    missing = wide > MISSING_SHARE * float(np.ptp(ends, axis=0).max())
+    more = f"; {len(free) // 2} such places" if len(free) > 2 else ""
+    what = "the contour is open, a segment is missing" if missing else "the contour is open"
+    message = (
+        f"{what} between ({x:.9g}, {y:.9g}) and ({x2:.9g}, {y2:.9g}): {wide:.3g} apart, permitted are {gap:.3g}{more}"
+    )
+    return ReadError("open" if missing else "gap", message, path, (x, y), wide)

@@ -1,0 +1,289 @@
+"""What a drawing gives to cut, whatever its format: shapes joined into closed contours, the outer one and its holes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.contour.bezier import Beziers
+from kin.contour.contour import Box, Contour
+from kin.contour.intersections import first_meeting
+from kin.contour.pieces import ARC, Pieces
+from kin.read.drawing.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
+from kin.read.errors import ReadError
+from kin.read.nesting import counter_clockwise, demand_few, met, nested
+
+if TYPE_CHECKING:
+    from collections import Counter
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array, Indices
+    from kin.read.drawing.shapes import Shape
+
+__all__ = [
+    "BESIDE",
+    "BORE",
+    "CUT",
+    "ENGRAVED",
+    "REFERENCE",
+    "Aside",
+    "Drawing",
+    "Fault",
+    "Found",
+    "drawing_of",
+]
+
+CUT, BORE = "CUT", "BORE"
+# Layers that are cut beside CUT: the bore's, holes, a mark that is cut through.
+BESIDE = frozenset({BORE, "HOLES", "MARK"})
+# What is engraved stands here, read if it is asked for.
+ENGRAVED = "ENGRAVE"
+# Layers that are never cut: our own reference geometry and cutter's path, and AutoCAD's definition points.
+REFERENCE = frozenset({"REFERENCE", "TOOLPATH", "DEFPOINTS"})
+
+
+class Fault(NamedTuple):
+    """Something that should not be in a drawing for a machine, though a contour could be read: kind, entity, place, mm.
+
+    kind: "zero-length" (left out), "duplicate" (of another entity; left out), "overlap" (only some of its pieces are).
+    """
+
+    kind: str
+    entity: str
+    layer: str
+    x: float
+    y: float
+
+
+class Aside(NamedTuple):
+    """Entities that were not read as contour: their layer, type and number."""
+
+    layer: str
+    kind: str
+    number: int
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """What a DXF or SVG file gives to cut, in mm (in drawing units if it states none), and what else is worth knowing.
+
+    contour, holes  counter-clockwise all of them
+    units_mm        mm in a drawing unit, by $INSUNITS or a comment on top, or by an SVG's width and viewBox; None if
+                    the file states none
+    turned          the outer contour was drawn clockwise, and was turned round
+    pieces          pieces of the outer contour as the file counts them: edges, arcs, spans of a spline
+    widest_gap      widest gap between entities joined to the outer contour, mm
+    layers          layers that the contour and the holes were taken from
+    aside           what was not read: reference geometry, text, other layers
+    faults          zero-length and duplicate entities
+    version         of DXF, such as "AC1024", or "SVG"
+    measurement     $MEASUREMENT: 0 English, 1 metric, None if not stated
+    extents         $EXTMIN and $EXTMAX, mm; None if not stated
+    audit           messages of ezdxf's auditor, None if it was not asked
+    engraved        what is engraved, counter-clockwise, if it was asked for
+    """
+
+    contour: Contour
+    holes: tuple[Contour, ...]
+    units_mm: float | None
+    turned: bool
+    pieces: int
+    widest_gap: float
+    layers: tuple[str, ...]
+    aside: tuple[Aside, ...]
+    faults: tuple[Fault, ...]
+    version: str
+    measurement: int | None
+    extents: Box | None
+    audit: tuple[str, ...] | None
+    engraved: tuple[Contour, ...] = ()
+
+
+class Found(NamedTuple):
+    """The entities to cut: their shapes, names and layers; and what was set aside."""
+
+    shapes: list[Shape]
+    names: list[str]
+    layers: list[str]
+    aside: Counter[tuple[str, str]]
+
+
+def drawing_of(
+    found: Found,
+    marks: Found | None,
+    unit: float | None,
+    gap: float | None,
+    path: Path,
+    *,
+    version: str,
+    measurement: int | None = None,
+    extents: Box | None = None,
+    audit: tuple[str, ...] | None = None,
+) -> Drawing:
+    """Join what is to be cut, and what is engraved, in drawing units, to the contours of a drawing in mm.
+
+    `gap` in mm, by default GAP, or less in a small drawing; the rest is told as it is given. Heights may differ by as
+    much as such a gap. Raises ReadError as the readers do.
+    """
+    scale = 1.0 if unit is None else unit
+    pieces, run = gathered(found.shapes)
+    pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
+    same, usual = closeness(pieces)
+    gap = usual if gap is None else gap
+    scratched: tuple[Contour, ...] = ()
+    if marks is not None and marks.shapes:
+        lines, owner = gathered(marks.shapes)
+        lines = lines.enlarged(scale) if scale != 1.0 else lines
+        scratched = tuple(counter_clockwise(c.contour) for c in chain(lines, owner, gap, same, path))
+    demand_one_plane(np.concatenate([s.heights for s in found.shapes]) * scale, usual, path)
+    keep, faults = without_faults(pieces, run, found, same, path)
+    if not keep.any():
+        raise ReadError("empty", "all entities to cut are of zero length", path)
+    chained = chain(pieces.take(keep), run[keep], gap, same, path)
+    meeting = first_meeting([c.contour for c in chained])
+    if meeting:
+        raise met(meeting, path)
+    first, *others = nested([c.contour for c in chained], path)
+    outer = chained[first]
+    return Drawing(
+        contour=counter_clockwise(outer.contour),
+        holes=tuple(counter_clockwise(chained[k].contour) for k in others),
+        units_mm=unit,
+        turned=outer.contour.area < 0.0,
+        pieces=sum(found.shapes[k].spans for k in outer.entities),
+        widest_gap=outer.gap,
+        layers=tuple(sorted(set(found.layers))),
+        aside=tuple(Aside(*key, count) for key, count in sorted(found.aside.items())),
+        faults=tuple(faults),
+        version=version,
+        measurement=measurement,
+        extents=extents,
+        audit=audit,
+        engraved=scratched,
+    )
+
+
+def gathered(shapes: list[Shape]) -> tuple[Pieces, Indices]:
+    """All pieces of the shapes, in order, and the number of the shape that each belongs to (n,), rising."""
+    numbers = np.arange(len(shapes))
+    chords, arcs = np.concatenate([s.chords for s in shapes]), np.concatenate([s.arcs for s in shapes])
+    unrolled = Beziers.joined([s.beziers for s in shapes]).unrolled()
+    run = np.concatenate(
+        [
+            np.repeat(numbers, [len(s.chords) for s in shapes]),
+            np.repeat(numbers, [len(s.arcs) for s in shapes]),
+            np.repeat(numbers, [s.beziers.count for s in shapes])[unrolled.row],
+        ]
+    )
+    parts = [
+        Pieces.from_chords(chords[:, :2], chords[:, 2:4], chords[:, 4]),
+        Pieces.from_arcs(arcs[:, :2], arcs[:, 2], arcs[:, 3], arcs[:, 4]),
+        Pieces.from_unrolled(unrolled.pieces),
+    ]
+    pieces = Pieces.joined([p for p in parts if len(p)])
+    order = np.argsort(run, kind="stable")
+    return (pieces, run) if (np.diff(run) >= 0).all() else (pieces.take(order), run[order])
+
+
+def closeness(pieces: Pieces) -> tuple[float, float]:
+    """How near two points are the same, and two ends joined where no gap is asked for, mm."""
+    size = extent(pieces)
+    same = max(min(SAME_POINT, SAME_SHARE * size), ROUNDING * float(np.abs(pieces.start).max()))
+    return same, max(min(GAP, GAP_SHARE * size), same)
+
+
+def demand_one_plane(heights: Array, most: float, path: Path) -> None:
+    """Raise ReadError where heights (n,) differ by more than `most`."""
+    if np.ptp(heights) > most:
+        message = f"the entities do not lie in one plane: heights from {heights.min():g} to {heights.max():g}"
+        raise ReadError("unsupported", message, path)
+
+
+def extent(pieces: Pieces) -> float:
+    """Return the greater side of a box round the pieces, mm, to within a half: how large a drawing is."""
+    every = np.arange(len(pieces))
+    points = [pieces.start, pieces.end, pieces.points(every, np.full(every.size, 0.5))]
+    return float(np.ptp(np.concatenate(points), axis=0).max())
+
+
+def without_faults(
+    pieces: Pieces, run: Indices, found: Found, same: float, path: Path
+) -> tuple[NDArray[np.bool_], list[Fault]]:
+    """Which pieces (n,) to keep, and the faults: pieces of no length, and pieces drawn twice, whichever way round.
+
+    Pieces no longer than `same`, mm, have no direction to speak of; those whose ends and middles agree to that are
+    drawn twice. An entity all of whose pieces are drawn by entities before it is left out. Where only some are, the
+    pieces stay.
+    """
+    keep = reach(pieces) > same
+    faults = [fault("zero-length", pieces, int(k), run, found) for k in np.flatnonzero(~keep)]
+    kept = np.flatnonzero(keep)
+    middle = pieces.points(kept, np.full(kept.size, 0.5))
+    start, end = pieces.start[kept], pieces.end[kept]
+    chord = end - start
+    size = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), same)
+    # The same whichever way the piece is run through: middle of the chord, of the piece, and the direction doubled.
+    doubled = np.stack([chord[:, 0] ** 2 - chord[:, 1] ** 2, 2.0 * chord[:, 0] * chord[:, 1]], axis=1) / size[:, None]
+    one, other = close_pairs(np.column_stack([(start + end) / 2.0, middle, doubled]), same, path)
+    again = np.zeros(len(pieces), dtype=bool)
+    again[kept[np.maximum(one, other)]] = True
+    if not again.any():
+        return keep, faults
+    count = len(found.names)
+    whole = np.bincount(run[keep & ~again], minlength=count) == 0
+    for k in np.flatnonzero(np.bincount(run[again], minlength=count)):
+        place = int(np.flatnonzero(again & (run == k))[0])
+        faults.append(fault("duplicate" if whole[k] else "overlap", pieces, place, run, found))
+    return keep & ~whole[run], faults
+
+
+def fault(kind: str, pieces: Pieces, piece: int, run: Indices, found: Found) -> Fault:
+    """Return a Fault at the start of a piece."""
+    x, y = pieces.start[piece].tolist()
+    return Fault(kind, found.names[run[piece]], found.layers[run[piece]], x, y)
+
+
+def reach(pieces: Pieces) -> Array:
+    """Return the size of each piece, mm (n,): never less than a third of its length."""
+    size = np.hypot(*(pieces.end - pieces.start).T)
+    size = np.where(pieces.kind == ARC, pieces.radius * np.abs(pieces.sweep), size)
+    bow = pieces.curve >= 0
+    if bow.any():
+        size[bow] = np.ptp(pieces.beziers.control, axis=1).max(axis=1)[pieces.curve[bow]]
+    return size
+
+
+class Chained(NamedTuple):
+    """A closed contour, the entities it is made of (k,), and the widest gap between them, mm."""
+
+    contour: Contour
+    entities: Indices
+    gap: float
+
+
+def chain(pieces: Pieces, run: Indices, gap: float, same: float, path: Path) -> list[Chained]:
+    """Contours out of pieces whose runs (n,), rising, are joined end to end, as `loops` does."""
+    first = np.flatnonzero(np.diff(run, prepend=-1))
+    count = np.diff(first, append=len(run))
+    made = []
+    found = loops(pieces.start[first], pieces.end[first + count - 1], gap, same, path)
+    demand_few(len(found), path)
+    for loop in found:
+        many, back = count[loop.runs], loop.backwards
+        owner = np.repeat(np.arange(len(many)), many)
+        step = np.arange(len(owner)) - np.repeat(np.cumsum(many) - many, many)
+        step = np.where(back[owner], many[owner] - 1 - step, step)
+        ordered = pieces.take(first[loop.runs][owner] + step).turned_round(back[owner])
+        made.append(Chained(Contour.from_pieces(closed_up(ordered, same)), run[first[loop.runs]], loop.gap))
+    return made
+
+
+def closed_up(pieces: Pieces, same: float) -> Pieces:
+    """Return the pieces of a loop, ends that lie within `same` of the next start set to it."""
+    following = np.roll(pieces.start, -1, axis=0)
+    near = np.abs(following - pieces.end).max(axis=1, keepdims=True) <= same
+    return replace(pieces, end=np.where(near, following, pieces.end))

@@ -1,0 +1,271 @@
+"""Contours from DXF files, from any CAD system: entities in any order and direction, joined within a stated gap."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections import Counter
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from kin.contour.contour import Box
+from kin.read.drawing.affine import Affine
+from kin.read.drawing.drawing import BESIDE, BORE, CUT, ENGRAVED, REFERENCE, Aside, Drawing, Fault, Found, drawing_of
+from kin.read.drawing.dxf_entities import CURVES, NOTES, facing, shape_of
+from kin.read.drawing.shapes import UnfitError, check
+from kin.read.errors import ReadError
+from kin.read.home import prepare_home
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ezdxf.document import Drawing as Document
+
+__all__ = ["Aside", "Drawing", "Fault", "read_dxf"]
+
+# Mm in a unit of $INSUNITS: inch, foot, mm, cm, m, microinch, mil, yard, micrometre, decimetre.
+UNIT_MM = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 10: 914.4, 13: 1e-3, 14: 100.0}
+UNIT_NAMES = {"mm": 1.0, "millimetre": 1.0, "millimeter": 1.0, "inch": 25.4, "inches": 25.4, "in": 25.4, "cm": 10.0}
+UNIT_COMMENT = re.compile(rb"^[ \t]*999[ \t]*\r?\n[^\r\n]*\bunits?[ \t]*[:=][ \t]*(\w+)", re.IGNORECASE | re.MULTILINE)
+COMMENT_BYTES = 4000
+END_MARK = re.compile(rb"(^|\n)[ \t]*0[ \t]*\r?\n[ \t]*EOF\s*$")
+MOST_ENTITIES = 20_000  # that blocks may bring in
+DEEPEST = 16  # of blocks within blocks
+EXTERNAL = 4 | 32  # flags of a block that another file has
+NO_LAYER = "0"  # what is drawn without choosing a layer stands there
+BINARY_MARK = b"AutoCAD Binary DXF"
+# What wrong text causes in code that expects numbers, names and references.
+DAMAGE = (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, AssertionError, StopIteration)
+
+
+def read_dxf(
+    path: Path | str,
+    gap: float | None = None,
+    layer: str | None = None,
+    *,
+    audit: bool = False,
+    engraved: bool = False,
+) -> Drawing:
+    """Read the outer contour and the holes that a DXF file gives to cut.
+
+    gap     mm; ends of loose pieces are joined if they lie within it. Default: 1e-6, or 2e-8 of a drawing below 50 mm
+    layer   the one to cut. Default: CUT, with holes also from BORE, HOLES, MARK and 0, if there is something on CUT;
+            else all layers but those of reference geometry. The outermost closed chain is the contour, those inside
+            it are holes.
+    audit   have ezdxf's auditor look at the file too, which takes as long again
+    engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
+
+    Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
+    lines, arcs and splines in one plane, with the place and the size of the gap.
+    """
+    path = Path(path)
+    raw = path.read_bytes()
+    document = parsed(raw, path)
+    with damage_reported(path):
+        unit = unit_of(document, raw[:COMMENT_BYTES], path)
+        scale = 1.0 if unit is None else unit
+        drawn = everything(document, path)
+        found = entities_to_cut(document, drawn, layer, path)
+        marks = entities_engraved(drawn, path) if engraved else None
+        messages = tuple(e.message for e in document.audit().errors) if audit else None
+        low, high = (document.header.get(name) for name in ("$EXTMIN", "$EXTMAX"))
+        stated = low is not None and high is not None and low[0] <= high[0] and low[1] <= high[1]
+        extents = Box(*(float(v) * scale for v in (*low[:2], *high[:2]))) if stated else None
+        measurement = document.header.get("$MEASUREMENT")
+    return drawing_of(
+        found,
+        marks,
+        unit,
+        gap,
+        path,
+        version=document.dxfversion,
+        measurement=measurement,
+        extents=extents,
+        audit=messages,
+    )
+
+
+@contextmanager
+def damage_reported(path: Path) -> Iterator[None]:
+    """Turn what damaged text causes inside ezdxf into a ReadError.
+
+    It can surface anywhere there, as any of DAMAGE. To the caller they all mean the same; the cause stays attached.
+    """
+    prepare_home()
+    from ezdxf.lldxf.const import DXFError
+
+    try:
+        yield
+    except ReadError:
+        raise
+    except (*DAMAGE, DXFError) as error:
+        raise ReadError("syntax", f"not a sound DXF file: {type(error).__name__}: {error}", path) from error
+
+
+def parsed(raw: bytes, path: Path) -> Document:
+    """Parse a file by ezdxf; one without its end mark is refused before."""
+    if not raw.strip():
+        raise ReadError("empty", "the file is empty", path)
+    if raw.startswith(BINARY_MARK):
+        raise ReadError("unsupported", "this is a binary DXF file; save it as text", path)
+    if END_MARK.search(raw[-200:]) is None:
+        raise ReadError("truncated", "the end mark EOF is missing: the file is cut short, or no DXF file", path)
+
+    prepare_home()
+    from ezdxf.filemanagement import dxf_stream_info, read
+
+    with damage_reported(path):
+        encoding = dxf_stream_info(io.StringIO(raw.decode("utf-8", errors="ignore"), newline=None)).encoding
+        return read(io.TextIOWrapper(io.BytesIO(raw), encoding=encoding, errors="surrogateescape"))
+
+
+def unit_of(document: Document, head: bytes, path: Path) -> float | None:
+    """Mm in a drawing unit, by $INSUNITS or else by a comment "units: mm" on top; None if neither states it."""
+    code = document.header.get("$INSUNITS", 0)
+    if code in UNIT_MM:
+        return UNIT_MM[code]
+    if code != 0:
+        raise ReadError("unsupported", f"$INSUNITS {code} is no unit to draw a cam in", path)
+    comment = UNIT_COMMENT.search(head)
+    return None if comment is None else UNIT_NAMES.get(comment[1].decode("ascii", errors="ignore").lower())
+
+
+class Drawn(NamedTuple):
+    """An entity, its layer, its name, and the map of the blocks round it: of the plan, and z to rise + scale z.
+
+    What is drawn on layer 0 of a block stands on the layer where the block is inserted.
+    """
+
+    entity: Any
+    layer: str
+    name: str
+    to: Affine | None = None
+    rise: float = 0.0
+    scale: float = 1.0
+
+    @property
+    def kind(self) -> str:
+        """Type of the entity."""
+        return str(self.entity.dxftype())
+
+
+def everything(document: Document, path: Path) -> list[Drawn]:
+    """List the entities of the model space, and in place of each INSERT those of its block, in order.
+
+    Raises ReadError for a block that is not there or lies in another file, and beyond the bounds.
+    """
+    found: list[Drawn] = []
+    left = [Drawn(entity, entity.dxf.layer, _name(entity)) for entity in document.modelspace()]
+    depths = [0] * len(left)
+    left.reverse()
+    most = MOST_ENTITIES + len(left)
+    while left:
+        one, depth = left.pop(), depths.pop()
+        if one.kind != "INSERT":
+            found.append(one)
+            continue
+        inside = list(_inserted(document, one, path))
+        if depth == DEEPEST or len(found) + len(left) + len(inside) > most:
+            bounds = f"blocks more than {DEEPEST} deep, or of more than {MOST_ENTITIES} entities in all"
+            raise ReadError("range", f"{one.name}: {bounds}", path)
+        left += reversed(inside)
+        depths += [depth + 1] * len(inside)
+    return found
+
+
+def _name(entity: Any) -> str:  # noqa: ANN401  ezdxf's entities declare their attributes while they run
+    return f"{entity.dxftype()} #{entity.dxf.handle} on layer {entity.dxf.layer}"
+
+
+def _inserted(document: Document, insert: Drawn, path: Path) -> Iterator[Drawn]:
+    """List the entities that an INSERT brings in, once for each of its columns and rows."""
+    dxf = insert.entity.dxf
+    block = document.blocks.get(dxf.name)
+    if block is None or block.block is None:
+        raise ReadError("syntax", f"{insert.name}: there is no block {dxf.name}", path)
+    if block.block.dxf.flags & EXTERNAL:
+        raise ReadError("unsupported", f"{insert.name}: block {dxf.name} lies in another file; bind it", path)
+    try:
+        side = facing(insert.entity)
+        # a column or a row more or less is another drawing: they are counted as they are written
+        columns, rows = (max(1, int(dxf.get(name, 1))) for name in ("column_count", "row_count"))
+        sizes = [float(dxf.get(name, 1.0)) for name in ("xscale", "yscale", "zscale")]
+        place, base, turn = dxf.insert, block.block.dxf.base_point, float(dxf.get("rotation", 0.0))
+        check(np.array([*sizes, *place, *base, turn]))
+    except UnfitError as error:
+        raise ReadError(error.args[0], f"{insert.name}: {error.args[1]}", path) from None
+    if not all(sizes[:2]):
+        raise ReadError("unsupported", f"{insert.name}: its scale is 0", path)
+    if columns * rows * max(len(block), 1) > MOST_ENTITIES:
+        raise ReadError("range", f"{insert.name}: {columns} columns and {rows} rows of {len(block)} entities", path)
+    turned = Affine(a=side).after(Affine(e=place.x, f=place.y)).after(Affine.rotation(turn))
+    own = Affine(a=sizes[0], d=sizes[1]).after(Affine(e=-base.x, f=-base.y))
+    rise, scale = side * (place.z - sizes[2] * base.z), side * sizes[2]
+    for row in range(rows):
+        for column in range(columns):
+            step = Affine(e=column * dxf.get("column_spacing", 0.0), f=row * dxf.get("row_spacing", 0.0))
+            to = turned.after(step).after(own)
+            to = to if insert.to is None else insert.to.after(to)
+            for entity in block:
+                on = insert.layer if entity.dxf.layer == NO_LAYER else entity.dxf.layer
+                name = f"{entity.dxftype()} #{entity.dxf.handle} of block {dxf.name} on layer {on}"
+                yield Drawn(entity, on, name, to, insert.rise + insert.scale * rise, insert.scale * scale)
+
+
+def entities_to_cut(document: Document, drawn: list[Drawn], layer: str | None, path: Path) -> Found:
+    """Find the entities on the layers to cut, and count the others. Raises ReadError for what cannot be read there."""
+    there = {one.layer.upper() for one in drawn if one.kind in CURVES}
+    if layer is not None and layer.upper() not in there:
+        named = ", ".join(sorted(there)) or "none"
+        raise ReadError("layer", f"nothing is drawn on a layer {layer}; layers with curves: {named}", path)
+    chosen = layer if layer is not None else (CUT if CUT in there else None)
+    beside = BESIDE if layer is None else {BORE}
+    wanted = there - REFERENCE if chosen is None else {chosen.upper(), *beside}
+    refuse_elsewhere(document, wanted, path)
+    # what is drawn with no thought for layers goes to the machine too
+    found = gather(drawn, wanted | {NO_LAYER} if layer is None else wanted, path)
+    if not found.shapes:
+        others = ", ".join(f"{n} {kind} on {on}" for (on, kind), n in sorted(found.aside.items())) or "nothing at all"
+        raise ReadError("empty", f"nothing to cut; the file holds {others}", path)
+    return found
+
+
+def entities_engraved(drawn: list[Drawn], path: Path) -> Found:
+    """Find the entities on the layer that is engraved; none where no layer is cut by its name."""
+    by_name = any(one.layer.upper() == CUT for one in drawn)
+    return gather(drawn, {ENGRAVED} if by_name else set(), path)
+
+
+def gather(drawn: list[Drawn], wanted: set[str], path: Path) -> Found:
+    """Read the entities on some layers, and count the others."""
+    found = Found([], [], [], Counter())
+    for one in drawn:
+        if one.layer.upper() not in wanted or one.kind in NOTES:
+            found.aside[one.layer, one.kind] += 1
+            continue
+        if one.kind not in CURVES:
+            raise ReadError("unsupported", f"{one.name} is none of {', '.join(CURVES)}", path)
+        try:
+            shape = shape_of(one.entity)
+            found.shapes.append(shape if one.to is None else one.to.moved(shape, one.rise, one.scale))
+        except UnfitError as error:
+            reason, what = error.args
+            raise ReadError(reason, f"{one.name}: {what}", path) from None
+        found.names.append(one.name)
+        found.layers.append(one.layer)
+    return found
+
+
+def refuse_elsewhere(document: Document, wanted: set[str], path: Path) -> None:
+    """Refuse curves on the layers to cut that stand in paper space."""
+
+    def cut(entity: Any) -> bool:  # noqa: ANN401
+        return entity.dxf.layer.upper() in wanted and (entity.dxftype() in CURVES or entity.dxftype() == "INSERT")
+
+    for layout in document.layouts:
+        first = next((e for e in layout if cut(e)), None) if layout.is_any_paperspace else None
+        if first is not None:
+            raise ReadError("unsupported", f"{_name(first)} is drawn in the paper space {layout.name}", path)

@@ -1,0 +1,160 @@
+"""DXF entities as numbers, in the plane and unit of the drawing: lines and arcs as rows, all else as Bezier pieces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from kin.contour.bezier import Beziers
+from kin.read.drawing.shapes import Shape, UnfitError, check, shape
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.numeric.arrays import Array
+
+__all__ = ["CURVES", "NOTES", "shape_of"]
+
+# Nothing of these is ever cut: they are listed, not refused.
+NOTES = frozenset({"TEXT", "MTEXT", "ATTDEF", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "VIEWPORT", "TOLERANCE"})
+LARGEST_WEIGHT_RATIO = 1e6
+HIGHEST_DEGREE = 25
+# Slope, and relative size, that is still rounding.
+LEVEL = 1e-9
+
+
+def shape_of(entity: Any) -> Shape:  # noqa: ANN401  ezdxf's entities declare their attributes while they run
+    """Return the numbers of an entity of CURVES. Raises UnfitError if it is damaged or not in the drawing's plane."""
+    return CURVES[entity.dxftype()](entity)
+
+
+def needs(entity: Any, *attributes: str) -> None:  # noqa: ANN401
+    """Refuse an entity in which ezdxf would fill in a value for one that the file left out."""
+    for name in attributes:
+        if not entity.dxf.hasattr(name):
+            raise UnfitError("syntax", f"its {name.replace('_', ' ')} is missing")
+
+
+def facing(entity: Any) -> float:  # noqa: ANN401
+    """+1 for an entity seen from above; -1 for one extruded along -z, whose own x axis is turned round."""
+    x, y, z = entity.dxf.get("extrusion", (0.0, 0.0, 1.0))
+    if not max(abs(x), abs(y)) <= LEVEL * abs(z):
+        raise UnfitError("unsupported", f"it lies in a plane of its own, with the extrusion ({x:g}, {y:g}, {z:g})")
+    return 1.0 if z > 0.0 else -1.0
+
+
+def line(entity: Any) -> Shape:  # noqa: ANN401
+    """Return a LINE."""
+    needs(entity, "start", "end")
+    (x, y, z), (x2, y2, z2) = entity.dxf.start, entity.dxf.end
+    return shape(chords=(x, y, x2, y2, 0.0), heights=(z, z2))
+
+
+def arc(entity: Any) -> Shape:  # noqa: ANN401
+    """Return an ARC, counter-clockwise from its start angle to its end angle; equal angles make the full circle."""
+    needs(entity, "center", "radius", "start_angle", "end_angle")
+    first, last = entity.dxf.start_angle, entity.dxf.end_angle
+    check(np.array([first, last]))
+    begin, sweep = np.radians(first), np.radians(np.mod(last - first, 360.0))
+    return circular(entity, [begin], sweep) if sweep > 0.0 else circular(entity, [begin, begin + np.pi], np.pi)
+
+
+def circle(entity: Any) -> Shape:  # noqa: ANN401
+    """Return a CIRCLE as two halves."""
+    needs(entity, "center", "radius")
+    return circular(entity, [0.0, np.pi], np.pi)
+
+
+def circular(entity: Any, angles: list[float], sweep: float) -> Shape:  # noqa: ANN401
+    """Return arcs of one circle, each beginning at one of `angles`."""
+    side = facing(entity)
+    (x, y, z), radius = entity.dxf.center, entity.dxf.radius
+    if not radius > 0.0:
+        raise UnfitError("range", f"its radius is {radius:g}")
+    begins = angles if side > 0.0 else [np.pi - a for a in angles]
+    return shape(arcs=[(side * x, y, radius, a, side * sweep) for a in begins], heights=side * z)
+
+
+def lwpolyline(entity: Any) -> Shape:  # noqa: ANN401
+    """Return an LWPOLYLINE, from the packed array of its vertices."""
+    rows = np.asarray(entity.lwpoints.values, dtype=np.float64).reshape(-1, 5)
+    return polyline_of(entity, rows[:, :2], rows[:, 4], entity.closed, entity.dxf.elevation)
+
+
+def polyline(entity: Any) -> Shape:  # noqa: ANN401
+    """Return a POLYLINE in the plane, as R12 draws contours."""
+    if not entity.is_2d_polyline:
+        raise UnfitError("unsupported", "it is a polyline in space or a mesh")
+    if entity.dxf.flags & 0b110:
+        raise UnfitError("unsupported", "it stands for a fitted curve; explode it or draw it as a SPLINE")
+    for vertex in entity.vertices:
+        needs(vertex, "location")
+    places = np.array([tuple(v.dxf.location) for v in entity.vertices], dtype=np.float64).reshape(-1, 3)
+    bulges = np.array([v.dxf.get("bulge", 0.0) for v in entity.vertices], dtype=np.float64)
+    return polyline_of(entity, places[:, :2], bulges, entity.is_closed, places[:, 2])
+
+
+def polyline_of(entity: Any, points: Array, bulges: Array, closed: bool, heights: Any) -> Shape:  # noqa: ANN401
+    """Return the chords between points (n, 2) with bulges (n,), back to the first if closed."""
+    side = facing(entity)
+    if len(points) < 2:
+        raise UnfitError("syntax", f"a polyline of {len(points)} vertices")
+    points = points * np.array([side, 1.0])
+    rows = np.column_stack([points, np.roll(points, -1, axis=0), side * bulges])
+    return shape(chords=rows if closed else rows[:-1], heights=side * np.asarray(heights))
+
+
+def ellipse(entity: Any) -> Shape:  # noqa: ANN401
+    """Return an ELLIPSE or an arc of one, exactly, as rational quadratic pieces."""
+    needs(entity, "center", "major_axis", "ratio")
+    side = facing(entity)
+    centre, major = np.array(tuple(entity.dxf.center)), np.array(tuple(entity.dxf.major_axis))
+    ratio = entity.dxf.ratio
+    first, last = entity.dxf.get("start_param", 0.0), entity.dxf.get("end_param", 2.0 * np.pi)
+    check(centre, major, np.array([first, last, ratio]))
+    size = float(np.hypot(major[0], major[1]))
+    if not (ratio > 0.0 and abs(major[2]) <= LEVEL * size and size > 0.0):
+        raise UnfitError("unsupported", "its axes are not those of an ellipse in the drawing's plane")
+    minor = side * ratio * np.array([-major[1], major[0]])
+    span = np.mod(last - first, 2.0 * np.pi)
+    if span < LEVEL or span > 2.0 * np.pi - LEVEL:
+        span = 2.0 * np.pi
+    pieces = Beziers.from_ellipse(centre[:2], major[:2], minor, first, first + span)
+    return shape(beziers=pieces, heights=centre[2])
+
+
+def spline(entity: Any) -> Shape:  # noqa: ANN401
+    """Return a SPLINE by its control points, knots and weights, as one Bezier piece a span."""
+    control = np.array([tuple(p) for p in entity.control_points], dtype=np.float64).reshape(-1, 3)
+    knots, count, degree = np.array(entity.knots, dtype=np.float64), len(control), int(entity.dxf.degree)
+    weight = np.array(entity.weights, dtype=np.float64) if len(entity.weights) else np.ones(count)
+    if not count:
+        raise UnfitError("unsupported", "a spline of fit points alone has no definite shape; it needs control points")
+    check(control, knots, weight)
+    if not 1 <= degree <= HIGHEST_DEGREE:
+        raise UnfitError("unsupported", f"it is of degree {degree}; up to {HIGHEST_DEGREE} is read")
+    if len(knots) != count + degree + 1 or count <= degree or len(weight) != count:
+        numbers = f"{count} control points, {len(knots)} knots, {len(weight)} weights, degree {degree}"
+        raise UnfitError("syntax", f"these numbers do not fit together: {numbers}")
+    first, last = knots[degree], knots[count]
+    if (np.diff(knots) < 0.0).any() or not first < last:
+        raise UnfitError("syntax", "its knots fall or span nothing")
+    inner = knots[(knots > first) & (knots < last)]
+    if (inner[degree:] == inner[:-degree]).any():
+        raise UnfitError("unsupported", "a knot repeated too often tears it apart")
+    if not ((weight > 0.0).all() and weight.max() <= LARGEST_WEIGHT_RATIO * weight.min()):
+        raise UnfitError("unsupported", "its weights are not all positive and of one order")
+    pieces = Beziers.from_spline(degree, knots, control[:, :2], weight / weight[0])
+    return shape(beziers=pieces, heights=control[:, 2])
+
+
+CURVES: dict[str, Callable[[Any], Shape]] = {
+    "LINE": line,
+    "ARC": arc,
+    "CIRCLE": circle,
+    "LWPOLYLINE": lwpolyline,
+    "POLYLINE": polyline,
+    "SPLINE": spline,
+    "ELLIPSE": ellipse,
+}

@@ -1,0 +1,228 @@
+"""Contours from SVG drawings at true size: paths of lines, circular arcs and cubics, circles, under transforms.
+
+The unit of the drawing comes from the width of the page and its viewBox. y runs up, as in every other drawing: what SVG
+draws downwards is turned over.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+from xml.etree import ElementTree as ET
+
+from kin.read.drawing.affine import Affine
+from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, Drawing, Found, drawing_of
+from kin.read.drawing.shapes import Shape, UnfitError, shape
+from kin.read.drawing.svg_path import NUMBER, path_of
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from xml.etree.ElementTree import Element
+
+__all__ = ["read_svg"]
+
+SVG = "{http://www.w3.org/2000/svg}"
+LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
+LAYERS = frozenset({CUT, ENGRAVED, *BESIDE, *REFERENCE})
+# Mm in each unit of CSS, which has 96 pixels to the inch.
+UNIT_MM = {"mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72.0, "pc": 25.4 / 6.0, "q": 0.25, "px": 25.4 / 96.0}
+UNIT_MM |= {"": UNIT_MM["px"]}
+LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z]*)\s*")
+STEP = re.compile(r"\s*([A-Za-z]+)\s*\(([^()]*)\)[\s,]*")
+VALUE = re.compile(NUMBER)
+HIDDEN = re.compile(r"(?:^|;)\s*display\s*:\s*none\s*(?:;|$)")
+# What a style sheet could move, hide or draw otherwise than the elements say.
+MOVING = re.compile(r"(?<![-\w])(transform|translate|scale|rotate|display|visibility|offset-path|cx|cy|r|d)\s*:")
+# Scales along the width and the height of the page may differ by so much.
+SQUARE = 1e-6
+# Least and greatest unit, mm, and number of groups within groups: bounds against nonsense.
+UNITS = (1e-6, 1e4)
+DEEPEST = 100
+LEANING = 1e-6  # least cosine of an angle of skew
+DRAWN = frozenset({"path", "circle"})
+# Elements that draw nothing themselves, and whose content draws nothing where it stands.
+SILENT = frozenset({"title", "desc", "metadata", "defs", "style", "text", "namedview", "script"})
+TURNED_OVER = Affine(d=-1.0)
+
+
+class _Drawn(NamedTuple):
+    """An element that draws, the layer it stands on ("" for none), and the map to the page's user space."""
+
+    element: Element
+    layer: str
+    to: Affine
+
+
+def read_svg(path: Path | str, gap: float | None = None, *, engraved: bool = False) -> Drawing:
+    """Read the outer contour and the holes that an SVG file gives to cut.
+
+    Groups named CUT, BORE, HOLES, MARK and ENGRAVE (by id, or by Inkscape's label) are the layers of a DXF; what stands
+    in none of them is cut too, and where nothing stands on CUT all elements are but those on REFERENCE. What is hidden
+    is left out. `gap`, mm, and `engraved` as in `read_dxf`.
+
+    Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
+    lines, arcs of circles and cubics, and for elements and transforms that are not read.
+    """
+    path = Path(path)
+    root = _parsed(path.read_bytes(), path)
+    unit = unit_of(root, path)
+    elements = list(_elements(root, "", TURNED_OVER, path))
+    by_name = any(one.layer == CUT for one in elements)
+    # what stands on no layer is seen, and cut, all the same
+    wanted = {CUT, *BESIDE, ""} if by_name else {one.layer for one in elements} - REFERENCE
+    found = _gathered(elements, wanted, path)
+    if not found.shapes:
+        others = ", ".join(f"{n} {kind} on {on or 'no layer'}" for (on, kind), n in sorted(found.aside.items()))
+        raise ReadError("empty", f"nothing to cut; the file holds {others or 'nothing at all'}", path)
+    marks = _gathered(elements, {ENGRAVED} if by_name else set(), path) if engraved else None
+    return drawing_of(found, marks, unit, gap, path, version="SVG")
+
+
+def _parsed(raw: bytes, path: Path) -> Element:
+    if not raw.strip():
+        raise ReadError("empty", "the file is empty", path)
+    if b"<!ENTITY" in raw:
+        raise ReadError("unsupported", "the file declares entities of its own", path)
+    try:
+        # entities, by which a small file could grow without bound, are refused above
+        root = ET.fromstring(raw)  # noqa: S314
+    except (ET.ParseError, ValueError, LookupError) as error:
+        raise ReadError("syntax", f"not a sound SVG file: {error}", path) from error
+    if root.tag != f"{SVG}svg":
+        raise ReadError("syntax", f"not an SVG file: its first element is {root.tag}", path)
+    if root.get("transform") or "transform" in root.get("style", ""):
+        raise ReadError("unsupported", "the page itself is transformed", path)
+    return root
+
+
+def unit_of(root: Element, path: Path) -> float | None:
+    """Mm in a unit of the drawing, by the page's width and height and its viewBox; None if no width is stated."""
+    sizes = [_length(root.get(name), path) for name in ("width", "height")]
+    box = root.get("viewBox")
+    if box is None:
+        return None if sizes == [None, None] else UNIT_MM["px"]
+    numbers = _numbers(box)
+    if numbers is None or len(numbers) != 4 or not (numbers[2] > 0.0 and numbers[3] > 0.0):
+        raise ReadError("syntax", f"the viewBox is {box!r}", path)
+    scales = [size / extent for size, extent in zip(sizes, numbers[2:], strict=True) if size is not None]
+    if len(scales) == 2 and not abs(scales[0] - scales[1]) <= SQUARE * scales[0]:
+        message = f"a unit is {scales[0]:.9g} mm along the width and {scales[1]:.9g} mm along the height"
+        raise ReadError("unsupported", message, path)
+    if scales and not UNITS[0] <= scales[0] <= UNITS[1]:
+        raise ReadError("range", f"a unit of {scales[0]:.6g} mm", path)
+    return scales[0] if scales else None
+
+
+def _length(text: str | None, path: Path) -> float | None:
+    """Length in mm; None if it is left out or a share of what surrounds the page."""
+    if text is None or text.strip() == "auto" or text.strip().endswith("%"):
+        return None
+    found = LENGTH.fullmatch(text)
+    if found is None or found[2].lower() not in UNIT_MM or not float(found[1]) > 0.0:
+        raise ReadError("syntax", f"the size of the page is {text!r}", path)
+    return float(found[1]) * UNIT_MM[found[2].lower()]
+
+
+def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 0) -> Iterator[_Drawn]:
+    """Find all elements that draw, in order."""
+    for element in parent:
+        tag = element.tag if isinstance(element.tag, str) else ""  # not a comment
+        kind = tag.removeprefix(SVG)
+        if kind == "style" and (moving := MOVING.search(element.text or "")):
+            raise ReadError("unsupported", f"a style sheet tells {moving[1]}; give it to the elements", path)
+        if not tag or kind.rpartition("}")[2] in SILENT:
+            continue
+        style = element.get("style", "")
+        if element.get("display") == "none" or HIDDEN.search(style):
+            continue
+        if "transform" in style:
+            raise ReadError("unsupported", f"{kind} is transformed by its style", path)
+        here = to.after(_transform(element.get("transform", ""), path))
+        if kind != "g":
+            yield _Drawn(element, layer, here)
+            continue
+        if depth == DEEPEST:
+            raise ReadError("unsupported", f"groups within groups, {DEEPEST} deep", path)
+        names = (element.get(LABEL, "").upper(), element.get("id", "").upper())
+        own = next((name for name in names if name in LAYERS), layer)
+        yield from _elements(element, own, here, path, depth + 1)
+
+
+def _gathered(elements: list[_Drawn], wanted: set[str], path: Path) -> Found:
+    """Read the elements on some layers, and count the others."""
+    found = Found([], [], [], Counter())
+    for number, (element, layer, to) in enumerate(elements, start=1):
+        kind = element.tag.removeprefix(SVG)
+        if layer not in wanted:
+            found.aside[layer, kind] += 1
+            continue
+        name = f"{kind} #{element.get('id', number)}{f' on {layer}' if layer else ''}"
+        if kind not in DRAWN:
+            raise ReadError("unsupported", f"{name} is none of path and circle; turn it into a path", path)
+        try:
+            shapes = path_of(element.get("d", ""), to) if kind == "path" else [_circle(element, to)]
+        except UnfitError as error:
+            reason, what = error.args
+            raise ReadError(reason, f"{name}: {what}", path) from None
+        for one in shapes:
+            found.shapes.append(one)
+            found.names.append(name)
+            found.layers.append(layer)
+    return found
+
+
+def _circle(element: Element, to: Affine) -> Shape:
+    """Return a circle as two halves, counter-clockwise."""
+    x, y, radius = (_plain(element.get(name, "0")) for name in ("cx", "cy", "r"))
+    if not radius > 0.0:
+        raise UnfitError("range", f"its radius is {radius:g}")
+    scale, _ = to.similar()
+    centre = to.at(x, y)
+    return shape(arcs=[(*centre, scale * radius, begin, math.pi) for begin in (0.0, math.pi)], heights=0.0)
+
+
+def _plain(text: str) -> float:
+    if VALUE.fullmatch(text.strip()) is None:
+        raise UnfitError("syntax", f"{text!r} is not a number of the drawing's own unit")
+    return float(text)
+
+
+def _numbers(text: str) -> list[float] | None:
+    """Numbers between spaces and commas; None where anything else stands there."""
+    words = text.replace(",", " ").split()
+    return [float(word) for word in words] if all(VALUE.fullmatch(word) for word in words) else None
+
+
+def _transform(text: str, path: Path) -> Affine:
+    """Read the attribute transform: its steps, the last of which is done first."""
+    found, at = Affine(), 0
+    while at < len(text.rstrip()):
+        step = STEP.match(text, at)
+        numbers = None if step is None else _numbers(step[2])
+        if step is None or numbers is None:
+            raise ReadError("syntax", f"a transform is {text!r}", path)
+        match step[1], numbers:
+            case "matrix", [a, b, c, d, e, f]:
+                one = Affine(a, b, c, d, e, f)
+            case "translate", [x, *rest] if len(rest) < 2:
+                one = Affine(e=x, f=rest[0] if rest else 0.0)
+            case "scale", [x, *rest] if len(rest) < 2:
+                one = Affine(a=x, d=rest[0] if rest else x)
+            case "rotate", [angle]:
+                one = Affine.rotation(angle)
+            case "rotate", [angle, x, y]:
+                one = Affine(e=x, f=y).after(Affine.rotation(angle)).after(Affine(e=-x, f=-y))
+            case "skewX" | "skewY" as kind, [angle] if abs(math.cos(math.radians(angle))) > LEANING:
+                lean = math.tan(math.radians(angle))
+                one = Affine(c=lean) if kind == "skewX" else Affine(b=lean)
+            case _:
+                read = "matrix, translate, scale, rotate, skewX and skewY are"
+                message = f"the transform {step[0].strip()} is not read; {read}"
+                raise ReadError("unsupported", message, path)
+        found = found.after(one)
+        at = step.end()
+    return found

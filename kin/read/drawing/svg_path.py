@@ -1,0 +1,170 @@
+"""Path data of SVG as numbers: lines, circular arcs and Bezier pieces, in the user space of the element."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.contour.bezier import Beziers
+from kin.read.drawing.affine import ALIKE
+from kin.read.drawing.shapes import Shape, UnfitError, check, shape
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kin.read.drawing.affine import Affine
+
+__all__ = ["NUMBER", "path_of"]
+
+NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+TOKEN = re.compile(rf"([A-Za-z])|({NUMBER})|[\s,]+|(.)", re.DOTALL)
+# Numbers that follow each letter that is read.
+COUNT = {"M": 2, "L": 2, "H": 1, "V": 1, "A": 7, "C": 6, "Z": 0}
+
+
+class Loose(NamedTuple):
+    """One letter of a path, absolute, with its numbers, from where the pen stands."""
+
+    letter: str
+    start: tuple[float, float]
+    numbers: tuple[float, ...]
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """Where the pen stands after it."""
+        return self.numbers[-2], self.numbers[-1]
+
+
+def path_of(text: str, to: Affine) -> list[Shape]:
+    """Shapes of path data under a map, one a stretch of one kind; straight closing lines among them.
+
+    Letters M, L, H, V, A, C and Z are read, absolute and relative; arcs of circles only. Raises UnfitError for anything
+    else.
+    """
+    shapes: list[Shape] = []
+    chords: list[tuple[float, ...]] = []
+    cubics: list[list[tuple[float, float]]] = []
+
+    def close() -> None:
+        if chords:
+            shapes.append(shape(chords=chords, heights=0.0))
+        if cubics:
+            control = np.array(cubics)
+            check(control)
+            shapes.append(shape(beziers=Beziers(control, np.ones(control.shape[:2])), heights=0.0))
+        chords.clear()
+        cubics.clear()
+
+    pen = (0.0, 0.0)
+    for piece in pieces_of(text):
+        if piece.start != pen or (chords if piece.letter == "C" else cubics):
+            close()
+        pen = piece.end
+        x, y = to.at(*piece.start)
+        if piece.letter == "C":
+            inner = [to.at(*piece.numbers[k : k + 2]) for k in (0, 2, 4)]
+            cubics.append([(x, y), *inner])
+        else:
+            bulge = bulge_of(piece) * to.similar()[1] if piece.letter == "A" else 0.0
+            chords.append((x, y, *to.at(*piece.end), bulge))
+    close()
+    return shapes
+
+
+def pieces_of(text: str) -> Iterator[Loose]:
+    """Pieces of path data, in absolute numbers; a closing line only where it has a length."""
+    pen = first = (0.0, 0.0)
+    drawn = False
+    for letter, numbers in commands(text):
+        relative, kind = letter.islower(), letter.upper()
+        dx, dy = pen if relative else (0.0, 0.0)
+        if kind == "M":
+            first = pen = (numbers[0] + dx, numbers[1] + dy)
+            drawn = True
+            continue
+        if not drawn:
+            raise UnfitError("syntax", "its path does not begin with M")
+        if kind == "Z":
+            if pen != first:
+                yield Loose("L", pen, first)
+            pen = first
+            continue
+        if kind in "HV":
+            end = (numbers[0] + dx, pen[1]) if kind == "H" else (pen[0], numbers[0] + dy)
+            piece = Loose("L", pen, end)
+        elif kind == "A":
+            piece = Loose("A", pen, (*numbers[:5], numbers[5] + dx, numbers[6] + dy))
+        else:
+            moved = [v + (dy if k % 2 else dx) for k, v in enumerate(numbers)]
+            piece = Loose(kind, pen, tuple(moved))
+        yield piece
+        pen = piece.end
+
+
+def commands(text: str) -> Iterator[tuple[str, list[float]]]:
+    """Letters with their numbers; a letter whose numbers are repeated stands for as many, and M for L after the first.
+
+    Flags of arcs may stand without a space before what follows them.
+    """
+    letter, at, end = "", 0, len(text)
+    while at < end:
+        found = TOKEN.match(text, at)
+        if found is None or found[3]:
+            raise UnfitError("syntax", f"its path has {text[at]!r} where a letter or a number belongs")
+        if found[1]:
+            letter, at = found[1], found.end()
+            if letter.upper() not in COUNT:
+                raise UnfitError("unsupported", f"its path has {letter}; M, L, H, V, A, C and Z are read")
+            if letter in "Zz":
+                yield letter, []
+                continue
+        elif found[2] is None:
+            at = found.end()
+            continue
+        elif not letter or letter in "Zz":
+            raise UnfitError("syntax", f"its path has the number {found[2]} where a letter belongs")
+        numbers, at = arguments(text, at, letter.upper())
+        yield letter, numbers
+        letter = {"M": "L", "m": "l"}.get(letter, letter)
+
+
+GAP = re.compile(r"[\s,]*")
+FLAG = re.compile(r"[01]")
+VALUE = re.compile(NUMBER)
+
+
+def arguments(text: str, at: int, kind: str) -> tuple[list[float], int]:
+    """Read the numbers of one letter from a place on, and say where they end."""
+    numbers = []
+    for k in range(COUNT[kind]):
+        gap = GAP.match(text, at)
+        at = gap.end() if gap else at
+        found = (FLAG if kind == "A" and k in (3, 4) else VALUE).match(text, at)
+        if found is None:
+            raise UnfitError("syntax", f"its path has {text[at : at + 20]!r} where a number of {kind} belongs")
+        numbers.append(float(found[0]))
+        at = found.end()
+    return numbers, at
+
+
+def bulge_of(piece: Loose) -> float:
+    """Bulge of an arc given by radii, flags and ends, positive where its angle grows (SVG 2, 9.3.8 and B.2).
+
+    The half chord over the radius is the sine of half the sweep. An arc between one point and itself is nothing, one
+    whose radius does not reach across its chord is half a circle: so the standard has it, but a radius short by more
+    than rounding is refused here.
+    """
+    rx, ry, _, large, forward, x, y = piece.numbers
+    if not (rx > 0.0 and abs(rx - ry) <= ALIKE * rx):
+        raise UnfitError("unsupported", f"an arc has the radii {rx:.9g} and {ry:.9g}; arcs of circles are read")
+    chord = math.hypot(x - piece.start[0], y - piece.start[1])
+    sine = 0.5 * chord / rx
+    if sine > 1.0 + ALIKE:
+        raise UnfitError("range", f"an arc of radius {rx:.9g} does not reach across its chord of {chord:.9g}")
+    cosine = math.sqrt(max((1.0 - sine) * (1.0 + sine), 0.0))
+    # tan(half/2) = sin/(1 + cos), of the small arc or of what is left of the circle
+    bulge = (1.0 + cosine) / sine if large and sine > 0.0 else min(sine, 1.0) / (1.0 + cosine)
+    return bulge if forward else -bulge

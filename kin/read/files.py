@@ -1,0 +1,96 @@
+"""Contours read back from files, told apart by their suffix: drawings, DXF or SVG of any origin; solids of a part."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+
+from kin.read.drawing.drawing import Aside, Drawing, Fault
+from kin.read.drawing.dxf import read_dxf
+from kin.read.errors import ReadError
+from kin.read.mesh.stl import Section, Solid, read_stl
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.read.step.step import StepSolid
+
+__all__ = [
+    "KINDS",
+    "SOLIDS",
+    "SUFFIXES",
+    "AnySolid",
+    "Aside",
+    "Drawing",
+    "Fault",
+    "Kind",
+    "ReadError",
+    "Solid",
+    "kind_of",
+    "read_drawing",
+    "read_dxf",
+    "read_solid",
+    "read_stl",
+]
+
+Kind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "gcode"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+SOLIDS = frozenset({"stl", "3mf", "step"})
+OTHERS: dict[str, Kind] = {".stp": "step", ".ngc": "gcode", ".nc": "gcode", ".tap": "gcode"}
+"""Suffixes that are not the kind's own."""
+SUFFIXES: dict[str, Kind] = {f".{kind}": kind for kind in KINDS} | OTHERS
+"""Every suffix, and the kind of file that it tells."""
+AnySolid: TypeAlias = "Solid | StepSolid"
+
+
+def kind_of(path: Path | str) -> Kind:
+    """Tell a file's kind by its suffix; raises ValueError for one that is none of KINDS."""
+    path = Path(path)
+    found = SUFFIXES.get(path.suffix.lower())
+    if found is None:
+        raise ValueError(f"{path.name}: none of {', '.join(SUFFIXES)}")
+    return found
+
+
+def read_drawing(path: Path | str, gap: float | None = None, *, engraved: bool = False) -> Drawing:
+    """Read a DXF or SVG; raises as `read_dxf` does."""
+    if kind_of(path) == "svg":
+        from kin.read.drawing.svg import read_svg
+
+        return read_svg(path, gap, engraved=engraved)
+    return read_dxf(path, gap, engraved=engraved)
+
+
+def read_solid(path: Path | str, heights: Sequence[float] = (), units: float | None = None) -> AnySolid:
+    """Read an STL, 3MF or STEP; raises as `read_stl`, `read_3mf` and `read_step` do.
+
+    `units`, mm, is that of an STL, which states none and is read in mm without.
+    """
+    if kind_of(path) == "step":
+        from kin.read.step.step import read_step
+
+        return read_step(path, heights)
+    if kind_of(path) == "3mf":
+        from kin.read.mesh.threemf import read_3mf
+
+        return read_3mf(path, heights)
+    if units is None or units == 1.0:
+        return read_stl(path, heights)
+    found = read_stl(path, [z / units for z in heights])
+    sections = [
+        Section(z, one.contour.scaled(units), tuple(hole.scaled(units) for hole in one.holes))
+        for z, one in zip(heights, found.sections, strict=False)
+    ]
+    return replace(
+        found,
+        contour=found.contour.scaled(units),
+        holes=tuple(hole.scaled(units) for hole in found.holes),
+        z_min=units * found.z_min,
+        z_max=units * found.z_max,
+        height=units * found.height,
+        volume=units**3 * found.volume,
+        sections=tuple(sections),
+        faces=tuple(units * z for z in found.faces),
+        uneven=units * found.uneven,
+    )

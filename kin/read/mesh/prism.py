@@ -1,0 +1,170 @@
+"""Whether a mesh is a prism: to the bit, or to the rounding of the numbers that the file holds."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.numeric.distinct import distinct
+from kin.read.mesh.mesh import plan_welded, weld, welded
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from kin.numeric.arrays import Array, Indices
+    from kin.read.mesh.mesh import Mesh
+
+    Corners = NDArray[np.float32] | NDArray[np.float64]
+
+__all__ = ["Evened", "Outline", "Upright", "evened", "rounding", "upright"]
+
+SINGLE, DOUBLE = 2.0**-24, 2.0**-53  # greatest relative error of a number rounded to either precision
+FEW_DIGITS = 9  # tell any number of single precision; more are written of doubles
+SPLITS = 16  # passes in which places are told apart; two or three will do for a part
+
+
+class Outline(NamedTuple):
+    """Directed edges (k,), (k,) by point number, the solid on their left, and the points (n, 2)."""
+
+    points: Array
+    start: Indices
+    end: Indices
+
+
+class Upright(NamedTuple):
+    """A welded mesh, whether it is a prism, and its bottom's outline if it is one with corners at two heights alone."""
+
+    mesh: Mesh
+    prism: bool
+    outline: Outline | None
+
+
+class Evened(NamedTuple):
+    """Triangles (t, 3, 3) whose corners have been moved by no more than `by` mm, as seen from above, and in height."""
+
+    corners: Array
+    by: float
+
+
+def upright(corners: Corners) -> Upright:
+    """Weld triangles (t, 3, 3) that are not all at one height, and tell whether they are a prism, bit for bit."""
+    z = corners[:, :, 2]
+    z_min, z_max = float(z.min()), float(z.max())
+    if bool(((z == z_min) | (z == z_max)).all()):
+        mesh = plan_welded(corners, z_min, z_max)
+        outline = _outline(mesh)
+        return Upright(mesh, outline is not None, outline)
+    mesh = welded(corners)
+    return Upright(mesh, _walls_upright(mesh, z_min, z_max), None)
+
+
+def _outline(mesh: Mesh) -> Outline | None:
+    """Return the outline of the bottom if a mesh between two levels, of `plan_welded`, is a prism; None if it is not.
+
+    Each triangle between the levels stands upright, with but two corners as seen from above; and their edges at the
+    bottom are the same as those at the top, the other way round.
+    """
+    high, plan = (mesh.corners & 1).astype(bool), mesh.corners >> 1
+    above = np.count_nonzero(high, axis=1)
+    wall = plan[(above == 1) | (above == 2)]
+    a, b, c = wall.T
+    if not bool(((a == b) ^ (b == c) ^ (c == a)).all()):
+        return None
+    edges = []
+    for many, lone in ((1, True), (2, False)):
+        rows = np.flatnonzero(above == many)
+        apex = (high[rows] == lone).argmax(axis=1)
+        edges.append((plan[rows, (apex + 1) % 3], plan[rows, (apex + 2) % 3]))
+    (start, end), (top_start, top_end) = edges
+    if not np.array_equal(np.sort(mesh.code(start, end)), np.sort(mesh.code(top_end, top_start))):
+        return None
+    return Outline(mesh.points[::2, :2], start, end)
+
+
+def _walls_upright(mesh: Mesh, z_min: float, z_max: float) -> bool:
+    """Whether each triangle lies in the bottom, in the top, or upright: a closed mesh of these is a prism."""
+    z = mesh.points[:, 2][mesh.corners]
+    lid = (z == z_min).all(axis=1) | (z == z_max).all(axis=1)
+    _, _, seen_from_above = mesh.area_vectors
+    return bool((lid | (seen_from_above == 0.0)).all()) and sum(mesh.edge_faults) == 0
+
+
+def evened(corners: Corners) -> Evened | None:
+    """Bring together what only rounding holds apart; None where a place is no single one, or there are steps.
+
+    Corners that belong above one another differ by twice the `rounding` of either at most, along x and along y; so do
+    the heights of the corners of a face. Each place is taken in the middle of its corners. A place that comes out
+    wider than that is more than one: walls that lean by more than rounding explains stay as they are.
+    """
+    apart = 2.0 * rounding(corners)
+    distinct_corners, numbers = weld(corners.reshape(-1, 3))
+    points, numbers = distinct_corners.astype(np.float64), numbers.reshape(-1, 3)
+    moved = points.copy()
+    z = moved[:, 2]
+    bottom, top = z <= z.min() + apart, z >= z.max() - apart
+    level = np.ptp(z[numbers], axis=1) <= apart
+    lids = bottom[numbers].all(axis=1) | top[numbers].all(axis=1)
+    if bool((bottom & top).any()) or bool((level & ~lids).any()):
+        return None
+    z[bottom], z[top] = z.min(), z.max()
+    place = _places(points[:, :2], apart)
+    order = np.argsort(place, kind="stable")
+    heads = np.flatnonzero(np.diff(place[order], prepend=-1))
+    for axis in (0, 1):
+        column = points[order, axis]
+        low, high = np.minimum.reduceat(column, heads), np.maximum.reduceat(column, heads)
+        if bool((high - low > apart).any()):
+            return None
+        moved[:, axis] = (0.5 * (low + high))[place]
+    x, y, height = np.abs(moved - points).T
+    return Evened(moved[numbers], float(max(np.hypot(x, y).max(), height.max())))
+
+
+def _places(points: Array, apart: float) -> Indices:
+    """Number the places of points (n, 2), from 0: groups with no gap above `apart` along x, nor along y in one."""
+    place = np.zeros(len(points), dtype=np.intp)
+    count = [0, 0]
+    for turn in range(SPLITS):
+        column = points[:, turn % 2]
+        order = np.lexsort((column, place))
+        new = (np.diff(column[order], prepend=-np.inf) > apart) | (np.diff(place[order], prepend=-1) != 0)
+        place[order] = np.cumsum(new) - 1
+        found = int(place[order[-1]]) + 1
+        if found == count[0] == count[1]:
+            break
+        count = [count[1], found]
+    return place
+
+
+def rounding(corners: Corners) -> float:
+    """How far a coordinate of triangles (t, 3, 3) may be from the true one by rounding, mm.
+
+    A number is written to half a unit of its last place, u: of single precision in a binary file, else as the decimals
+    tell. A program that turns a part about the shaft reads x and y, off by u each, and works out x cos a - y sin a.
+    That brings in (|cos a| + |sin a|) u <= 1.42 u; the rounding of the cosine and the sine, and of both products,
+    each a share eps of numbers whose sizes sum up to no more than 1.42 times the greatest coordinate m; and u once
+    more when the difference is rounded and written:
+
+        (1 + sqrt 2) u + 2 sqrt 2 eps m.
+
+    To write again or to shift takes less. Text of nine digits or fewer may come from a program that reckons in single
+    precision, and so may more digits if every number is one of single precision to within them.
+    """
+    largest = float(np.abs(corners).max())
+    if corners.dtype.itemsize == 4:
+        eps, half = SINGLE, SINGLE * largest
+    else:
+        values = distinct(np.abs(corners).ravel())
+        digits = max(map(_digits, values.tolist()))
+        half = 0.5 * 10.0 ** (math.floor(math.log10(largest)) + 1 - digits)
+        single = digits <= FEW_DIGITS or bool((np.abs(values - values.astype(np.float32)) <= half).all())
+        eps = SINGLE if single else DOUBLE
+        half = max(half, eps * largest)
+    return (1.0 + math.sqrt(2.0)) * half + 2.0 * math.sqrt(2.0) * eps * largest
+
+
+def _digits(value: float) -> int:
+    """Number of significant decimals of a number, of those that tell it from all other doubles."""
+    return len(repr(value).partition("e")[0].replace(".", "").strip("0"))

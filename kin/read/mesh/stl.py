@@ -1,0 +1,380 @@
+"""Plain parts from STL files, binary or text: the mesh checked, the contour and the holes of its section."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from kin.contour.contour import Contour
+from kin.contour.intersections import first_meeting
+from kin.numeric.distinct import distinct
+from kin.read.bodies import MOST_BODIES, beside
+from kin.read.errors import ReadError
+from kin.read.mesh.prism import Outline, evened, upright
+from kin.read.nesting import counter_clockwise, demand_few, met, nested
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.numeric.arrays import Array, Indices
+    from kin.read.mesh.mesh import EdgeFaults, Mesh
+    from kin.read.mesh.prism import Corners
+
+    Form = Literal["binary", "text", "3mf"]
+
+__all__ = ["Section", "Solid", "read_stl", "solid_of"]
+
+HEADER = 84
+RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+# What stands in the 21 words of a facet in text form, where it is not a number.
+FACET = {0: b"facet", 1: b"normal", 5: b"outer", 6: b"loop", 7: b"vertex", 11: b"vertex", 15: b"vertex"}
+FACET |= {19: b"endloop", 20: b"endfacet"}
+WORDS = 21
+LONGEST_WORD = 40
+SPACES = str.maketrans("", "", "\r\n\t")
+NUMBERS = [8, 9, 10, 12, 13, 14, 16, 17, 18]
+# Beyond this, mm, products of three coordinates have no digits left for a part.
+LARGEST = 1e7
+# Share of a section's extent within which a point is on the straight between its neighbours.
+STRAIGHT = 1e-13
+# Sections that are looked at for the widest one.
+MOST_STEPS = 8
+# What a section is found to be where there is more than one body.
+NOT_ONE = frozenset({"several", "island", "crossing"})
+
+
+class Section(NamedTuple):
+    """A section: its height, mm, outline and holes, counter-clockwise all of them."""
+
+    height: float
+    contour: Contour
+    holes: tuple[Contour, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A part as an STL or 3MF file holds it, mm.
+
+    contour, holes      polygons of the section at `height`, counter-clockwise all of them
+    z_min, z_max        least and greatest height
+    height              at which the section was taken
+    prism               the walls stand upright and every section is the same, to the file's rounding
+    (`kin.read.mesh.prism`) uneven              by how much at most a point of the mesh is off that prism, mm; 0 for
+    one to the bit volume              mm^3, negative if the triangles face inward
+    triangles           number of them
+    edges               faults of the edges; all three numbers are zero for a closed, oriented mesh
+    degenerate          triangles without area
+    duplicate           triangles that another one covers
+    form                "binary" or "text", or "3mf"
+    sections            those that were asked for, by height as asked for
+    faces               heights of the horizontal faces, rising
+    units_mm            length of the file's unit, None where it states none
+    """
+
+    contour: Contour
+    holes: tuple[Contour, ...]
+    z_min: float
+    z_max: float
+    height: float
+    prism: bool
+    volume: float
+    triangles: int
+    edges: EdgeFaults
+    degenerate: int
+    duplicate: int
+    form: Form
+    sections: tuple[Section, ...] = ()
+    faces: tuple[float, ...] = ()
+    uneven: float = 0.0
+    units_mm: float | None = None
+
+    @property
+    def closed(self) -> bool:
+        """Whether every edge belongs to exactly two triangles."""
+        return self.edges.open == 0 and self.edges.crowded == 0
+
+    @property
+    def oriented(self) -> bool:
+        """Whether the mesh is closed and its triangles all face the same side."""
+        return self.closed and self.edges.misdirected == 0
+
+    @property
+    def thickness(self) -> float:
+        """Height of the part, mm."""
+        return self.z_max - self.z_min
+
+    @property
+    def pieces(self) -> int:
+        """Number of the contour's edges."""
+        return len(self.contour)
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What a closed, oriented mesh that faces outward does not have."""
+        counts = {
+            "edges with one triangle": self.edges.open,
+            "edges with more than two triangles": self.edges.crowded,
+            "edges between triangles that face opposite sides": self.edges.misdirected,
+            "triangles without area": self.degenerate,
+            "triangles drawn twice": self.duplicate,
+        }
+        faults = [f"{number} {what}" for what, number in counts.items() if number]
+        if not self.volume > 0.0:
+            faults.append(f"the volume is {self.volume:.6g} mm^3: the triangles face inward")
+        return tuple(faults)
+
+
+def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
+    """Read a part. Costs about one sort of the corners.
+
+    The contour is that of the section at half the part's height, where a part has steps of the widest one midway
+    between two of them; or it is that of the first of `heights`, all of which become `sections`.
+
+    Raises OSError as the file system does; ReadError where the file is cut short or damaged, and where the section
+    does not close or is not one contour with holes. All other faults are in the Solid's fields.
+    """
+    path = Path(path)
+    corners, form = triangles_of(path.read_bytes(), path)
+    return solid_of(corners, form, heights, path)
+
+
+def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path) -> Solid:
+    """Make the part of triangles (t, 3, 3), mm, as `read_stl` does."""
+    if not bool((np.abs(corners) <= LARGEST).all()):
+        raise ReadError("range", "a coordinate is not finite or beyond all measure", path)
+    z = corners[:, :, 2]
+    z_min, z_max = float(z.min()), float(z.max())
+    if z_min == z_max:
+        raise ReadError("empty", f"the part is flat: all corners lie at z = {z_min:g}", path)
+    found = upright(corners)
+    read, uneven = found.mesh, 0.0  # faults are those of the mesh as it is in the file
+    if not found.prism:
+        moved = evened(corners)
+        again = None if moved is None else upright(moved.corners)
+        if moved is not None and again is not None and again.prism:
+            corners, uneven, found = moved.corners, moved.by, again
+    mesh, outline = found.mesh, found.outline
+    if not found.prism:
+        _refuse_apart(read, path)
+    height = heights[0] if len(heights) else (z_min + z_max) / 2.0
+    whole = outline
+    z = corners[:, :, 2]
+    levels = distinct(z[(z == z[:, :1]).all(axis=1), 0].astype(np.float64))
+    if outline is None:
+        stepped = len(levels) > 2 and not len(heights)
+        height, outline = widest(mesh, levels, path) if stepped else cut(mesh, height, path)
+    try:
+        contour, holes = sectioned(outline, path, across=whole is None)
+    except ReadError as error:
+        raise _named(read, error, path) from None
+    sections = []
+    for asked in heights:
+        if whole is None:
+            sections.append(Section(asked, *sectioned(cut(mesh, asked, path)[1], path, across=True)))
+        elif z_min < asked < z_max:
+            sections.append(Section(asked, contour, holes))
+    return Solid(
+        contour=contour,
+        holes=holes,
+        z_min=z_min,
+        z_max=z_max,
+        height=height,
+        prism=found.prism,
+        volume=read.volume,
+        triangles=len(read.corners),
+        edges=read.edge_faults,
+        degenerate=read.degenerate,
+        duplicate=read.duplicate,
+        form=form,
+        sections=tuple(sections),
+        faces=tuple(levels.tolist()),
+        uneven=uneven,
+    )
+
+
+def _named(mesh: Mesh, error: ReadError, path: Path) -> ReadError:
+    """Return an error on a section, or where there are several closed bodies one that names them."""
+    if error.reason not in NOT_ONE or mesh.edge_faults.open or not mesh.bodies.any():
+        return error
+    return _others(mesh, path)
+
+
+def _others(mesh: Mesh, path: Path) -> ReadError:
+    boxes = _boxes(mesh)
+    largest = sorted(range(len(boxes)), key=lambda k: -float(np.prod(boxes[k][1] - boxes[k][0])))[:MOST_BODIES]
+    return beside([(f"body {k + 1}", boxes[k]) for k in largest], len(boxes), path)
+
+
+def _boxes(mesh: Mesh) -> list[tuple[Array, Array]]:
+    """Least and greatest coordinates (3,) of each body."""
+    order = np.argsort(mesh.bodies, kind="stable")
+    heads = np.flatnonzero(np.diff(mesh.bodies[order], prepend=-1))
+    corners = mesh.points[mesh.corners[order]]
+    low, high = np.minimum.reduceat(corners.min(axis=1), heads), np.maximum.reduceat(corners.max(axis=1), heads)
+    return list(zip(low, high, strict=True))
+
+
+def _refuse_apart(mesh: Mesh, path: Path) -> None:
+    """Refuse a closed mesh of which some body stands apart from the rest, above it or beside it or in a hole of it."""
+    if mesh.edge_faults.open or not mesh.bodies.any():
+        return
+    boxes = _boxes(mesh)
+    if len(boxes) > MOST_BODIES:
+        raise _others(mesh, path)
+    for k, (low, high) in enumerate(boxes):
+        others = [box for j, box in enumerate(boxes) if j != k]
+        if all(bool((low > above).any() or (high < below).any()) for below, above in others):
+            raise _others(mesh, path)
+        try:
+            sectioned(section(mesh, float(0.5 * (low[2] + high[2])))[1], path, across=True)
+        except ReadError as error:
+            if error.reason in NOT_ONE:
+                raise _others(mesh, path) from None
+
+
+def cut(mesh: Mesh, height: float, path: Path) -> tuple[float, Outline]:
+    """Cut at a height; raises ReadError where the part does not reach there."""
+    z = mesh.points[:, 2]
+    if not z.min() < height < z.max():
+        message = f"the part reaches from z = {z.min():.9g} to {z.max():.9g} mm: it has no section at {height:.9g}"
+        raise ReadError("several", message, path)
+    at, found = section(mesh, height)
+    if not len(found.points):
+        raise ReadError("several", f"nothing is at z = {at:.9g} mm, and something above and below", path)
+    return at, found
+
+
+def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
+    """Cut midway between horizontal faces at rising `levels`, where the box of the section is largest."""
+    thick = np.argsort(-np.diff(levels), kind="stable")[:MOST_STEPS]
+    found = [cut(mesh, float(0.5 * (levels[k] + levels[k + 1])), path) for k in thick]
+    return max(found, key=lambda one: float(np.prod(np.ptp(one[1].points, axis=0))))
+
+
+def sectioned(outline: Outline, path: Path, *, across: bool) -> tuple[Contour, tuple[Contour, ...]]:
+    """Contour and holes of a section, which is one contour with holes in it; `across` triangles, or along a face."""
+    loops = [outline.points[ring] for ring in rings(outline, path)]
+    demand_few(len(loops), path)
+    contours = [Contour.from_vertices(straightened(loop) if across else loop) for loop in loops]
+    meeting = first_meeting(contours)
+    if meeting:
+        raise met(meeting, path)
+    first, *others = nested(contours, path)
+    return counter_clockwise(contours[first]), tuple(counter_clockwise(contours[k]) for k in others)
+
+
+def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:
+    """Corners (t, 3, 3) in file order. The length tells the two forms apart: a binary header may begin with "solid"."""
+    count = int.from_bytes(raw[HEADER - 4 : HEADER], "little") if len(raw) >= HEADER else 0
+    expected = HEADER + RECORD.itemsize * count
+    if len(raw) >= HEADER and len(raw) == expected:
+        if not count:
+            raise ReadError("empty", "the file holds no triangles", path)
+        return np.frombuffer(raw, RECORD, offset=HEADER)["corners"].copy(), "binary"
+    if raw.lstrip()[:5] == b"solid" and (b"facet" in raw[:2000] or b"endsolid" in raw[:2000]):
+        return facets(raw, path), "text"
+    if len(raw) < HEADER:
+        raise ReadError("truncated", f"{len(raw)} bytes are no STL file, whose header alone has {HEADER}", path)
+    begin = raw[:HEADER]
+    if begin.isascii() and begin.decode("ascii").translate(SPACES).isprintable():
+        raise ReadError("syntax", f"no STL file, neither binary nor text: it begins with {begin[:20]!r}", path)
+    reason = "truncated" if len(raw) < expected else "syntax"
+    raise ReadError(reason, f"{count} triangles make a file of {expected} bytes, not {len(raw)}", path)
+
+
+def facets(raw: bytes, path: Path) -> Array:
+    """Corners of the facets of the text form."""
+    text = raw.strip()
+    body, mark, _ = text.rpartition(b"endsolid")
+    if not mark:
+        raise ReadError("truncated", "the end mark endsolid is missing", path)
+    words = body.partition(b"\n")[2].split()
+    if not words:
+        raise ReadError("empty", "the file holds no triangles", path)
+    if b"endsolid" in words:
+        raise ReadError("unsupported", "the file holds more than one solid", path)
+    if len(words) % WORDS:
+        raise ReadError("syntax", f"its facets have {len(words)} words, which is no multiple of {WORDS}", path)
+    longest = max(map(len, words))
+    if longest > LONGEST_WORD:
+        raise ReadError("syntax", f"a word of {longest} characters", path)
+    table = np.array(words).reshape(-1, WORDS)
+    for column, word in FACET.items():
+        wrong = np.flatnonzero(table[:, column] != word)
+        if wrong.size:
+            message = f"facet {wrong[0] + 1} has {table[wrong[0], column]!r} where {word!r} belongs"
+            raise ReadError("syntax", message, path)
+    try:
+        return table[:, NUMBERS].astype(np.float64).reshape(-1, 3, 3)
+    except ValueError as error:
+        raise ReadError("syntax", f"a coordinate is no number: {error}", path) from error
+
+
+def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
+    """Cut at `height`, or halfway to the next corners above should there be some at that very height.
+
+    Each triangle gives an edge from where its boundary comes down through the plane to where it goes up; neighbours
+    agree on that point since it belongs to an edge of the mesh.
+    """
+    levels = distinct(mesh.points[:, 2])
+    if bool((levels == height).any()):
+        height = (height + float(levels[np.searchsorted(levels, height) + 1])) / 2.0
+    above = mesh.points[:, 2] > height
+    high = above[mesh.corners]
+    met_by = mesh.corners[high.any(axis=1) & ~high.all(axis=1)]
+    after = np.roll(met_by, -1, axis=1)
+    rises, falls = ~above[met_by] & above[after], above[met_by] & ~above[after]
+    up = np.stack([met_by[rises], after[rises]])
+    down = np.stack([after[falls], met_by[falls]])
+    codes, number = np.unique(mesh.code(*np.concatenate([down, up], axis=1)), return_inverse=True)
+    low, top = mesh.points[codes // len(mesh.points)], mesh.points[codes % len(mesh.points)]
+    share = (height - low[:, 2]) / (top[:, 2] - low[:, 2])
+    points = low[:, :2] + share[:, None] * (top - low)[:, :2]
+    start, end = number.reshape(2, -1)
+    return height, Outline(points, start, end)
+
+
+def straightened(points: Array) -> Array:
+    """Ring (n, 2) without the points on the straight between their neighbours, where a section cuts diagonals."""
+    before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
+    chord, here = after - before, points - before
+    length = np.maximum(np.hypot(chord[:, 0], chord[:, 1]), np.finfo(float).tiny)
+    beside = np.abs(chord[:, 0] * here[:, 1] - chord[:, 1] * here[:, 0]) / length
+    along = (chord[:, 0] * here[:, 0] + chord[:, 1] * here[:, 1]) / length
+    straight = (beside <= STRAIGHT * np.abs(points).max()) & (along > 0.0) & (along < length)
+    return points[~straight] if np.count_nonzero(~straight) >= 3 else points
+
+
+def rings(outline: Outline, path: Path) -> list[Indices]:
+    """Point numbers of the closed rings that the edges form. Raises ReadError "open" or "branch" with the place."""
+    points, start, end = outline
+    start, end = start[start != end], end[start != end]  # triangles without area leave these
+    leaving, arriving = (np.bincount(ends, minlength=len(points)) for ends in (start, end))
+    for reason, wrong, what in (
+        ("open", leaving != arriving, "the section is open"),
+        ("branch", leaving > 1, "the section touches itself"),
+    ):
+        if wrong.any():
+            x, y = points[np.flatnonzero(wrong)[0]].tolist()
+            places = np.count_nonzero(wrong)
+            raise ReadError(reason, f"{what} at ({x:.9g}, {y:.9g}); {places} such points", path, (x, y))
+    following = np.full(len(points), -1, dtype=np.intp)
+    following[start] = end
+    step = following.tolist()
+    seen = bytearray(len(points))
+    marks = np.frombuffer(seen, dtype=np.uint8)
+    found = []
+    for first in start.tolist():
+        if seen[first]:
+            continue
+        ring = [first]
+        at = step[first]
+        while at != first:
+            ring.append(at)
+            at = step[at]
+        found.append(np.array(ring, dtype=np.intp))
+        marks[found[-1]] = 1
+    return found

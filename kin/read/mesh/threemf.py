@@ -1,0 +1,303 @@
+"""Parts from 3MF files: the archive's model parsed as it streams out, objects with their components, build items.
+
+Written against the core specification 1.3. The archive is a stranger's: what it unpacks to is bounded, and a document
+type, through which a small text could grow without bound, is refused.
+"""
+
+from __future__ import annotations
+
+import re
+import zipfile
+import zlib
+from array import array
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, NamedTuple
+from xml.parsers import expat
+
+import numpy as np
+
+from kin.read.errors import ReadError
+from kin.read.mesh.stl import LARGEST, Solid, solid_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kin.numeric.arrays import Array, Indices
+
+__all__ = ["Placed", "read_3mf", "read_placed"]
+
+CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02 "
+LINK = "http://schemas.openxmlformats.org/package/2006/relationships Relationship"
+MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
+UNIT_MM = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
+MOST_BYTES = 1 << 29  # of a member of the archive when unpacked
+# Models pack to a fifth or a tenth. What packs to next to nothing says the same over and over: so many times its packed
+# size, and a free allowance, are unpacked.
+MOST_UNPACKED, FREE_BYTES = 50, 1 << 18
+# Vertices that no triangle has: up to a share of all, and a free allowance.
+LOOSE_SHARE, FREE_LOOSE = 0.5, 1000
+# Components may repeat one mesh, or nothing at all, without end: what all items together may hold.
+MOST_TRIANGLES = 1 << 24
+MOST_COMPONENTS = 1 << 14
+DEEPEST = 16  # of components within components
+BLOCK = 1 << 16
+NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
+RIGID = 1e-9  # a place turns and shifts only if its axes are square and of length 1 within this
+PART = "cam"
+
+
+class Placed(NamedTuple):
+    """An object that is built: its triangles (t, 3, 3), mm, in axes of its own, and its place on the plate.
+
+    `place` (4, 3) has the images of the three axes and of the origin, mm, as rows; `mm` is the length of the file's
+    unit.
+    """
+
+    name: str
+    corners: Array
+    place: Array
+    mm: float = 1.0
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the place turns and shifts the object and does nothing else to it."""
+        turn = self.place[:3]
+        return bool((np.abs(turn @ turn.T - np.eye(3)) <= RIGID).all() and np.linalg.det(turn) > 0.0)
+
+
+def read_3mf(path: Path | str, heights: Sequence[float] = ()) -> Solid:
+    """Read the part as `read_stl` does: the only object that is built, or of several the one named "cam".
+
+    Where a part lies on the plate and which way it is turned there does not count; a place that scales, shears or
+    mirrors it makes it another part, and is applied. Raises OSError as the file system does; ReadError as `read_stl`
+    does, and where it is not clear which object is meant.
+    """
+    path = Path(path)
+    built = read_placed(path)
+    named = [one for one in built if one.name == PART]
+    chosen = built if len(built) == 1 else named
+    if len(chosen) != 1:
+        names = ", ".join(repr(one.name) for one in built[:8])
+        message = f"{len(built)} objects are built, {names}: one of them should be named {PART!r}"
+        raise ReadError("several" if built else "empty", message if built else "no object is built", path)
+    one = chosen[0]
+    corners = one.corners if one.rigid else _moved(one.corners, one.place)
+    return replace(solid_of(corners, "3mf", heights, path), units_mm=one.mm)
+
+
+def read_placed(path: Path | str) -> tuple[Placed, ...]:
+    """Read every object that is built, in the order of the build; raises as `read_3mf` does."""
+    path = Path(path)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            links = _Links()
+            _parse(archive, "_rels/.rels", links.start, None, path)
+            if len(links.targets) != 1:
+                raise ReadError("syntax", f"the archive names {len(links.targets)} models, where one should be", path)
+            model = _Model(path)
+            _parse(archive, links.targets[0].lstrip("/"), model.start, model.end, path)
+    except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
+        raise ReadError("syntax", f"not a sound 3MF file: {error}", path) from error
+    return model.placed()
+
+
+def _parse(
+    archive: zipfile.ZipFile,
+    name: str,
+    start: Callable[[str, dict[str, str]], None],
+    end: Callable[[str], None] | None,
+    path: Path,
+) -> None:
+    """Run a member of the archive through a parser, block by block."""
+
+    def refuse(*_: object) -> None:
+        raise ReadError("unsupported", f"{name} has a document type of its own", path)
+
+    parser = expat.ParserCreate(namespace_separator=" ")
+    parser.StartDoctypeDeclHandler = refuse
+    parser.StartElementHandler = start
+    if end is not None:
+        parser.EndElementHandler = end
+    try:
+        with archive.open(name) as stream:
+            packed = archive.getinfo(name).compress_size
+            _feed(parser, stream, min(MOST_BYTES, MOST_UNPACKED * packed + FREE_BYTES), name, path)
+    except KeyError as error:
+        raise ReadError("syntax", f"the archive has no {name}", path) from error
+    except expat.ExpatError as error:
+        raise ReadError("syntax", f"{name} is not sound: {error}", path) from error
+
+
+def _feed(parser: expat.XMLParserType, stream: IO[bytes], most: int, name: str, path: Path) -> None:
+    size = 0
+    while block := stream.read(BLOCK):
+        size += len(block)
+        if size > most:
+            bound = f"{MOST_UNPACKED} times its packed size and {FREE_BYTES} bytes, and {MOST_BYTES} in all, are read"
+            raise ReadError("range", f"{name} unpacks to more than {most} bytes: {bound}", path)
+        parser.Parse(block, False)
+    parser.Parse(b"", True)
+
+
+class _Links:
+    """The models that an archive names."""
+
+    def __init__(self) -> None:
+        self.targets: list[str] = []
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        if tag == LINK and attributes.get("Type") == MODEL:
+            self.targets.append(attributes.get("Target", ""))
+
+
+@dataclass
+class _Object:
+    """An object as it stands in the file: mesh or components, in the file's unit."""
+
+    name: str
+    printed: bool
+    points: array[float] = field(default_factory=lambda: array("d"))
+    corners: array[int] = field(default_factory=lambda: array("q"))
+    components: list[tuple[str, Array]] = field(default_factory=list)
+    whole: Array | None = None  # its triangles with those of its components, once they are put together
+    under: int = 0  # components of that, and theirs
+
+
+class _Model:
+    """A model as its elements come by."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.mm: float | None = None
+        self.objects: dict[str, _Object] = {}
+        self.current: _Object | None = None
+        self.items: list[tuple[str, Array]] = []
+        self.components = 0  # that have been put together
+
+    def start(self, tag: str, given: dict[str, str]) -> None:
+        if tag == f"{CORE}vertex":
+            self._open().points.extend([self._number(given, name) for name in ("x", "y", "z")])
+        elif tag == f"{CORE}triangle":
+            self._open().corners.extend([self._whole(given, name) for name in ("v1", "v2", "v3")])
+        elif tag == f"{CORE}model":
+            self._begin(given)
+        elif tag == f"{CORE}object":
+            name = given.get("id", "")
+            if name in self.objects:
+                raise self._fault(f"object {name!r} is there twice")
+            self.current = _Object(given.get("name", ""), given.get("type", "model") == "model")
+            self.objects[name] = self.current
+        elif tag == f"{CORE}component":
+            self._open().components.append((given.get("objectid", ""), self._place(given)))
+        elif tag == f"{CORE}item":
+            self.items.append((given.get("objectid", ""), self._place(given)))
+
+    def end(self, tag: str) -> None:
+        if tag == f"{CORE}object":
+            self.current = None
+
+    def placed(self) -> tuple[Placed, ...]:
+        """Every object that is built and printed."""
+        if self.mm is None:
+            raise self._fault("there is no model in it")
+        found, room = [], MOST_TRIANGLES
+        for name, place in self.items:
+            one = self._named(name)
+            if not one.printed:
+                continue
+            corners = self._corners(one, room, 0) * self.mm
+            room -= len(corners)
+            if not len(corners):
+                raise ReadError("empty", f"object {one.name or name!r} holds no triangles", self.path)
+            there = np.concatenate((place[:3], self.mm * place[3:]))
+            if not all(bool((np.abs(numbers) <= LARGEST).all()) for numbers in (corners, there)):
+                raise ReadError("range", f"object {one.name or name!r} reaches beyond all measure", self.path)
+            found.append(Placed(one.name, corners, there, self.mm))
+        return tuple(found)
+
+    def _corners(self, one: _Object, room: int, depth: int) -> Array:
+        """Triangles (t, 3, 3) of an object and all its components, in the file's unit."""
+        if depth > DEEPEST:
+            raise ReadError("unsupported", f"components lie more than {DEEPEST} deep, or hold themselves", self.path)
+        if one.whole is not None:
+            self.components += one.under
+            return one.whole
+        before = self.components
+        points = np.array(one.points, dtype=np.float64).reshape(-1, 3)
+        corners: Indices = np.array(one.corners, dtype=np.intp).reshape(-1, 3)
+        if not bool((corners < len(points)).all()):
+            raise self._fault(f"a triangle has a corner that is none of the {len(points)} vertices")
+        self._demand_used(one, len(points), corners)
+        parts = [points[corners]]
+        for name, place in one.components:
+            room -= len(parts[-1])
+            self.components += 1
+            if room <= 0 or self.components > MOST_COMPONENTS:
+                most = f"more than {MOST_TRIANGLES} triangles or {MOST_COMPONENTS} components"
+                raise ReadError("range", f"{most}, those that repeat an object counted", self.path)
+            parts.append(_moved(self._corners(self._named(name), room, depth + 1), place))
+        one.whole, one.under = np.concatenate(parts), self.components - before
+        return one.whole
+
+    def _demand_used(self, one: _Object, count: int, corners: Indices) -> None:
+        """Refuse a mesh most of whose vertices no triangle has."""
+        used = np.zeros(count, dtype=bool)
+        used[corners.ravel()] = True
+        loose = count - int(np.count_nonzero(used))
+        if loose > FREE_LOOSE + LOOSE_SHARE * count:
+            message = f"{loose} of the {count} vertices of object {one.name!r} belong to no triangle; leave them out"
+            raise ReadError("range", message, self.path)
+
+    def _begin(self, given: dict[str, str]) -> None:
+        unit = given.get("unit", "millimeter")
+        if unit not in UNIT_MM:
+            raise ReadError("unsupported", f"the unit {unit!r}", self.path)
+        if given.get("requiredextensions", "").split():
+            message = f"it requires extensions, {given['requiredextensions']!r}: export it without"
+            raise ReadError("unsupported", message, self.path)
+        self.mm = UNIT_MM[unit]
+
+    def _open(self) -> _Object:
+        if self.current is None:
+            raise self._fault("a mesh that is in no object")
+        return self.current
+
+    def _named(self, name: str) -> _Object:
+        if name not in self.objects:
+            raise self._fault(f"there is no object {name!r}")
+        return self.objects[name]
+
+    def _number(self, given: dict[str, str], name: str) -> float:
+        text = given.get(name, "")
+        if not NUMBER.fullmatch(text):
+            raise self._fault(f"{name}={text!r} is no number")
+        if not abs(float(text)) <= LARGEST:
+            raise ReadError("range", f"{name}={text!r} is beyond all measure", self.path)
+        return float(text)
+
+    def _whole(self, given: dict[str, str], name: str) -> int:
+        text = given.get(name, "")
+        if not (text.isascii() and text.isdecimal() and len(text) < 18):
+            raise self._fault(f"{name}={text!r} is no number of a vertex")
+        return int(text)
+
+    def _place(self, given: dict[str, str]) -> Array:
+        words = given.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()
+        if len(words) != 12 or not all(NUMBER.fullmatch(word) for word in words):
+            raise self._fault(f"transform={given['transform']!r} is no twelve numbers")
+        place = np.array(words, dtype=np.float64).reshape(4, 3)
+        if not bool((np.abs(place) <= LARGEST).all()):
+            raise ReadError("range", f"transform={given['transform']!r} is beyond all measure", self.path)
+        if np.linalg.det(place[:3]) == 0.0:
+            raise self._fault(f"transform={given['transform']!r} is flat")
+        return place
+
+    def _fault(self, message: str) -> ReadError:
+        return ReadError("syntax", message, self.path)
+
+
+def _moved(corners: Array, place: Array) -> Array:
+    """Triangles in their place; mirrored ones are run through the other way, so that they go on facing outward."""
+    moved: Array = corners @ place[:3] + place[3]
+    return moved if np.linalg.det(place[:3]) > 0.0 else moved[:, ::-1]

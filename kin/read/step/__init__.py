@@ -1,0 +1,1 @@
+"""STEP solids as upright prisms."""

@@ -1,0 +1,347 @@
+"""Edges of a STEP solid as numbers: lines, conics and B-splines in space, and where they pass a height; mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.contour.bezier import Beziers
+from kin.numeric.angles import TURN
+from kin.numeric.bernstein import roots, values
+from kin.read.drawing.shapes import LARGEST
+from kin.read.step.part21 import Reference
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array, Indices
+    from kin.read.step.part21 import Exchange, Value
+
+__all__ = ["Edge", "Frame", "Space", "Spline", "edge_of", "spline_of"]
+
+# A circle's ends this close, rad, are one: the whole circle.
+WHOLE = 1e-9
+CLOSED = 1e-9  # mm between the ends of a closed spline
+HIGHEST_DEGREE = 25
+LARGEST_WEIGHT_RATIO = 1e6
+BEYOND = 1e-3  # of its size, by which a spline's ends may miss the edge's before it is taken for a trimmed one
+SAMPLES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])  # of a piece, where it is held against its faces
+# Curves of a surface that carry their curve in space as their first value after the name.
+WRAPPED = ("SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE")
+SPLINES = ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE")
+
+
+class Space(NamedTuple):
+    """A file, with the length of its unit in mm, its unit of angle in rad if stated, and its own accuracy in mm.
+
+    `place` is where the file puts what it draws, None where it stays. What is read is there already.
+    Entities are read from a value that refers to them, in the entity numbered `by`; ReadError for what is not one of
+    the kind, or out of bounds.
+    """
+
+    file: Exchange
+    mm: float
+    radian: float | None
+    accuracy: float
+    place: Frame | None = None
+
+    def point(self, value: Value, by: int) -> Array:
+        """Place (3,) of a CARTESIAN_POINT, mm."""
+        found = self.triple(value, by, "CARTESIAN_POINT") * self.mm
+        if self.place is not None:
+            found = self.place.origin + self.turned(found)
+        if not bool((np.abs(found) <= LARGEST).all()):
+            raise self.file.error(by, f"a coordinate of {np.abs(found).max():g} mm", "range")
+        return found
+
+    def direction(self, value: Value, by: int) -> Array:
+        """Direction (3,) of a DIRECTION, of any length."""
+        return self.turned(self.triple(value, by, "DIRECTION"))
+
+    def turned(self, drawn: Array) -> Array:
+        """Turn a direction (3,) as the file's place does."""
+        if self.place is None:
+            return drawn
+        found: Array = drawn[0] * self.place.x + drawn[1] * self.place.y + drawn[2] * self.place.z
+        return found
+
+    def triple(self, value: Value, by: int, kind: str) -> Array:
+        """Three numbers (3,) of an entity of a kind, a point in the file's unit or a direction of any length."""
+        number = self.file.reference(value, by)
+        numbers = self.file.several(self.file.values(number, kind, 2)[1], number)
+        if len(numbers) != 3:
+            raise self.file.error(number, f"{len(numbers)} coordinates", "syntax")
+        return np.array([self.file.number(one, number) for one in numbers])
+
+    def length(self, value: Value, by: int) -> float:
+        """Length above 0, mm."""
+        found = self.file.number(value, by) * self.mm
+        if not 0.0 < found <= 1e6 * LARGEST:
+            raise self.file.error(by, f"a length of {found:g} mm", "range")
+        return found
+
+    def frame(self, value: Value, by: int) -> Frame:
+        """Axes of an AXIS2_PLACEMENT_3D, those left out as ISO 10303-42 has them."""
+        number = self.file.reference(value, by)
+        _, place, axis, first, *_ = (*self.file.values(number, "AXIS2_PLACEMENT_3D", 2), None, None)
+        z = np.array([0.0, 0.0, 1.0]) if axis is None else self.triple(axis, number, "DIRECTION")
+        x = np.array([1.0, 0.0, 0.0]) if first is None else self.triple(first, number, "DIRECTION")
+        size = np.linalg.norm(z)
+        if not size > 0.0:
+            raise self.file.error(number, "its axis has no direction", "range")
+        z = z / size
+        if first is None and abs(z[0]) > 0.9:  # ISO 10303-42, first_proj_axis: y where the axis is that of x
+            x = np.array([0.0, 1.0, 0.0])
+        x = x - (x @ z) * z
+        size = np.linalg.norm(x)
+        if not size > 1e-9:
+            raise self.file.error(number, "its axes are parallel", "range")
+        x, z = self.turned(x / size), self.turned(z)
+        return Frame(self.point(place, number), x, np.cross(z, x), z)
+
+
+class Frame(NamedTuple):
+    """A place and three axes, (3,) each."""
+
+    origin: Array
+    x: Array
+    y: Array
+    z: Array
+
+
+class Straight(NamedTuple):
+    """A line through a point (3,) in a direction of length one (3,)."""
+
+    point: Array
+    along: Array
+
+
+class Conic(NamedTuple):
+    """Part of a circle or an ellipse: centre + u cos t + v sin t, (3,) each, from t = first over `sweep`."""
+
+    centre: Array
+    u: Array
+    v: Array
+    first: float
+    sweep: float
+
+    def at(self, share: Array) -> Array:
+        """Points (k, 3) at shares (k,) of the angle."""
+        t = self.first + self.sweep * share
+        points: Array = self.centre + np.outer(np.cos(t), self.u) + np.outer(np.sin(t), self.v)
+        return points
+
+
+class Spline(NamedTuple):
+    """Spans of a B-spline in its own sense: plan (x, y), and heights as (z, 0), with the same weights.
+
+    `back` tells that the edge runs against it.
+    """
+
+    plan: Beziers
+    rise: Beziers
+    back: bool = False
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """Where the edge begins and ends, (3,) each."""
+        first = np.append(self.plan.control[0, 0], self.rise.control[0, 0, 0])
+        last = np.append(self.plan.control[-1, -1], self.rise.control[-1, -1, 0])
+        return (last, first) if self.back else (first, last)
+
+    def at(self, row: Indices, share: Array) -> Array:
+        """Points (k, 3) of spans (k,) at shares (k,) of their parameter."""
+        plan, rise = (part.point(row, share) for part in (self.plan, self.rise))
+        return np.column_stack([plan, rise[:, 0]])
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """An EDGE_CURVE: its number, where it starts and ends (3,), and its curve."""
+
+    number: int
+    start: Array
+    end: Array
+    curve: Straight | Conic | Spline
+
+    @property
+    def samples(self) -> Array:
+        """Points (k, 3) along the curve, its ends as the curve has them among them."""
+        match self.curve:
+            case Straight():
+                return np.stack([self.start, 0.5 * (self.start + self.end), self.end])
+            case Conic():
+                return self.curve.at(SAMPLES)
+        count = self.curve.plan.count
+        return self.curve.at(np.repeat(np.arange(count), len(SAMPLES)), np.tile(SAMPLES, count))
+
+    @property
+    def misfit(self) -> float:
+        """How far its ends lie off its curve, mm."""
+        if isinstance(self.curve, Straight):
+            beside = [np.cross(place - self.curve.point, self.curve.along) for place in (self.start, self.end)]
+            return float(max(np.linalg.norm(one) for one in beside))
+        if isinstance(self.curve, Conic):
+            first, last = self.curve.at(np.array([0.0, 1.0]))
+        else:
+            first, last = self.curve.ends
+        return float(max(np.linalg.norm(first - self.start), np.linalg.norm(last - self.end)))
+
+    def crossings(self, z: float) -> list[tuple[Array, bool]]:
+        """Where the edge passes the height z, mm, in its own sense: places (3,), and whether it rises there."""
+        curve = self.curve
+        if isinstance(curve, Straight):
+            low, high = float(self.start[2]), float(self.end[2])
+            if (low > z) == (high > z):
+                return []
+            return [(self.start + (z - low) / (high - low) * (self.end - self.start), high > low)]
+        if isinstance(curve, Conic):
+            return _conic_crossings(curve, z)
+        return _spline_crossings(curve, z)
+
+
+def _spline_crossings(curve: Spline, z: float) -> list[tuple[Array, bool]]:
+    """Where the sign of the height above z changes: between roots of its spans, or at a joint of two."""
+    polynomials = curve.rise.weight * (curve.rise.control[:, :, 0] - z)
+    near = np.flatnonzero(~((polynomials > 0.0).all(axis=1) | (polynomials < 0.0).all(axis=1)))
+    if not near.size:
+        return []
+    rows, begins, middles = [], [], []
+    for row in range(len(polynomials)):
+        cuts = np.array([0.0, *(roots(polynomials[row]) if row in near else ()), 1.0])
+        rows += [row] * (len(cuts) - 1)
+        begins += cuts[:-1].tolist()
+        middles += (0.5 * (cuts[1:] + cuts[:-1])).tolist()
+    above = values(polynomials[rows], np.array(middles)) > 0.0
+    closed = bool(np.linalg.norm(curve.ends[1] - curve.ends[0]) <= CLOSED)
+    found = []
+    for k in np.flatnonzero(above != np.roll(above, 1)):
+        if k or closed:
+            place = curve.at(np.array([rows[k]]), np.array([begins[k]]))[0]
+            found.append((place, bool(above[k]) != curve.back))
+    return found
+
+
+def _conic_crossings(curve: Conic, z: float) -> list[tuple[Array, bool]]:
+    a, b, c = float(curve.u[2]), float(curve.v[2]), z - float(curve.centre[2])
+    size = float(np.hypot(a, b))
+    if size <= abs(c):
+        return []
+    middle, half = np.arctan2(b, a), np.arccos(c / size)
+    found = []
+    for t in (middle - half, middle + half):
+        share = (t - curve.first) % TURN / curve.sweep if curve.sweep > 0.0 else (curve.first - t) % TURN / -curve.sweep
+        if share <= 1.0:
+            rises = (b * np.cos(t) - a * np.sin(t)) * curve.sweep > 0.0
+            found.append((curve.at(np.array([share]))[0], bool(rises)))
+    return found
+
+
+def edge_of(space: Space, number: int) -> Edge:
+    """Read an EDGE_CURVE. Raises ReadError for a curve that is not read, or one that is trimmed inside."""
+    file = space.file
+    _, first, last, geometry, sense, *_ = file.values(number, "EDGE_CURVE", 5)
+    start, end = (_vertex(space, file.reference(one, number)) for one in (first, last))
+    forward = file.flag(sense, number)
+    curve = file.reference(geometry, number)
+    kind = file.kind(curve, (*WRAPPED, "LINE", "CIRCLE", "ELLIPSE", *SPLINES), number)
+    if kind in WRAPPED:
+        curve = file.reference(file.values(curve, kind, 2)[1], curve)
+        kind = file.kind(curve, ("LINE", "CIRCLE", "ELLIPSE", *SPLINES), number)
+    if kind == "LINE":
+        found: Straight | Conic | Spline = _line(space, curve)
+    elif kind in {"CIRCLE", "ELLIPSE"}:
+        found = _conic(space, curve, kind, (start, end) if forward else (end, start), forward=forward)
+    else:
+        spline = spline_of(space, curve)
+        found = spline._replace(back=not forward)
+    edge = Edge(number, start, end, found)
+    if isinstance(found, Spline) and edge.misfit > BEYOND * float(np.ptp(edge.samples, axis=0).max()):
+        raise file.error(number, f"its curve #{curve} goes on beyond its ends; a spline is read whole")
+    return edge
+
+
+def _vertex(space: Space, number: int) -> Array:
+    return space.point(space.file.values(number, "VERTEX_POINT", 2)[1], number)
+
+
+def _line(space: Space, number: int) -> Straight:
+    _, point, vector, *_ = space.file.values(number, "LINE", 3)
+    arrow = space.file.reference(vector, number)
+    along = space.direction(space.file.values(arrow, "VECTOR", 2)[1], arrow)
+    size = np.linalg.norm(along)
+    if not size > 0.0:
+        raise space.file.error(number, "it has no direction", "range")
+    return Straight(space.point(point, number), along / size)
+
+
+def _conic(space: Space, number: int, kind: str, ends: tuple[Array, Array], *, forward: bool) -> Conic:
+    """Circle or ellipse between two places in its own sense, turned round unless the edge runs forward."""
+    axes, *sizes = space.file.values(number, kind, 3 if kind == "CIRCLE" else 4)[1:]
+    frame = space.frame(axes, number)
+    a = space.length(sizes[0], number)
+    b = a if kind == "CIRCLE" else space.length(sizes[1], number)
+    first, last = (float(np.arctan2((p - frame.origin) @ frame.y / b, (p - frame.origin) @ frame.x / a)) for p in ends)
+    sweep = (last - first) % TURN
+    if sweep < WHOLE or TURN - sweep < WHOLE:
+        sweep = TURN
+    if not forward:
+        first, sweep = first + sweep, -sweep
+    return Conic(frame.origin, a * frame.x, b * frame.y, first, sweep)
+
+
+def spline_of(space: Space, number: int) -> Spline:
+    """Read a B-spline curve, rational or not. Raises ReadError where its numbers do not fit together."""
+    file = space.file
+    records = file.instances[number]
+    if "B_SPLINE_CURVE" in records:  # of several types at once, each with its own values
+        shape = file.values(number, "B_SPLINE_CURVE", 5)
+        knotted = file.values(number, "B_SPLINE_CURVE_WITH_KNOTS", 2) if "B_SPLINE_CURVE_WITH_KNOTS" in records else ()
+    else:
+        kind = next(one for one in SPLINES if one in records)
+        every = file.values(number, kind, 8 if kind == SPLINES[0] else 6)
+        shape, knotted = every[1:6], every[6:]
+    degree = int(file.number(shape[0], number))
+    points = file.several(shape[1], number)
+    control = np.array([space.point(one, number) for one in points if isinstance(one, Reference)]).reshape(-1, 3)
+    weight = np.ones(len(control))
+    if "RATIONAL_B_SPLINE_CURVE" in records:
+        shares = file.several(file.values(number, "RATIONAL_B_SPLINE_CURVE", 1)[0], number)
+        weight = np.array([file.number(one, number) for one in shares])
+    if not 1 <= degree <= HIGHEST_DEGREE:
+        raise file.error(number, f"it is of degree {degree}; up to {HIGHEST_DEGREE} is read")
+    knots = _knots(space, number, knotted, degree, len(control))
+    _check_spline(space, number, (degree, control, weight, knots))
+    plan = Beziers.from_spline(degree, knots, control[:, :2], weight)
+    rise = Beziers.from_spline(degree, knots, np.column_stack([control[:, 2], np.zeros(len(control))]), weight)
+    return Spline(plan, rise)
+
+
+def _knots(space: Space, number: int, knotted: tuple[Value, ...], degree: int, count: int) -> Array:
+    """Knots, each as often as it counts; those of a BEZIER_CURVE are its ends of every span."""
+    file = space.file
+    if len(knotted) >= 2:
+        often, places = (file.several(one, number) for one in knotted[:2])
+        times = np.array([int(file.number(one, number)) for one in often])
+        where = np.array([file.number(one, number) for one in places])
+        if len(times) != len(where) or bool((times < 1).any()) or times.sum() > count + HIGHEST_DEGREE + 1:
+            raise file.error(number, "its knots and their multiplicities do not fit together", "syntax")
+        return np.repeat(where, times)
+    spans = (count - 1) // degree
+    return np.concatenate([[0.0], np.repeat(np.arange(spans + 1.0), degree), [float(spans)]])
+
+
+def _check_spline(space: Space, number: int, spline: tuple[int, Array, Array, Array]) -> None:
+    degree, control, weight, knots = spline
+    count = len(control)
+    if len(knots) != count + degree + 1 or count <= degree or len(weight) != count:
+        numbers = f"{count} control points, {len(knots)} knots, {len(weight)} weights, degree {degree}"
+        raise space.file.error(number, f"these numbers do not fit together: {numbers}", "syntax")
+    first, last = knots[degree], knots[count]
+    if bool((np.diff(knots) < 0.0).any()) or not first < last:
+        raise space.file.error(number, "its knots fall or span nothing", "syntax")
+    inner = knots[(knots > first) & (knots < last)]
+    if bool((inner[degree:] == inner[:-degree]).any()):
+        raise space.file.error(number, "a knot repeated too often tears it apart")
+    if not (bool((weight > 0.0).all()) and float(weight.max()) <= LARGEST_WEIGHT_RATIO * float(weight.min())):
+        raise space.file.error(number, "its weights are not all positive and of one order")

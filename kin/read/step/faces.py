@@ -1,0 +1,350 @@
+"""Faces of a STEP solid as numbers, and the sections of each at a height: planes, cylinders, cones, swept curves; mm.
+
+A face lies on the left of its bounds as seen from outside the solid. So where a bound comes down through a height the
+section begins, and it ends where a bound goes up, the solid on its left as seen from above.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
+
+import numpy as np
+
+from kin.contour.biarc import arcs_along
+from kin.contour.nearest import nearest
+from kin.numeric.angles import TURN
+from kin.read.drawing.shapes import Shape, shape
+from kin.read.step.curves import Spline, edge_of, spline_of
+
+if TYPE_CHECKING:
+    from kin.contour.arcs import Arcs
+    from kin.contour.bezier import Beziers
+    from kin.numeric.arrays import Array
+    from kin.read.step.curves import Edge, Space
+
+__all__ = ["Face", "Use", "face_of"]
+
+# Sine of an angle that is still rounding: of a plane against the horizontal, an axis against the vertical.
+LEVEL = 1e-9
+SURFACES = ("PLANE", "CYLINDRICAL_SURFACE", "CONICAL_SURFACE", "SURFACE_OF_LINEAR_EXTRUSION")
+SAME = 1e-9  # rad, within which a bound that comes down and one that goes up are a seam
+SPLINE_ERROR = 1e-9  # mm, of the arcs by which edges are held against a swept spline
+FINE = 1e-12  # of the extent
+
+Crossing: TypeAlias = "tuple[Array, bool]"
+
+
+class Plane(NamedTuple):
+    """A plane through a point (3,) with a normal (3,)."""
+
+    point: Array
+    normal: Array
+
+    @property
+    def level(self) -> bool:
+        """Whether it is horizontal."""
+        return bool(np.hypot(*self.normal[:2]) <= LEVEL)
+
+    @property
+    def upright(self) -> bool:
+        """Whether it stands upright."""
+        return bool(abs(self.normal[2]) <= LEVEL)
+
+    def off(self, points: Array) -> Array:
+        """Distances of points (k, 3)."""
+        off: Array = np.abs((points - self.point) @ self.normal)
+        return off
+
+
+@dataclass(frozen=True, eq=False)
+class Round:
+    """A cylinder or a cone about a vertical axis: centre (2,), radius at the height `base`, and its growth with z."""
+
+    centre: Array
+    radius: float
+    base: float
+    slope: float
+
+    level: ClassVar[bool] = False
+
+    @property
+    def upright(self) -> bool:
+        """Whether it is a cylinder."""
+        return self.slope == 0.0
+
+    def radius_at(self, z: float) -> float:
+        """Radius at a height."""
+        return self.radius + self.slope * (z - self.base)
+
+    def off(self, points: Array) -> Array:
+        """Distances of points (k, 3)."""
+        radius = self.radius + self.slope * (points[:, 2] - self.base)
+        off: Array = np.abs(np.hypot(*(points[:, :2] - self.centre).T) - radius) / np.hypot(1.0, self.slope)
+        return off
+
+
+@dataclass(frozen=True, eq=False)
+class Tube:
+    """A cylinder about a horizontal axis: a point (3,) of it, its direction (3,), and its radius."""
+
+    point: Array
+    along: Array
+    radius: float
+
+    level: ClassVar[bool] = False
+    upright: ClassVar[bool] = False
+
+    def off(self, points: Array) -> Array:
+        """Distances of points (k, 3)."""
+        away = points - self.point
+        away = away - np.outer(away @ self.along, self.along)
+        off: Array = np.abs(np.linalg.norm(away, axis=1) - self.radius)
+        return off
+
+
+@dataclass(frozen=True, eq=False)
+class Swept:
+    """What a plane curve sweeps along the vertical: its spans as seen from above."""
+
+    spans: Beziers
+
+    level: ClassVar[bool] = False
+    upright: ClassVar[bool] = True
+
+    @cached_property
+    def arcs(self) -> Arcs:
+        """The curve as arcs."""
+        extent = float(np.abs(self.spans.control).max())
+        return arcs_along(self.spans.unrolled().pieces, max(SPLINE_ERROR, FINE * extent))[0]
+
+    def off(self, points: Array) -> Array:
+        """Distances of points (k, 3)."""
+        return nearest(self.arcs, points[:, :2])[1]
+
+
+Surface: TypeAlias = "Plane | Round | Tube | Swept"
+
+
+class Use(NamedTuple):
+    """An edge in a bound of a face: its number, and whether the bound runs along it in its own sense."""
+
+    edge: int
+    forward: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Face:
+    """An ADVANCED_FACE: its number, its surface, the loops that bound it, and whether its normal is the surface's."""
+
+    number: int
+    surface: Surface
+    loops: tuple[tuple[Use, ...], ...]
+    outward: bool
+    edges: dict[int, Edge]
+
+    @cached_property
+    def uses(self) -> list[tuple[Edge, bool]]:
+        """All edges of its bounds, and the senses in which they run."""
+        return [(self.edges[use.edge], use.forward) for loop in self.loops for use in loop]
+
+    @cached_property
+    def heights(self) -> tuple[float, float]:
+        """Least and greatest height of its edges; of a level cylinder its own."""
+        if isinstance(self.surface, Tube):
+            axis = float(self.surface.point[2])
+            return axis - self.surface.radius, axis + self.surface.radius
+        z = np.concatenate([edge.samples[:, 2] for edge, _ in self.uses])
+        return float(z.min()), float(z.max())
+
+    @property
+    def misfit(self) -> float:
+        """Farthest that its edges lie off its surface, mm."""
+        return float(self.surface.off(np.concatenate([edge.samples for edge, _ in self.uses])).max())
+
+    @property
+    def winding(self) -> float:
+        """Angle, rad, by which all bounds together run round the axis of a cylinder or a cone; 0 where they are sound.
+
+        An arc that goes the long way round lies on the same surface, and its height is no other: only this tells.
+        """
+        if isinstance(self.surface, Round):
+            x, y, centre = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.append(self.surface.centre, 0.0)
+        elif isinstance(self.surface, Tube):
+            y, centre = np.array([0.0, 0.0, 1.0]), self.surface.point
+            x = np.cross(y, self.surface.along)
+        else:
+            return 0.0
+        total = 0.0
+        for edge, forward in self.uses:
+            away = edge.samples - centre
+            angle = np.unwrap(np.arctan2(away @ y, away @ x))
+            run = float(angle[-1] - angle[0])
+            backwards = isinstance(edge.curve, Spline) and edge.curve.back
+            total += run if forward != backwards else -run
+        return total
+
+    def section(self, space: Space, z: float) -> list[Shape]:
+        """The face's part of the section at a height; raises ReadError where its bounds do not pair."""
+        low, high = self.heights
+        if self.surface.level or not low < z < high:
+            return []
+        crossings = [(place, rises == forward) for edge, forward in self.uses for place, rises in edge.crossings(z)]
+        if not crossings and not isinstance(self.surface, Round):
+            return []
+        match self.surface:
+            case Round():
+                return self._arcs(space, self.surface, z, crossings)
+            case Plane():
+                normal = self.surface.normal * (1.0 if self.outward else -1.0)
+                return self._chords(space, crossings, np.array([-normal[1], normal[0]]))
+            case Tube():
+                along, point = self.surface.along, self.surface.point
+                across = np.array([-along[1], along[0], 0.0])
+                found = []
+                for side in (1.0, -1.0):
+                    here = [one for one in crossings if side * float((one[0] - point) @ across) > 0.0]
+                    found += self._chords(space, here, along[:2] * (-side if self.outward else side))
+                return found
+        self._paired(space, crossings)
+        return [shape(beziers=self.surface.spans, heights=0.0)]
+
+    def _chords(self, space: Space, crossings: list[Crossing], along: Array) -> list[Shape]:
+        """Pieces of a straight section that runs in a direction (2,)."""
+        begins = sorted((place for place, rises in crossings if not rises), key=lambda place: float(place[:2] @ along))
+        ends = sorted((place for place, rises in crossings if rises), key=lambda place: float(place[:2] @ along))
+        pairs = list(zip(begins, ends, strict=False))
+        forward = all(float((last - first)[:2] @ along) > 0.0 for first, last in pairs)
+        if len(begins) != len(ends) or not forward:
+            raise self._contrary(space)
+        return [shape(chords=(*first[:2], *last[:2], 0.0), heights=0.0) for first, last in pairs]
+
+    def _arcs(self, space: Space, surface: Round, z: float, crossings: list[Crossing]) -> list[Shape]:
+        """Pieces of a round section."""
+        radius = surface.radius_at(z)
+        if not radius > 0.0:
+            raise space.file.error(self.number, f"it passes its cone's tip at z = {z:.9g} mm")
+        if not crossings:
+            return [_arc(surface.centre, radius, 0.0, TURN)]
+        sense = 1.0 if self.outward else -1.0
+        angles = [(*(place[:2] - surface.centre), rises) for place, rises in crossings]
+        begins = [float(np.arctan2(y, x)) for x, y, rises in angles if not rises]
+        ends = [float(np.arctan2(y, x)) for x, y, rises in angles if rises]
+        if len(begins) != len(ends):
+            raise self._contrary(space)
+        found = []
+        for first in begins:
+            sweeps = [(sense * (last - first)) % TURN for last in ends]
+            sweep = min(TURN if one < SAME or TURN - one < SAME else one for one in sweeps)
+            found.append(_arc(surface.centre, radius, first, sense * sweep))
+        return found
+
+    def _paired(self, space: Space, crossings: list[Crossing]) -> None:
+        """Refuse a swept face that is bounded by anything but the ends of its curve."""
+        if len(crossings) != 2 or crossings[0][1] == crossings[1][1] or not isinstance(self.surface, Swept):
+            raise self._contrary(space)
+        control = self.surface.spans.control
+        ends = np.stack([control[0, 0], control[-1, -1]])
+        for place, _ in crossings:
+            if float(np.hypot(*(ends - place[:2]).T).min()) > space.accuracy:
+                raise space.file.error(self.number, "it ends before its curve does; swept curves are read whole")
+
+    def _contrary(self, space: Space) -> Exception:
+        return space.file.error(self.number, "its bounds do not enclose a part of its surface that faces outward")
+
+
+def _arc(centre: Array, radius: float, first: float, sweep: float) -> Shape:
+    """Arc as a shape, a whole circle as two halves."""
+    parts = 2 if abs(sweep) > 1.5 * np.pi else 1
+    rows = [(*centre, radius, first + k * sweep / parts, sweep / parts) for k in range(parts)]
+    return shape(arcs=rows, heights=0.0)
+
+
+def face_of(space: Space, number: int, edges: dict[int, Edge]) -> Face:
+    """Read an ADVANCED_FACE, and the edges of its bounds into `edges`. Raises ReadError for what is not read."""
+    file = space.file
+    kind = file.kind(number, ("ADVANCED_FACE", "FACE_SURFACE"), number)
+    _, bounds, surface, sense, *_ = file.values(number, kind, 4)
+    loops = []
+    for one in file.several(bounds, number):
+        bound = file.reference(one, number)
+        _, loop, orientation, *_ = file.values(bound, file.kind(bound, ("FACE_BOUND", "FACE_OUTER_BOUND"), number), 3)
+        forward = file.flag(orientation, bound)
+        ring = file.reference(loop, bound)
+        file.kind(ring, ("EDGE_LOOP",), bound)
+        uses = [
+            _use(space, file.reference(item, ring), edges)
+            for item in file.several(file.values(ring, "EDGE_LOOP", 2)[1], ring)
+        ]
+        _check_loop(space, ring, uses, edges)
+        loops.append(tuple(uses) if forward else tuple(Use(use.edge, not use.forward) for use in reversed(uses)))
+    if not loops:
+        raise file.error(number, "it has no bounds")
+    made = _surface(space, file.reference(surface, number), number)
+    return Face(number, made, tuple(loops), file.flag(sense, number), edges)
+
+
+def _use(space: Space, number: int, edges: dict[int, Edge]) -> Use:
+    file = space.file
+    *_, curve, sense = file.values(number, "ORIENTED_EDGE", 5)[:5]
+    edge = file.reference(curve, number)
+    if edge not in edges:
+        file.kind(edge, ("EDGE_CURVE",), number)
+        edges[edge] = edge_of(space, edge)
+    return Use(edge, file.flag(sense, number))
+
+
+def _check_loop(space: Space, number: int, uses: list[Use], edges: dict[int, Edge]) -> None:
+    """Refuse a loop whose edges do not follow one another."""
+    if not uses:
+        raise space.file.error(number, "it has no edges", "syntax")
+    for use, following in zip(uses, [*uses[1:], uses[0]], strict=True):
+        one, other = edges[use.edge], edges[following.edge]
+        end = one.end if use.forward else one.start
+        start = other.start if following.forward else other.end
+        gap = float(np.linalg.norm(start - end))
+        if gap > space.accuracy:
+            x, y, z = end.tolist()
+            where = f"edge #{one.number} ends at ({x:.9g}, {y:.9g}, {z:.9g}) mm"
+            message = f"{where}, {gap:.3g} mm from where #{other.number} starts"
+            raise space.file.error(number, message, "open")
+
+
+def _surface(space: Space, number: int, by: int) -> Surface:
+    file = space.file
+    kind = file.kind(number, SURFACES, by)
+    if kind == "SURFACE_OF_LINEAR_EXTRUSION":
+        return _swept(space, number)
+    _, axes, *rest = file.values(number, kind, {"PLANE": 2, "CYLINDRICAL_SURFACE": 3, "CONICAL_SURFACE": 4}[kind])
+    frame = space.frame(axes, number)
+    if kind == "PLANE":
+        return Plane(frame.origin, frame.z)
+    upright = np.hypot(*frame.z[:2]) <= LEVEL
+    if kind == "CYLINDRICAL_SURFACE":
+        radius = space.length(rest[0], number)
+        if upright:
+            return Round(frame.origin[:2], radius, 0.0, 0.0)
+        if abs(frame.z[2]) > LEVEL:
+            raise file.error(number, "its axis is neither upright nor level")
+        return Tube(frame.origin, frame.z, radius)
+    radius = file.number(rest[0], number) * space.mm
+    if space.radian is None:
+        raise file.error(number, "the file states no unit of plane angle")
+    slope = float(np.tan(file.number(rest[1], number) * space.radian))
+    if not upright:
+        raise file.error(number, "its axis is not upright")
+    return Round(frame.origin[:2], radius, float(frame.origin[2]), float(np.copysign(slope, frame.z[2])))
+
+
+def _swept(space: Space, number: int) -> Surface:
+    """Surface that a spline sweeps along the vertical."""
+    file = space.file
+    _, curve, vector, *_ = file.values(number, "SURFACE_OF_LINEAR_EXTRUSION", 3)
+    arrow = file.reference(vector, number)
+    along = space.direction(file.values(arrow, "VECTOR", 2)[1], arrow)
+    if not np.hypot(*along[:2]) <= LEVEL * abs(along[2]):
+        raise file.error(number, "it is not swept along the vertical")
+    path = file.reference(curve, number)
+    file.kind(path, ("B_SPLINE_CURVE_WITH_KNOTS", "BEZIER_CURVE"), number)
+    return Swept(spline_of(space, path).plan)

@@ -1,0 +1,224 @@
+"""Exchange files of ISO 10303-21, the text form of STEP: the instances of the data section, by number.
+
+A value is a number, a text, an `Enumeration`, a `Reference`, a tuple of values, a `Typed` value, or None for what is
+left out ($) or derived (*). An instance is one record, or several where it is of several types at once.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+__all__ = ["Enumeration", "Exchange", "Reference", "Typed", "Value", "exchange"]
+
+BEGIN, END = "ISO-10303-21;", "END-ISO-10303-21;"
+TOKEN = re.compile(
+    r"\s+|/\*.*?\*/|(?P<text>'(?:[^']|'')*')|#(?P<reference>\d+)|(?P<real>[-+]?\d+\.\d*(?:[Ee][-+]?\d+)?)"
+    r"|(?P<integer>[-+]?\d+)|\.(?P<enumeration>[A-Za-z_][A-Za-z0-9_]*)\.|(?P<word>!?[A-Za-z_][A-Za-z0-9_-]*)"
+    r"|(?P<mark>[(),;=$*])|(?P<binary>\"[0-9A-Fa-f]*\")",
+    re.DOTALL,
+)
+LARGEST = 1e30  # number that can be computed with
+LONGEST = 60  # characters of a text that an error shows
+MOST_DIGITS = 18  # of a whole number
+DEEPEST = 64  # of lists within lists
+
+
+class Reference(int):
+    """Number of another instance."""
+
+    __slots__ = ()
+
+
+class Enumeration(str):
+    """A name between dots, such as MILLI, T or F."""
+
+    __slots__ = ()
+
+
+class Typed(NamedTuple):
+    """A value that tells its type, such as LENGTH_MEASURE(25.4)."""
+
+    name: str
+    values: tuple[Value, ...]
+
+
+Value: TypeAlias = "float | int | str | tuple[Value, ...] | Typed | None"
+
+
+class Exchange(NamedTuple):
+    """What a file holds: records by type for each instance number, and the name of its schema."""
+
+    path: Path
+    instances: dict[int, dict[str, tuple[Value, ...]]]
+    schema: str
+
+    def error(self, number: int, what: str, reason: str = "unsupported") -> ReadError:
+        """Make the error that names an instance."""
+        kinds = "+".join(self.instances.get(number, {"": ()})) or "?"
+        return ReadError(reason, f"#{number} {kinds[:LONGEST]}: {what}", self.path)
+
+    def of(self, kind: str) -> list[int]:
+        """Numbers of the instances of a type."""
+        return [number for number, records in self.instances.items() if kind in records]
+
+    def kind(self, number: int, kinds: tuple[str, ...], by: int) -> str:
+        """Which of some types an instance is of, that instance `by` refers to; raises ReadError where it is none."""
+        if number not in self.instances:
+            raise self.error(by, f"refers to #{number}, which is not there", "syntax")
+        for kind in kinds:
+            if kind in self.instances[number]:
+                return kind
+        raise self.error(number, f"is none of {', '.join(kinds)}")
+
+    def values(self, number: int, kind: str, count: int) -> tuple[Value, ...]:
+        """Values of an instance's record, of which there are at least `count`; raises ReadError where it has fewer."""
+        values = self.instances.get(number, {}).get(kind)
+        if values is None:
+            raise self.error(number, f"is no {kind}")
+        if len(values) < count:
+            raise self.error(number, f"has {len(values)} values, {count} belong there", "syntax")
+        return values
+
+    def number(self, value: Value, by: int) -> float:
+        """Return a value as a number, of a size that can be computed with."""
+        if isinstance(value, Typed) and len(value.values) == 1:
+            value = value.values[0]
+        if isinstance(value, bool) or not isinstance(value, int | float) or isinstance(value, Reference):
+            raise self.error(by, f"{shown(value)} is no number", "syntax")
+        if not abs(value) <= LARGEST:
+            raise self.error(by, f"a value of {value:g}", "range")
+        return float(value)
+
+    def reference(self, value: Value, by: int) -> int:
+        """Return a value as the number of an instance."""
+        if not isinstance(value, Reference):
+            raise self.error(by, f"{shown(value)} is no reference", "syntax")
+        return int(value)
+
+    def several(self, value: Value, by: int) -> tuple[Value, ...]:
+        """Return a value as a list."""
+        if not isinstance(value, tuple) or isinstance(value, Typed):
+            raise self.error(by, f"{shown(value)} is no list", "syntax")
+        return value
+
+    def flag(self, value: Value, by: int) -> bool:
+        """Return a value as a logical one."""
+        if value not in {"T", "F"} or not isinstance(value, Enumeration):
+            raise self.error(by, f"{shown(value)} is neither .T. nor .F.", "syntax")
+        return value == "T"
+
+
+def shown(value: Value) -> str:
+    """A value in a message."""
+    return "$" if value is None else repr(value)[:LONGEST]
+
+
+def exchange(raw: bytes, path: Path) -> Exchange:
+    """Parse a file. Raises ReadError where it is cut short, or no such file."""
+    if not raw.strip():
+        raise ReadError("empty", "the file is empty", path)
+    text = raw.decode("latin-1")
+    if not text.lstrip().startswith(BEGIN):
+        raise ReadError("syntax", f"not a STEP file: it does not begin with {BEGIN}", path)
+    if END not in text[-200:]:
+        raise ReadError("truncated", f"the end mark {END} is missing: the file is cut short", path)
+    head, mark, data = text.partition("DATA;")
+    body, closed, _ = data.rpartition("ENDSEC;")
+    if not (mark and closed):
+        raise ReadError("syntax", "there is no section DATA", path)
+    schema = re.search(r"FILE_SCHEMA\s*\(\s*\(\s*'([^']*)'", head)
+    return Exchange(path, _instances(body, path), schema[1] if schema else "")
+
+
+def _instances(body: str, path: Path) -> dict[int, dict[str, tuple[Value, ...]]]:
+    tokens = _tokens(body, path)
+    found: dict[int, dict[str, tuple[Value, ...]]] = {}
+    at = 0
+    while at < len(tokens):
+        ends = at
+        kind, number = tokens[at]
+        if kind != "reference" or at + 2 >= len(tokens) or tokens[at + 1] != ("mark", "="):
+            raise ReadError("syntax", f"#{number}= expected, not {number}", path)
+        records: dict[str, tuple[Value, ...]] = {}
+        ends = at + 2
+        several = tokens[ends] == ("mark", "(")
+        ends += several
+        while ends < len(tokens) and tokens[ends][0] == "word":
+            name = tokens[ends][1].upper()
+            values, ends = _list(tokens, ends + 1, int(number), path)
+            records[name] = values
+        if several and ends < len(tokens) and tokens[ends] == ("mark", ")"):
+            ends += 1
+        if not records or ends >= len(tokens) or tokens[ends] != ("mark", ";"):
+            raise ReadError("syntax", f"#{number} does not end as an instance does", path)
+        if int(number) in found:
+            raise ReadError("syntax", f"#{number} is there twice", path)
+        found[int(number)] = records
+        at = ends + 1
+    return found
+
+
+def _tokens(body: str, path: Path) -> list[tuple[str, str]]:
+    tokens: list[tuple[str, str]] = []
+    at = 0
+    while at < len(body):
+        match = TOKEN.match(body, at)
+        if match is None:
+            last = next((text for kind, text in reversed(tokens) if kind == "reference"), "?")
+            raise ReadError("syntax", f"{body[at : at + 20]!r} after #{last} is nothing of this format", path)
+        at = match.end()
+        if match.lastgroup is None:
+            continue
+        kind, found = match.lastgroup, match[match.lastgroup]
+        if kind in {"reference", "integer"} and len(found) > MOST_DIGITS:
+            raise ReadError("range", f"{found[:LONGEST]!r} is beyond all numbers of instances and counts", path)
+        tokens.append((kind, found))
+    return tokens
+
+
+def _list(tokens: list[tuple[str, str]], at: int, number: int, path: Path) -> tuple[tuple[Value, ...], int]:
+    """Values between brackets from token `at` on, and the number of the token behind them."""
+    stack: list[tuple[str, list[Value]]] = []
+    name = ""
+    while at < len(tokens):
+        kind, text = tokens[at]
+        at += 1
+        if (kind, text) == ("mark", "("):
+            stack.append((name, []))
+            name = ""
+            if len(stack) > DEEPEST:
+                raise ReadError("range", f"#{number}: its values lie more than {DEEPEST} brackets deep", path)
+        elif not stack or (kind, text) == ("mark", ";") or (name and kind != "mark"):
+            break
+        elif (kind, text) == ("mark", ")"):
+            of, values = stack.pop()
+            whole = tuple(values)
+            if not stack:
+                return whole, at
+            stack[-1][1].append(Typed(of, whole) if of else whole)
+        elif kind == "word":
+            name = text.upper()
+        elif (kind, text) != ("mark", ","):
+            stack[-1][1].append(_value(kind, text))
+    raise ReadError("syntax", f"#{number}: its values do not end", path)
+
+
+def _value(kind: str, text: str) -> Value:
+    match kind:
+        case "real":
+            return float(text)
+        case "integer":
+            return int(text)
+        case "reference":
+            return Reference(text)
+        case "enumeration":
+            return Enumeration(text.upper())
+        case "text":
+            return text[1:-1].replace("''", "'")
+    return None

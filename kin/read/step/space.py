@@ -1,0 +1,246 @@
+"""Where a STEP file puts its solid, and in which units: the placement of its representation, assemblies, contexts.
+
+A kernel turns and shifts a solid by the AXIS2_PLACEMENT_3D among the items of the representation that holds it, and by
+the transformation of each assembly that it stands in, from the innermost out (ISO 10303-43, 5.4; held against Open
+CASCADE by the tests). What is not understood here is refused with its number, never passed over.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.read.step.curves import Frame, Space
+from kin.read.step.part21 import Reference, Typed
+
+if TYPE_CHECKING:
+    from kin.read.step.part21 import Exchange, Value
+
+__all__ = ["space_of"]
+
+# Mm in a metre under each prefix of an SI unit.
+PREFIXES = {
+    "MICRO": 1e-3, "MILLI": 1.0, "CENTI": 10.0, "DECI": 100.0, "DECA": 1e4, "HECTO": 1e5, "KILO": 1e6, "NANO": 1e-6,
+}  # fmt: skip
+REPRESENTATIONS = (
+    "ADVANCED_BREP_SHAPE_REPRESENTATION",
+    "SHAPE_REPRESENTATION",
+    "MANIFOLD_SURFACE_SHAPE_REPRESENTATION",
+)
+# Ends are joined within the accuracy that the file states, but no closer and no farther than this, mm.
+ACCURACY = (1e-6, 1e-3)
+AXES = "AXIS2_PLACEMENT_3D"
+RELATED, PLAIN = "REPRESENTATION_RELATIONSHIP", "SHAPE_REPRESENTATION_RELATIONSHIP"
+TRANSFORMED = "REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION"
+IN_PLACE = "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION"
+OCCURRENCE = "NEXT_ASSEMBLY_USAGE_OCCURRENCE"
+# What could put a solid somewhere else, and is not read.
+UNREAD = ("MAPPED_ITEM", "SOLID_REPLICA", "GEOMETRIC_REPLICA", "ASSEMBLY_COMPONENT_USAGE_SUBSTITUTE")
+SAME = 1e-12  # of directions, and of places in mm
+DEEPEST = 16  # of assemblies within assemblies
+
+
+def space_of(file: Exchange, solid: int) -> Space:
+    """Units, accuracy and place of the representation that holds a solid; raises ReadError for what is not read."""
+    for kind in UNREAD:
+        for number in file.of(kind):
+            raise file.error(number, "is not read; export the part alone, with nothing put together")
+    holders = [
+        (number, kind)
+        for kind in REPRESENTATIONS
+        for number in file.of(kind)
+        if any(item == solid for item in file.several(file.values(number, kind, 3)[1], number))
+    ]
+    if len(holders) != 1:
+        raise file.error(solid, f"{len(holders)} representations hold it, one belongs there", "syntax")
+    holder, kind = holders[0]
+    context = file.reference(file.values(holder, kind, 3)[2], holder)
+    length, angle = _units(file, context)
+    accuracy = 0.0
+    if "GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT" in file.instances[context]:
+        for item in file.several(file.values(context, "GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT", 1)[0], context):
+            measure = file.reference(item, context)
+            size = file.values(measure, "UNCERTAINTY_MEASURE_WITH_UNIT", 2)[0]
+            if isinstance(size, Typed) and size.name == "LENGTH_MEASURE":
+                accuracy = max(accuracy, file.number(size, measure) * length)
+    drawn = Space(file, length, angle, min(max(accuracy, ACCURACY[0]), ACCURACY[1]))
+    place = _Places(drawn).of(holder)
+    return drawn if _still(place) else drawn._replace(place=place)
+
+
+class _Places:
+    """The placements of a file's representations, in the unit of the one that holds the solid."""
+
+    def __init__(self, space: Space) -> None:
+        self.space, self.file = space, space.file
+        file = self.file
+        self.plain: list[tuple[int, int, int]] = []
+        self.moved: dict[int, tuple[int, int]] = {}
+        for number, records in file.instances.items():
+            kind = RELATED if records.get(RELATED) else PLAIN if records.get(PLAIN) else None
+            if kind is None:
+                if TRANSFORMED in records:
+                    raise file.error(number, "relates no two representations", "syntax")
+                continue
+            one, other = (file.reference(value, number) for value in file.values(number, kind, 4)[2:4])
+            if TRANSFORMED in records:
+                self.moved[number] = (one, other)
+            else:
+                self.plain.append((number, one, other))
+
+    def of(self, holder: int) -> Frame | None:
+        """Where the solid of a representation stands in the outermost assembly."""
+        file = self.file
+        same = self._alike(holder)
+        for one in same - {holder}:
+            if not _still(self._own(one)) and not _agree(self._own(one), self._own(holder)):
+                raise file.error(one, f"has another placement than #{holder}, to which it is related")
+        found = self._own(holder)
+        if self.moved and not _still(found):
+            raise file.error(holder, "is placed by itself and by an assembly; export the part alone")
+        seats = file.of(IN_PLACE)
+        if not len(seats) == len(self.moved) == len(file.of(OCCURRENCE)):
+            named = next(iter([*self.moved, *seats, *file.of(OCCURRENCE)]))
+            raise file.error(named, "belongs to an assembly that is not whole; export the part alone")
+        used: set[int] = set()
+        while len(used) < len(self.moved):
+            seat = [number for number, (child, _) in self.moved.items() if child in same and number not in used]
+            if len(seat) != 1 or len(used) == DEEPEST:
+                number = seat[0] if seat else next(one for one in self.moved if one not in used)
+                raise file.error(number, "puts more than the one part in place; export the part alone")
+            number = seat[0]
+            used.add(number)
+            child, parent = self.moved[number]
+            self._demand_same_unit(parent)
+            self._demand_occurrence(number, child, parent)
+            found = _after(self._transformation(number, child, parent), found)
+            same = self._alike(parent)
+        return found
+
+    def _alike(self, one: int) -> set[int]:
+        """Return the representations that are related to one without a transformation, and it."""
+        found, fresh = {one}, [one]
+        while fresh:
+            at = fresh.pop()
+            near = {b if a == at else a for _, a, b in self.plain if at in (a, b)} - found
+            found |= near
+            fresh += near
+        return found
+
+    def _items(self, number: int) -> tuple[Value, ...]:
+        file = self.file
+        kind = file.kind(number, REPRESENTATIONS, number)
+        return file.several(file.values(number, kind, 3)[1], number)
+
+    def _own(self, number: int) -> Frame | None:
+        """Return the placement among a representation's items, which is one."""
+        axes = [
+            item
+            for item in self._items(number)
+            if isinstance(item, Reference) and AXES in self.file.instances.get(item, {})
+        ]
+        frames = [self._frame(item, number) for item in axes]
+        if any(not _agree(one, frames[0]) for one in frames[1:]):
+            raise self.file.error(number, f"has {len(frames)} placements that differ; one belongs there")
+        return frames[0] if frames else None
+
+    def _frame(self, value: Value, by: int) -> Frame:
+        number = self.file.reference(value, by)
+        given = self.file.values(number, AXES, 2)
+        if len(given) > 2 and given[2] is not None and (len(given) < 4 or given[3] is None):
+            raise self.file.error(number, "leaves out its x axis, which kernels take differently")
+        return self.space.frame(value, by)
+
+    def _transformation(self, number: int, child: int, parent: int) -> Frame:
+        """Where the assembly puts the child's own axes."""
+        file = self.file
+        item = file.reference(file.values(number, TRANSFORMED, 1)[0], number)
+        file.kind(item, ("ITEM_DEFINED_TRANSFORMATION",), number)
+        first, last = file.values(item, "ITEM_DEFINED_TRANSFORMATION", 4)[2:4]
+        held = first in self._items(child) and last in self._items(parent)
+        if not held or not _still(self._frame(first, item)):
+            raise file.error(item, "does not take the child's own axes to a placement of its parent; export it alone")
+        return self._frame(last, item)
+
+    def _demand_same_unit(self, number: int) -> None:
+        file = self.file
+        context = file.reference(file.values(number, file.kind(number, REPRESENTATIONS, number), 3)[2], number)
+        if _units(file, context)[0] != self.space.mm:
+            raise file.error(number, "is in another unit than its part; export the part alone")
+
+    def _demand_occurrence(self, number: int, child: int, parent: int) -> None:
+        """Refuse a relation whose two sides are not those of the occurrence that it places."""
+        file = self.file
+        seat = next((s for s in file.of(IN_PLACE) if file.values(s, IN_PLACE, 2)[0] == number), None)
+        if seat is None:
+            raise file.error(number, "puts nothing in place", "syntax")
+        shape = file.reference(file.values(seat, IN_PLACE, 2)[1], seat)
+        use = file.reference(file.values(shape, "PRODUCT_DEFINITION_SHAPE", 3)[2], shape)
+        whole, part = file.values(use, OCCURRENCE, 5)[3:5]
+        if whole not in self._products(parent) or part not in self._products(child):
+            raise file.error(use, "its assembly and part are not those of its placement; export the part alone")
+
+    def _products(self, number: int) -> set[Value]:
+        """Return the product definitions that a representation shows."""
+        file, kind = self.file, "SHAPE_DEFINITION_REPRESENTATION"
+        alike = self._alike(number)
+        shown = [file.values(one, kind, 2) for one in file.of(kind)]
+        shapes = [file.reference(shape, number) for shape, drawn in shown if drawn in alike]
+        return {file.values(shape, "PRODUCT_DEFINITION_SHAPE", 3)[2] for shape in shapes}
+
+
+def _still(place: Frame | None) -> bool:
+    """Whether a place leaves all where it is."""
+    return place is None or bool((np.abs(np.array(place) - np.array([np.zeros(3), *np.eye(3)])) <= SAME).all())
+
+
+def _agree(one: Frame | None, other: Frame | None) -> bool:
+    if one is None or other is None:
+        return _still(one) and _still(other)
+    return bool((np.abs(np.array(one) - np.array(other)) <= SAME).all())
+
+
+def _after(outer: Frame, inner: Frame | None) -> Frame | None:
+    """Return the place that does `inner` and then `outer`."""
+    if _still(outer) or inner is None:
+        return inner if inner is not None else outer
+    turn = np.array(outer[1:])
+    return Frame(outer.origin + inner.origin @ turn, *(np.array(inner[1:]) @ turn))
+
+
+def _units(file: Exchange, context: int) -> tuple[float, float | None]:
+    """Length of a context's unit, mm, and its unit of plane angle, rad, if it states one."""
+    units = file.several(file.values(context, "GLOBAL_UNIT_ASSIGNED_CONTEXT", 1)[0], context)
+    found: dict[str, float] = {}
+    for item in units:
+        unit = file.reference(item, context)
+        records = file.instances.get(unit, {})
+        for kind in ("LENGTH_UNIT", "PLANE_ANGLE_UNIT"):
+            if kind in records and found.setdefault(kind, _unit(file, unit)) != _unit(file, unit):
+                raise file.error(context, f"has more than one {kind}")
+    length = found.get("LENGTH_UNIT")
+    if length is None or not 1e-9 < length < 1e9:
+        raise file.error(context, "states no unit of length")
+    return length, found.get("PLANE_ANGLE_UNIT")
+
+
+def _unit(file: Exchange, number: int, depth: int = 0) -> float:
+    """Mm or rad in a unit: an SI unit, or one that is told by another."""
+    records = file.instances[number]
+    if "SI_UNIT" in records:
+        prefix, name, *_ = file.values(number, "SI_UNIT", 2)
+        if name == "RADIAN" and prefix is None:
+            return 1.0
+        if name == "METRE" and (prefix is None or prefix in PREFIXES):
+            return 1000.0 if prefix is None else PREFIXES[str(prefix)]
+        raise file.error(number, f"is no unit that is read: {prefix} {name}")
+    if "CONVERSION_BASED_UNIT" not in records or depth > 3:
+        raise file.error(number, "is no unit that is read")
+    measure = file.reference(file.values(number, "CONVERSION_BASED_UNIT", 2)[1], number)
+    kinds = ("LENGTH_MEASURE_WITH_UNIT", "PLANE_ANGLE_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT")
+    size, unit, *_ = file.values(measure, file.kind(measure, kinds, number), 2)
+    base = file.reference(unit, measure)
+    if base not in file.instances:
+        raise file.error(measure, f"refers to #{base}, which is not there", "syntax")
+    return file.number(size, measure) * _unit(file, base, depth + 1)

@@ -1,0 +1,287 @@
+"""Parts read back from STEP files: the one solid in it, its sections at any height, its faces, edges and volume.
+
+No CAD kernel is needed: walls are planes, cylinders and cones about upright axes, swept splines, and cylinders about
+level ones, as a cam with its hub and set screw has them. The section of each is exact. Anything else, an assembly and
+more than one solid are refused with the number of the instance.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.distinct import distinct
+from kin.read.bodies import MOST_BODIES, beside
+from kin.read.drawing.drawing import Found, drawing_of
+from kin.read.errors import ReadError
+from kin.read.mesh.stl import Section
+from kin.read.step.faces import Plane, Tube, face_of
+from kin.read.step.part21 import exchange
+from kin.read.step.space import space_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.contour.contour import Contour
+    from kin.numeric.arrays import Array
+    from kin.read.drawing.drawing import Drawing
+    from kin.read.step.curves import Edge, Space
+    from kin.read.step.faces import Face
+    from kin.read.step.part21 import Exchange
+
+__all__ = ["StepSolid", "read_step"]
+
+SAME = 1e-9  # mm: heights this close are one
+GAUSS = 12  # nodes over the height of a level hole
+AREA_NODES, AREA_WEIGHTS = np.polynomial.legendre.leggauss(3)  # exact where a section is a cubic in the height
+WOUND = 1.0  # rad, by which bounds may miss going round and back: they miss it by nothing, or by whole turns
+MOST_NAMED = 3  # edges in a message
+
+
+@dataclass(frozen=True, eq=False)
+class StepSolid:
+    """A part as a STEP file holds it, mm; `Solid` of an STL has the same in triangles.
+
+    contour, holes      section at `height`, counter-clockwise all of them
+    pieces              lines, arcs and spans of the contour
+    z_min, z_max        least and greatest height
+    height              at which the section was taken
+    prism               the walls stand upright from the lowest face to the highest one
+    volume              mm^3, from sections
+    sections            those that were asked for, by height as asked for
+    faces               heights of the horizontal faces, rising
+    faults              edges that do not belong to exactly two faces which run along them opposite ways; lids that look
+                        into the solid
+    misfit              farthest that an edge lies off its faces or its ends off itself
+    schema              of the file
+    units_mm            length of its unit
+    """
+
+    contour: Contour
+    holes: tuple[Contour, ...]
+    pieces: int
+    z_min: float
+    z_max: float
+    height: float
+    prism: bool
+    volume: float
+    sections: tuple[Section, ...]
+    faces: tuple[float, ...]
+    faults: tuple[str, ...]
+    misfit: float
+    schema: str
+    units_mm: float
+
+    uneven = 0.0  # its numbers are doubles: walls stand upright or they do not
+
+    @property
+    def thickness(self) -> float:
+        """Height of the part, mm."""
+        return self.z_max - self.z_min
+
+
+def read_step(path: Path | str, heights: Sequence[float] = ()) -> StepSolid:
+    """Read a part.
+
+    The contour is that of the first of `heights`, all of which become `sections`; without any it is that of the widest
+    section midway between two levels of the part.
+
+    Raises OSError as the file system does; ReadError, with the number of the instance where it has one, for what is not
+    read and where a section is not one closed contour with holes in it.
+    """
+    path = Path(path)
+    body = _Body.of(exchange(path.read_bytes(), path))
+    misfit = body.misfit
+    asked = [body.checked(z) for z in heights] or [body.widest()]
+    drawings = [body.section(z) for z in asked]
+    sections = [Section(z, one.contour, one.holes) for z, one in zip(asked, drawings, strict=True)]
+    first = drawings[0]
+    return StepSolid(
+        contour=first.contour,
+        holes=first.holes,
+        pieces=first.pieces,
+        z_min=body.levels[0],
+        z_max=body.levels[-1],
+        height=asked[0],
+        prism=body.prism,
+        volume=body.volume,
+        sections=tuple(sections) if len(heights) else (),
+        faces=tuple(distinct(np.array([face.heights[0] for face in body.lids])).tolist()),
+        faults=tuple(body.faults),
+        misfit=misfit,
+        schema=body.space.file.schema,
+        units_mm=body.space.mm,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """The faces and edges of one solid."""
+
+    space: Space
+    faces: list[Face]
+    edges: dict[int, Edge]
+    levels: list[float]
+
+    @staticmethod
+    def of(file: Exchange) -> _Body:
+        """Read the one solid of a file."""
+        solids = [*file.of("MANIFOLD_SOLID_BREP"), *file.of("BREP_WITH_VOIDS"), *file.of("FACETED_BREP")]
+        if not solids:
+            raise ReadError("empty", "it holds no solid", file.path)
+        if len(solids) > 1:
+            raise beside(
+                [(f"solid #{one}", _Body._reach(file, one)) for one in solids[:MOST_BODIES]], len(solids), file.path
+            )
+        return _Body._one(file, solids[0])
+
+    @staticmethod
+    def _reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:
+        """Box of a solid that may not be sound, if it can be told."""
+        with suppress(ReadError):
+            return _Body._one(file, solid).box
+        return None
+
+    @staticmethod
+    def _one(file: Exchange, solid: int) -> _Body:
+        kind = file.kind(solid, ("MANIFOLD_SOLID_BREP",), solid)
+        shell = file.reference(file.values(solid, kind, 2)[1], solid)
+        file.kind(shell, ("CLOSED_SHELL",), solid)
+        space = space_of(file, solid)
+        edges: dict[int, Edge] = {}
+        listed = file.several(file.values(shell, "CLOSED_SHELL", 2)[1], shell)
+        faces = [face_of(space, file.reference(one, shell), edges) for one in listed]
+        if not edges:
+            raise file.error(shell, "it has no edges", "empty")
+        z = [float(place[2]) for edge in edges.values() for place in (edge.start, edge.end)]
+        for face in faces:
+            if isinstance(face.surface, Tube):
+                z += [face.surface.point[2] - face.surface.radius, face.surface.point[2] + face.surface.radius]
+        rising = np.sort(np.array(z))
+        levels = rising[np.diff(rising, prepend=-np.inf) > SAME].tolist()
+        if len(levels) < 2:
+            raise ReadError("empty", f"the part is flat: all corners lie at z = {rising[0]:g}", file.path)
+        return _Body(space, faces, edges, levels)
+
+    @property
+    def box(self) -> tuple[Array, Array]:
+        """Least and greatest coordinates (3,) of its edges."""
+        points = np.concatenate([edge.samples for edge in self.edges.values()])
+        return points.min(axis=0), points.max(axis=0)
+
+    @property
+    def lids(self) -> list[Face]:
+        """The horizontal faces."""
+        return [face for face in self.faces if face.surface.level]
+
+    @property
+    def prism(self) -> bool:
+        """Whether all walls stand upright over the whole height."""
+        return len(self.levels) == 2 and all(face.surface.level or face.surface.upright for face in self.faces)
+
+    def checked(self, z: float) -> float:
+        """Return a height that is asked for; raises ReadError where the part does not reach there."""
+        low, high = self.levels[0], self.levels[-1]
+        if not low < z < high:
+            message = f"the part reaches from z = {low:.9g} to {high:.9g} mm: it has no section at {z:.9g}"
+            raise ReadError("several", message, self.space.file.path)
+        return z
+
+    def widest(self) -> float:
+        """Height midway between two levels at which the section is largest."""
+        middles = [0.5 * (low + high) for low, high in zip(self.levels[:-1], self.levels[1:], strict=True)]
+        return max(middles, key=self._area) if len(middles) > 1 else middles[0]
+
+    def section(self, z: float) -> Drawing:
+        """Contour and holes at a height."""
+        found = Found([], [], [], Counter())
+        for face in self.faces:
+            for one in face.section(self.space, z):
+                found.shapes.append(one)
+                found.names.append(f"face #{face.number}")
+                found.layers.append("STEP")
+        path = self.space.file.path
+        if not found.shapes:
+            raise ReadError("open", f"no face reaches through z = {z:.9g} mm", path)
+        return drawing_of(found, None, None, self.space.accuracy, path, version="STEP")
+
+    def _area(self, z: float) -> float:
+        cut = self.section(z)
+        return cut.contour.area - sum(hole.area for hole in cut.holes)
+
+    @property
+    def volume(self) -> float:
+        """Integral of the sections' area, exact but for the layers that a level hole runs through."""
+        tubes = [face.surface for face in self.faces if isinstance(face.surface, Tube)]
+        total = 0.0
+        for low, high in zip(self.levels[:-1], self.levels[1:], strict=True):
+            tube = next((one for one in tubes if abs(0.5 * (low + high) - one.point[2]) < one.radius), None)
+            if tube is not None:
+                total += self._bored(tube, low, high)
+            elif self._same_between(low, high):
+                total += (high - low) * self._area(0.5 * (low + high))
+            else:
+                heights = 0.5 * (low + high) + 0.5 * (high - low) * AREA_NODES
+                areas = np.array([self._area(float(z)) for z in heights])
+                total += 0.5 * (high - low) * float(AREA_WEIGHTS @ areas)
+        return total
+
+    def _same_between(self, low: float, high: float) -> bool:
+        reaching = [face for face in self.faces if face.heights[0] < high - SAME and face.heights[1] > low + SAME]
+        return all(face.surface.level or face.surface.upright for face in reaching)
+
+    def _bored(self, tube: Tube, low: float, high: float) -> float:
+        """Volume of a layer that a level hole runs through: its width is smooth in the angle about its axis."""
+        node, weight = np.polynomial.legendre.leggauss(GAUSS)
+        first, last = np.arcsin(np.clip((np.array([low, high]) - tube.point[2]) / tube.radius, -1.0, 1.0))
+        angle: Array = 0.5 * (first + last) + 0.5 * (last - first) * node
+        areas = np.array([self._area(float(z)) for z in tube.point[2] + tube.radius * np.sin(angle)])
+        return float(0.5 * (last - first) * tube.radius * np.sum(weight * areas * np.cos(angle)))
+
+    @property
+    def faults(self) -> list[str]:
+        """What a closed solid whose faces look outward does not have."""
+        found = []
+        count = Counter(use for face in self.faces for loop in face.loops for use in loop)
+        number = Counter(use.edge for use in count.elements())
+        for what, wrong in (
+            ("belongs to one face only", [edge for edge, times in number.items() if times == 1]),
+            ("belongs to more than two faces", [edge for edge, times in number.items() if times > 2]),
+            (
+                "is run along the same way by both its faces",
+                [use.edge for use, times in count.items() if times == 2 and number[use.edge] == 2],
+            ),
+        ):
+            named = ", ".join(f"#{edge}" for edge in sorted(wrong)[:MOST_NAMED])
+            if wrong:
+                found.append(f"{len(wrong)} edges ({named}): each {what}")
+        wound = [face.number for face in self.faces if abs(face.winding) > WOUND]
+        found += [f"face #{number}: an arc of its bounds goes the wrong way round" for number in wound]
+        for lid in self.lids:
+            z = lid.heights[0]
+            normal = lid.surface.normal[2] if isinstance(lid.surface, Plane) else 0.0
+            up = (normal > 0.0) == lid.outward
+            if (abs(z - self.levels[0]) <= SAME and up) or (abs(z - self.levels[-1]) <= SAME and not up):
+                found.append(f"face #{lid.number} at z = {z:.9g} mm looks into the solid")
+        return found
+
+    @cached_property
+    def misfit(self) -> float:
+        """Farthest that an edge lies off its faces, or its ends off itself, mm.
+
+        Raises ReadError, naming it, where that is more than the file's own accuracy.
+        """
+        off = {edge.number: edge.misfit for edge in self.edges.values()}
+        off |= {face.number: face.misfit for face in self.faces}
+        worst = max(off, key=lambda number: off[number])
+        if off[worst] > self.space.accuracy:
+            what = "ends beside its curve" if worst in self.edges else "is bounded by edges beside its surface"
+            message = f"{what} by {off[worst]:.3g} mm, permitted are {self.space.accuracy:.3g}"
+            raise self.space.file.error(worst, message, "gap")
+        return off[worst]

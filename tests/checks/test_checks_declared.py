@@ -1,0 +1,190 @@
+"""Checks are declared once: what is made is declared, what is declared is made, and no name is written again."""
+
+from __future__ import annotations
+
+import ast
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from camgeo.checks.declared import CHECKS, EVERY, LIMIT, OUTLINE, READABLE
+from camgeo.output import pipeline
+from camgeo.recipe.figures import FIGURES
+from camgeo.recipe.load import load, load_text
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = ROOT / "camgeo"
+MAKERS = {"Check", "at_most", "failed", "above_zero"}
+HOMES = {"checks/declared.py", "recipe/table_figures.py"}
+# names that are no other word of a recipe, a program or a drawing
+OWN = {name for name in CHECKS if "-" in name} | {"mobility", "reversal", "watertight", "readable"}
+
+
+def modules() -> dict[str, ast.Module]:
+    return {
+        path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_text(encoding="utf-8"))
+        for path in sorted(PACKAGE.rglob("*.py"))
+    }
+
+
+def is_name(node: ast.expr) -> bool:
+    """Whether an expression asks for the name of a check: `check.name`, `check["name"]`."""
+    if isinstance(node, ast.Attribute):
+        return node.attr == "name" and isinstance(node.value, ast.Name) and node.value.id in {"check", "one"}
+    wanted = isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant) and node.slice.value == "name"
+    return wanted and isinstance(node.value, ast.Name) and node.value.id in {"check", "one"}  # type: ignore[attr-defined]
+
+
+def texts(node: ast.AST) -> list[str]:
+    return [one.value for one in ast.walk(node) if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+
+
+def offences(tree: ast.Module) -> list[str]:
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and node.args:
+            called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            if called in MAKERS and isinstance(node.args[0], ast.Constant | ast.JoinedStr):
+                found.append(f"line {node.lineno}: made by a name of its own")
+        if isinstance(node, ast.Compare) and any(is_name(one) for one in (node.left, *node.comparators)):
+            found += [f"line {node.lineno}: compared with {text!r}" for text in texts(node) if text in CHECKS]
+        if isinstance(node, ast.Constant) and node.value in OWN:
+            found.append(f"line {node.lineno}: {node.value!r}")
+    return found
+
+
+def test_no_name_is_written_again() -> None:
+    found = {path: here for path, tree in modules().items() if path not in HOMES and (here := offences(tree))}
+    # a key of the report's sections, and a kind of cam
+    allowed = {path: [text for text in here if not text.endswith("'constant-breadth'")] for path, here in found.items()}
+    assert {path: here for path, here in allowed.items() if here} == {}
+
+
+def test_the_search_for_names_finds_some() -> None:
+    assert offences(ast.parse("Check('wall', ok)\nfailed(f'undercut-{kind}', why)"))
+    assert offences(ast.parse("check['name'] in {'wall', 'bore'}"))
+    assert offences(ast.parse("FIELDS = {'undercut-global': 1}"))
+    assert not offences(ast.parse("part['bore']; Check(WALL.name, ok); path.name == 'wall'"))
+
+
+def test_each_is_declared_once() -> None:
+    text = (PACKAGE / "checks" / "declared.py").read_text(encoding="utf-8")
+    assert len(re.findall(r"^[A-Z_]+ = Declared\(", text, re.MULTILINE)) == len(CHECKS)
+    assert set(EVERY) == {*CHECKS, *(LIMIT + name for name in FIGURES)}
+    assert all(name == one.name for name, one in EVERY.items())
+
+
+@cache
+def made(path: Path) -> tuple[dict[str, Any], ...]:
+    return tuple(pipeline.check(load(path)).report["checks"])
+
+
+MORE = {
+    "a part with everything": """\
+cam: {kind: support, p: 40 + 2*cos(3*t)}
+part:
+  thickness: 8
+  bore: 10
+  keyway: din6885
+  hub: {diameter: 24, height: 9}
+  set_screw: {diameter: 3}
+  bolts: {count: 3, circle: 45, hole: 5}
+  lightening: {largest: 2, wall: 3}
+  chamfer: 0.5
+  mark: {as: engrave}
+export: {tolerance: 0.01, files: [dxf, stl]}
+verify: {angles: 60}
+""",
+    "milled": """\
+cam: {kind: support, p: 30 + 2*cos(2*t)}
+part: {thickness: 5, bore: 10}
+export: {tolerance: 0.01, files: [gcode]}
+verify: {angles: 60}
+manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5, safe_height: 5, holes: true}
+""",
+    "bodies": """\
+cam: {kind: support, p: 25 + 1.5*cos(3*t), pivot: [3, 2]}
+part: {thickness: 8, bore: {hexagon: 10}}
+export: {tolerance: 0.01, files: [{stl: {parts: all}}]}
+verify: {angles: 60}
+""",
+    "with a spring": """\
+cam: {kind: support, p: 30 + 2*cos(2*t)}
+export: {files: [csv]}
+dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 600}
+""",
+    "with play": """\
+cam: {kind: support, p: 30 + 2*cos(3*t)}
+export: {files: [csv]}
+dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, play: 0.05, rpm: 600}
+""",
+    "a double roller": """\
+cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 300}}}
+export: {tolerance: 0.01, files: [dxf]}
+verify: {angles: 60}
+""",
+    "a linkage": """\
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}
+linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
+dwell: {band: 0.1, at_least: 30}
+export: {tolerance: 0.01, files: [dxf]}
+verify: {angles: 60}
+""",
+}
+
+
+@cache
+def of_text(text: str) -> tuple[dict[str, Any], ...]:
+    return tuple(pipeline.check(load_text(text, "cam.yaml")).report["checks"])
+
+
+def test_what_is_declared_is_made_and_what_is_made_is_declared() -> None:
+    checks = [check for text in MORE.values() for check in of_text(text)]
+    assert {check["name"] for check in checks} == set(CHECKS) - {READABLE.name}
+    for check in checks:
+        assert check["unit"] in {*CHECKS[check["name"]].units, ""}, check
+
+
+def test_a_file_that_cannot_be_read_fails_by_a_declared_name(tmp_path: Path) -> None:
+    (tmp_path / "cam.stl").write_bytes(b"nothing")
+    (tmp_path / "cam.dxf").write_text("nothing")
+    recipe = load_text(MORE["bodies"], "cam.yaml")
+    report = pipeline.judged(recipe, [tmp_path / "cam.stl", tmp_path / "cam.dxf"])
+    assert READABLE.name in {check["name"] for check in report["checks"] if not check["ok"]}
+    assert {check["name"] for check in report["checks"]} <= set(CHECKS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", sorted((ROOT / "recipes").glob("*.yaml")), ids=lambda path: path.stem)
+def test_every_check_of_a_shipped_recipe_is_declared(path: Path) -> None:
+    for check in made(path):
+        assert check["name"] in EVERY
+        declared = EVERY[check["name"]]
+        assert declared.name == OUTLINE.name or (declared.of_file if check.get("file") else declared.exact), check
+
+
+def test_the_report_s_page_has_each_check() -> None:
+    page = (ROOT / "docs" / "report.md").read_text(encoding="utf-8")
+    table = page.partition("## A check")[2].partition("## Remarks")[0]
+    named = set(
+        re.findall(r"`([a-z:<>-]+)`", "".join(line.split("|")[1] for line in table.splitlines() if "|" in line))
+    )
+    assert {*CHECKS, "limit:<figure>"} <= named
+
+
+def test_fields_are_those_of_a_recipe() -> None:
+    from camgeo.recipe.recipe import RECIPE
+    from camgeo.recipe.schema.fields import field_at
+
+    for one in EVERY.values():
+        for path in filter(None, (one.field, one.own_field)):
+            known = field_at(RECIPE, path, {"cam": "double-roller", "linkage": "four-bar"})
+            assert known or one.name.startswith(LIMIT), path
+
+
+def test_a_declaration_without_a_condition_is_of_files_alone() -> None:
+    never = {one.name for one in CHECKS.values() if one.exact is None and one.of_file is None}
+    assert never == {READABLE.name, OUTLINE.name}

@@ -1,0 +1,414 @@
+"""Limits of a recipe's own: each figure's check, its failure, what would do, and what a recipe may not limit."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from camgeo.checks.declared import CHECKS, EVERY, LIMIT
+from camgeo.cli.main import main
+from camgeo.output import pipeline
+from camgeo.recipe.figures import FIGURES
+from camgeo.recipe.load import load_text
+from camgeo.recipe.recipe import RECIPE
+from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.recipe.schema.json_schema import json_schema
+from camgeo.recipe.starter import KINDS, starter
+from camgeo.report.failure import failure
+from camgeo.report.figures import of_design
+from camgeo.report.limits import limit_checks
+from camgeo.sweep.search.figures import REASONS, asked_of, evaluate
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.expected_checks import Foreseen, foreseen
+from camgeo.synthesis.profile import intent_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.recipe.recipe import Recipe
+
+VERIFY = "verify: {angles: 120}\nexport: {files: [dxf]}\n"
+ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n" + VERIFY
+PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 252}}}\n" + VERIFY
+FLAT = "cam: {kind: support, p: 30 + 3*cos(2*t) + cos(3*t)}\npart: {thickness: 8, bore: 10}\n" + VERIFY
+YOKE = """\
+cam:
+  kind: constant-breadth
+  base_radius: 40
+  motion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]
+"""
+TRAIN = "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 600}\n"
+LOOSE = "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, play: 0.05, rpm: 600}\n"
+LINKED = """\
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}
+linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
+dwell: {band: 0.1}
+"""
+SET = """\
+cam: {kind: support, p: 25 + 1.5*cos(3*t), pivot: [3, 2]}
+part: {thickness: 8, bore: {hexagon: 10}}
+export: {tolerance: 0.01, files: [{stl: {parts: all}}]}
+verify: {angles: 120}
+"""
+# of each figure a recipe that has it
+HAVE = {
+    **dict.fromkeys(("pressure-angle", "transmission", "hollow-radius", "pitch-radius", "backlash"), ROLLER),
+    **dict.fromkeys(("radius-of-curvature", "size", "swing", "peak-velocity", "peak-acceleration"), FLAT),
+    **dict.fromkeys(("peak-jerk", "face-length", "wall", "contour-error", "motion-error", "pieces"), FLAT),
+    **dict.fromkeys(("least-force", "peak-force"), YOKE + VERIFY + TRAIN),
+    "play": YOKE + VERIFY + LOOSE,
+    "dwell-error": YOKE + VERIFY,
+    **dict.fromkeys(("dwell", "dwell-relative", "transmission-angle", "force-angle"), LINKED + VERIFY),
+    **dict.fromkeys(("margin", "shaft-rate", "output-error"), LINKED + VERIFY),
+    **dict.fromkeys(("clearance", "collision"), SET),
+}
+
+
+def loaded(text: str, limits: str = "") -> Recipe:
+    return load_text(text + (f"limits: {limits}\n" if limits else ""), "cam.yaml")
+
+
+@cache
+def report_of(text: str, limits: str = "") -> dict[str, Any]:
+    report: dict[str, Any] = pipeline.check(loaded(text, limits)).report
+    return report
+
+
+def held(text: str, limits: str) -> list[dict[str, Any]]:
+    return [check for check in report_of(text, limits)["checks"] if check["name"].startswith(LIMIT)]
+
+
+# every figure of a recipe in one run, bounds wide open
+def wide(text: str) -> str:
+    names = [name for name, own in HAVE.items() if own == text]
+    return "{" + ", ".join(f"{name}: {{at_least: -1e9, at_most: 1e9}}" for name in names) + "}"
+
+
+def value_of(name: str) -> tuple[float, str]:
+    """Value and unit, the nearest to its limit of those of several files or runs."""
+    first = next(one for one in held(HAVE[name], wide(HAVE[name])) if one["name"] == LIMIT + name)
+    return first["value"], first["unit"]
+
+
+def test_every_figure_has_a_recipe_here() -> None:
+    assert set(HAVE) == set(FIGURES)
+
+
+@pytest.mark.parametrize("text", sorted(set(HAVE.values())))
+def test_limits_hold_and_fail_at_the_figure_itself(text: str) -> None:
+    """A little either side of each figure's value, and at it; all figures of a recipe at once."""
+    names = [name for name, own in HAVE.items() if own == text]
+    values = {name: value_of(name)[0] for name in names}
+    assert all(math.isfinite(value) for value in values.values())
+    for sign, sense in ((1.0, "at_most"), (-1.0, "at_least")):
+        for step, ok in ((-1e-6, False), (0.0, True), (1e-6, True)):
+            bounds = {name: value + sign * step * max(abs(value), 1e-9) for name, value in values.items()}
+            said = "{" + ", ".join(f"{name}: {{{sense}: {bound!r}}}" for name, bound in bounds.items()) + "}"
+            found = {check["name"]: [] for check in held(text, said)}
+            for check in held(text, said):
+                found[check["name"]].append(check)
+            for name, value in values.items():
+                checks = [one for one in found[LIMIT + name] if one["value"] == value]
+                assert checks, name
+                assert {one["ok"] for one in checks} == {ok}, (name, sense, step)
+                assert {one["sense"] for one in checks} == {sense}
+                assert all(one["limit"] == pytest.approx(bounds[name], rel=1e-12) for one in checks)
+            alone = len(held(text, said)) == len(names)  # not of several files or runs, of which others are farther off
+            assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
+
+
+@pytest.mark.parametrize("text", sorted(set(HAVE.values())))
+def test_limits_are_foreseen(text: str) -> None:
+    recipe = loaded(text, wide(text))
+    made = {Foreseen(one["name"], one.get("file")) for one in held(text, wide(text))}
+    assert {one for one in foreseen(recipe) if one.name.startswith(LIMIT)} == made
+
+
+def test_what_a_figure_is_against_the_motion_itself() -> None:
+    limits = wide(FLAT)
+    values = {check["name"].removeprefix(LIMIT): check for check in held(FLAT, limits)}
+    t = np.linspace(0, 2 * math.pi, 100_001)
+    p = intent_of(loaded(FLAT).cam).derivatives(t, 3)
+    wanted = {
+        "swing": np.ptp(p[0]),
+        "peak-velocity": np.abs(p[1]).max(),
+        "peak-acceleration": np.abs(p[2]).max(),
+        "peak-jerk": np.abs(p[3]).max(),
+        "face-length": np.ptp(p[1]),
+        "radius-of-curvature": (p[0] + p[2]).min(),
+        "size": np.hypot(p[0], p[1]).max(),
+        "wall": p[0].min() - 5,
+    }
+    for name, value in wanted.items():
+        assert values[name]["value"] == pytest.approx(value, rel=1e-5), name
+    places = {"peak-velocity": p[1], "peak-acceleration": p[2], "peak-jerk": p[3]}
+    for name, row in places.items():
+        at = np.interp(math.radians(values[name]["at_deg"]), t, np.abs(row))
+        assert at == pytest.approx(values[name]["value"], rel=1e-6), name
+
+
+def test_a_roller_s_figures_against_the_pitch_curve() -> None:
+    values = {one["name"].removeprefix(LIMIT): one["value"] for one in held(ROLLER, wide(ROLLER))}
+    checks = {one["name"]: one["value"] for one in report_of(ROLLER)["checks"]}
+    assert values["pitch-radius"] == checks["radius-of-curvature"]
+    for name in ("pressure-angle", "transmission"):
+        assert values[name] == checks[name]
+    assert values["backlash"] == pytest.approx(checks["form-closure"], rel=1e-9)
+    profile = designed(loaded(ROLLER)).profile
+    at = profile.curve.sample(np.linspace(0, profile.curve.shape.period, 40_001)[:-1])
+    radii = at.speed / at.turn
+    assert values["hollow-radius"] == pytest.approx(-radii[radii < 0].max(), rel=1e-4)
+    convex = held(ROLLER, "{radius-of-curvature: {at_least: 1}}")[0]["value"]
+    assert convex == pytest.approx(radii[radii > 0].min(), rel=1e-5)
+    assert convex == pytest.approx(values["pitch-radius"] - 8, abs=1e-9)
+
+
+def test_a_roller_s_motion_is_that_of_the_table() -> None:
+    from camgeo.synthesis.motion_table import motion_table
+
+    recipe = loaded(ROLLER.replace("angles: 120", "angles: 20000"))
+    _, table = motion_table(recipe, intent_of(recipe.cam))
+    said = (
+        "{swing: {at_most: 1}, peak-velocity: {at_most: 1}, peak-acceleration: {at_most: 1}, peak-jerk: {at_most: 1}}"
+    )
+    values = [one["value"] for one in held(ROLLER, said)]
+    assert values == pytest.approx([np.ptp(table[:, 1]), *np.abs(table[:, 2:]).max(axis=0)], rel=1e-5)
+
+
+def test_flat_faces_have_no_pressure_angle() -> None:
+    for text in (FLAT, PAIR):
+        (one,) = held(text, "{pressure-angle: {at_most: 0}}")
+        assert (one["ok"], one["value"], one["unit"]) == (True, 0.0, "deg")
+
+
+def test_lengths_are_in_the_recipe_s_unit() -> None:
+    inch = "units: inch\ncam: {kind: support, p: 1 + 0.1*cos(2*t)}\n" + VERIFY
+    checks = held(inch, "{size: {at_most: 1.0999}, peak-velocity: {at_most: 0.2001}, pressure-angle: {at_most: 45}}")
+    assert [(one["ok"], one["unit"]) for one in checks] == [(False, "in"), (True, "in/rad"), (True, "deg")]
+    assert [one["value"] for one in checks] == pytest.approx([1.1, 0.2, 0])
+
+
+def test_both_bounds_are_a_check_each() -> None:
+    found = held(FLAT, "{size: {at_least: 40, at_most: 50}}")
+    assert [(one["name"], one["sense"], one["ok"]) for one in found] == [
+        ("limit:size", "at_least", False),
+        ("limit:size", "at_most", True),
+    ]
+
+
+# --- what there is not ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "why"),
+    [
+        (FLAT, "dwell-error", "the motion has no dwell"),
+        (FLAT, "backlash", "a single flat face has no backlash, and of a trimmed contour it is not judged"),
+    ],
+)
+def test_a_figure_that_cannot_be_had_fails(text: str, name: str, why: str) -> None:
+    (one,) = held(text, f"{{{name}: {{at_most: 1}}}}")
+    assert (one["ok"], one["value"], one["detail"]) == (False, None, why)
+
+
+def test_a_contour_without_a_hollow_keeps_any_least_radius_of_one() -> None:
+    ellipse = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 10}}}\n" + VERIFY
+    least, most = held(ellipse, "{hollow-radius: {at_least: 5, at_most: 6}}")
+    assert least["ok"]
+    assert not most["ok"]
+    assert json.loads(json.dumps(pipeline.encoded(report_of(ellipse, "{hollow-radius: {at_least: 5}}"))))
+
+
+def told(text: str, limits: str) -> list[str]:
+    with pytest.raises(RecipeErrors) as caught:
+        loaded(text, limits)
+    return [str(error) for error in caught.value.errors]
+
+
+def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
+    (one,) = told(FLAT, "{weight: {at_most: 1}}")
+    line = FLAT.count("\n") + 1
+    assert one.startswith(f"cam.yaml:{line}:10: limits.weight: no such figure; the figures are swing, ")
+    assert "transmission-angle" not in one
+    assert "pressure-angle" in one
+    assert told(FLAT, "{presure-angle: {at_most: 1}}")[0].endswith("did you mean pressure-angle?")
+
+
+def test_a_figure_that_a_recipe_has_not() -> None:
+    missing = {"linkage": FLAT, "dwell": FLAT, "follower": LINKED, "roller": FLAT, "swings": FLAT, "plate": ROLLER}
+    missing |= {"wall": ROLLER, "all": FLAT, "preload": FLAT, "play": FLAT}
+    for name, figure in FIGURES.items():
+        if figure.needs:
+            (one,) = told(missing[figure.needs], f"{{{name}: {{at_most: 1}}}}")
+            assert f"limits.{name}: {name} needs " in one
+            assert "; the figures of this recipe are " in one
+            listed = re.split(r", | and ", one.partition("recipe are ")[2])
+            assert all(loaded(missing[figure.needs], f"{{{other}: {{at_most: 1}}}}") for other in listed)
+
+
+def test_bounds_the_wrong_way_round_and_none() -> None:
+    assert "below at_least, so nothing will do; exchange them" in told(FLAT, "{size: {at_least: 2, at_most: 1}}")[0]
+    assert "no bound; give at_least, at_most or both" in told(FLAT, "{size: {}}")[0]
+
+
+# --- failures in words ------------------------------------------------------------------------------------------------
+
+
+def test_the_exit_status_and_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "roller.yaml"
+    path.write_text(ROLLER + "limits: {pressure-angle: {at_most: 45}}\n")
+    assert main(["check", str(path)]) == 1
+    out = capsys.readouterr().out
+    assert re.search(r"limit:pressure-angle: 62\.5453 deg, at most 45 allowed, at 134\.30 deg: a smaller swing", out)
+    assert "remark" not in out
+    path.write_text(ROLLER + "limits: {pressure-angle: {at_most: 65}}\n")
+    assert main(["check", str(path)]) == 0
+    recipe = loaded(ROLLER, "{pressure-angle: {at_most: 45}}")
+    (check,) = held(ROLLER, "{pressure-angle: {at_most: 45}}")
+    text = failure(check, report_of(ROLLER), recipe)
+    assert "at       134.30" in text
+    assert "limits.pressure-angle.at_most" in text
+    assert "would do" in text
+
+
+SLIGHT = ROLLER.replace("625", "20")
+FINE = "export: {tolerance: 0.0001, "
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "bound", "said", "change"),
+    [
+        (ROLLER, "pressure-angle", "at_most: 45", "a smaller swing", ("625", "300")),
+        (SLIGHT, "pressure-angle", "at_most: 20", "stays below 22.5 deg", ("4/3", "6/5")),
+        (ROLLER, "transmission", "at_most: 0.4", "a smaller swing", ("625", "300")),
+        (
+            ROLLER,
+            "radius-of-curvature",
+            "at_least: 8.5",
+            "a roller radius of 6.43756 mm",
+            ("radius: 8", "radius: 6.43756"),
+        ),
+        (ROLLER, "hollow-radius", "at_least: 19", "a roller radius of 8.60", ("radius: 8", "radius: 8.7")),
+        (FLAT, "radius-of-curvature", "at_least: 14", "a support function larger by", ("30 +", "36 +")),
+        (FLAT, "wall", "at_least: 22", "a bore smaller by", ("bore: 10", "bore: 7")),
+        (YOKE + VERIFY, "radius-of-curvature", "at_least: 45", "a base radius larger by", ("40", "70")),
+        (YOKE + VERIFY, "peak-acceleration", "at_most: 20", "a smaller swing", ("rise: 20", "rise: 5")),
+        (
+            FLAT,
+            "motion-error",
+            "at_most: 0.0001",
+            "a tolerance of 0.0001",
+            ("export: {", "export: {tolerance: 0.0001, "),
+        ),
+    ],
+)
+def test_what_would_do_does(text: str, name: str, bound: str, said: str, change: tuple[str, str]) -> None:
+    limits = f"{{{name}: {{{bound}}}}}"
+    failed = [one for one in held(text, limits) if not one["ok"]]
+    assert failed
+    assert said in failed[0]["detail"]
+    assert change[0] in text
+    assert all(one["ok"] for one in held(text.replace(*change), limits))
+    # and the other way, which every limit has: the limit itself
+    sense, value = re.findall(rf"limits\.{name}\.(at_\w+) of (\S+) would do", failed[0]["detail"])[0]
+    assert all(one["ok"] for one in held(text, f"{{{name}: {{{sense}: {value}}}}}"))
+
+
+# --- schema, starters, sweeps -----------------------------------------------------------------------------------------
+
+
+def test_the_schema_knows_every_limit() -> None:
+    schema = json_schema(RECIPE)["properties"]["limits"]
+    assert set(schema["properties"]) == set(FIGURES)
+    assert schema["additionalProperties"] is False
+    for bounds in schema["properties"].values():
+        assert set(bounds["properties"]) == {"at_least", "at_most"}
+        assert bounds["minProperties"] == 1
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_starter_tells_of_limits(kind: str) -> None:
+    assert re.search(r"^# limits: +# figures that must keep within bounds", starter(kind), re.MULTILINE)
+
+
+def test_limits_reach_verify(tmp_path: Path) -> None:
+    (tmp_path / "cam.yaml").write_text(FLAT)
+    assert main(["export", str(tmp_path / "cam.yaml"), "--out", str(tmp_path / "out")]) == 0
+    (tmp_path / "tight.yaml").write_text(FLAT + "limits: {motion-error: {at_most: 1e-9}}\n")
+    made = str(tmp_path / "out" / "cam" / "cam.dxf")
+    assert main(["verify", str(tmp_path / "tight.yaml"), made]) == 1
+    assert main(["verify", str(tmp_path / "cam.yaml"), made]) == 0
+
+
+SWEEP = """\
+sweep:
+  vary: {cam.delta.cos.1: {from: 200, to: 600, steps: 5}}
+  limits: {pressure-angle: {at_most: 50}}
+  rank: pressure-angle
+"""
+
+
+def test_a_sweep_limits_and_ranks_by_the_pressure_angle() -> None:
+    recipe = loaded(ROLLER + SWEEP)
+    values = np.array([[200.0], [300.0], [400.0], [500.0], [600.0]])
+    found = evaluate(recipe, ("cam.delta.cos.1",), values)
+    angles = found.figures["pressure-angle"]
+    assert (np.diff(angles) > 0).all()
+    assert [REASONS[code] == "limits" for code in found.reason] == list(angles > 50)
+    assert 0 < (angles > 50).sum() < 5
+    one = loaded(ROLLER.replace("625", "300"), "{pressure-angle: {at_most: 1}}")
+    check = next(one for one in designed(one).checks if one.name == "pressure-angle")
+    assert angles[1] == check.value
+
+
+def test_a_sweep_has_the_figures_of_its_limits() -> None:
+    recipe = loaded(ROLLER + SWEEP)
+    own = {name: value_of(name)[0] for name in asked_of(recipe) if HAVE.get(name) == ROLLER}
+    found = evaluate(recipe, ("cam.delta.cos.1",), np.array([[625.0]])).figures
+    assert len(own) == 4
+    for name, value in own.items():
+        assert found[name][0] == pytest.approx(value, rel=1e-12), name
+
+
+def test_every_limit_is_declared() -> None:
+    assert set(EVERY) == {*CHECKS, *(LIMIT + name for name in FIGURES)}
+
+
+COEFFICIENTS = st.lists(st.integers(-30, 30), min_size=3, max_size=3)
+
+
+@settings(deadline=None, max_examples=10)
+@given(COEFFICIENTS, COEFFICIENTS, st.floats(-2, 2), st.sampled_from(["at_least", "at_most"]))
+def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int], share: float, sense: str) -> None:
+    """Figures against dense samples of the support function, and each limit held as plain arithmetic has it."""
+    both = enumerate(zip(cos, sin, strict=True), 1)
+    terms = [f"{c / 100}*cos({k}*t) + {s / 100}*sin({k}*t)" for k, (c, s) in both]
+    text = f"cam: {{kind: support, p: 30 + {' + '.join(terms)}}}\n".replace("+ -", "- ")
+    names = ["swing", "peak-velocity", "peak-acceleration", "peak-jerk", "face-length", "radius-of-curvature", "size"]
+    recipe = loaded(text)
+    design = designed(recipe)
+    t = np.linspace(0, 2 * math.pi, 20_001)
+    p = intent_of(recipe.cam).derivatives(t, 3)
+    peaks = np.abs(p[1:]).max(axis=1)
+    wanted = [np.ptp(p[0]), *peaks, np.ptp(p[1]), (p[0] + p[2]).min(), np.hypot(p[0], p[1]).max()]
+    figures = of_design(design, design.checks, names)
+    for name, value in zip(names, wanted, strict=True):
+        assert figures[name].value == pytest.approx(value, rel=1e-5, abs=1e-9), name
+    bounds = {name: float(value) * (1 + share) + 1e-3 * share for name, value in zip(names, wanted, strict=True)}
+    said = "{" + ", ".join(f"{name}: {{{sense}: {bound!r}}}" for name, bound in bounds.items()) + "}"
+    checks = limit_checks(loaded(text, said), design, design.checks, [], None)
+    assert [check.name for check in checks] == [LIMIT + name for name in names]
+    values = [figures[name].value or 0.0 for name in names]
+    sign = 1.0 if sense == "at_least" else -1.0
+    if abs(share) > 1e-4:  # else rounding decides
+        assert [check.ok for check in checks] == [
+            sign * (v - bounds[n]) >= 0.0 for n, v in zip(names, values, strict=True)
+        ]

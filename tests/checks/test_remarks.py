@@ -1,0 +1,137 @@
+"""Remarks: made where they are due and not elsewhere, shown everywhere, and failing nothing."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from camgeo.cli.main import main
+from camgeo.recipe.load import load_text
+from camgeo.report.page import tables
+from camgeo.report.remarks import remarks_of
+from camgeo.synthesis.design import designed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.report.document import Remark
+
+FLAT = "cam: {kind: support, p: 30 + 3*cos(2*t)}\n"
+ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
+PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 252}}}\n"
+LINKED = """\
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}
+linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
+"""
+INCH = "units: inch\ncam: {kind: support, p: 1.5 + 0.1*cos(2*t)}\n"
+KEYED = "part: {bore: %s, keyway: %s}\n"
+
+
+def remarks(text: str) -> list[Remark]:
+    recipe = load_text(text, "cam.yaml")
+    return list(remarks_of(recipe, designed(recipe)))
+
+
+def names(text: str) -> list[str]:
+    return [remark.name for remark in remarks(text)]
+
+
+@pytest.mark.parametrize("text", [FLAT, PAIR, LINKED, INCH, ROLLER.replace("625", "300")])
+def test_a_sound_recipe_has_none(text: str) -> None:
+    assert names(text) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        (ROLLER, ["pressure-angle"]),
+        (ROLLER + "limits: {pressure-angle: {at_most: 80}}\n", []),
+        (ROLLER + "limits: {pressure-angle: {at_least: 1}}\n", ["pressure-angle"]),
+        ("cam: {kind: support, p: 30, pivot: [40, 0]}\n", ["shaft-outside"]),
+        ("cam: {kind: support, p: 30, pivot: [29, 0]}\n", []),
+        ("cam: {kind: support, p: 30, pivot: [40, 0]}\npart: {bolts: {count: 3, circle: 10, hole: 2}}\n", []),
+        ("cam: {kind: support, p: '30'}\n", ["no-motion"]),
+        (FLAT + "export: {tolerance: 0.61}\n", ["coarse-tolerance"]),
+        (FLAT + "export: {tolerance: 0.59}\n", []),
+        (FLAT + "export: {tolerance: 3, files: [csv]}\n", []),
+        (FLAT + "export: {files: [dxf, {svg: {tolerance: 0.61}}]}\n", ["coarse-tolerance"]),
+        (FLAT + "verify: {motion_error: 0.61}\n", ["loose-motion-error"]),
+        (ROLLER + "verify: {motion_error: 1.99}\nlimits: {pressure-angle: {at_most: 80}}\n", []),
+        (ROLLER + "verify: {motion_error: 2.01}\nlimits: {pressure-angle: {at_most: 80}}\n", ["loose-motion-error"]),
+        (LINKED + "verify: {output_error: 5}\n", ["loose-output-error"]),
+        (LINKED + "dwell: {band: 5}\n", ["wide-dwell-band"]),
+        (FLAT + "part: {thickness: 65}\n", []),
+        (FLAT + "part: {thickness: 67}\n", ["thick"]),
+        (FLAT + "part: {thickness: 0.3}\n", ["thin"]),
+        (INCH + KEYED % ("0.75", "din6885"), ["metric-keyway"]),
+        (INCH + KEYED % ("0.75", "{width: 0.1875, depth: 0.09}"), []),
+        (INCH + KEYED % (repr(20 / 25.4), "din6885"), []),
+        (FLAT + KEYED % ("19.05", "din6885"), ["metric-keyway"]),
+        (FLAT + KEYED % ("20", "din6885"), []),
+        (FLAT + KEYED % ("19.1", "din6885"), []),
+    ],
+)
+def test_where_a_remark_is_made(text: str, found: list[str]) -> None:
+    assert names(text) == found
+
+
+def test_what_a_remark_tells() -> None:
+    (pressure,) = remarks(ROLLER)
+    assert (pressure.rule, pressure.unit) == (45.0, "deg")
+    assert pressure.value == pytest.approx(62.5453, abs=1e-4)
+    assert pressure.at_deg == pytest.approx(134.30, abs=0.01)
+    assert pressure.sentence == "the pressure angle reaches 62.55 deg; up to 45 is the rule for rollers, oscillating"
+    (outside,) = remarks("cam: {kind: support, p: 30, pivot: [40, 0]}\n")
+    assert outside.sentence == "the shaft lies outside the contour by 10 mm"
+    (keyway,) = remarks(INCH + KEYED % ("0.75", "din6885"))
+    assert keyway.sentence.startswith("a bore of 0.75 in takes a metric keyway of DIN 6885, 6 mm wide")
+    (coarse,) = remarks("cam: {kind: support, p: 30 + cos(t)}\nexport: {tolerance: 3}\n")
+    assert coarse.sentence == "the tolerance, 3 mm, is 1.5 times the stroke of 2 mm"
+
+
+def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "roller.yaml"
+    path.write_text(ROLLER + "part: {thickness: 200}\nverify: {angles: 120}\nexport: {files: [dxf, html]}\n")
+    assert main(["export", str(path), "--out", str(tmp_path / "out"), "-v"]) == 0
+    out = capsys.readouterr().out
+    line, *rest = out.splitlines()
+    assert line.startswith("roller: ok")
+    assert "; remark: the pressure angle reaches 62.55 deg; up to 45 is the rule for rollers, oscillating" in line
+    assert "; remark: part.thickness, 200 mm, is " in line
+    (row,) = [text for text in rest if text.startswith("pressure-angle") and " remark " in text]
+    assert row.split() == ["pressure-angle", "remark", "62.5453", "<=", "45", "deg", "134.30", "deg"]
+    report: dict[str, Any] = json.loads((tmp_path / "out" / "roller" / "report.json").read_text())
+    assert report["ok"]
+    assert [one["name"] for one in report["remarks"]] == ["pressure-angle", "thick"]
+    assert set(report["remarks"][0]) == {"name", "value", "rule", "unit", "at_deg", "sentence"}
+    page = (tmp_path / "out" / "roller" / "roller.html").read_text()
+    assert page.count('<tr class="remark">') == 2
+    assert "up to 45 is the rule for rollers" in page
+    assert main(["check", str(path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)[0]["remarks"] == report["remarks"]
+
+
+def test_on_the_page_remarks_stand_between_what_fails_and_what_holds() -> None:
+    def check(name: str, *, ok: bool) -> dict[str, Any]:
+        rest = {"value": 1.0, "limit": 2.0, "unit": "mm", "sense": "at_most", "at_deg": None}
+        return {"name": name, "ok": ok, **rest}
+
+    remark = {"name": "thin", "value": 0.1, "rule": 0.3, "unit": "mm", "at_deg": None, "sentence": "a <foil>"}
+    text = tables.checks({"checks": [check("a", ok=True), check("b", ok=False)], "remarks": [remark]})
+    assert [text.index(f'scope="row">{name}') for name in ("b", "thin", "a")] == sorted(
+        text.index(f'scope="row">{name}') for name in ("a", "b", "thin")
+    )
+    assert "a &lt;foil&gt;" in text
+    assert "≥" in text
+
+
+def test_lengths_are_in_the_recipe_s_unit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "bar.yaml"
+    path.write_text(INCH + "part: {thickness: 8}\nverify: {angles: 120}\n")
+    assert main(["check", str(path), "--json"]) == 0
+    (one,) = json.loads(capsys.readouterr().out)[0]["remarks"]
+    assert (one["name"], one["value"], one["unit"]) == ("thick", 8.0, "in")
+    assert one["rule"] == pytest.approx(3.2, rel=1e-3)
+    assert one["sentence"].startswith("part.thickness, 8 in, is 5 times")

@@ -1,0 +1,317 @@
+"""Whoever follows a message is helped: each remedy is applied to the recipe it was given for, and the fault is gone.
+
+A figure is taken from the message itself, a little more than it asks for; where the message has none, the test chooses.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
+from camgeo.output.job import Made
+from camgeo.output.pipeline import check
+from camgeo.recipe.load import load_text
+from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.report.document import summary
+from camgeo.report.failure import remedy
+from camgeo.synthesis.design import designed
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Follow = Callable[[float], str]
+
+FILES = "\nexport: {tolerance: 0.001, files: [dxf]}\n"
+SLIDER = "\nlinkage: {kind: slider-crank, coupler: 90, offset: 0}"
+RISE = "motion: [{rise: 30, over: 100, law: cycloidal}, {dwell: 80}]"
+
+
+def support(shape: str, more: str = "") -> str:
+    return f"cam: {{kind: support, {shape}}}{more}{FILES}"
+
+
+def roller(route: str, *, ratio: str = "4", radius: float = 8.0) -> str:
+    return f"cam: {{kind: double-roller, ratio: {ratio}, arm: 40, roller_radius: {radius!r}, {route}}}{FILES}"
+
+
+def pair(route: str) -> str:
+    return f"cam: {{kind: flat-pair, ratio: 3, arm: 60, {route}}}{FILES}"
+
+
+def arc(radius: float, side: str, ratio: str = "4") -> str:
+    return roller(f"arc: {{radius: {radius!r}, side: {side}}}", ratio=ratio)
+
+
+def said(text: str) -> str:
+    """What a design of the recipe is told, empty if nothing; its files are not made."""
+    try:
+        design = designed(load_text(text, "tried.yaml"))
+    except RecipeErrors as errors:
+        return str(errors)
+    return "\n".join(f"{each.name}: {each.value} {each.detail}" for each in design.checks if not each.ok)
+
+
+def said_of_files(text: str) -> str:
+    """The same of a design and its files, with what a failing check's remedy tells."""
+    recipe = load_text(text, "tried.yaml")
+    try:
+        report = check(recipe).report
+    except RecipeErrors as errors:
+        return str(errors)
+    failed = [each for each in report["checks"] if not each["ok"]]
+    return "\n".join(f"{each['name']}: {each.get('detail', '')}; {remedy(each, report, recipe)}" for each in failed)
+
+
+def figure(told: str, pattern: str) -> float:
+    found = re.search(pattern, told)
+    assert found, told
+    return float(found[1]) if found.groups() else 0.0
+
+
+# what is wrong; the remedy, its figure in brackets; the recipe with the remedy
+DESIGNS: list[tuple[str, str, Follow]] = [
+    (support("p: -25"), r"add more than (\S+) to p", lambda by: support(f"p: -25 + {1.001 * by}")),
+    (support("p: -25", SLIDER), r"add more than (\S+) to p", lambda by: support(f"p: -25 + {1.001 * by}", SLIDER)),
+    (support("p: 15*cos(t)"), r"add more than (\S+) to p", lambda by: support(f"p: 15*cos(t) + {1.001 * by}")),
+    (
+        support("fourier: {mean: 1e-30}, pivot: [10, 4]"),
+        r"fourier\.mean: .*; give a larger one",
+        lambda _: support("fourier: {mean: 1}, pivot: [10, 4]"),
+    ),
+    (
+        support("p: 25 + 5*cos(3*t)"),
+        r"a p larger by more than (\S+) would be free of it",
+        lambda by: support(f"p: 25 + 5*cos(3*t) + {1.00001 * by}"),
+    ),
+    (
+        support("p: 25 + cos(1000*t)"),
+        r"a p larger by more than (\S+) would be free of it",
+        lambda by: support(f"p: 25 + cos(1000*t) + {1.00001 * by}"),
+    ),
+    (
+        support("fourier: {mean: 25, cos: {3: 5}}"),
+        r"a fourier\.mean larger by more than (\S+) would be free of it",
+        lambda by: support(f"fourier: {{mean: {25 + 1.00001 * by}, cos: {{3: 5}}}}"),
+    ),
+    (
+        support("hypocycloid: {cusps: 3, size: 5, breadth: 50}"),
+        r"a hypocycloid\.breadth larger by more than (\S+) would be free of it",
+        lambda by: support(f"hypocycloid: {{cusps: 3, size: 5, breadth: {50 + 1.00001 * by}}}"),
+    ),
+    (
+        f"cam: {{kind: constant-breadth, base_radius: 5, {RISE}}}{FILES}",
+        r"a base radius larger by more than (\S+) would be free of it",
+        lambda by: f"cam: {{kind: constant-breadth, base_radius: {5 + 1.00001 * by}, {RISE}}}{FILES}",
+    ),
+    (
+        roller("delta: {cos: {1: 400}}", ratio="4/3", radius=30.0),
+        r"a roller radius below (\S+) would be free of it",
+        lambda below: roller("delta: {cos: {1: 400}}", ratio="4/3", radius=0.99999 * below),
+    ),
+    (
+        pair("delta: {cos: {1: 2390}}"),
+        "a smaller swing would be free of it",
+        lambda _: pair("delta: {cos: {1: 2000}}"),
+    ),
+    (
+        pair("arc: {radius: 300}"),
+        r"an arc\.radius nearer to (\S+) would be free of it",
+        lambda mean: pair(f"arc: {{radius: {mean + 10}}}"),
+    ),
+    (
+        support("p: 25 + 1e-9*cos(20000*t)"),
+        r"p has about 2e\+04 waves in a turn; no more than (\S+) are worked out",
+        lambda most: support(f"p: 25 + 1e-9*cos({most:.0f}*t)"),
+    ),
+    (
+        support("p: 25 + 25*cos(1001*t)", SLIDER),
+        "give p fewer or lower waves",
+        lambda _: support("p: 25 + 1e-4*cos(101*t)", SLIDER),
+    ),
+    (
+        support("p: 25 + 1e-6*cos(1001*t)", SLIDER),
+        "keep its loops farther from binding, or give p fewer waves",
+        lambda _: support("p: 25 + 1e-6*cos(101*t)", SLIDER),
+    ),
+    (
+        support("p: 25 + cos(2*t)", SLIDER),
+        "give p odd harmonics alone",
+        lambda _: support("p: 25 + cos(3*t)", SLIDER),
+    ),
+    (
+        support("p: 25 + cos(3*t)", f"{SLIDER}\ndwell: {{band: 1e-16}}"),
+        "give a wider band",
+        lambda _: support("p: 25 + cos(3*t)", f"{SLIDER}\ndwell: {{band: 0.01}}"),
+    ),
+    (
+        arc(30.0, "convex", "2"),
+        r"a convex arc needs a radius of at least (\S+) mm",
+        lambda least: arc(1.1 * least, "convex", "2"),
+    ),
+    *(
+        (arc(300.0, "concave", ratio), "a convex arc would do", lambda _, ratio=ratio: arc(300.0, "convex", ratio))
+        for ratio in ("2", "3", "4")
+    ),
+    (arc(1e6, "concave"), "or a ratio such as 5/3", lambda _: arc(1e6, "concave", "5/3")),
+    *(
+        (
+            arc(20.0, "concave", ratio),
+            r"a concave arc needs a radius above (\S+) mm",
+            lambda above, ratio=ratio: arc(1.00001 * above, "concave", ratio).replace("8.0", "0.5"),
+        )
+        for ratio in ("5/3", "7/3", "8/3")
+    ),
+    (
+        support("p: 25, pivot: [40, 0]", "\npart: {bore: 10}"),
+        "the shaft lies outside the contour",
+        lambda _: support("p: 25, pivot: [10, 0]", "\npart: {bore: 10}"),
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "pattern", "follow"), DESIGNS, ids=[pattern for _, pattern, _ in DESIGNS])
+def test_a_design_that_is_changed_as_told_is_sound(text: str, pattern: str, follow: Follow) -> None:
+    assert not said(follow(figure(said(text), pattern)))
+
+
+CHAMFERED = "\npart: {{bore: 10, thickness: 30, chamfer: {0!r}}}"
+BORED = "\npart: {{bore: {0!r}, wall: 5}}"
+LIMITED = "\nverify: {motion_error: 0.0005}"
+COARSE = FILES.replace("0.001", "0.002")
+WITH_FILES: list[tuple[str, str, Follow]] = [
+    (
+        arc(1e6, "convex"),
+        r"the roller meets nothing at .* psi'\(phi\) reaches 0\.9999\d+, .*; an arc\.radius nearer to (\S+) would do",
+        lambda mean: arc(1000 * mean, "convex"),
+    ),
+    (
+        support("p: 25 + 2*cos(3*t)", CHAMFERED.format(9.5)),
+        r"a chamfer below (\S+) mm",
+        lambda below: support("p: 25 + 2*cos(3*t)", CHAMFERED.format(0.999 * below)),
+    ),
+    (
+        support("p: 25", BORED.format(45.0)),
+        r"a bore smaller by more than (\S+) mm",
+        lambda by: support("p: 25", BORED.format(45.0 - 1.001 * by)),
+    ),
+    (
+        support("p: 25 + 2*cos(3*t)", LIMITED).replace("0.001,", "0.002,"),
+        r"a tolerance of (\S+), or verify",
+        lambda tolerance: support("p: 25 + 2*cos(3*t)", LIMITED).replace("0.001,", f"{tolerance},"),
+    ),
+    (
+        support("p: 25 + 2*cos(3*t)", LIMITED).replace("0.001,", "0.002,"),
+        r"verify\.motion_error above (\S+)",
+        lambda above: support("p: 25 + 2*cos(3*t)", LIMITED.replace("0.0005", f"{1.001 * above}")).replace(
+            "0.001,", "0.002,"
+        ),
+    ),
+]
+
+
+@pytest.mark.parametrize(("text", "pattern", "follow"), WITH_FILES, ids=[pattern for _, pattern, _ in WITH_FILES])
+def test_files_of_a_recipe_that_is_changed_as_told_pass(text: str, pattern: str, follow: Follow) -> None:
+    assert not said_of_files(follow(figure(said_of_files(text), pattern)))
+
+
+def test_a_smaller_swing_has_a_smaller_pressure_angle() -> None:
+    recipes = (load_text(roller(f"delta: {{cos: {{1: {size}}}}}"), "swung.yaml") for size in (400, 200))
+    wide, narrow = ({each.name: each.value for each in designed(recipe).checks} for recipe in recipes)
+    assert narrow["transmission"] < 0.75 * wide["transmission"]
+    assert narrow["pressure-angle"] < wide["pressure-angle"]
+
+
+def test_a_limit_that_is_not_allowed_itself_is_told_as_such() -> None:
+    report = check(load_text(support("p: 0*t"), "tried.yaml")).report
+    assert "radius-of-curvature: 0 mm, more than 0 needed" in summary(report)
+
+
+SET = """\
+cam: {kind: support, fourier: {mean: 20, cos: {3: 1}}, pivot: [6, 0]}
+part: {thickness: 5, bore: {square: 6}}
+export: {tolerance: 0.02, files: [{stl: {parts: all}}]}
+verify: {angles: 24}
+"""
+SETS = [  # what stands in the set's recipe, what in its place with a figure, the figure at fault, the remedy
+    ("{square: 6}", "%s", 1.5, r"part\.bore: .* give a bore of (\S+) mm or more"),
+    ("verify:", "mechanism: {bar: %s}\nverify:", 2, r"mechanism\.bar: .* give at least (\S+) mm"),
+    ("verify:", "mechanism: {plate: %s}\nverify:", 1, r"mechanism\.plate: .* give at least (\S+) mm"),
+    ("verify:", "mechanism: {knob: %s}\nverify:", 7, r"mechanism\.knob: .* give at least (\S+) mm"),
+    ("0.02", "%s", 0.05, r"export\.tolerance: .* give a tolerance below (\S+) mm"),
+    ("0.02,", "0.05,%.0s", 0, r"export\.tolerance: .* or a mechanism\.clearance above (\S+) mm"),
+    ("verify:", "mechanism: {clearance: %s}\nverify:", 1e-6, r"mechanism\.clearance: .* give at least (\S+) mm"),
+    ("verify:", "mechanism: {link: %s}\nverify:", 0.1, r"mechanism\.link: .* give at least (\S+) mm"),
+    ("thickness: 5", "thickness: %s", 0.2, r"part\.thickness: .* give at least (\S+) mm"),
+    ("{square: 6}", "10, flat: {across: %s}", 9.9, r"part\.flat\.across: .* give at most (\S+) mm"),
+    ("{square: 6}", "10, keyway: {width: 1.1, depth: %s}", 0.2, r"part\.keyway\.depth: .* a depth of (\S+) mm or more"),
+    (
+        "{square: 6}",
+        "10, keyway: {width: %s, depth: 2}",
+        0.9,
+        r"part\.keyway\.width: .* give a width of (\S+) mm or more",
+    ),
+    (
+        "{square: 6}}",
+        "{hexagon: %s}}\nmechanism: {clearance: 1.2}",
+        8,
+        r"part\.bore: .* give a bore of (\S+) mm or more",
+    ),
+    ("verify:", "mechanism: {press: %s}\nverify:", 5, r"mechanism\.press: .* give less, such as (\S+) mm"),
+]
+
+
+@pytest.fixture
+def unwritten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a set only the bodies are worked out: none is turned round or written."""
+    monkeypatch.setattr("camgeo.output.mechanism.collision_checks", lambda _: ())
+    monkeypatch.setattr("camgeo.output.mechanism.make_parts", lambda *_: Made(()))
+
+
+def said_of_set(text: str) -> str:
+    """What a set is told of its bodies."""
+    recipe = load_text(text, "set.yaml")
+    try:
+        check(recipe)
+    except RecipeErrors as errors:
+        return str(errors)
+    return ""
+
+
+@pytest.mark.usefixtures("unwritten")
+@pytest.mark.parametrize(("old", "new", "wrong", "pattern"), SETS, ids=[pattern for *_, pattern in SETS])
+def test_a_set_that_is_changed_as_told_can_be_made(old: str, new: str, wrong: float, pattern: str) -> None:
+    value = figure(said_of_set(SET.replace(old, new % wrong)), pattern)
+    if "tolerance below" in pattern:
+        value *= 0.999
+    changed = SET.replace(old, new % value)
+    if "clearance above" in pattern:
+        changed += f"mechanism: {{clearance: {1.001 * value}}}\n"
+    assert pattern.split(": ", maxsplit=1)[0].replace("\\", "") + ":" not in said_of_set(changed)
+
+
+@pytest.mark.parametrize(
+    ("p", "words"),
+    [
+        ("25 + 25*cos(99*t)", "99 stretches of the contour run backwards into each other; up to 40 are told apart"),
+        ("25 + cos(1000*t)", "1000 stretches of the contour run backwards; up to 200 are told one by one"),
+    ],
+)
+def test_undercut_in_very_many_places_is_told_as_a_number(p: str, words: str) -> None:
+    """Each of them takes milliseconds, or the square of their number where they cross."""
+    assert words in said(support(f"p: {p}, undercut: trim"))
+
+
+@pytest.mark.parametrize("word", ["disc", "roller", "translating-roller", "plate", "flat", "groove"])
+def test_a_kind_of_cam_that_is_none_tells_which_are_made(word: str) -> None:
+    told = said(f"cam: {{kind: {word}}}\n")
+    assert all(f"({kind}" in told for kind in ("support", "constant-breadth", "double-roller", "flat-pair"))
+    assert told.endswith("cylindrical cams and grooves are not made")
+    assert said("cam: {kind: suport}\n").endswith("did you mean support?")
+
+
+def test_why_a_motion_of_constant_breadth_covers_a_half_turn() -> None:
+    whole = "motion: [{rise: 20, over: 180, law: harmonic}, {return: 20, over: 180, law: harmonic}]"
+    told = said(f"cam: {{kind: constant-breadth, base_radius: 40, {whole}}}\n")
+    assert "given 360 degrees; let them cover one half turn, 180 degrees; two parallel faces hold the cam" in told

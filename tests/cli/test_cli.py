@@ -1,0 +1,205 @@
+"""The command line: exit status, what is printed where, what is left on disk."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from support.cases import few
+
+from camgeo.cli.main import main
+from camgeo.recipe.starter import KINDS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+GOOD = """\
+cam: {kind: support, p: 25 + 2*cos(3*t)}
+part: {thickness: 8, bore: 10}
+export: {tolerance: 0.01, files: [dxf, stl]}
+"""
+
+
+@pytest.fixture
+def good(tmp_path: Path) -> Path:
+    path = tmp_path / "good.yaml"
+    path.write_text(GOOD, encoding="utf-8")
+    return path
+
+
+def test_export_says_one_line_and_exits_0(good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", str(good), "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr()
+    assert said.out.startswith("good: ok  dxf ")
+    assert said.out.count("\n") == 1
+    assert said.err == ""
+    assert {p.name for p in (tmp_path / "out" / "good").iterdir()} == {"good.dxf", "good.stl", "report.json"}
+
+
+def test_json_is_the_reports(good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", str(good), "--out", str(tmp_path / "out"), "--json"]) == 0
+    (report,) = json.loads(capsys.readouterr().out)
+    assert report == json.loads((tmp_path / "out" / "good" / "report.json").read_text(encoding="utf-8"))
+
+
+def test_check_writes_nothing(good: Path, tmp_path: Path) -> None:
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["check", str(good), "-v"]) == 0
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_only_keeps_the_other_files_and_marks_them_stale(good: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["export", str(good), "--out", str(out)]) == 0
+    stl = (out / "good" / "good.stl").read_bytes()
+    assert main(["export", str(good), "--out", str(out), "--only", "dxf", "--tolerance", "0.1"]) == 0
+    report = json.loads((out / "good" / "report.json").read_text(encoding="utf-8"))
+    assert [file["path"] for file in report["files"] if file.get("stale")] == ["good.stl"]
+    assert (out / "good" / "good.stl").read_bytes() == stl
+    assert report["tolerance"] == pytest.approx(0.1)
+
+
+def test_a_users_own_file_stays(good: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["export", str(good), "--out", str(out)]) == 0
+    (out / "good" / "notes.txt").write_text("mine", encoding="utf-8")
+    assert main(["export", str(good), "--out", str(out)]) == 0
+    assert (out / "good" / "notes.txt").read_text(encoding="utf-8") == "mine"
+
+
+def test_a_typo_exits_2_with_its_place_and_leaves_the_last_set(
+    good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["export", str(good), "--out", str(out)]) == 0
+    before = {p.name: p.read_bytes() for p in (out / "good").iterdir()}
+    good.write_text(GOOD.replace("tolerance", "tolerence"), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["export", str(good), "--out", str(out)]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert f"{good}:3:" in said.err
+    assert "tolerance" in said.err
+    assert "Traceback" not in said.err
+    assert {p.name: p.read_bytes() for p in (out / "good").iterdir()} == before
+    assert sorted(p.name for p in out.iterdir() if not p.name.startswith(".")) == ["good"]
+
+
+def test_undercut_exits_1_and_keeps_the_last_good_set(good: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["export", str(good), "--out", str(out)]) == 0
+    before = {p.name: p.read_bytes() for p in (out / "good").iterdir()}
+    good.write_text(GOOD.replace("25 +", "15 +"), encoding="utf-8")
+    assert main(["export", str(good), "--out", str(out)]) == 1
+    assert {p.name: p.read_bytes() for p in (out / "good").iterdir()} == before
+    assert (out / "good.rejected" / "report.json").is_file()
+
+
+def test_two_recipes_of_one_name_are_an_error(good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    other = tmp_path / "deeper" / "good.yaml"
+    other.parent.mkdir()
+    other.write_text(GOOD, encoding="utf-8")
+    assert main(["export", str(good), str(other), "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert [line.split(": ")[1] for line in said] == [str(good), str(other)]
+    assert all("the name good is used by several recipes" in line for line in said)
+    assert not (tmp_path / "out").exists()
+
+
+def test_several_recipes_run_in_order_and_the_highest_status_counts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    paths = []
+    for name, mean in (("a", 25), ("b", 15), ("c", 30), ("d", 26)):
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(GOOD.replace("25", str(mean)), encoding="utf-8")
+        paths.append(str(path))
+    assert main(["export", *paths, "--out", str(tmp_path / "out"), "--jobs", "2"]) == 1
+    lines = [line for line in capsys.readouterr().out.splitlines() if not line.startswith(" ")]
+    assert [line.split(":")[0] for line in lines] == ["a", "b", "c", "d"]
+
+
+def test_verify_judges_a_file_and_says_what_is_wrong(
+    good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["export", str(good), "--out", str(out)]) == 0
+    dxf = out / "good" / "good.dxf"
+    assert main(["verify", str(good), str(dxf), str(out / "good" / "good.stl")]) == 0
+    other = tmp_path / "other.yaml"
+    other.write_text(GOOD.replace("2*cos", "2.05*cos"), encoding="utf-8")
+    capsys.readouterr()
+    assert main(["verify", str(other), str(dxf)]) == 1
+    assert "motion" in capsys.readouterr().out
+    assert main(["verify", str(good), str(tmp_path / "nothing.dxf")]) == 2
+    assert main(["verify", str(good), str(good)]) == 2
+
+
+@pytest.mark.parametrize("kind", few(KINDS, 3))
+def test_new_gives_a_recipe_that_passes(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / f"my-{kind}.yaml"
+    assert main(["new", kind, str(path)]) == 0
+    assert main(["check", str(path)]) == 0, kind
+    assert main(["new", kind, str(path)]) == 2
+
+
+def test_new_names_the_kinds_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "square"]) == 2
+    assert "support" in capsys.readouterr().err
+    assert main(["new"]) == 0
+    assert tuple(capsys.readouterr().out.split()) == KINDS
+
+
+def test_laws_and_schema(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["laws"]) == 0
+    assert "modified-sine" in capsys.readouterr().out
+    assert main(["laws", "--json"]) == 0
+    peaks = {row["law"]: row for row in json.loads(capsys.readouterr().out)}
+    assert peaks["modified-constant-velocity"]["velocity"] == pytest.approx(1.275258, abs=1e-6)
+    assert peaks["parabolic"]["jerk"] is None
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out)["type"] == "object"
+
+
+@pytest.mark.parametrize("arguments", [[], ["export"], ["dance"], ["export", "x.yaml", "--tolerance", "-1"]])
+def test_a_wrong_call_exits_2(arguments: list[str]) -> None:
+    done = subprocess.run([sys.executable, "-m", "camgeo", *arguments], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+
+
+def test_an_output_that_is_no_folder_exits_3(good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    blocked = tmp_path / "blocked"
+    blocked.write_text("a file", encoding="utf-8")
+    assert main(["export", str(good), "--out", str(blocked)]) == 3
+    assert "blocked" in capsys.readouterr().err
+
+
+def test_only_of_what_the_recipe_does_not_list_exits_2(
+    good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["export", str(good), "--out", str(tmp_path / "out"), "--only", "csv"]) == 2
+    assert f"{good}:3:" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_verify_says_what_is_wrong_with_what_is_no_file(
+    good: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    missing = tmp_path / "none.dxf"
+    assert main(["verify", str(good), str(tmp_path), str(missing)]) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        f"camgeo: {tmp_path}: a folder; name the files in it",
+        f"camgeo: {missing}: there is no such file",
+    ]
+
+
+def test_the_module_is_the_command() -> None:
+    call = subprocess.run(
+        [sys.executable, "-m", "camgeo", "new", "nothing"], capture_output=True, text=True, check=False
+    )
+    assert call.returncode == 2
+    assert call.stderr.startswith("camgeo: no recipe is called nothing")

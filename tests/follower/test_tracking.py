@@ -1,0 +1,255 @@
+"""Greatest motion error of rollers: over all shaft angles, against brute force of another kind than the code's."""
+
+import numpy as np
+import pytest
+from camfiles import arcs_through, write_dxf
+
+import kin.follower.roller
+from kin.contour.arcs import unit
+from kin.contour.contour import Contour
+from kin.follower.follower import DoubleRoller, Roller
+from kin.follower.guide import LEADING, TRAILING, Arm, Translating
+from kin.follower.roller import ByLaw, BySwing
+from kin.judge.contour_checks import Intent, Limits
+from kin.judge.verify import verify
+from kin.law.piecewise import Piecewise
+from kin.law.programme import Segment, law, programme
+from kin.law.segment import Affine, Constant
+from kin.law.transmission import from_delta, from_law
+
+PHI = np.arange(360) * 2 * np.pi / 360
+
+
+def through(envelope, count, arcs=False):
+    """Polygon, or chain of arcs of alternate curvature, through points of an exact contour."""
+    points = envelope.points(np.arange(count) * 2 * np.pi / count)
+    return Contour.from_bulges(*arcs_through(points)) if arcs else Contour.from_vertices(points)
+
+
+def distance(points, contour):
+    """Distance of points (n, 2) from a polygon: every edge by itself."""
+    start = contour.vertices
+    edge = np.roll(start, -1, axis=0) - start
+    gap = points[:, None] - start[None]
+    share = np.clip(np.einsum("nmc,mc->nm", gap, edge) / np.einsum("mc,mc->m", edge, edge), 0.0, 1.0)
+    away = gap - share[:, :, None] * edge
+    return np.sqrt(np.einsum("nmc,nmc->nm", away, away).min(axis=1))
+
+
+def positions(contour, roller, phi, about, reach):
+    """Positions of a roller on a polygon, by bisection of its distance between `about` -+ `reach` (n,)."""
+    guide, radius = roller.guide, roller.radius
+    low, high = about - reach, about + reach
+    assert (distance(guide.centre(phi, high), contour) > radius).all()
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        free = distance(guide.centre(phi, middle), contour) > radius
+        low, high = np.where(free, low, middle), np.where(free, middle, high)
+    return 0.5 * (low + high)
+
+
+def peak(error, count, rounds=5):
+    """Greatest |error(phi)|, (k, n) of phi (n,), over a turn: from `count` angles, refined about the highest."""
+    phi = np.arange(count) * 2 * np.pi / count
+    value = np.abs(error(phi))
+    value = value.max(axis=0) if value.ndim == 2 else value
+    best, tops = float(value.max()), phi[np.argsort(value)[-12:]]
+    width = 2 * np.pi / count
+    for _ in range(rounds):
+        near = (tops[:, None] + np.linspace(-width, width, 21)).ravel()
+        value = np.abs(error(near))
+        value = (value.max(axis=0) if value.ndim == 2 else value).reshape(len(tops), 21)
+        tops = near.reshape(len(tops), 21)[np.arange(len(tops)), value.argmax(axis=1)]
+        best, width = max(best, float(value.max())), width / 10
+    return best
+
+
+def rising(stroke, base, names=("cycloidal", "polynomial-345")):
+    """A law over the turn from `base` on: rise, dwell, return, dwell."""
+    found = programme(
+        [
+            Segment("rise", np.radians(110), stroke, law(names[0])),
+            Segment("dwell", np.radians(60)),
+            Segment("return", np.radians(130), stroke, law(names[1])),
+            Segment("dwell", np.radians(60)),
+        ],
+        2 * np.pi,
+    ).motion
+    return Piecewise(found.knots, tuple(Affine(f, base) for f in found.functions), 2 * np.pi)
+
+
+def proved(motion, reached, scale):
+    """The bound is above what brute force reaches, and hardly."""
+    assert motion.extremes == "true"
+    assert scale * reached <= motion.bound * (1 + 1e-9)
+    assert motion.bound <= 1.01 * scale * reached
+    assert motion.max == pytest.approx(scale * reached, rel=1e-5)
+
+
+GUIDES = {
+    "trailing arm": (Arm(50.0, 75.0, TRAILING), 0.5, np.radians(15.0)),
+    "leading arm": (Arm(60.0, 60.0, LEADING), 0.8, np.radians(12.0)),
+    "line of travel": (Translating(0.0), 35.0, 8.0),
+    "line of travel, offset": (Translating(7.0), 35.0, 8.0),
+    "line of travel, offset to the other side": (Translating(-7.0), 35.0, 8.0),
+}
+
+
+@pytest.mark.parametrize("count", [60, 140])
+@pytest.mark.parametrize("name", GUIDES)
+def test_single_rollers_on_polygons_against_bisected_distances(name, count):
+    guide, base, stroke = GUIDES[name]
+    roller = Roller(guide, 8.0, rising(stroke, base))
+    assert roller.envelope.regular
+    contour = through(roller.envelope, count)
+    motion = roller.judge(contour, PHI).motion
+    reach = 0.2 * stroke
+
+    def error(phi):
+        meant = roller.intended(phi)
+        return positions(contour, roller, phi, meant, reach) - meant
+
+    some = PHI[::7] + 0.003
+    assert roller.contact(contour, some) - roller.intended(some) == pytest.approx(error(some), abs=1e-9)
+    assert motion.unit == ("mm" if isinstance(guide, Translating) else "deg")
+    proved(motion, peak(error, 3000, rounds=4), 1.0 if motion.unit == "mm" else 180 / np.pi)
+
+
+@pytest.mark.parametrize("name", GUIDES)
+def test_what_a_guide_tells_of_its_derivatives(name):
+    """position' = 2 a/S and phi' = (c + 2 a m/S)/u along a line, against differences; S^2 and m with their slopes."""
+    guide, base, _ = GUIDES[name]
+    start, along, h = guide.centre(np.array([0.7]), np.array([base])), unit(np.array([1.9])), 1e-4
+    points = start + np.array([[-h], [0.0], [h]]) * along
+    r = np.hypot(*points.T)
+    place, phi = guide.position(r), guide.shaft_angle(points)
+    a, c, u = points[1] @ along[0], points[1, 0] * along[0, 1] - points[1, 1] * along[0, 0], r[1:2] ** 2
+    size, m = np.sqrt(guide.square(u)), guide.moment(u)
+    assert (place[2] - place[0]) / (2 * h) == pytest.approx((2 * a / size)[0], rel=1e-7)
+    assert (phi[2] - phi[0]) / (2 * h) == pytest.approx(((c + 2 * a * m / size) / u)[0], rel=1e-7)
+    d = 1e-3 * u
+    assert (guide.square(u + d) - guide.square(u - d)) / (2 * d) == pytest.approx(guide.square_slope(u), rel=1e-9)
+    assert (guide.square_slope(u + d) - guide.square_slope(u - d)) / (2 * d) == pytest.approx(guide.square_bend)
+    assert (guide.moment(u + d) - guide.moment(u - d)) / (2 * d) == pytest.approx(guide.moment_slope)
+    assert np.arctan2(points[:, 1], points[:, 0]) - phi == pytest.approx(guide.lead(r), abs=1e-12)
+
+
+def dense(follower, contour, count):
+    return peak(lambda phi: follower.contact(contour, phi) - follower.intended(phi), count)
+
+
+NAMES = ["cycloidal", "polynomial-345", "polynomial-4567", "modified-sine", "harmonic"]
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_random_double_rollers_against_dense_contacts(seed):
+    rng = np.random.default_rng(seed)
+    lam, mu = [(3, 1), (4, 1), (4, 3), (5, 3), (2, 1)][rng.integers(5)]
+    delta, stroke = np.pi / lam, np.radians(rng.uniform(1.0, 6.0)) * 3.0 / lam
+    rise, dwell = rng.uniform(0.3, 0.5), rng.uniform(0.05, 0.2)
+    segments = [
+        Segment("rise", rise * delta, stroke, law(rng.choice(NAMES))),
+        Segment("dwell", dwell * delta),
+        Segment("return", delta * (1.0 - rise - dwell), stroke, law(rng.choice(NAMES))),
+    ]
+    transmission, radius = from_law(lam, mu, 60.0, programme(segments, delta)), rng.uniform(2.0, 9.0)
+    while not (follower := DoubleRoller(transmission, radius)).envelope.regular:
+        radius *= 0.7
+    contour = through(follower.envelope, 2 * rng.integers(20, 200), arcs=bool(seed % 2))
+    motion = follower.judge(contour, PHI).motion
+    proved(motion, np.degrees(dense(follower, contour, 12_000)), 1.0)
+
+
+def inch():
+    """An inch cam whose greatest error lies well between the shaft angles that are looked at."""
+    delta = np.pi / 4
+    segments = [
+        Segment("rise", np.radians(20.0), np.radians(4.0), law("polynomial-345")),
+        Segment("dwell", np.radians(5.0)),
+        Segment("return", np.radians(20.0), np.radians(4.0), law("polynomial-4567")),
+    ]
+    return DoubleRoller(from_law(4, 3, 25.4 * 2.5, programme(segments, delta)), 25.4 * 0.3)
+
+
+def test_a_limit_below_the_true_error_and_above_the_samples_is_broken(tmp_path, monkeypatch):
+    follower = inch()
+    path = write_dxf(tmp_path / "cam.dxf", follower.envelope.points(np.arange(301) * 2 * np.pi / 301))
+    few = np.arange(24) * 2 * np.pi / 24
+    intent, contour = Intent(follower, bore=10.0), through(follower.envelope, 301)
+    true = follower.judge(contour, few).motion
+    monkeypatch.setattr(kin.follower.roller, "MOST_PIECES", 0)
+    low = follower.judge(contour, few).motion
+    assert (low.extremes, low.remainder) == ("sampled", pytest.approx(0.02 * low.max))
+    assert low.max < true.max
+    limits = Limits(1.0, motion=1.01 * low.max, play=10.0)
+    told = {check.name: check for check in verify(path, intent, 24, limits).checks}["motion"]
+    assert not told.ok, "the allowance of 2 % is held against the limit as well"
+    assert told.detail.startswith("sampled; ")
+    monkeypatch.undo()
+    limits = Limits(1.0, motion=0.5 * (low.max + true.max), play=10.0)
+    told = {check.name: check for check in verify(path, intent, 24, limits).checks}["motion"]
+    assert not told.ok
+    assert told.value == true.bound
+    assert told.detail == f"true within {true.remainder:.2g} deg"
+    limits = Limits(1.0, motion=1.002 * true.max, play=10.0)
+    assert {check.name: check for check in verify(path, intent, 24, limits).checks}["motion"].ok
+
+
+def test_few_shaft_angles_give_the_same_error_as_many():
+    follower = inch()
+    contour = through(follower.envelope, 301)
+    few, many = (follower.judge(contour, PHI[::step]).motion for step in (120, 1))
+    assert few.max == pytest.approx(many.max, rel=1e-3)
+    assert max(few.max, many.max) <= min(few.bound, many.bound)
+
+
+def test_a_short_spike_between_the_samples_is_found():
+    follower = inch()
+    points = follower.envelope.points(np.arange(2000) * 2 * np.pi / 2000)
+    points[777] *= 1.0005
+    contour = Contour.from_vertices(points)
+    motion = follower.judge(contour, PHI[::90]).motion
+    proved(motion, np.degrees(dense(follower, contour, 60_000)), 1.0)
+
+
+@pytest.mark.parametrize(
+    "intended",
+    [
+        ByLaw(rising(0.2, 0.5)),
+        ByLaw(rising(0.2, 0.5, ("harmonic", "parabolic"))),
+        BySwing(inch().transmission),
+        BySwing(from_delta(4, 3, 60.0, {1: 625.0}, {})),
+    ],
+)
+def test_bounds_of_a_law_hold_and_are_near(intended):
+    rng = np.random.default_rng(5)
+    low = rng.uniform(-7.0, 14.0, 300)
+    high = low + rng.uniform(0.0, 1.0, 300) ** 6 * 3.0
+    bound = intended.steepest(low, high)
+    inside = low + (high - low) * np.linspace(0.0, 1.0, 33)[:, None]
+    rows = intended.rows(inside.ravel()).reshape(3, 33, 300)
+    reached = np.abs(rows[1:]).max(axis=1)
+    assert (reached <= bound[:2] * (1 + 1e-9) + 1e-12).all()
+    third = np.abs(np.diff(rows[2], axis=0)).max(axis=0) * 32
+    assert (third <= bound[2] * (high - low) * (1 + 1e-6) + 1e-9).all()
+    everywhere = intended.steepest(np.zeros(1), np.full(1, 7.0))[:, 0]
+    dense = np.abs(intended.rows(np.linspace(0.0, 2 * np.pi, 20_001))[1:]).max(axis=1)
+    assert (everywhere[:2] <= 2.0 * dense).all()
+
+
+def test_rows_of_a_swing_are_those_of_the_transmission():
+    transmission = inch().transmission
+    phi = np.concatenate([np.linspace(-9.0, 9.0, 5000), transmission.at(transmission.breaks, 0)[0][0]])
+    rows, exact = BySwing(transmission).rows(phi), transmission.psi_of_shaft(phi, 2)
+    assert rows[0] == pytest.approx(exact[0], abs=1e-14)
+    assert rows[1] == pytest.approx(exact[1], abs=1e-10)
+    assert rows[2] == pytest.approx(exact[2], abs=1e-6)
+
+
+def test_a_contour_that_follows_the_law_exactly_has_no_error():
+    """A circle about the shaft and a law that stands still: the remainder is rounding."""
+    circle = Contour.from_bulges(np.array([[30.0, 0.0], [-30.0, 0.0]]), np.ones(2))
+    still = Piecewise(np.array([0.0, 2 * np.pi]), (Constant(38.0),), 2 * np.pi, smooth_seam=True)
+    motion = Roller(Translating(0.0), 8.0, still).judge(circle, PHI).motion
+    assert motion.extremes == "true"
+    assert motion.bound < 1e-10

@@ -1,0 +1,53 @@
+"""Checks of the intent: greatest slope, pressure angle and closing, also where a short stretch alone decides."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from camgeo.curve.curve import Curve
+from camgeo.curve.wunderlich import PitchShape
+from camgeo.synthesis.checks import pressure_angle, transmission_checks
+from camgeo.synthesis.profile import Profile
+from kin.law.programme import Segment, law, programme
+from kin.law.transmission import from_delta, from_law
+
+
+def test_a_rise_between_two_looks_is_not_overlooked():
+    """1e-5 degrees in 0.01: a cycloidal rise is twice as steep as the mean in its middle."""
+    degree = math.pi / 180.0
+    steps = [
+        Segment(way, 0.01 * degree, 1e-5 * degree, law("cycloidal"))
+        if way != "dwell"
+        else Segment("dwell", (90.0 / 7.0 - 0.01) * degree)
+        for way in ("rise", "dwell", "return", "dwell")
+    ]
+    motion = from_law(7, 5, 60.0, programme(steps, math.pi / 7.0, "law"))
+    closing, steep = transmission_checks(motion)
+    assert steep.value == pytest.approx(2e-3, rel=2e-3)
+    assert 0.0 < closing.value < 1e-13
+    flat = from_law(7, 5, 60.0, programme([Segment("dwell", math.pi / 7.0)], math.pi / 7.0, "law"))
+    worst = []
+    for one in (motion, flat):
+        pitch = Curve.whole(PitchShape(one))
+        worst.append(pressure_angle(Profile(pitch, pitch, 1.0), one).value)
+    assert worst[0] > worst[1] + 0.1
+
+
+@pytest.mark.parametrize(("lam", "mu", "arm", "wave"), [(4, 3, 60.0, 625.0), (2, 1, 40.0, 1584.0)])
+def test_pressure_angle_at_its_very_maximum(lam, mu, arm, wave):
+    """Against a fine grid of r and r' written out: the normal's slope to the ray, less the arm's."""
+    motion = from_delta(lam, mu, arm, {1: wave}, {})
+    pitch = Curve.whole(PitchShape(motion))
+    found = pressure_angle(Profile(pitch, pitch, 1.0), motion).value
+    t = np.linspace(0.0, 2.0 * np.pi / lam, 400_001)
+    d, slope = wave * np.cos(lam * t), -lam * wave * np.sin(lam * t)
+    psi, psi1 = -np.arcsin(d / arm**2), -slope / np.sqrt(arm**4 - d**2)
+    half = 0.5 * (psi + math.pi * mu / lam)
+    r, r1 = 2.0 * arm * np.cos(half), -arm * np.sin(half) * psi1
+    # the pivot stands `half` ahead of the ray, the arm leaves the ray by the same angle on the other side
+    normal = np.arctan2(-r1, r)
+    seen = np.degrees(np.abs(np.arcsin(np.abs(np.cos(normal + half))))).max()
+    assert found == pytest.approx(seen, abs=1e-8)

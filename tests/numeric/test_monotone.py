@@ -1,0 +1,90 @@
+"""Monotone pieces: roots and extremes of functions that are known, and what is too rough."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kin.numeric.monotone import RoughError, between, cells, pieces
+
+TURN = 2 * math.pi
+
+
+def cut(f, places=(0.0, TURN), resolution=1e-13):
+    return pieces(cells(lambda x: f(x)[None], np.array(places), resolution))
+
+
+@given(st.lists(st.floats(-1, 1), min_size=1, max_size=7), st.lists(st.floats(-1, 1), min_size=7, max_size=7))
+def test_every_piece_is_monotone_and_so_is_its_slope(cos, sin):
+    k = np.arange(1, len(cos) + 1)[:, None]
+    c, s = np.array(cos), np.array(sin[: len(cos)])
+
+    def derivative(x, order):
+        turn = order * math.pi / 2
+        return (c * k.T**order) @ np.cos(k * x + turn) + (s * k.T**order) @ np.sin(k * x + turn)
+
+    of = cut(lambda x: derivative(x, 0)[0])
+    at = of.x[:-1] + np.linspace(0.01, 0.99, 9)[:, None] * of.width
+    size = np.abs([c, s]).sum() * 8
+    for order in (1, 2):
+        values = derivative(at.ravel(), order).reshape(at.shape)
+        assert (np.minimum(values.max(axis=0), -values.min(axis=0)) <= 1e-9 * size**order).all()
+    every = np.arange(len(of.width))
+    for row in at:
+        assert np.abs(of.at(every, row) - derivative(row, 0)[0]).max() < 1e-12 * max(size, 1)
+        # a piece may be as narrow as 1e-8, and its slope is known to the rounding of its values over its width
+        known = 1e-9 * max(size, 1) + of.blur / of.width
+        assert (np.abs(of.slope(every, row) - derivative(row, 1)[0]) < known).all()
+
+
+def test_roots_and_touching_roots():
+    assert cut(np.sin).crossings(0.0) == pytest.approx([0, math.pi, TURN], abs=1e-14)
+    assert cut(np.sin).crossings(1.0) == pytest.approx([math.pi / 2], abs=1e-7)
+    assert cut(np.sin).crossings(0.5) == pytest.approx([math.pi / 6, 5 * math.pi / 6], abs=1e-14)
+    assert len(cut(np.sin).crossings(1.001)) == 0
+    third = cut(lambda x: (x - 1) ** 3).crossings(0.0)
+    assert third == pytest.approx([1.0], abs=1e-4)
+
+
+def test_two_roots_much_closer_than_any_cell():
+    gap = 1e-6
+    of = cut(lambda x: (x - 1) ** 2 - gap**2)
+    assert of.crossings(0.0) == pytest.approx([1 - gap, 1 + gap], abs=1e-8)
+
+
+def test_a_run_along_a_level_gives_both_its_ends():
+    def shelf(x):
+        return np.maximum(x - 3, 0.0) - np.maximum(1 - x, 0.0)
+
+    of = cut(shelf, (0.0, 1.0, 3.0, TURN))
+    assert of.crossings(0.0) == pytest.approx([1, 3])
+    assert len(of.crossings(0.1)) == 1
+
+
+def test_extremes_at_ends_inside_and_at_a_corner_nobody_declared():
+    of = cut(lambda x: np.sin(x) + 0.1 * x)
+    at = math.acos(-0.1)
+    assert of.greatest() == pytest.approx((math.sin(at) + 0.1 * at, at), abs=1e-8)
+    assert of.least() == pytest.approx((math.sin(TURN - at) + 0.1 * (TURN - at), TURN - at), abs=1e-8)
+    value, place = cut(lambda x: -np.abs(x - 1.234)).greatest()
+    assert value == pytest.approx(0, abs=1e-9)
+    assert place == pytest.approx(1.234, abs=1e-8)
+
+
+def test_what_has_no_smooth_stretch_is_refused():
+    rng = np.random.default_rng(7)
+    with pytest.raises(RoughError, match=r"too rough to be resolved to 1e-06"):
+        cells(lambda x: rng.uniform(-1, 1, (1, len(x))), np.array([0.0, 1.0]), 1e-6)
+
+
+def test_several_functions_share_their_cells():
+    of = cells(lambda x: np.stack([np.sin(x), 1e3 * np.cos(9 * x)]), np.array([0.0, TURN]), share=1e-12)
+    assert pieces(of, 0).greatest()[0] == pytest.approx(1, abs=1e-11)
+    assert pieces(of, 1).least()[0] == pytest.approx(-1e3, abs=1e-8)
+    assert len(pieces(of, 1).crossings(0.0)) == 18
+
+
+def test_places_are_ends_and_the_breaks_between():
+    assert between(0.0, 2.0, [1.5, -1.0, 0.5, 2.0, 0.5]).tolist() == [0.0, 0.5, 1.5, 2.0]

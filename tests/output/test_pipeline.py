@@ -1,0 +1,283 @@
+"""Every shipped recipe from its text to judged files, and what a run does when something is wrong."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING
+from unittest import mock
+
+import ezdxf
+import numpy as np
+import pytest
+from support.cases import few
+from support.places import SHIPPED as RECIPES
+
+from camgeo.common.clock import Clock
+from camgeo.output import pipeline
+from camgeo.recipe.export import FileRequest
+from camgeo.recipe.load import load, read
+from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.expected_checks import foreseen
+from kin.judge.contour_checks import SPLINE_ERROR
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+UNDERCUT = b"""\
+cam: {kind: support, p: 10 + 2*cos(3*t)%s}
+part: {thickness: 5}
+export: {tolerance: 0.001, files: [dxf, stl]}
+"""
+
+
+def names(report: dict) -> list[str]:
+    return [check["name"] for check in report["checks"]]
+
+
+def failed(report: dict) -> set[str]:
+    return {check["name"] for check in report["checks"] if not check["ok"]}
+
+
+def test_there_are_recipes() -> None:
+    assert len(RECIPES) >= 17
+
+
+@pytest.mark.parametrize("path", few(RECIPES, 3), ids=lambda path: path.stem)
+def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> None:
+    recipe = load(path)
+    outcome = pipeline.export(recipe, tmp_path)
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    folder = tmp_path / recipe.name
+    assert outcome.folder == folder
+    report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    assert report == outcome.report
+    assert sorted(entry.name for entry in folder.iterdir()) == sorted(
+        ["report.json", *(file["path"] for file in report["files"])]
+    )
+    assert {"radius-of-curvature", "undercut-local", "contour", "motion", "wall"} <= set(names(report))
+    made = [(check["name"], check.get("file")) for check in report["checks"]]
+    assert sorted(map(str, made)) == sorted(str((item.name, item.file)) for item in foreseen(recipe))
+    for file in report["files"]:
+        data = (folder / file["path"]).read_bytes()
+        assert file["bytes"] == len(data)
+        assert file["sha256"] == hashlib.sha256(data).hexdigest()
+        if file["kind"] in {"csv", "glb"} or file.get("body") not in {None, "assembly"}:
+            continue  # no contour of the cam
+        assert 0.0 <= file["geometry_error"] <= file["tolerance"]
+        # The judge measures no more than was proved, but for rounding.
+        seen = SPLINE_ERROR if file.get("as") == "spline" else 1e-11  # splines are measured as arcs
+        assert file["measured_error"] <= file["geometry_error"] * (1 + 1e-9) + seen
+        motion = file["motion"]
+        assert motion["rms"] <= motion["max"]
+        assert 0.0 <= motion["at_deg"] < 360.0
+
+
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-10])
+def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> None:
+    text = "{kind: double-roller, ratio: 2, arm: 55, roller_radius: 7, delta: {cos: {1: 130}, sin: {1: 60, 3: -14}}}"
+    files = f"{{tolerance: {tolerance}, files: [{{dxf: {{as: spline}}}}]}}"
+    outcome = pipeline.check(read(f"cam: {text}\nexport: {files}\nverify: {{angles: 360}}\n".encode(), "fine.yaml"))
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    motion = next(check for check in outcome.report["checks"] if check["name"] == "motion")
+    assert motion["value"] <= 2.0 * motion["limit"]
+
+
+@pytest.mark.parametrize(
+    ("arc", "tolerance"),
+    [("3, arm: 29.5775, arc: {radius: 54.9153}", 2.172e-4), ("7/5, arm: 34.7435, arc: {radius: 55.2848}", 5.166e-4)],
+)
+def test_a_pair_whose_breaks_are_off_by_rounding_is_judged(arc: str, tolerance: float) -> None:
+    export = f"{{tolerance: {tolerance}, files: [{{dxf: {{as: spline}}}}]}}"
+    text = f"cam: {{kind: flat-pair, ratio: {arc}}}\nexport: {export}\n"
+    outcome = pipeline.check(read(text.encode(), "pair.yaml"))
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+
+
+@pytest.mark.parametrize("name", few(["as-figure-2a", "w-booth", "reuleaux-nine"], 3))
+def test_the_same_recipe_gives_the_same_bytes(name: str, tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name(f"{name}.yaml"))
+    first = pipeline.export(recipe, tmp_path / "a")
+    second = pipeline.export(recipe, tmp_path / "b")
+    assert first.folder is not None
+    assert second.folder is not None
+    files = [entry for entry in first.folder.iterdir() if entry.name != "report.json"]
+    assert files
+    for entry in files:
+        assert entry.read_bytes() == (second.folder / entry.name).read_bytes()
+    for report in (first.report, second.report):
+        report.pop("stages")
+    assert first.report == second.report
+
+
+def test_counter_clockwise_mirrors_drawing_and_keeps_motion(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("as-figure-2d.yaml"))
+    other = replace(recipe, rotation="ccw", name="other")
+    here, there = (pipeline.export(r, tmp_path) for r in (recipe, other))
+    assert here.ok
+    assert there.ok
+    table = [(tmp_path / name / f"{name}.csv").read_bytes() for name in (recipe.name, "other")]
+    assert table[0] == table[1]
+    # a file drawn for the one rotation is wrong for the other
+    report = pipeline.judged(other, [tmp_path / recipe.name / f"{recipe.name}.dxf"])
+    assert {"contour", "motion"} <= failed(report)
+
+
+def test_undercut_is_refused_with_angle_depth_and_remedy(tmp_path: Path) -> None:
+    recipe = read(UNDERCUT % b"", "sharp.yaml")
+    outcome = pipeline.export(recipe, tmp_path)
+    assert not outcome.ok
+    found = {check["name"]: check for check in outcome.report["checks"]}
+    assert found["radius-of-curvature"]["value"] == pytest.approx(-6.0, abs=1e-9)
+    assert not found["undercut-local"]["ok"]
+    assert found["undercut-local"]["value"] > 0.1
+    assert "a p larger by more than 6 would be free of it" in found["undercut-local"]["detail"]
+    assert not (tmp_path / "sharp").exists()
+    rejected = tmp_path / "sharp.rejected"
+    assert json.loads((rejected / "report.json").read_text(encoding="utf-8"))["ok"] is False
+    assert [entry.name for entry in rejected.iterdir()] == ["report.json"]
+
+
+def test_undercut_trimmed_on_request_tells_the_lost_motion(tmp_path: Path) -> None:
+    recipe = read(UNDERCUT % b", undercut: trim", "sharp.yaml")
+    outcome = pipeline.export(recipe, tmp_path)
+    found = {check["name"]: check for check in outcome.report["checks"] if "file" not in check}
+    assert "trimmed" in found["undercut-local"]["detail"]
+    depth = found["undercut-local"]["value"]
+    for file in outcome.report["files"]:
+        # what the follower drops by is what the trimmed metal no longer gives
+        assert file["motion"]["max"] == pytest.approx(depth, abs=0.003)
+        assert file["geometry_error"] <= 0.001
+    assert outcome.ok
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (b"cam: {kind: support, p: 25 + t}", "p does not close: p is off by 6.28318531 mm"),
+        (b"cam: {kind: support, p: 25 + sin(t/2)}", "p does not close"),
+        (b"cam: {kind: support, p: 25 + log(cos(t))}", "does not exist"),
+        (
+            b"cam: {kind: constant-breadth, base_radius: 9, motion: [{rise: 9, over: 180, law: {polynomial: [0, 1]}}]}",
+            "does not join over the half turn",
+        ),
+        (b"cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 2000}}}", "below 1"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_place_and_reason(text: bytes, words: str, tmp_path: Path) -> None:
+    recipe = read(text + b"\npart: {thickness: 5}\nexport: {tolerance: 0.001, files: [dxf]}\n", "bad.yaml")
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.export(recipe, tmp_path)
+    (error,) = caught.value.errors
+    assert words in error.problem
+    assert error.line == 1
+    assert error.path.startswith("cam.")
+    assert not (tmp_path / "bad").exists()
+
+
+def test_tolerance_that_single_precision_cannot_hold_is_refused_with_the_figure(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("shu-wu.yaml"))
+    recipe = replace(recipe, export=replace(recipe.export, tolerance=1e-6))
+    with pytest.raises(RecipeErrors, match="single precision") as caught:
+        pipeline.export(recipe, tmp_path)
+    assert "at least" in str(caught.value)
+    assert not (tmp_path / "shu-wu").exists()
+
+
+def test_an_stl_alone_imports_nothing_of_what_it_does_not_ask_for(tmp_path: Path) -> None:
+    import subprocess
+    import sys
+
+    code = (
+        "import sys; from pathlib import Path; from dataclasses import replace\n"
+        "from camgeo import pipeline; from camgeo.recipe.load import load\n"
+        f"r = load({str(RECIPES[0])!r})\n"
+        "r = replace(r, export=replace(r.export, files=tuple(f for f in r.export.files if f.kind == 'stl')))\n"
+        f"assert pipeline.export(r, Path({str(tmp_path)!r})).ok\n"
+        "heavy = {'ezdxf', 'shapely', 'trimesh', 'scipy', 'manifold3d', 'matplotlib', 'pydantic', 'multiprocessing'}\n"
+        "heavy |= {'OCP', 'zipfile', 'xml'}\n"
+        "heavy |= {f'kin.{name}' for name in ('collision', 'dynamics', 'mechanism', 'milled')}\n"
+        "heavy |= {f'kin.read.{kind}' for kind in ('mesh.threemf', 'gcode', 'step.step', 'drawing.svg')}\n"
+        "heavy |= {f'camgeo.{name}' for name in ('bodies', 'page', 'study', 'sweep', 'manufacture.milling')}\n"
+        "heavy |= {f'camgeo.output.{name}' for name in ('drawing', 'gcode', 'mechanism', 'parts', 'step', 'view')}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_no_second_counts_twice() -> None:
+    heard: list[str] = []
+    clock = Clock(heard.append)
+    with mock.patch("time.perf_counter", side_effect=[0.0, 1.0, 3.0, 4.0, 8.0, 10.0]), clock.stage("outer"):
+        with clock.stage("first"):
+            pass
+        with clock.stage("second"):
+            pass
+    assert heard == ["outer", "first", "second"]
+    assert clock.stages == [("first", 2.0), ("second", 4.0), ("outer", 4.0)]
+
+
+def test_skipped_stages_are_listed_with_the_reason(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("shu-wu.yaml"))
+    recipe = replace(recipe, part=replace(recipe.part, bore=None))
+    report = pipeline.export(recipe, tmp_path, only=("dxf",)).report
+    skipped = {item["what"]: item["why"] for item in report["skipped"]}
+    assert skipped["stl"] == "left out by --only"
+    assert "bore" in skipped
+    assert not any(stage["name"].endswith("stl") for stage in report["stages"])
+
+
+def test_a_bore_through_the_contour_is_a_failed_check_and_no_file(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("shu-wu.yaml"))
+    recipe = replace(recipe, part=replace(recipe.part, bore=90.0))
+    outcome = pipeline.export(recipe, tmp_path)
+    assert failed(outcome.report) == {"wall"}
+    assert outcome.report["files"] == []
+    assert outcome.report["checks"][-1]["detail"] == "bore and contour"
+
+
+def test_a_shaft_beside_the_contour_is_told_as_that(tmp_path: Path) -> None:
+    text = b"cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [100, 0]}\npart: {bore: 10}\n"
+    outcome = pipeline.export(read(text, "beside.yaml"), tmp_path)
+    assert failed(outcome.report) == {"wall"}
+    assert outcome.report["checks"][-1]["detail"] == "the shaft lies outside the contour"
+
+
+def test_a_file_is_verified_to_its_own_tolerance(tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].with_name("as-figure-2b.yaml"))
+    assert recipe.export.files[0].tolerance == pytest.approx(0.005)
+    assert pipeline.export(recipe, tmp_path).ok
+    folder = tmp_path / recipe.name
+    report = pipeline.judged(recipe, [folder / f"{recipe.name}.dxf", folder / f"{recipe.name}.stl"])
+    assert report["ok"]
+    assert [file["tolerance"] for file in report["files"]] == pytest.approx([0.005, 0.01])
+
+
+@pytest.mark.parametrize("name", ["reuleaux", "reuleaux-nine", "as-figure-13-1", "w-figure-9"])
+def test_the_circle_drawn_for_reference_is_the_largest_about_the_shaft(name: str, tmp_path: Path) -> None:
+    recipe = load(RECIPES[0].parent / f"{name}.yaml")
+    drawing = replace(recipe.export, files=(FileRequest("dxf", "arcs", "R2010"),))
+    outcome = pipeline.export(replace(recipe, export=drawing), tmp_path)
+    assert outcome.folder is not None
+    shapes = ezdxf.readfile(outcome.folder / f"{recipe.name}.dxf").query('CIRCLE[layer=="REFERENCE"]')
+    base = designed(recipe).profile.base
+    points = base.sample(np.linspace(base.cells.low.min(), base.cells.high.max(), 100_001)).point
+    assert shapes[0].dxf.radius * recipe.mm == pytest.approx(np.hypot(*points.T).min(), abs=1e-6)
+
+
+def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path: Path) -> None:
+    files = b"[dxf, {stl: {tolerance: 0.02}}]"
+    recipe = read(UNDERCUT.replace(b"10 + ", b"25 + ").replace(b"[dxf, stl]", files) % b"", "own.yaml")
+    folder = pipeline.export(recipe, tmp_path).folder
+    assert folder is not None
+    other = folder.rename(tmp_path / "sent") / "other.stl"
+    other.write_bytes((other.parent / "own.stl").read_bytes())
+    report = pipeline.judged(recipe, [other.parent / "own.dxf", other.parent / "own.stl", other])
+    assert [file["tolerance"] for file in report["files"]] == [0.001, 0.02, 0.001]
+    assert {"contour", "motion"} <= failed(report)
+    assert not pipeline.judged(recipe, [other.parent / "own.stl"], tolerance=0.001)["ok"]
+    assert pipeline.judged(recipe, [other], tolerance=0.02)["ok"]
+    assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}

@@ -1,0 +1,378 @@
+"""STL files made with numpy, trimesh and manifold3d, read back; planted faults; damaged files refused."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from support.cases import examples
+
+from kin.contour.arcs import unit
+from kin.contour.contour import Contour
+from kin.read.files import ReadError, Solid, read_stl
+from kin.read.mesh.mesh import weld, welded
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+N, HEIGHT = 120, 8.0
+T = np.arange(N) * 2.0 * np.pi / N
+OUTER = (np.array([3.0, 1.0]) + (25.0 + 2.0 * np.cos(3.0 * T))[:, None] * unit(T)).astype(np.float32).astype(float)
+BORE = (5.0 * unit(T)).astype(np.float32).astype(float)
+
+
+def quads(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+    return np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+
+
+def ring(outer: np.ndarray = OUTER, inner: np.ndarray = BORE, low: float = 0.0, high: float = HEIGHT) -> np.ndarray:
+    """Triangles (4n * 2, 3, 3) of a ring between two loops of as many corners, all facing outward."""
+
+    def at(loop: np.ndarray, z: float) -> tuple[np.ndarray, np.ndarray]:
+        here = np.column_stack([loop, np.full(len(loop), z)])
+        return here, np.roll(here, -1, axis=0)
+
+    (ob, ob1), (ot, ot1), (ib, ib1), (it, it1) = at(outer, low), at(outer, high), at(inner, low), at(inner, high)
+    return np.concatenate(
+        [quads(ob, ob1, ot1, ot), quads(ib1, ib, it, it1), quads(ot, ot1, it1, it), quads(ob1, ob, ib, ib1)]
+    )
+
+
+def binary(path: Path, triangles: np.ndarray, header: bytes = b"binary") -> Path:
+    records = np.zeros(len(triangles), dtype=RECORD)
+    records["corners"] = triangles
+    path.write_bytes(header.ljust(80) + len(triangles).to_bytes(4, "little") + records.tobytes())
+    return path
+
+
+def text(path: Path, triangles: np.ndarray) -> Path:
+    lines = ["solid cam 7 facet"]
+    for triangle in triangles.tolist():
+        lines += ["facet normal 0 0 0", "  outer loop"]
+        lines += ["    vertex " + " ".join(repr(v) for v in corner) for corner in triangle]
+        lines += ["  endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid cam 7"]) + "\n")
+    return path
+
+
+def test_a_ring(tmp_path: Path) -> None:
+    solid = read_stl(binary(tmp_path / "cam.stl", ring()))
+    assert solid.prism
+    assert solid.closed
+    assert solid.oriented
+    assert (solid.z_min, solid.z_max, solid.thickness, solid.height) == (0.0, 8.0, 8.0, 4.0)
+    assert solid.triangles == 8 * N
+    assert (solid.degenerate, solid.duplicate) == (0, 0)
+    outer, hole = Contour.from_vertices(OUTER), Contour.from_vertices(BORE)
+    assert solid.volume == pytest.approx((outer.area - hole.area) * HEIGHT, rel=1e-14)
+    assert solid.form == "binary"
+    # corners to the bit: no diagonal of a wall, no tolerance
+    assert {tuple(v) for v in solid.contour.start.tolist()} == {tuple(v) for v in OUTER.tolist()}
+    assert len(solid.contour) == N
+    assert solid.contour.area == pytest.approx(outer.area, rel=1e-14)
+    assert len(solid.holes) == 1
+    assert solid.holes[0].area == pytest.approx(hole.area, rel=1e-14)
+    theta = np.linspace(0.0, 6.28, 99)
+    np.testing.assert_array_equal(solid.contour.support(theta).q, outer.support(theta).q)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_neither_the_order_of_triangles_nor_of_their_corners_matters(tmp_path: Path, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    triangles = ring()
+    triangles = triangles[rng.permutation(len(triangles))]
+    shift = rng.integers(0, 3, len(triangles))
+    triangles = triangles[np.arange(len(triangles))[:, None], (np.arange(3) + shift[:, None]) % 3]
+    solid = read_stl(binary(tmp_path / "cam.stl", triangles))
+    assert solid.prism
+    assert solid.oriented
+    assert len(solid.contour) == N
+    assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area, rel=1e-13)
+
+
+def test_the_text_form_gives_the_same(tmp_path: Path) -> None:
+    solid = read_stl(text(tmp_path / "cam.stl", ring()))
+    assert solid.form == "text"
+    assert solid.oriented
+    assert solid.prism
+    assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area, rel=1e-14)
+
+
+def test_a_binary_header_may_begin_with_solid(tmp_path: Path) -> None:
+    solid = read_stl(binary(tmp_path / "cam.stl", ring(), b"solid facet by some exporter"))
+    assert solid.form == "binary"
+
+
+def test_negative_zero_is_zero(tmp_path: Path) -> None:
+    triangles = ring().astype(np.float32)
+    low = triangles[:, :, 2] == 0.0
+    low[::2] = False
+    triangles[:, :, 2][low] = -0.0
+    solid = read_stl(binary(tmp_path / "cam.stl", triangles))
+    assert solid.oriented
+    assert solid.prism
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_parts_made_by_trimesh_and_manifold(tmp_path: Path, scale: float) -> None:
+    manifold3d = pytest.importorskip("manifold3d")
+    trimesh = pytest.importorskip("trimesh")
+    section = manifold3d.CrossSection([OUTER * scale, BORE[::-1] * scale])
+    mesh = manifold3d.Manifold.extrude(section, HEIGHT * scale).to_mesh()
+    part = trimesh.Trimesh(mesh.vert_properties[:, :3], mesh.tri_verts)
+    path = tmp_path / "cam.stl"
+    for form in ("stl", "stl_ascii"):
+        path.write_bytes(data if isinstance(data := part.export(file_type=form), bytes) else data.encode())
+        solid = read_stl(path)
+        assert solid.closed
+        assert solid.oriented == part.is_winding_consistent
+        assert solid.volume == pytest.approx(part.volume, rel=1e-6)
+        assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area * scale**2, rel=1e-6)
+        assert len(solid.holes) == 1
+        assert solid.prism
+
+
+def test_a_stepped_part_is_cut_where_it_is_widest(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    profile = np.array([[0, 0], [25, 0], [25, 6], [8, 6], [8, 20], [0, 20]], dtype=float)
+    hub = trimesh.creation.revolve(profile, sections=64)
+    path = tmp_path / "hub.stl"
+    hub.export(path)
+    solid = read_stl(path)
+    assert not solid.prism
+    assert solid.closed
+    assert solid.oriented
+    assert solid.faces == (0.0, 6.0, 20.0)
+    assert solid.height == pytest.approx(3.0)
+    round_share = 32.0 * np.sin(2.0 * np.pi / 64)
+    assert solid.contour.area == pytest.approx(25.0**2 * round_share, rel=1e-5)
+    assert solid.volume == pytest.approx(hub.volume, rel=1e-6)
+    at = read_stl(path, [10.0, 4.0])
+    assert [section.height for section in at.sections] == [10.0, 4.0]
+    assert at.contour.area == pytest.approx(8.0**2 * round_share, rel=1e-5)
+    assert at.sections[1].contour.area == pytest.approx(25.0**2 * round_share, rel=1e-5)
+
+
+def test_a_cone_is_no_prism_and_a_level_at_half_height_is_avoided(tmp_path: Path) -> None:
+    top, middle = 0.6 * OUTER, 0.8 * OUTER
+    cap = BORE * 0.5
+
+    def tapered(bottom: np.ndarray, above: np.ndarray, low: float, high: float) -> np.ndarray:
+        b, t = np.column_stack([bottom, np.full(N, low)]), np.column_stack([above, np.full(N, high)])
+        return quads(b, np.roll(b, -1, axis=0), np.roll(t, -1, axis=0), t)
+
+    whole = ring(inner=cap)
+    lids = whole[4 * N :]
+    lids[:, :, :2] = np.where(
+        (lids[:, :, 2:] == HEIGHT) & (np.hypot(lids[:, :, :1], lids[:, :, 1:2]) > 6.0),
+        0.6 * lids[:, :, :2],
+        lids[:, :, :2],
+    )
+    inner = whole[2 * N : 4 * N]
+    single = np.concatenate([tapered(OUTER, top, 0.0, HEIGHT), inner, lids])
+    solid = read_stl(binary(tmp_path / "cone.stl", single))
+    assert not solid.prism
+    assert solid.oriented
+    assert solid.height == 4.0
+    assert solid.contour.area == pytest.approx(0.64 * Contour.from_vertices(OUTER).area, rel=1e-3)
+    halves = [tapered(OUTER, middle, 0.0, 4.0), tapered(middle, top, 4.0, HEIGHT)]
+    solid = read_stl(binary(tmp_path / "cone.stl", np.concatenate([*halves, inner, lids])))
+    assert solid.oriented
+    assert solid.height == 6.0
+    assert solid.contour.area == pytest.approx(0.49 * Contour.from_vertices(OUTER).area, rel=1e-3)
+
+
+def test_walls_with_corners_halfway_up_still_make_a_prism(tmp_path: Path) -> None:
+    whole = ring()
+    low, high = ring(high=3.0), ring(low=3.0)
+    walls = np.concatenate([low[: 4 * N], high[: 4 * N]])
+    solid = read_stl(binary(tmp_path / "cam.stl", np.concatenate([walls, whole[4 * N :]])))
+    assert solid.oriented
+    assert solid.prism
+    assert solid.height == 4.0
+    assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area, rel=1e-13)
+    leaning = np.concatenate([walls, whole[4 * N :]])
+    leaning[:, :, :2] = np.where(leaning[:, :, 2:] == 3.0, leaning[:, :, :2] * (1.0 + 1e-6), leaning[:, :, :2])
+    assert not read_stl(binary(tmp_path / "cam.stl", leaning)).prism
+
+
+# --- planted faults: in the fields
+
+
+def fields(solid: Solid) -> tuple[bool, bool, tuple[int, int, int], int, int]:
+    return solid.closed, solid.oriented, tuple(solid.edges), solid.degenerate, solid.duplicate
+
+
+@pytest.mark.parametrize("lid", [4 * N, 5 * N + 7, 8 * N - 1])
+def test_a_hole_in_a_lid(tmp_path: Path, lid: int) -> None:
+    solid = read_stl(binary(tmp_path / "cam.stl", np.delete(ring(), lid, axis=0)))
+    assert fields(solid) == (False, False, (3, 0, 0), 0, 0)
+
+
+def test_a_lid_turned_over(tmp_path: Path) -> None:
+    triangles = ring()
+    triangles[5 * N] = triangles[5 * N, ::-1]
+    solid = read_stl(binary(tmp_path / "cam.stl", triangles))
+    assert fields(solid) == (True, False, (0, 0, 3), 0, 0)
+
+
+def test_a_part_turned_inside_out(tmp_path: Path) -> None:
+    solid = read_stl(binary(tmp_path / "cam.stl", ring()[:, ::-1]))
+    assert solid.oriented
+    assert solid.volume < 0.0
+    assert solid.contour.area > 0.0
+
+
+def test_duplicate_triangles_the_same_way_and_the_other(tmp_path: Path) -> None:
+    triangles = ring()
+    lid = triangles[5 * N]
+    again = np.concatenate([triangles, [lid[[1, 2, 0]]]])
+    assert fields(read_stl(binary(tmp_path / "cam.stl", again))) == (False, False, (0, 3, 0), 0, 1)
+    pillow = np.array([[8.0, 8.0, 1.0], [9.0, 8.0, 1.0], [8.0, 9.0, 1.0]])
+    loose = np.concatenate([triangles, [pillow, pillow[::-1]]])
+    solid = read_stl(binary(tmp_path / "cam.stl", loose))
+    assert solid.oriented
+    assert solid.duplicate == 1
+    assert not solid.prism
+
+
+def test_triangles_without_area(tmp_path: Path) -> None:
+    triangles = ring()
+    a, b, _ = triangles[5 * N]
+    flat = np.concatenate([triangles, [[a, b, b], [a, a, a], [a, (a + b) / 2.0, b]]])
+    solid = read_stl(binary(tmp_path / "cam.stl", flat))
+    assert solid.degenerate >= 2
+    assert not solid.closed
+
+
+# --- what makes it unreadable
+
+
+def reason(path: Path) -> str:
+    try:
+        read_stl(path)
+    except ReadError as error:
+        return error.reason
+    return "read"
+
+
+@pytest.mark.parametrize("wall", [0, N, N + 5, 2 * N - 1])
+def test_a_hole_in_the_wall_opens_the_section(tmp_path: Path, wall: int) -> None:
+    path = binary(tmp_path / "cam.stl", np.delete(ring(), wall, axis=0))
+    with pytest.raises(ReadError, match=r"the section is open at \(-?\d") as caught:
+        read_stl(path)
+    assert caught.value.reason == "open"
+    x, y = caught.value.place
+    assert np.hypot(*(OUTER - (x, y)).T).min() < 2.0
+
+
+def test_two_parts_in_a_file(tmp_path: Path) -> None:
+    triangles = np.concatenate([ring(), ring() + np.array([100.0, 0.0, 0.0])])
+    assert reason(binary(tmp_path / "cam.stl", triangles)) == "several"
+
+
+def test_a_flat_part_and_none_at_all(tmp_path: Path) -> None:
+    assert reason(binary(tmp_path / "cam.stl", ring() * [1.0, 1.0, 0.0])) == "empty"
+    assert reason(binary(tmp_path / "cam.stl", ring()[:0])) == "empty"
+    assert reason(text(tmp_path / "cam.stl", ring()[:0])) == "empty"
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1e30])
+def test_numbers_beyond_measure(tmp_path: Path, value: float) -> None:
+    triangles = ring()
+    triangles[7, 1, 0] = value
+    assert reason(binary(tmp_path / "cam.stl", triangles)) == "range"
+
+
+@given(st.floats(0.0, 1.0))
+@settings(max_examples=examples(100), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_file_cut_short(tmp_path: Path, share: float) -> None:
+    path = binary(tmp_path / "cam.stl", ring())
+    raw = path.read_bytes()
+    path.write_bytes(raw[: int(share * (len(raw) - 1))])
+    assert reason(path) == "truncated"
+    path = text(tmp_path / "cam.stl", ring())
+    raw = path.read_bytes()
+    path.write_bytes(raw[: int(share * (len(raw) - len("endsolid cam 7\n") + 7))])
+    assert reason(path) == "truncated"
+
+
+def test_a_file_with_more_than_it_should_hold(tmp_path: Path) -> None:
+    path = binary(tmp_path / "cam.stl", ring())
+    path.write_bytes(path.read_bytes() + b"\0")
+    with pytest.raises(ReadError, match=r"960 triangles make a file of 48084 bytes, not 48085") as caught:
+        read_stl(path)
+    assert caught.value.reason == "syntax"
+    twice = text(path, ring()).read_bytes() * 2
+    path.write_bytes(twice)
+    assert reason(path) == "unsupported"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (b"facet normal", b"facets normal", "facet 1 has"),
+        (b"vertex ", b"vertex", "words"),
+        (b"normal 0 0 0", b"normal 0 0", "words"),
+        (b"    vertex 3", b"    vertex x3", "no number"),
+        (b"endsolid", b"solidend", "endsolid"),
+        (b"normal", b"n" * 1000, "1000 characters"),
+    ],
+)
+def test_damage_in_the_text_form(tmp_path: Path, old: bytes, new: bytes, words: str) -> None:
+    path = text(tmp_path / "cam.stl", ring() + np.array([10.0, 0.0, 0.0]))
+    raw = path.read_bytes()
+    assert old in raw
+    path.write_bytes(raw.replace(old, new))
+    with pytest.raises(ReadError, match=words):
+        read_stl(path)
+
+
+@given(st.lists(st.tuples(st.floats(0.0, 0.9999), st.integers(0, 255)), min_size=1, max_size=5), st.booleans())
+@settings(max_examples=examples(150), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_flipped_bytes_give_a_solid_or_a_read_error(
+    tmp_path: Path, flips: list[tuple[float, int]], as_text: bool
+) -> None:
+    small = ring(OUTER[::10], BORE[::10])
+    path = (text if as_text else binary)(tmp_path / "cam.stl", small)
+    raw = bytearray(path.read_bytes())
+    for share, value in flips:
+        raw[int(share * len(raw))] = value
+    path.write_bytes(raw)
+    reason(path)
+
+
+@given(
+    st.lists(st.tuples(st.integers(-2, 2), st.integers(-2, 2), st.integers(-2, 2)), min_size=1, max_size=40),
+    st.booleans(),
+)
+def test_welding_numbers_distinct_points(points: list[tuple[int, int, int]], single: bool) -> None:
+    given_points = np.array(points, dtype=np.float32 if single else np.float64)
+    for columns in (given_points, given_points[:, :2]):
+        distinct, numbers = weld(columns)
+        np.testing.assert_array_equal(distinct[numbers], columns)
+        assert len({tuple(p) for p in distinct.tolist()}) == len(distinct)
+
+
+def test_welding_survives_points_of_one_hash(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kin.read.mesh.mesh.SPREAD", np.uint64(0))  # every point hashes to zero
+    mesh = welded(ring().astype(np.float32))
+    assert len(mesh.points) == 4 * N
+    assert tuple(mesh.edge_faults) == (0, 0, 0)
+
+
+def test_a_missing_file_is_the_file_systems_error(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        read_stl(tmp_path / "none.stl")
+
+
+def test_what_is_no_stl_at_all_is_told_by_how_it_begins(tmp_path: Path) -> None:
+    path = tmp_path / "cam.stl"
+    path.write_bytes(b"ISO-10303-21;\nHEADER;\n" + b"FILE_DESCRIPTION(('a part'),'2;1');\n" * 40)
+    with pytest.raises(ReadError, match=r"neither binary nor text: it begins with b'ISO-10303-21;") as caught:
+        read_stl(path)
+    assert caught.value.reason == "syntax"

@@ -1,0 +1,610 @@
+"""The page: one file without a network, its data against kin, its tables against the report, pictures and the watch."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+import re
+import subprocess
+import sys
+import threading
+import urllib.error
+import urllib.request
+from html.parser import HTMLParser
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+from support.cases import few
+from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
+
+from camgeo.cli.main import main
+from camgeo.cli.watch import watch
+from camgeo.curve.ring import Ring, disc
+from camgeo.recipe.load import load
+from camgeo.report.page import svg, tables
+from camgeo.report.page.content import content
+from camgeo.report.page.outline import MEASURED, read
+from camgeo.report.page.pack import packed, unpacked
+from camgeo.report.page.page import LOCAL, RELOAD, data, encoded, page
+from camgeo.report.page.scene import STEPS
+from camgeo.synthesis.design import designed
+from kin.contour.contour import Contour
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from camgeo.report.page.content import Content
+
+MOST = 1_000_000  # bytes of a page
+VOID = {"meta", "link", "input", "br", "hr", "img"}
+
+
+class Elements(HTMLParser):
+    """Elements of a page in order, with a complaint about any that is not closed where it should be."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.faults: list[str] = []
+        self.texts: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        if not self.open or self.open.pop() != tag:
+            self.faults.append(f"</{tag}> at {self.getpos()}")
+
+    def handle_data(self, data: str) -> None:
+        if data.strip():
+            self.texts.append(data.strip())
+
+
+def parsed(text: str) -> Elements:
+    elements = Elements()
+    elements.feed(text)
+    elements.close()
+    assert not elements.faults
+    assert not elements.open
+    return elements
+
+
+@pytest.fixture(scope="module", params=few(SHOWN, 3))
+def made(request: pytest.FixtureRequest) -> Made:
+    return of(request.param)
+
+
+# --- the file ---------------------------------------------------------------------------------------------------------
+
+
+def test_the_page_is_one_sound_small_file_that_asks_for_nothing(made: Made) -> None:
+    elements = parsed(made.text)
+    assert len(made.text.encode("utf-8")) < MOST
+    assert "{{" not in made.text
+    assert "}}" not in made.text.partition("<script")[0].replace("}}", "}", made.text.count("@media"))
+    named = {key: value for _, attributes in elements.found for key, value in attributes.items() if value}
+    assert not [value for key, value in named.items() if key in {"src", "action", "srcset", "poster"}]
+    assert {a["href"] for tag, a in elements.found if "href" in a} == {"data:,"}
+    assert not re.search(r"https?:|//[a-z]|url\(|@import|fetch\(|XMLHttp|WebSocket|EventSource", made.text)
+    (policy,) = (a["content"] for tag, a in elements.found if a.get("http-equiv") == "Content-Security-Policy")
+    assert policy is not None
+    assert policy.startswith("default-src 'none'")
+    assert LOCAL in policy
+
+
+def test_every_name_that_the_script_asks_for_is_there_and_every_control_has_a_label(made: Made) -> None:
+    elements = parsed(made.text)
+    ids = [a["id"] for _, a in elements.found if "id" in a]
+    assert len(ids) == len(set(ids))
+    asked = set(re.findall(r'find\("([a-z-]+)"\)', made.text))
+    assert asked <= set(ids)
+    inside = False
+    for tag, attributes in elements.found:
+        inside = tag == "label" or (inside and tag in {"input", "select", "span", "option"})
+        if tag in {"input", "select"}:
+            assert inside or attributes.get("aria-label")
+    pointed = [a[key] for _, a in elements.found for key in ("aria-labelledby", "for") if a.get(key)]
+    assert set(pointed) <= set(ids)
+    assert dict(elements.found)["html"]["lang"] == "en"
+
+
+def test_text_of_a_recipe_cannot_break_out(tmp_path: Path) -> None:
+    path = tmp_path / "a.yaml"
+    path.write_text(
+        "about: '</script><script>alert(1)</script> & <b>'\ncam: {kind: support, p: 25 + cos(3*t)} # {{data}} </pre>\n",
+        encoding="utf-8",
+    )
+    text = Made(path).text
+    parsed(text)
+    assert "alert(1)</script>" not in text
+    assert "&lt;/script&gt;&lt;script&gt;alert(1)" in text
+    assert "{{data}} &lt;/pre&gt;" in text
+
+
+def test_the_same_recipe_gives_the_same_page() -> None:
+    assert of("w-ellipse").text == Made(RECIPES / "w-ellipse.yaml").text
+
+
+# --- the tables -------------------------------------------------------------------------------------------------------
+
+
+def test_checks_stand_with_their_values_failed_ones_first(tmp_path: Path) -> None:
+    path = tmp_path / "undercut.yaml"
+    path.write_text("cam: {kind: support, p: 25 + 4*cos(3*t)}\npart: {bore: 5}\n", encoding="utf-8")
+    made = Made(path)
+    assert not made.outcome.ok
+    rows = re.findall(r'<tr class="(ok|failed)">.*?<th scope="row">([a-z-]+)', made.text, re.DOTALL)
+    checks = made.outcome.report["checks"]
+    assert sorted(name for _, name in rows) == sorted(check["name"] for check in checks)
+    states = [state for state, _ in rows]
+    assert states == sorted(states)
+    assert states[0] == "failed"
+    head = made.text.partition("</header>")[0]
+    assert f"{states.count('failed')} checks of {len(states)} fail" in head
+    assert "No such cam is made" in made.text
+    parsed(made.text)
+
+
+def test_figures_are_shown_short_and_told_exactly(made: Made) -> None:
+    table = made.text.partition('id="checks-head"')[2].partition("</section>")[0]
+    for check in made.outcome.report["checks"]:
+        if check["value"] is not None:
+            assert f"{check['value']:.6g}" in table
+            if float(f"{check['value']:.6g}") != check["value"]:
+                assert repr(check["value"]) in table
+    for file in made.outcome.report["files"]:
+        assert file["path"] in made.text
+
+
+def test_of_many_checks_those_of_files_that_hold_are_folded_up(made: Made, monkeypatch: pytest.MonkeyPatch) -> None:
+    report = copy.deepcopy(made.outcome.report)
+    fails = next(check for check in report["checks"] if check.get("file"))
+    fails["ok"] = False
+    monkeypatch.setattr(tables, "MANY", 3)
+    shown, *folded = tables.checks(report).split("<details")
+    rows = r'<tr class="(ok|failed)">'
+    assert re.findall(rows, shown).count("failed") == 1
+    assert len(re.findall(rows, shown)) == 1 + sum(not check.get("file") for check in report["checks"])
+    assert {state for part in folded for state in re.findall(rows, part)} == {"ok"}
+    told = [int(re.findall(r"<summary>(\d+) check", part)[0]) for part in folded]
+    assert told == [len(re.findall(rows, part)) for part in folded]
+    assert sum(told) + len(re.findall(rows, shown)) == len(report["checks"])
+
+
+# --- the numbers ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("values", "kind"),
+    [
+        (np.sin(SHAFT) * 1e-3 + 5.0, "v"),
+        (np.full(STEPS + 1, 1.0 / 3.0), "c"),
+        (np.where(SHAFT < 1.0, np.nan, SHAFT), "n"),
+        (np.zeros(STEPS + 1), "c"),
+        (-1e6 * SHAFT, "v"),
+    ],
+)
+def test_packed_rows_come_back_within_a_hundred_thousandth(values: np.ndarray, kind: str) -> None:
+    row = json.loads(json.dumps(packed(values)))
+    assert kind in row
+    back = unpacked(row, STEPS + 1)
+    span = np.nanmax(values) - np.nanmin(values)
+    assert np.array_equal(np.isnan(back), np.isnan(values))
+    assert np.nanmax(np.abs(back - values)) <= max(0.51e-5 * span, 1e-12)
+
+
+def test_a_yoke_moves_by_its_lift() -> None:
+    made = of("shu-wu")
+    lift = designed(made.recipe).intent.derivatives(SHAFT, 3)
+    stroke = np.ptp(lift[0])
+    x, y, angle = made.pose("yoke")
+    assert np.abs(x - lift[0]).max() < 1e-4 * stroke
+    assert not y.any()
+    assert not angle.any()
+    assert np.abs(made.plot("Lift") - (lift[0] - 40.0)).max() < 1e-4 * stroke
+    assert np.abs(made.plot("Velocity") - lift[1]).max() < 1e-4 * np.ptp(lift[1])
+    assert [rest[:2] for rest in made.data["rests"]] == [pytest.approx([120.0, 60.0]), pytest.approx([300.0, 60.0])]
+    assert {rest[2] for rest in made.data["rests"]} == {"dwell of 60°"}
+
+
+def test_contacts_lie_on_the_cam_and_on_the_face() -> None:
+    made = of("shu-wu")
+    turned = made.pose("cam")[2]
+    x, y, _ = made.pose("contact on face 1")
+    assert np.abs(x - made.pose("yoke")[0]).max() < 1e-3
+    c, s = np.cos(-turned), np.sin(-turned)
+    in_cam = np.column_stack([x * c - y * s, x * s + y * c])
+    contour = Contour.from_bulges(*ring_of(made.content))
+    assert contour.distance(in_cam).max() < 2.5e-3  # the file's tolerance, and the rounding of the drawing
+
+
+def ring_of(found: Content) -> tuple[np.ndarray, np.ndarray]:
+    ring = found.scene.bodies[0].shapes[0].rings[0]
+    return ring.points, ring.bulges
+
+
+def test_a_linkage_stands_as_kin_says_over_the_shaft_angle() -> None:
+    made = of("as-figure-9-2a")
+    mechanism = designed(made.recipe).driven.mechanism
+    at = mechanism.at(mechanism.relative(SHAFT), 1)
+    x, y, direction = made.pose("rocker")
+    assert np.abs(np.pi - direction - at.output[0]).max() < 1e-4 * np.ptp(at.output[0])
+    assert (x[0], y[0]) == (80.0, 0.0)
+    dx, dy, _ = made.pose("joint D")
+    assert np.abs(np.hypot(dx - 80.0, dy) - 105.0).max() < 2e-3
+    fx, fy, theta3 = made.pose("frame")
+    assert np.abs(theta3 - at.frame[0]).max() < 1e-4
+    # the coupler's bar ends in D, and the frame holds the cam: both faces of a pair are where the contacts are
+    assert np.abs(fx + 95.0 * np.cos(theta3) - dx).max() < 2e-3
+    assert np.abs(fy + 95.0 * np.sin(theta3) - dy).max() < 2e-3
+    for face in (1, 2, 3, 4):
+        cx, cy, _ = made.pose(f"contact on face {face}")
+        normal = theta3 + face * math.pi / 2
+        assert np.abs((cx - fx) * np.cos(normal) + (cy - fy) * np.sin(normal) - 25.0).max() < 2e-3
+    # the shaft turns evenly, clockwise
+    turned = made.pose("cam")[2]
+    assert np.abs(turned - turned[0] + SHAFT).max() < 1e-4
+    assert made.data["rests"][0][1] == pytest.approx(37.05, abs=0.01)
+
+
+def test_ccw_is_the_mirror_image_and_the_motion_stays() -> None:
+    made = of("six-bar")
+    mechanism = designed(made.recipe).driven.mechanism
+    at = mechanism.at(mechanism.relative(SHAFT), 0)
+    _, _, angle = made.pose("output of dyad 1")
+    assert np.abs(np.unwrap(-angle) - at.output[0]).max() < 1e-4 * np.ptp(at.output[0])
+    assert np.abs(made.plot("Output") - np.degrees(at.output[0])).max() < 2e-3
+    turned = made.pose("cam")[2]
+    assert np.abs(turned - turned[0] - SHAFT).max() < 1e-4
+    assert made.data["sense"] == 1
+    px, py, _ = made.pose("joint")
+    assert np.isfinite([px, py]).all()
+
+
+def test_dyads_hang_together(tmp_path: Path) -> None:
+    path = tmp_path / "dyads.yaml"
+    path.write_text(
+        "rotation: ccw\ncam:\n  kind: support\n  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  pivot: [18, 8.5]\n"
+        "linkage:\n  kind: four-bar\n  ground: 80\n  coupler: 70\n  rocker: 105\n  dyads:\n"
+        "    - {kind: rpr, on: output, point: [80, 10], ground: [100, -30], offset: 12}\n"
+        "    - {kind: rrp, on: previous, point: [60, 0], link: 100, through: [150, -20], direction: 30}\n",
+        encoding="utf-8",
+    )
+    made = Made(path)
+    # in the mirror: the block is a fixed distance from the line through the pivot along the slot
+    bx, by, along = made.pose("block")
+    gx, gy, slot = made.pose("output of dyad 1")
+    assert (gx[0], gy[0]) == (100.0, 30.0)
+    assert np.abs(np.exp(1j * along) - np.exp(1j * slot)).max() < 1e-4
+    assert (by - gy) * np.cos(slot) - (bx - gx) * np.sin(slot) == pytest.approx(-12.0, abs=2e-3)
+    # the rod leads from the joint on the slotted rocker to the slide, which stays on its line
+    rx, ry, towards = made.pose("rod of dyad 2")
+    assert rx == pytest.approx(gx + 60.0 * np.cos(slot), abs=2e-3)
+    assert ry == pytest.approx(gy + 60.0 * np.sin(slot), abs=2e-3)
+    sx, sy, _ = made.pose("slide")
+    assert sx == pytest.approx(rx + 100.0 * np.cos(towards), abs=5e-3)
+    assert sy == pytest.approx(ry + 100.0 * np.sin(towards), abs=5e-3)
+    c, s = math.cos(math.pi / 6), -math.sin(math.pi / 6)
+    assert (sy - 20.0) * c - (sx - 150.0) * s == pytest.approx(0.0, abs=2e-3)
+    assert made.plot("Output") == pytest.approx((sx - 150.0) * c + (sy - 20.0) * s, abs=5e-3)
+
+
+def test_lengths_are_in_the_recipes_unit() -> None:
+    made = of("slider-crank")
+    mechanism = designed(made.recipe).driven.mechanism
+    output = mechanism.at(mechanism.relative(SHAFT), 0).output[0] / 25.4
+    x, y, _ = made.pose("slide")
+    assert np.abs(x - output).max() < 1e-4 * np.ptp(output)
+    assert y == pytest.approx(0.25)
+    assert {plot["unit"] for plot in made.data["plots"][:2]} == {"in", "in/rad"}
+
+
+def test_two_rollers_keep_their_distance_from_the_cam() -> None:
+    made = of("w-law")
+    cam = made.recipe.cam
+    law = designed(made.recipe).intent
+    x, y, angle = made.pose("arm")
+    assert (x[0], y[0]) == (40.0, 0.0)
+    psi = law.psi_of_shaft(SHAFT, 0)[0]
+    assert np.abs(angle - psi).max() < 1e-4 * np.ptp(psi)  # mirrored: psi is clockwise positive
+    turned = made.pose("cam")[2]
+    contour = Contour.from_bulges(*ring_of(made.content))
+    for side in (-1.0, 1.0):
+        along = -(side * law.alpha - psi)
+        centre = np.column_stack([40.0 + 40.0 * np.cos(along), 40.0 * np.sin(along)])
+        c, s = np.cos(-turned), np.sin(-turned)
+        in_cam = np.column_stack([centre[:, 0] * c - centre[:, 1] * s, centre[:, 0] * s + centre[:, 1] * c])
+        assert np.abs(contour.distance(in_cam) - cam.roller_radius).max() < 2.5e-3
+    (check,) = (c for c in made.outcome.report["checks"] if c["name"] == "pressure-angle")
+    worst = max(made.plot("Pressure angle", i).max() for i in (0, 1))
+    assert worst <= check["value"] + 1e-3
+    assert worst > check["value"] - 0.2  # the check looks at breaks too
+
+
+def test_errors_round_the_contour_are_those_that_the_judge_found(made: Made) -> None:
+    reports = {file["path"]: file for file in made.outcome.report["files"]}
+    assert {error.name for error in made.content.errors} == {n for n in reports if not n.endswith(".csv")}
+    for error in made.content.errors:
+        measured = reports[error.name]["measured_error"]
+        worst = max(np.nanmax(error.high), -np.nanmin(error.low))
+        assert worst <= measured + MEASURED * made.recipe.export.tolerance / made.recipe.mm
+        assert worst >= 0.5 * measured - 1e-9
+        assert (error.low <= error.high).all()
+
+
+def test_a_shifted_contour_shows_as_an_error_on_one_side(tmp_path: Path) -> None:
+    import ezdxf
+
+    recipe = load(RECIPES / "reuleaux.yaml")
+    assert main(["export", str(RECIPES / "reuleaux.yaml"), "--out", str(tmp_path), "--only", "dxf"]) == 0
+    path = tmp_path / "reuleaux" / "reuleaux.dxf"
+    drawing = ezdxf.readfile(path)
+    for entity in drawing.modelspace():
+        entity.translate(0.01, 0.0, 0.0)
+    drawing.saveas(path)
+    (error,) = content(recipe, designed(recipe), [path]).errors
+    assert error.high[0] == pytest.approx(0.01, abs=1e-4)
+    assert error.low[STEPS // 2] == pytest.approx(-0.01, abs=1e-4)
+
+
+def test_holes_are_the_files_own_and_a_train_has_its_table(tmp_path: Path) -> None:
+    path = tmp_path / "train.yaml"
+    path.write_text(
+        "cam: {kind: support, p: 25 + cos(3*t)}\npart: {bore: 12, bolts: {count: 4, hole: 3, circle: 30}}\n"
+        "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 300}\n",
+        encoding="utf-8",
+    )
+    made = Made(path)
+    metal = made.content.scene.bodies[0].shapes[0]
+    assert len(metal.rings) == 6
+    areas = sorted(abs(Contour.from_bulges(ring.points, ring.bulges).area) for ring in metal.rings[1:])
+    assert areas == pytest.approx([math.pi * 1.5**2] * 4 + [math.pi * 36.0])
+    (run, *_) = made.outcome.report["dynamics"]["runs"]
+    table = made.text.partition('id="train-head"')[2].partition("</table>")[0]
+    assert f"{run['steady']['peak_force']:.6g}" in table
+    assert "train.dxf" in table
+
+
+def test_an_unreadable_file_is_left_out(tmp_path: Path) -> None:
+    recipe = load(RECIPES / "reuleaux.yaml")
+    path = tmp_path / "reuleaux.stl"
+    path.write_bytes(b"solid nothing\nendsolid nothing\n")
+    assert read(recipe, path) is None
+    found = content(recipe, designed(recipe), [path])
+    assert found.errors == ()
+    parsed(page(recipe, found, {**of("w-ellipse").outcome.report, "files": []}))
+
+
+def test_a_mechanism_that_binds_has_a_page_that_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "binds.yaml"
+    path.write_text(
+        "cam:\n  kind: support\n  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  pivot: [18, 8.5]\n"
+        "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 30}\nexport: {files: [csv, html]}\n",
+        encoding="utf-8",
+    )
+    out = tmp_path / "out"
+    assert main(["export", str(path), "--out", str(out)]) == 1
+    text = (out / "binds.rejected" / "binds.html").read_text(encoding="utf-8")
+    parsed(text)
+    assert "does not turn right round" in text
+    assert re.search(r"It binds from .* to .* of the relative angle", text)
+
+
+def test_a_trimmed_contour_has_holes_where_it_is_cut(tmp_path: Path) -> None:
+    path = tmp_path / "trimmed.yaml"
+    path.write_text(
+        "cam: {kind: support, p: 25 + 4*cos(3*t), undercut: trim}\nexport: {files: [dxf]}\n", encoding="utf-8"
+    )
+    made = Made(path)
+    (error,) = made.content.errors
+    assert np.isnan(error.low).any()
+    assert np.isfinite(error.low).sum() > STEPS // 4
+    parsed(made.text)
+
+
+# --- rings and pictures -----------------------------------------------------------------------------------------------
+
+
+def test_arcs_are_flattened_on_the_arc_and_written_as_arcs() -> None:
+    ring = Ring(np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([math.tan(math.pi / 8.0), 0.0]))
+    assert np.hypot(*ring.flattened()[:-1].T) == pytest.approx(1.0, abs=1e-12)
+    assert ring.path(4) == "M1 0A1.0000 1.0000 0 0 1 0 1Z"
+    assert ring.mirrored().path(2) == "M1 0A1.00 1.00 0 0 0 0 -1Z"
+    large = Ring(np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([-math.tan(3.0 * math.pi / 8.0), 0.0]))
+    assert " 0 1 0 " in large.path(2)
+    assert np.hypot(*(disc(2.0, 3.0, 0.5).flattened() - (2.0, 3.0)).T) == pytest.approx(0.5)
+
+
+def test_a_picture_is_an_svg_by_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["report", str(RECIPES / "reuleaux.yaml"), "--out", str(tmp_path), "--picture", "svg", "--at", "-300"]
+    assert main(arguments) == 0
+    assert "page.html" in capsys.readouterr().out
+    folder = tmp_path / "reuleaux"
+    assert {path.name for path in folder.iterdir()} == {"page.html", "page.svg", "page.json"}
+    report = json.loads((folder / "page.json").read_text(encoding="utf-8"))
+    assert [file["path"] for file in report["files"]] == ["page.html", "page.svg"]
+    root = ET.fromstring((folder / "page.svg").read_text(encoding="utf-8"))
+    groups = [element for element in root.iter() if element.get("id", "").startswith("body-")]
+    assert "rotate(-60.0000)" in groups[0].get("transform", "")
+    assert "other" not in {element.get("class") for element in root.iter()}
+
+
+def test_a_picture_is_a_png(tmp_path: Path) -> None:
+    from PIL import Image
+
+    from camgeo.report.page.png import png
+
+    path = tmp_path / "a.png"
+    path.write_bytes(png(of("six-bar").content.scene, 100))
+    with Image.open(path) as image:
+        assert max(image.size) == pytest.approx(1280, abs=2)
+        colours = {tuple(colour) for _, colour in image.convert("RGB").getcolors(1 << 24)}
+    assert {(0xCD, 0xD7, 0xE2), (0xB2, 0x3A, 0x20)} <= colours  # metal and the links' edges
+
+
+def test_an_export_with_a_page_lists_it_and_leaves_the_other_page_alone(tmp_path: Path) -> None:
+    path = tmp_path / "small.yaml"
+    path.write_text("cam: {kind: support, p: 25 + cos(3*t)}\nexport: {files: [dxf, html]}\n", encoding="utf-8")
+    out = tmp_path / "out"
+    assert main(["report", str(path), "--out", str(out)]) == 0
+    assert main(["export", str(path), "--out", str(out)]) == 0
+    assert {p.name for p in (out / "small").iterdir()} == {
+        *("small.dxf", "small.html", "report.json"),
+        *("page.html", "page.json"),
+    }
+    report = json.loads((out / "small" / "report.json").read_text(encoding="utf-8"))
+    entry = report["files"][-1]
+    assert set(entry) == {"path", "kind", "bytes", "sha256"}
+    assert entry["kind"] == "html"
+    assert {"page", "write html"} <= {stage["name"] for stage in report["stages"]}
+    own, other = ((out / "small" / name).read_text(encoding="utf-8") for name in ("small.html", "page.html"))
+    assert own == other
+
+
+@pytest.mark.parametrize("angle", ["nan", "x", "1e9"])
+def test_a_wrong_angle_is_a_wrong_call(angle: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["report", "a.yaml", "--at", angle])
+    assert ended.value.code == 2
+    assert "a number of degrees" in capsys.readouterr().err
+
+
+def test_a_wrong_recipe_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "wrong.yaml"
+    path.write_text("cam: {kind: support}\n", encoding="utf-8")
+    assert main(["report", str(path), "--out", str(tmp_path / "out")]) == 2
+    assert "wrong.yaml:1:" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_page_imports_nothing_heavy() -> None:
+    code = (
+        "import sys, camgeo.report.page.content, camgeo.report.page.page, camgeo.cli.watch;"
+        "print({'matplotlib', 'scipy', 'shapely', 'ezdxf', 'PIL'} & set(sys.modules))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "set()\n"
+
+
+def test_the_data_is_small_and_holds_no_infinity(made: Made) -> None:
+    text = encoded(data(made.recipe, made.content))
+    assert len(text) < 300_000
+    assert "Infinity" not in text
+    assert "NaN" not in text
+    parsed(svg.moving(made.content.scene))
+
+
+# --- the watch --------------------------------------------------------------------------------------------------------
+
+
+def test_the_watch_serves_each_version_and_goes_on_after_a_fault(tmp_path: Path) -> None:
+    path = tmp_path / "a.yaml"
+    path.write_text("1", encoding="utf-8")
+    address: list[str] = []
+    stop = threading.Event()
+
+    def exported() -> tuple[str | None, str]:
+        if stop.is_set():
+            raise KeyboardInterrupt
+        text = path.read_text(encoding="utf-8")
+        return (None, "half") if text == "?" else (f"<p>{text} {LOCAL}</p>{RELOAD}", "")
+
+    def run() -> None:
+        with pytest.raises(KeyboardInterrupt):
+            watch(path, exported, address.append)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    try:
+        wait(lambda: bool(address))
+        wait(lambda: "<p>1 connect-src 'self'</p>" in fetched(address[0]))
+        assert "EventSource" in fetched(address[0])
+        with pytest.raises(urllib.error.HTTPError, match="403"):  # another site's name that leads here
+            urllib.request.urlopen(
+                urllib.request.Request(address[0], headers={"Host": "elsewhere.example:80"}), timeout=20
+            )
+        with urllib.request.urlopen(address[0] + "events", timeout=20) as stream:
+            assert told(stream)["fault"] == ""
+            path.write_text("?", encoding="utf-8")
+            assert told(stream)["fault"] == "half"
+            assert "<p>1 " in fetched(address[0])  # the last good page stays
+            path.write_text("22", encoding="utf-8")
+            assert told(stream) == {"version": 3, "fault": ""}
+        assert "<p>22 " in fetched(address[0])
+        with pytest.raises(urllib.error.HTTPError):
+            fetched(address[0] + "etc/passwd")
+    finally:
+        stop.set()
+        path.write_text("333", encoding="utf-8")
+        thread.join(20)
+    assert not thread.is_alive()
+    with pytest.raises(urllib.error.URLError):
+        fetched(address[0])
+
+
+def test_a_watch_by_the_command_ends_with_130_on_an_interrupt(tmp_path: Path) -> None:
+    import signal
+
+    path = tmp_path / "small.yaml"
+    path.write_text("cam: {kind: support, p: 25 + cos(3*t)}\n", encoding="utf-8")
+    command = [sys.executable, "-m", "camgeo", "export", str(path), "--watch", "--out", str(tmp_path / "out")]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        address = process.stdout.readline().split()[2]
+        assert "small: ok" in process.stdout.readline()
+        wait(lambda: "<h1>small</h1>" in fetched(address))
+        path.write_text("cam: {kind: support, p: 25 + cos(3*t\n", encoding="utf-8")
+        assert process.stderr is not None
+        assert "small.yaml:" in process.stderr.readline()
+        path.write_text("cam: {kind: support, p: 26 + cos(3*t)}\n", encoding="utf-8")
+        assert "small: ok" in process.stdout.readline()
+        wait(lambda: "26 + cos" in fetched(address))
+        process.send_signal(signal.SIGINT)
+        assert process.wait(30) == 130
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.parametrize("more", [["b.yaml"], ["--json"]])
+def test_a_watch_takes_one_recipe(more: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "a.yaml", *more, "--watch"]) == 2
+    assert "--watch takes one recipe" in capsys.readouterr().err
+
+
+def test_hub_and_timing_mark_are_drawn_on_the_cam(tmp_path: Path) -> None:
+    part = "part: {thickness: 8, bore: 8, hub: {diameter: 16, height: 6}, mark: {as: engrave}}\n"
+    cam = "cam: {kind: support, p: 25 + 2*cos(3*t)}\n"
+    path = tmp_path / "a.yaml"
+    path.write_text(f"{cam}{part}export: {{tolerance: 0.01, files: [dxf]}}\nverify: {{angles: 8}}\n")
+    recipe = load(path)
+    disk = content(recipe, designed(recipe), []).scene.bodies[0]
+    roles = [shape.role for shape in disk.shapes]
+    assert roles == ["metal", "hub", "timing mark"]  # no line shows the zero besides
+    low, high = disk.shapes[2].rings[0].points.min(axis=0), disk.shapes[2].rings[0].points.max(axis=0)
+    assert low[0] > 8.0
+    assert high[0] < 27.0
+    assert (low[1], high[1]) == pytest.approx((-0.25, 0.25))
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"), [("four-bar", "a four-bar"), ("inverted-slider-crank", "an inverted slider-crank")]
+)
+def test_the_line_under_the_title_names_the_linkage_as_the_pages_do(kind: str, said: str) -> None:
+    report = {
+        "rotation": "ccw",
+        "units": "inch",
+        "follower": "square frame",
+        "tolerance": 4e-5,
+        "linkage": {"kind": kind},
+    }
+    assert tables.facts(report) == f"square frame in {said} · the shaft turns counter-clockwise · tolerance 4e-05 in"

@@ -1,0 +1,222 @@
+"""The page in a headless Chromium: no error, the right movement, keys, dragging, nothing over anything else."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from support.browser import Browser, executable
+from support.pages import SHAFT, SHOWN, Made, fetched, of, wait
+
+from camgeo.cli.watch import watch
+from camgeo.synthesis.design import designed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+pytestmark = pytest.mark.skipif(
+    executable() is None, reason="no browser here: install chromium, or name one in CAMGEO_BROWSER"
+)
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    with Browser(tmp_path_factory.mktemp("profile")) as found:
+        found.size(1280, 800)
+        yield found
+
+
+def opened(browser: Browser, made: Made, tmp_path: Path, at: str = "#deg=0") -> Browser:
+    path = tmp_path / "page.html"
+    path.write_text(made.text, encoding="utf-8")
+    browser.problems.clear()
+    browser.requests.clear()
+    browser.open(path.as_uri() + at)
+    return browser
+
+
+PLACE = """(() => {{
+  const bodies = [...document.querySelectorAll('#drawing .body')];
+  const body = bodies.find((g) => g.querySelector('title').textContent === {!r});
+  return body.getAttribute('transform').match(/-?[0-9.]+/g).map(Number);
+}})()"""
+SLIDE = """(() => {{
+  const slider = document.getElementById('slider');
+  slider.value = {};
+  slider.dispatchEvent(new Event('input'));
+}})()"""
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_the_slider_moves_the_follower_by_the_right_amount(browser: Browser, tmp_path: Path, name: str) -> None:
+    made = of(name)
+    page_ = opened(browser, made, tmp_path)
+    design = designed(made.recipe)
+    for degrees in (0.0, 33.3, 90.1, 151.7, 288.8, 359.9):
+        page_.ask(SLIDE.format(degrees))
+        assert page_.ask("document.documentElement.dataset.degrees") == f"{degrees:.4f}"
+        shaft = np.array([math.radians(degrees)])
+        if design.driven is not None:
+            mechanism = design.driven.mechanism
+            wanted = mechanism.at(mechanism.relative(shaft), 0).output[0, 0]
+            stroke = mechanism.figures().swing
+            got = output_of(page_, made)
+        elif made.recipe.name in {"w-law", "w-ellipse"}:
+            half = 0.5 if made.recipe.name == "w-ellipse" else 1.0
+            wanted = half * design.intent.psi_of_shaft(shaft, 0)[0, 0]
+            stroke = half * np.ptp(design.intent.psi_of_shaft(SHAFT, 0)[0])
+            sense = 1.0 if made.recipe.rotation == "ccw" else -1.0
+            got = sense * math.radians(page_.ask(PLACE.format("arm" if half == 1.0 else "pair of faces"))[2])
+        else:
+            wanted = design.intent.derivatives(shaft, 0)[0, 0]
+            stroke = np.ptp(design.intent.derivatives(SHAFT, 0)[0])
+            got = page_.ask(PLACE.format("yoke"))[0]
+        assert got == pytest.approx(wanted, abs=1e-3 * stroke), degrees
+    assert page_.problems == []
+    assert {address.partition("#")[0] for address in page_.requests} <= {
+        (tmp_path / "page.html").as_uri(),
+        *("about:blank", "data:,"),
+    }
+
+
+def output_of(page_: Browser, made: Made) -> float:
+    """Output of a linkage as the drawing shows it, rad or mm."""
+    name = {"six-bar": "output of dyad 1", "slider-crank": "slide", "oscillating-yoke": "frame"}.get(
+        made.recipe.name, "rocker"
+    )
+    x, _, angle = page_.ask(PLACE.format(name))
+    turned = math.radians(angle)
+    if name == "slide":
+        return float(x) * made.recipe.mm
+    if made.recipe.name == "six-bar":
+        return -turned  # mirrored
+    return math.pi / 2 - turned if name == "frame" else math.pi - turned
+
+
+def test_keys_and_buttons_turn_the_shaft(browser: Browser, tmp_path: Path) -> None:
+    page_ = opened(browser, of("shu-wu"), tmp_path)
+
+    def degrees() -> float:
+        return float(page_.ask("document.documentElement.dataset.degrees"))
+
+    for key, shift, expected in (
+        *(("ArrowRight", False, 1.0), ("ArrowRight", True, 11.0), ("ArrowLeft", False, 10.0)),
+        *(("End", False, 360.0), ("Home", False, 0.0), ("ArrowLeft", False, 359.0)),
+    ):
+        page_.key(key, shift=shift)
+        assert degrees() == pytest.approx(expected)
+    page_.key(" ")
+    assert page_.ask("document.documentElement.dataset.playing") == "true"
+    begun = degrees()
+    page_.wait(f"Math.abs(document.documentElement.dataset.degrees - {begun}) > 2")
+    page_.key(" ")
+    assert page_.ask("document.getElementById('play').textContent") == "Play"
+    still = degrees()
+    time.sleep(0.2)
+    assert degrees() == still
+    # the place of a check
+    goal = float(page_.ask("(() => { const b = document.querySelector('.go'); b.click(); return b.dataset.deg; })()"))
+    assert degrees() == pytest.approx(goal, abs=1e-3)
+    assert page_.problems == []
+
+
+@pytest.mark.parametrize(("name", "sense"), [("shu-wu", -1.0), ("w-law", 1.0)])
+def test_the_cam_can_be_dragged(browser: Browser, tmp_path: Path, name: str, sense: float) -> None:
+    page_ = opened(browser, of(name), tmp_path)
+    x, y, one = page_.ask(
+        "(() => { const m = document.querySelector('#drawing > g').getScreenCTM(); return [m.e, m.f, m.a]; })()"
+    )
+    reach = 13.0 * one  # within the metal of either cam, between the bore and what is cut round it
+    angles = np.radians(np.linspace(100.0, 150.0, 9))
+    page_.drag([(x + reach * math.cos(a), y - reach * math.sin(a)) for a in angles])
+    degrees = float(page_.ask("document.documentElement.dataset.degrees"))
+    assert (sense * degrees) % 360.0 == pytest.approx(50.0, abs=1.0)
+
+
+@pytest.mark.parametrize(("width", "dark"), [(360, False), (1280, True), (1600, False)])
+@pytest.mark.parametrize("name", ["shu-wu", "six-bar", "w-law"])
+def test_nothing_sticks_out_or_lies_over_its_neighbour(
+    browser: Browser, tmp_path: Path, name: str, width: int, *, dark: bool
+) -> None:
+    made = of(name)
+    browser.size(width, 740, dark=dark, mobile=width < 500)
+    try:
+        page_ = opened(browser, made, tmp_path)
+        assert page_.ask("document.documentElement.scrollWidth") <= width
+        overlapping = page_.ask("""(() => {
+          const boxes = [...document.querySelectorAll('main > *, .below > *, .plot, .controls > *')]
+            .filter((e) => e.offsetParent).map((e) => [e, e.getBoundingClientRect()]);
+          const found = [];
+          for (const [a, p] of boxes) for (const [b, q] of boxes) {
+            if (a === b || a.contains(b) || b.contains(a) || p.width * p.height * q.width * q.height === 0) continue;
+            const w = Math.min(p.right, q.right) - Math.max(p.left, q.left);
+            const h = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
+            if (w > 1 && h > 1) found.push(a.outerHTML.slice(0, 80) + ' | ' + b.outerHTML.slice(0, 80));
+          }
+          return found;
+        })()""")
+        assert overlapping == []
+        ticks = page_.ask("""[...document.querySelectorAll('.plot svg')].filter((plot) => {
+          const boxes = [...plot.querySelectorAll('text')].map((t) => t.getBoundingClientRect());
+          return boxes.some((p, i) => boxes.some((q, j) => i < j && p.right > q.left && q.right > p.left
+            && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 3));
+        }).length""")
+        assert ticks == 0
+        assert page_.problems == []
+    finally:
+        browser.size(1280, 800)
+
+
+def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser: Browser, tmp_path: Path) -> None:
+    path = tmp_path / "a.yaml"
+    text = of("shu-wu").text
+    path.write_text(text, encoding="utf-8")
+    address: list[str] = []
+    stop = threading.Event()
+
+    def exported() -> tuple[str | None, str]:
+        if stop.is_set():
+            raise KeyboardInterrupt
+        found = path.read_text(encoding="utf-8")
+        return (found, "") if "<h1>" in found else (None, "a.yaml:1:1: <nothing>")
+
+    def run() -> None:
+        with pytest.raises(KeyboardInterrupt):
+            watch(path, exported, address.append)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    try:
+        wait(lambda: bool(address))
+        wait(lambda: "<h1>" in fetched(address[0]))
+        browser.problems.clear()
+        browser.open(address[0] + "#deg=45")
+        browser.wait("document.getElementById('fault')?.hidden")
+        path.write_text("half", encoding="utf-8")
+        browser.wait("document.getElementById('fault').textContent === 'a.yaml:1:1: <nothing>'")
+        assert not browser.ask("document.getElementById('fault').hidden")
+        path.write_text(text.replace("<h1>shu-wu</h1>", "<h1>another</h1>"), encoding="utf-8")
+        browser.wait("document.querySelector('h1')?.textContent === 'another'")
+        browser.wait("document.documentElement.dataset.degrees === '45.0000'")
+        assert browser.problems == []
+        browser.call("Page.navigate", url="about:blank")
+    finally:
+        stop.set()
+        path.write_text("", encoding="utf-8")
+        thread.join(20)
+    assert not thread.is_alive()
+
+
+def test_it_prints_and_follows_the_colours(browser: Browser, tmp_path: Path) -> None:
+    page_ = opened(browser, of("as-figure-9-2a"), tmp_path)
+    assert page_.pdf().startswith(b"%PDF")
+    ground = "getComputedStyle(document.body).backgroundColor"
+    light = page_.ask(ground)
+    page_.size(1280, 800, dark=True)
+    assert page_.ask(ground) != light
+    page_.size(1280, 800)
+    assert page_.problems == []
