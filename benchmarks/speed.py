@@ -28,7 +28,6 @@ from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.recipe.load import load
-from camgeo.synthesis.profile import intent_of, profile_of
 from kin.contour.contour import Contour
 from kin.follower.flat import FlatPair, Yoke
 from kin.follower.roller import DoubleRoller
@@ -75,7 +74,7 @@ def fits() -> None:
         for name, fit in (("arcs", fit_arcs), ("polygon", fit_polygon), ("spline", fit_spline)):
 
             def whole(fit: Callable[[Curve, float], object] = fit, cam: object = cam) -> object:
-                return fit(profile_of(cam, intent_of(cam)).curve, MICROMETRE)
+                return fit(cam.profile(cam.intent()).curve, MICROMETRE)
 
             count = whole().count
             t = np.linspace(0.0, 6.0, count)

@@ -23,13 +23,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.cams.plates import breadth_of
 from camgeo.recipe.figures import Limit
 from camgeo.recipe.load import load_text
 from camgeo.sweep.search.figures import Evaluator
 from camgeo.sweep.search.rebuilt import recipe_with
-from camgeo.synthesis.checks import breadth_of
 from camgeo.synthesis.linkage import mechanism_of
-from camgeo.synthesis.profile import intent_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -173,7 +172,7 @@ def accuracy() -> None:
     wanted: dict[str, list[float]] = {}
     for row in values:
         made = recipe_with(CAM_2A, tuple(PLACES), row)
-        lift = intent_of(made.cam)
+        lift = made.cam.intent()
         mechanism = mechanism_of(made, lift, breadth_of(lift)[0])
         told = mechanism.figures()
         one = {

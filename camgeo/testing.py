@@ -199,10 +199,9 @@ def _judged(
     """Judge a file and assert the checks of those names; its entry in the report."""
     __tracebackhide__ = True
     from camgeo.output.pipeline import judged
-    from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 
     path, recipe = Path(path), _loaded(recipe)
-    swings = isinstance(recipe.cam, DoubleRollerCam | FlatPairCam)
+    swings = recipe.cam.unit == "deg"
     verify = recipe.verify
     if limit is not None:
         verify = replace(verify, motion_error=math.radians(limit) if swings else limit * recipe.mm)
@@ -253,9 +252,9 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     from camgeo.synthesis.design import designed
 
     recipe = _loaded(recipe)
-    recipe = replace(recipe, cam=replace(recipe.cam, undercut="refuse"))
+    recipe = replace(recipe, cam=recipe.cam.refusing())
     design = designed(recipe)
-    report = document(recipe, Findings(design.checks, (), (), (), design.follower))
+    report = document(recipe, Findings(design.checks, (), (), (), design.follower.name))
     names = {CURVATURE.name, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
     checks = [check for check in report["checks"] if check["name"] in names]
     _all_hold(checks, report, recipe, recipe.name)

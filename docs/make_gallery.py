@@ -8,8 +8,9 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from camgeo.cams.double_roller import DoubleRollerCam
+from camgeo.cams.flat_pair import FlatPairCam
 from camgeo.output.pipeline import shown
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from camgeo.recipe.load import load
 from camgeo.report.page.page import asset
 from camgeo.report.page.scene import STEPS

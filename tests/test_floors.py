@@ -37,6 +37,7 @@ FLOORS = {
         files
         curve.undercut fit
         recipe
+        cams
         curve recipe.schema
         common
     """,

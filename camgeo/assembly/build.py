@@ -9,15 +9,17 @@ import numpy as np
 from camgeo.assembly.shaft import Drive, disk_of, shaft_of
 from camgeo.assembly.sizes import sizes_of
 from camgeo.recipe.assembly import MechanismAsked
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from kin.contour.contour import Contour
 from kin.contour.region import farthest
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.assembly.assembly import Assembly
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
+    from camgeo.synthesis.linkage import Driven
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
 
@@ -28,28 +30,50 @@ def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline) -> Assembly:
     Raises BodyError where one of them cannot be made.
     """
     part = recipe.part
-    cam, reach = recipe.cam, _reach_of(contour)
-    roller = cam.roller_radius if isinstance(cam, DoubleRollerCam) else None
-    s = sizes_of(recipe.mechanism or MechanismAsked(), reach, part.bore or 0.0, roller)
+    reach = _reach_of(contour)
+    s = sizes_of(recipe.mechanism or MechanismAsked(), reach, part.bore or 0.0, recipe.cam.touch_radius or None)
     drive = Drive(disk_of(part, design.body, contour), reach, shaft_of(part, s), s)
-    if isinstance(cam, DoubleRollerCam):
-        from camgeo.assembly.roller import double_roller
+    return MADE[design.follower.name](recipe, design, drive)
 
-        return double_roller(cast("Transmission", design.intent), cam.roller_radius, drive)
-    if isinstance(cam, FlatPairCam):
-        from camgeo.assembly.roller import flat_pair
 
-        return flat_pair(cast("Transmission", design.intent), drive)
-    if design.driven is not None:
-        from camgeo.assembly.linked import linked
+def _double_roller(recipe: Recipe, design: Design, drive: Drive) -> Assembly:
+    from camgeo.assembly.roller import double_roller
 
-        return linked(design.driven.mechanism, drive)
-    from camgeo.assembly.yoke import flat_face, yoke
+    return double_roller(cast("Transmission", design.intent), recipe.cam.touch_radius, drive)
 
-    lift = cast("Lift", design.intent)  # the kind of cam decides the kind of intent
-    if design.yoke_breadth is None:
-        return flat_face(lift, drive)
-    return yoke(lift, design.yoke_breadth, drive)
+
+def _flat_pair(_: Recipe, design: Design, drive: Drive) -> Assembly:
+    from camgeo.assembly.roller import flat_pair
+
+    return flat_pair(cast("Transmission", design.intent), drive)
+
+
+def _linked(_: Recipe, design: Design, drive: Drive) -> Assembly:
+    from camgeo.assembly.linked import linked
+
+    return linked(cast("Driven", design.driven).mechanism, drive)
+
+
+def _yoke(_: Recipe, design: Design, drive: Drive) -> Assembly:
+    from camgeo.assembly.yoke import yoke
+
+    return yoke(cast("Lift", design.intent), cast("float", design.yoke_breadth), drive)
+
+
+def _flat_face(_: Recipe, design: Design, drive: Drive) -> Assembly:
+    from camgeo.assembly.yoke import flat_face
+
+    return flat_face(cast("Lift", design.intent), drive)
+
+
+MADE: dict[str, Callable[[Recipe, Design, Drive], Assembly]] = {
+    "double roller": _double_roller,
+    "flat pair": _flat_pair,
+    "square frame": _linked,
+    "yoke": _yoke,
+    "flat face": _flat_face,
+}
+"""Which bodies each follower takes."""
 
 
 def _reach_of(contour: ArcSpline) -> float:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.checks import remedies
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from camgeo.recipe.export import NO_CONTOUR, NO_PART, SOLIDS
 from camgeo.recipe.figures import DWELL as LONGEST_DWELL
 from camgeo.recipe.figures import FACE_LENGTH as TRAVEL
@@ -46,12 +45,12 @@ class Scene:
     @property
     def roller(self) -> bool:
         """Whether rollers follow."""
-        return isinstance(self.recipe.cam, DoubleRollerCam)
+        return self.recipe.cam.touch_radius > 0.0
 
     @property
     def swings(self) -> bool:
         """Whether the follower swings."""
-        return isinstance(self.recipe.cam, DoubleRollerCam | FlatPairCam)
+        return self.recipe.cam.unit == "deg"
 
     @property
     def linked(self) -> bool:

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from camgeo.checks.advice import larger
+from camgeo.cams.family import SMALLER_SWING
 from camgeo.common.rounding import downward, upward
-from camgeo.recipe.cam import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
 from camgeo.recipe.figures import HOLLOW_RADIUS, LEAST_WALL, MOTION_ERROR, PRESSURE_ANGLE, RADIUS, STEEP
 
 if TYPE_CHECKING:
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
 
 Remedy: TypeAlias = "Callable[[dict[str, Any], dict[str, Any], Recipe], str]"
-SMALLER_SWING = "a smaller swing, or the same over a wider angle"
 
 
 def smaller_swing(_check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
@@ -32,9 +30,7 @@ def rounder(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> s
     value, limit, unit = check["value"], check["limit"], check["unit"]
     if value is None or limit is None:
         return ""
-    if isinstance(recipe.cam, DoubleRollerCam):
-        return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
-    return larger(recipe.cam, limit - value, unit)
+    return recipe.cam.rounder(value, limit, unit)
 
 
 def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
@@ -74,7 +70,7 @@ def _tighter(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> s
 def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | None) -> str:
     if limit <= 0.0:
         return ""
-    if isinstance(recipe.cam, ConstantBreadthCam | SupportCam):  # a flat face is off by no more than the contour
+    if recipe.cam.gain == 1.0:  # the follower is off by no more than the contour
         return f"a tolerance of {limit:.6g}, or "
     return "" if tolerance is None else f"a tolerance of about {tolerance * limit / value:.2g}, or "
 
@@ -108,25 +104,24 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
         return _tolerance(recipe, missed.value / recipe.mm, missed.bound / recipe.mm, tolerance)
     if figure not in STEEP or recipe.linkage is not None:
         return ""
-    if figure == PRESSURE_ANGLE and isinstance(recipe.cam, DoubleRollerCam):
-        # without a swing the normal points to the shaft, and the arm stands at alpha/2 to it, alpha = 180 mu/lambda
-        floor = 90.0 * (1.0 - recipe.cam.mu / recipe.cam.lam)
+    if figure == PRESSURE_ANGLE:
+        floor = recipe.cam.least_pressure_angle
         if 0.0 < missed.bound <= floor:
             return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg), or "
-    swung = isinstance(recipe.cam, ConstantBreadthCam | DoubleRollerCam | FlatPairCam)
-    return f"{SMALLER_SWING}, or " if swung and missed.bound > 0.0 else ""
+    less = recipe.cam.less_steep
+    return f"{less}, or " if less and missed.bound > 0.0 else ""
 
 
 def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
     """Tell what would raise a figure by so much, in the recipe's unit."""
     unit, own = "in" if recipe.units == "inch" else "mm", ""
-    if figure in {RADIUS, HOLLOW_RADIUS} and isinstance(recipe.cam, DoubleRollerCam):
+    if figure in {RADIUS, HOLLOW_RADIUS} and recipe.cam.touch_radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
-        roller, hollow = recipe.cam.roller_radius / recipe.mm, figure == HOLLOW_RADIUS
+        roller, hollow = recipe.cam.touch_radius / recipe.mm, figure == HOLLOW_RADIUS
         if hollow or by < roller:
             own = f"a roller radius of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
     elif figure == RADIUS:
-        own = larger(recipe.cam, by, unit)
+        own = recipe.cam.rounder(0.0, by, unit)
     elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
         own = (
             f"a bore smaller by more than {upward(2.0 * by)} {unit}" if 2.0 * by * recipe.mm < recipe.part.bore else ""

@@ -8,23 +8,21 @@ other way, as exact parallels. So what kin is told differs from the nominal part
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.cams.family import GrownError, Profile
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.fit.pieces import ArcSpline
-from camgeo.recipe.cam import ConstantBreadthCam, DoubleRollerCam, FlatPairCam
 from camgeo.synthesis.design import sound
 from camgeo.synthesis.part.shapes import EXACT
-from camgeo.synthesis.profile import Profile, profile_of
 from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
 
 if TYPE_CHECKING:
-    from camgeo.recipe.cam import Cam
     from camgeo.recipe.machining import Compensation
     from camgeo.recipe.part import Part
     from camgeo.recipe.recipe import Recipe
@@ -32,8 +30,6 @@ if TYPE_CHECKING:
     from camgeo.synthesis.part.body import Body
     from camgeo.synthesis.part.shapes import Opening
     from kin.judge.check import Check
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
 
 FINE = 1e-9  # mm: pieces of an opening's parallel no longer than this are left out
 
@@ -62,9 +58,11 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
     """
     out, scale = by.out, by.scale
     cam = recipe.cam
-    if isinstance(cam, DoubleRollerCam) and not cam.roller_radius > out:
-        what = f"the metal grows by {out / recipe.mm:.6g}, the roller's radius is {cam.roller_radius / recipe.mm:.6g}"
-        raise recipe.error(field, what, None, "give less")
+    try:
+        grown = cam.grown(out, scale)
+    except GrownError as error:
+        what = f"the metal grows by {out / recipe.mm:.6g}, {error.args[0]} is {error.args[1] / recipe.mm:.6g}"
+        raise recipe.error(field, what, None, "give less") from error
     body = None
     try:
         if design.body is not None:
@@ -72,16 +70,12 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         part = _part(recipe.part, out, scale)
     except (TightError, NothingLeftError) as error:
         raise recipe.error(field, f"an opening cannot be made smaller by {out / recipe.mm:.6g}: {error}") from error
-    intent: Lift | Transmission
+    intent = cam.grown_intent(design.intent, out, scale)
     checks: list[Check] = []
-    if isinstance(cam, DoubleRollerCam | FlatPairCam):
-        intent = cast("Transmission", design.intent).scaled(scale)
-    else:
-        intent = cast("Lift", design.intent).moved(out, scale)
     name = f"{recipe.name}, {by.told(recipe.mm)}"
-    made = replace(recipe, name=name, cam=_cam(cam, out, scale), part=part)
-    face = scale * out if isinstance(cam, FlatPairCam) else 0.0
-    profile = profile_of(made.cam, intent)
+    made = replace(recipe, name=name, cam=grown, part=part)
+    face = cam.face_beyond(out, scale)
+    profile = made.cam.profile(intent)
     if face:
         curve = Curve.whole(Parallel(profile.curve.shape, -face))
         profile = Profile(profile.base, curve, 0.0)
@@ -97,26 +91,14 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         intent=intent,
         profile=profile,
         contour=contour,
-        yoke_breadth=breadth,
+        position=made.cam.position(intent),
+        follower=replace(design.follower, breadth=breadth),
         trimmed=contour is not None and not contour.closed,
         driven=None,
         body=body,
         face=face,
     )
     return Compensated(made, changed, tuple(check for check in checks if not check.ok))
-
-
-def _cam(cam: Cam, out: float, scale: float) -> Cam:
-    """The recipe's cam as far as its own lengths are told in a drawing."""
-    match cam:
-        case DoubleRollerCam():
-            return replace(cam, arm=scale * cam.arm, roller_radius=scale * (cam.roller_radius - out))
-        case FlatPairCam():
-            return replace(cam, arm=scale * cam.arm)
-        case ConstantBreadthCam():
-            return replace(cam, base_radius=scale * (cam.base_radius + out))
-        case _:
-            return cam
 
 
 def _part(part: Part, out: float, scale: float) -> Part:

@@ -6,11 +6,10 @@ is not touched the cells stay empty.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -19,8 +18,6 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
 NOTHING = 1e-14  # of a direction or of the cam's size: rounding about a coordinate that is 0
@@ -39,32 +36,14 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
     shaft = np.linspace(0.0, TURN, count + 1)
     columns = {"shaft_deg": np.linspace(0.0, 360.0, count + 1)}
     unit = "in" if recipe.units == "inch" else "mm"
-    contacts: dict[str, Array]
-    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
-        law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
-        share = 0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0
-        psi = law.psi_of_shaft(shaft, 0)[0]
-        columns["follower_deg"] = np.degrees(share * psi)
-        contacts = {"a_": law.parameter(shaft), "b_": _second(law, shaft, psi)}
-    else:
-        lift, theta = cast("Lift", design.intent), shaft
-        if design.driven is not None:
-            theta = design.driven.mechanism.relative(shaft)
-            columns["relative_deg"] = np.degrees(theta)
-        columns[f"lift_{unit}"] = (lift.derivatives(theta, 0)[0] - lift.datum) / recipe.mm
-        contacts = {"": theta}
-    for name, parameter in contacts.items():
+    position, relative = design.position, shaft
+    if design.driven is not None:
+        relative = design.driven.mechanism.relative(shaft)
+        columns["relative_deg"] = np.degrees(relative)
+    columns[position.column(recipe.units)] = position.rows(relative, 0)[0] * position.shown(recipe.mm)
+    for name, parameter in position.contacts(shaft, relative).items():
         columns |= _contact(recipe, design.contour, parameter, name, unit)
     return tuple(columns), np.column_stack(list(columns.values()))
-
-
-def _second(law: Transmission, shaft: Array, psi: Array) -> Array:
-    """Parameters at which follower B touches while A is at `shaft` (n,).
-
-    The law repeats itself with phi - psi + delta in place of phi and -psi in place of psi (W 4.9); done mu times, mu
-    odd, that puts A where B is, at phi - psi + alpha.
-    """
-    return law.parameter(shaft - psi + law.alpha)
 
 
 def _contact(recipe: Recipe, contour: Curve, parameter: Array, name: str, unit: str) -> dict[str, Array]:

@@ -10,7 +10,7 @@ from camgeo.checks.declared import LEAST_ROOM, REACH
 from camgeo.curve.backwards import least_hollow
 from camgeo.curve.undercut.causes import UndercutError
 from camgeo.machining.cutter import cutter_path, is_convex
-from camgeo.synthesis.design import intended, shaft_deg
+from camgeo.synthesis.design import intended
 from camgeo.synthesis.part.as_intent import holes_of
 from kin.judge.check import Check, failed
 
@@ -52,7 +52,7 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
     told = "no hollow"
     if not is_convex(contour):
         radius, at = least_hollow(contour)
-        told = f"least hollow radius {radius:.6g} mm at {shaft_deg(design.intent, at):.6g} deg"
+        told = f"least hollow radius {radius:.6g} mm at {design.position.shaft_deg(at):.6g} deg"
     try:
         path = path_of(recipe, design)
     except UndercutError as error:
@@ -61,10 +61,10 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
         return Check(REACH.name, True, 0.0, asked.unreached, "mm", detail=told), path
     deepest = max(cut.depth for cut in path.lost)
     worst = next(cut for cut in path.lost if cut.depth >= (1.0 - ALIKE) * deepest)
-    first, last = shaft_deg(design.intent, worst.start), shaft_deg(design.intent, worst.end)
+    first, last = design.position.shaft_deg(worst.start), design.position.shaft_deg(worst.end)
     free = 2.0 * min(cut.free_at for cut in path.lost)
     detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
-    at_deg = shaft_deg(design.intent, worst.at)
+    at_deg = design.position.shaft_deg(worst.at)
     return Check(
         REACH.name, worst.depth <= asked.unreached, worst.depth, asked.unreached, "mm", at_deg, detail=detail
     ), path

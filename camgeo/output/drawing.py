@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.output.job import Made
-from camgeo.recipe.cam import ConstantBreadthCam, DoubleRollerCam, FlatPairCam, SupportCam
 from kin.judge.check import about
 
 if TYPE_CHECKING:
@@ -96,17 +95,14 @@ def _reference(job: Job) -> list[Reference]:
     found: list[Reference] = [Point("shaft", (0.0, 0.0))]
     if recipe.part.hub is not None:
         found.append(Circle("hub", (0.0, 0.0), 0.5 * recipe.part.hub.diameter))
-    if isinstance(cam, ConstantBreadthCam):
-        found.append(Circle("base circle", (0.0, 0.0), cam.base_radius))
-    elif isinstance(cam, SupportCam):
-        radius = abs(distance_inside(profile.base, (0.0, 0.0))[0])
-        if radius > recipe.export.tolerance:  # the shaft may stand on the contour itself
-            found.append(Circle("base circle", (0.0, 0.0), radius))
-    elif isinstance(cam, DoubleRollerCam):
-        found.append(Circle("prime circle", (0.0, 0.0), abs(distance_inside(profile.base, (0.0, 0.0))[0])))
-        pitch = fit_arcs(profile.base, COARSE)
-        found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
-        found.append(Circle("pivot circle", (0.0, 0.0), cam.arm))
-    elif isinstance(cam, FlatPairCam):
-        found.append(Circle("pivot circle", (0.0, 0.0), 2.0 * cam.arm))
+    for name, radius in cam.circles():
+        if radius is not None:
+            found.append(Circle(name, (0.0, 0.0), radius))
+            continue
+        least = abs(distance_inside(profile.base, (0.0, 0.0))[0])
+        if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
+            found.append(Circle(name, (0.0, 0.0), least))
+        if profile.roller_radius:
+            pitch = fit_arcs(profile.base, COARSE)
+            found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
     return found

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.checks.advice import less_swing
+from camgeo.checks.declared import TRANSMISSION
 from camgeo.common.clock import Clock
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError
@@ -16,7 +16,6 @@ from camgeo.fit.cache import Outlines, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.output.file_intent import intent_of_file
 from camgeo.output.output_folder import SurroundingsError
-from camgeo.recipe.cam import DoubleRollerCam
 from camgeo.report.document import FileResult
 from camgeo.synthesis.design import permitted
 
@@ -152,11 +151,11 @@ class Job:
 
     def _why_lost(self, check: Check) -> Check:
         """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""
-        if check.name != "motion" or check.value is not None or not isinstance(self.recipe.cam, DoubleRollerCam):
+        if check.name != "motion" or check.value is not None:
             return check
-        slope = next(own.value for own in self.design.checks if own.name == "transmission")
+        slope = next((own.value for own in self.design.checks if own.name == TRANSMISSION.name), None)
         if slope is None or slope < STEEP:
             return check
-        less = less_swing(self.recipe.cam, self.recipe.mm)
+        less = self.recipe.cam.less_swing(self.recipe.mm)
         why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would do"
         return replace(check, detail=f"{check.detail}: {why}")

@@ -208,7 +208,7 @@ def _findings(
         tuple(files),
         tuple(clock.stages),
         skipped,
-        design.follower,
+        design.follower.name,
         linkage=linkage,
         dynamics=None if train is None else train.section,
         remarks=remarks,

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from camgeo.cams.families import FAMILIES
 from camgeo.recipe.schema.errors import suggestion
 from camgeo.recipe.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.recipe.schema.json_schema import table_schema
@@ -153,12 +154,8 @@ def there(needs: Needs, cam_kind: str, given: frozenset[str] | set[str]) -> bool
             return (needs if needs in {"linkage", "dwell"} else f"dynamics.{needs}") in given
         case "follower":
             return "linkage" not in given
-        case "roller":
-            return cam_kind == "double-roller"
-        case "swings":
-            return cam_kind in {"double-roller", "flat-pair"}
-        case "plate":
-            return cam_kind in {"support", "constant-breadth"}
+        case "roller" | "swings" | "plate":
+            return cam_kind in FAMILIES and needs in FAMILIES[cam_kind].needs
         case "wall":
             return any(f"part.{name}" in given for name in _OPENINGS)
         case "all":

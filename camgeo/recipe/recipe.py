@@ -10,8 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from camgeo.cams.families import FAMILIES
 from camgeo.recipe.assembly import MECHANISM, MechanismAsked
-from camgeo.recipe.cam import CAM, CAMS, SWINGING, build_cam, check_cam
+from camgeo.recipe.cam import CAM, CAMS, build_cam, check_cam
 from camgeo.recipe.dynamics import DYNAMICS, Dynamics, check_train
 from camgeo.recipe.export import EXPORT, build_export, check_files
 from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     import collections.abc
     from pathlib import Path
 
-    from camgeo.recipe.cam import Cam
+    from camgeo.cams.family import Cam
     from camgeo.recipe.export import Export
     from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.part import Part
@@ -179,14 +180,13 @@ def read_values(reader: Reader) -> Values:
     dyads = entries(linkage).get("dyads") if isinstance(linkage, Mapping) else None
     if isinstance(dyads, Sequence) and dyads.items:
         last = kind_of(dyads.items[-1], DYADS)
-    if reader.kinds["cam"] in SWINGING:
-        reader.angular |= {Kind.ERROR}
+    if (family := FAMILIES.get(reader.kinds["cam"])) is not None:
+        own = ((Kind.ERROR, family.cam.unit), (Kind.PLAY, family.cam.play_unit))
+        reader.angular |= {kind for kind, unit in own if unit == "deg"}
     if last not in SLIDING:
         reader.angular |= {Kind.OUTPUT}
     if (Kind.OUTPUT if reader.kinds["linkage"] else Kind.ERROR) in reader.angular:
         reader.angular |= {Kind.MOTION}
-    if reader.kinds["cam"] == "flat-pair":
-        reader.angular |= {Kind.PLAY}
     values = {"mm": reader.mm, **reader.table(RECIPE, root, "")}
     _check(values, reader)
     return values

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, TypeAlias
 
-from camgeo.recipe.cam import CAMS, SWINGING
+from camgeo.cams.families import FAMILIES
+from camgeo.recipe.cam import CAMS
 from camgeo.recipe.linkage import LINKAGES
 from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.errors import suggestion
@@ -165,7 +166,7 @@ def _recipe(chosen: _Starter) -> Table:
     fields = (replace(item, table=kinds.get(item.name, item.table)) for item in RECIPE.fields)
     if linkage:
         return Table(tuple(fields))
-    unfit = {"dwell", "output_error", *(("linkage",) if chosen.kind in SWINGING else ())}
+    unfit = {"dwell", "output_error", *(() if "plate" in FAMILIES[chosen.kind].needs else ("linkage",))}
     return Table(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
 
 

@@ -94,23 +94,20 @@ def _pitch_radius(design: Design) -> Measured:
 
 def _hollow_radius(design: Design) -> Measured:
     from camgeo.curve.backwards import least_hollow
-    from camgeo.synthesis.design import shaft_deg
 
     if design.contour is None:
         return NO_CONTOUR
     radius, at = least_hollow(design.contour)
     if math.isinf(radius):
         return Measured(radius, "mm", detail="the contour has no hollow")
-    return Measured(radius, "mm", shaft_deg(design.intent, at))
+    return Measured(radius, "mm", design.position.shaft_deg(at))
 
 
 def _size(design: Design) -> Measured:
-    from camgeo.synthesis.design import shaft_deg
-
     if design.contour is None:
         return NO_CONTOUR
     value, at = farthest(design.contour)
-    return Measured(value, "mm", shaft_deg(design.intent, at))
+    return Measured(value, "mm", design.position.shaft_deg(at))
 
 
 def farthest(contour: Curve) -> tuple[float, float]:
@@ -145,18 +142,15 @@ _OF_CURVE: dict[str, Callable[[Design], Measured]] = {
 
 def _of_motion(design: Design, order: int) -> dict[str, Measured]:
     """Stroke or swing of the follower, and the greatest of its derivatives by the shaft angle up to an order."""
-    from kin.law.support_function import Lift
     from kin.numeric.monotone import RoughError, between, cells, pieces
 
-    intent = design.intent
-    if isinstance(intent, Lift):
-        unit, scale, rows = "mm", 1.0, lambda t: intent.derivatives(t, order)
-    else:
-        unit, scale = "deg", math.degrees(0.5 if design.follower == "flat pair" else 1.0)
-        rows = _by_shaft(design, order)
+    position = design.position
+    unit, scale = position.unit, position.shown(1.0)
     names = [name for name, k in _ORDERS.items() if k <= order]
     try:
-        made = cells(rows, between(0.0, TURN, intent.breaks.tolist()), share=_SHARE)
+        made = cells(
+            lambda t: position.by_parameter(t, order), between(0.0, TURN, design.intent.breaks.tolist()), share=_SHARE
+        )
     except RoughError:
         why = "the motion is too sudden to be followed"
         return {name: Measured(None, unit + FIGURES[name].per, detail=why) for name in names}
@@ -168,34 +162,8 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
             found[name] = Measured(scale * (high[0] - low[0]), unit)
             continue
         value, at = max(low, high, key=lambda place: abs(place[0]))
-        found[name] = Measured(scale * abs(value), unit + FIGURES[name].per, _shaft_deg(design, at % TURN))
+        found[name] = Measured(scale * abs(value), unit + FIGURES[name].per, position.shaft_deg(at % TURN))
     return found
-
-
-def _by_shaft(design: Design, order: int) -> Callable[[Array], Array]:
-    """Swing of a law and its derivatives by the shaft angle, (order + 1, n), at parameters of the law (n,)."""
-    from kin.law.transmission_law import Transmission
-    from kin.numeric.elementary import Jet
-
-    law = design.intent
-    if not isinstance(law, Transmission):
-        raise TypeError("a lift has no law of transmission")
-
-    def rows(tau: Array) -> Array:
-        shaft, psi = law.jets(Jet.variable(tau, order))
-        found = [psi.c[0]]
-        for k in range(1, order + 1):
-            psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1 - k])
-            found.append(psi.c[0])
-        return np.array(found)
-
-    return rows
-
-
-def _shaft_deg(design: Design, parameter: float) -> float:
-    from camgeo.synthesis.design import shaft_deg
-
-    return shaft_deg(design.intent, parameter)
 
 
 def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:

@@ -70,13 +70,8 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
 
 def _stroke(design: Design) -> tuple[float, float]:
     """Stroke in mm, or swing in rad and the arm in mm at which it is worked: 1 for a stroke."""
-    from kin.law.support_function import Lift
-
-    intent, t = design.intent, np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
-    t = np.sort(np.concatenate([t, intent.breaks]))
-    if isinstance(intent, Lift):
-        return float(np.ptp(intent.derivatives(t, 0)[0])), 1.0
-    return float(np.ptp(intent.at(t, 0)[1][0])) * (0.5 if design.follower == "flat pair" else 1.0), intent.arm
+    t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
+    return design.position.stroke(np.sort(np.concatenate([t, design.intent.breaks])))
 
 
 def _share(recipe: Recipe, name: str, asked: tuple[str, float], length: float) -> Remark | None:

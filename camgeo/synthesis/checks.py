@@ -3,97 +3,79 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from camgeo.cams.plates import SAME_BREADTH, breadth_of, spread
 from camgeo.checks.declared import BREADTH, CLOSING, FACE, PRESSURE, TRANSMISSION
 from kin.judge.check import Check
 from kin.law.feasibility import steepest
 from kin.numeric.angles import degrees
-from kin.numeric.distinct import distinct
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.synthesis.profile import Profile
+    from camgeo.cams.family import Intent, Profile
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
-LOOKS = 1440  # shaft angles at which smooth figures are looked at
-STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however short
 ZOOMS, ZOOM = 5, 32  # about the worst of these: so often, into so many parts
-SAME_BREADTH = 1e-9  # of the size: a breadth that varies by less is constant
 EXACT = 1e-9  # of the arm: to this the closing equation must hold
 
 
-def breadth_of(lift: Lift) -> tuple[float, float, float]:
-    """Mean breadth p(t) + p(t + pi) in mm, the greatest deviation from it, and where in radians."""
-    t = _angles(np.mod(lift.breaks, math.pi), math.pi)
-    p = lift.derivatives(np.concatenate([t, t + math.pi]), 0)[0]  # continuous: one side of a break will do
-    breadth = p[: len(t)] + p[len(t) :]
-    mean = 0.5 * float(breadth.max() + breadth.min())
-    worst = int(np.argmax(np.abs(breadth - mean)))
-    return mean, float(np.abs(breadth[worst] - mean)), float(t[worst])
+def motion_checks(intent: Intent, profile: Profile, names: tuple[str, ...]) -> list[Check]:
+    """Those of the intended motion's checks that a follower names, in that order."""
+    return [MADE[name](intent, profile) for name in names]
 
 
-def is_constant_breadth(lift: Lift) -> bool:
-    """Whether a yoke of two parallel faces fits the cam; else it works a single flat face."""
-    return is_constant(*breadth_of(lift)[:2])
+def _constant_breadth(intent: Intent, _: Profile) -> Check:
+    """Constancy of the breadth, for a yoke (AS eq. 4)."""
+    mean, deviation, at = breadth_of(cast("Lift", intent))
+    limit = SAME_BREADTH * abs(mean)
+    return Check(BREADTH.name, deviation <= limit, deviation, limit, "mm", degrees(at))
 
 
-def is_constant(mean: float, deviation: float) -> bool:
-    """Whether a breadth that deviates from its mean by so much is constant."""
-    return deviation <= SAME_BREADTH * abs(mean)
-
-
-def flat_face_checks(lift: Lift, breadth: tuple[float, float, float] | None) -> list[Check]:
-    """Constancy of the breadth (AS eq. 4, for a yoke) and the face's length: how far the contact travels along it.
-
-    `breadth` is what `breadth_of` gives, None where a single face follows.
-    """
-    checks = []
-    if breadth is not None:
-        mean, deviation, at = breadth
-        limit = SAME_BREADTH * abs(mean)
-        checks.append(Check(BREADTH.name, deviation <= limit, deviation, limit, "mm", degrees(at)))
-    t = _angles(lift.breaks, 2.0 * math.pi)
+def _face_length(intent: Intent, _: Profile) -> Check:
+    """How far the contact travels along a face."""
+    lift = cast("Lift", intent)
+    t = spread(lift.breaks, 2.0 * math.pi)
     low = _greatest(lambda u: -lift.derivatives(u, 1)[1], t)  # continuous too
     high = _greatest(lambda u: lift.derivatives(u, 1)[1], t)
-    checks.append(Check(FACE.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least"))
-    return checks
+    return Check(FACE.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 
 
-def transmission_checks(law: Transmission) -> list[Check]:
-    """That the second arm's end runs on the same curve (W 4.6, 7.1), and how near the cam is to turning back.
+def _closing_equation(intent: Intent, _: Profile) -> Check:
+    """That the second arm's end runs on the same curve (W 4.6, 7.1).
 
     Both arms' ends are held against each other at the same polar angle, t = phi - (psi + alpha)/2 of the first and
     phi - (psi - alpha)/2 of the second: over it |psi'| < 2, while over the shaft angle psi may rise as steeply as it
     likes, and rounding with it.
     """
-    tau = _angles(law.breaks, 2.0 * math.pi)
+    law = cast("Transmission", intent)
+    tau = spread(law.breaks, 2.0 * math.pi)
     phi, psi = law.at(tau, 0)
     image = law.at(law.polar_parameter(law.pitch(tau, 0)[1][0] + law.alpha), 0)[1][0]
     gap = law.arm * np.abs(image + psi[0])
     worst = int(np.argmax(gap))
-    closing = Check(
-        CLOSING.name,
-        bool(gap[worst] <= EXACT * law.arm),
-        float(gap[worst]),
-        EXACT * law.arm,
-        "mm",
-        degrees(float(phi[0, worst])),
-    )
+    limit, at = EXACT * law.arm, degrees(float(phi[0, worst]))
+    return Check(CLOSING.name, bool(gap[worst] <= limit), float(gap[worst]), limit, "mm", at)
+
+
+def _transmission(intent: Intent, _: Profile) -> Check:
+    """How near the cam is to turning back: psi' of the shaft angle stays below 1."""
+    law = cast("Transmission", intent)
     at, value = steepest(law)
-    return [closing, Check(TRANSMISSION.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))]
+    return Check(TRANSMISSION.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))
 
 
-def pressure_angle(profile: Profile, law: Transmission) -> Check:
+def _pressure_angle(intent: Intent, profile: Profile) -> Check:
     """Greatest angle between the contact normal and the direction in which a roller's arm lets it move, degrees.
 
     The same at both rollers, each of which runs once round the whole pitch curve. At 90 degrees the cam cannot drive.
     """
+    law = cast("Transmission", intent)
 
     def angle(t: Array) -> Array:
         at = profile.base.sample(t)
@@ -105,7 +87,7 @@ def pressure_angle(profile: Profile, law: Transmission) -> Check:
         found: Array = np.degrees(np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across))
         return found
 
-    value, at = _greatest(angle, _angles(law.breaks, 2.0 * math.pi))
+    value, at = _greatest(angle, spread(law.breaks, 2.0 * math.pi))
     return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
 
 
@@ -126,8 +108,11 @@ def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
     return value, at
 
 
-def _angles(breaks: Array, end: float) -> Array:
-    """Evenly spread parameters in [0, end) with the breaks among them, and some between any two breaks."""
-    inside = breaks[(breaks >= 0.0) & (breaks < end)]
-    between = np.linspace(inside[:-1], inside[1:], STRETCH_LOOKS + 1)[:-1].ravel()
-    return distinct(np.concatenate([np.linspace(0.0, end, LOOKS, endpoint=False), between, inside]))
+MADE: dict[str, Callable[[Intent, Profile], Check]] = {
+    BREADTH.name: _constant_breadth,
+    FACE.name: _face_length,
+    CLOSING.name: _closing_equation,
+    TRANSMISSION.name: _transmission,
+    PRESSURE.name: _pressure_angle,
+}
+"""How each check of an intended motion is made."""

@@ -10,27 +10,26 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from camgeo.checks.advice import larger, less_swing
 from camgeo.checks.declared import CURVATURE, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
-from camgeo.recipe.cam import ConstantBreadthCam, DoubleRollerCam, FlatPairCam
 from camgeo.recipe.linkage import output_slides
-from camgeo.synthesis.profile import Profile, intent_of, profile_of
 from kin.judge.check import Check
-from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.cams.family import Follower, Intent, Profile
+    from camgeo.cams.position import Position
     from camgeo.curve.curve import Curve
     from camgeo.curve.undercut.undercut import Undercut
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.linkage import Driven
     from camgeo.synthesis.part.body import Body
-    from kin.follower.follower import Follower
-    from kin.judge.verify import Intent, Limits
+    from kin.judge.verify import Intent as Judged
+    from kin.judge.verify import Limits
     from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
 
 
 @dataclass(frozen=True)
@@ -42,16 +41,21 @@ class Design:
     the faces of a pair stand beside the lines through its pivot, mm.
     """
 
-    intent: Lift | Transmission
+    intent: Intent
     profile: Profile
     contour: Curve | None
     checks: tuple[Check, ...]
-    follower: str
-    yoke_breadth: float | None
+    position: Position
+    follower: Follower
     trimmed: bool
     driven: Driven | None = None
     body: Body | None = None
     face: float = 0.0
+
+    @property
+    def yoke_breadth(self) -> float | None:
+        """How far the two parallel faces that hold the cam are apart, mm; None for other followers."""
+        return self.follower.breadth
 
 
 def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
@@ -62,24 +66,27 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     cam = recipe.cam
     with clock.stage("motion"):
         try:
-            intent = intent_of(cam)
+            intent = cam.intent()
         except IntentError as error:
             raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
         with clock.stage("profile"):
-            profile = profile_of(cam, intent)
+            profile = cam.profile(intent)
         with clock.stage("undercut"):
             checks, contour = sound(recipe, profile, intent)
     except CurveError as error:
         raise recipe.error("cam", _unproved(recipe, error, intent)) from error
     with clock.stage("figures"):
-        breadth, follower, more = _figures(recipe, intent, profile)
+        from camgeo.synthesis.checks import motion_checks
+
+        follower = cam.follower(intent, framed=recipe.linkage is not None)
+        more = motion_checks(intent, profile, follower.checks)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage
 
         with clock.stage("linkage"):
-            driven = linkage.driven(recipe, cast("Lift", intent), breadth)
+            driven = linkage.driven(recipe, cast("Lift", intent), follower.breadth)
         more += driven.checks
     body = None
     if contour is not None:
@@ -92,10 +99,10 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         if not all(check.ok for check in found):
             contour = body = None  # without its least walls there is no part to draw
     trimmed = contour is not None and not contour.closed
-    return Design(intent, profile, contour, (*checks, *more), follower, breadth, trimmed, driven, body)
+    return Design(intent, profile, contour, (*checks, *more), cam.position(intent), follower, trimmed, driven, body)
 
 
-def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tuple[list[Check], Curve | None]:
+def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check], Curve | None]:
     """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
     from camgeo.curve.curvature import enclosed_least_radius
     from camgeo.curve.undercut.causes import UndercutError
@@ -106,7 +113,8 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     least = enclosed_least_radius(profile.curve)
     radius = least.radius + profile.roller_radius
-    roomy, at_deg = radius > profile.roller_radius, shaft_deg(intent, least.at)
+    shaft_deg = recipe.cam.position(intent).shaft_deg
+    roomy, at_deg = radius > profile.roller_radius, shaft_deg(least.at)
     bent = Check(CURVATURE.name, roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
     if least.room and roomy:
         lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
@@ -115,7 +123,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
         found = undercuts(profile.curve)
     except UndercutError as error:
         kind = "global" if roomy else "local"
-        free = "" if error.free_at is None else f"; {_free(recipe, profile, error.free_at)}"
+        free = "" if error.free_at is None else f"; {recipe.cam.free_of_undercut(error.free_at, recipe.mm)}"
         return [bent, Check(of_kind[kind].name, False, None, 0.0, "mm", None, detail=f"{error}{free}")], None
     outcome, contour = "", None if found else profile.curve
     if trim and found:
@@ -130,7 +138,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
     free_at = (min if profile.roller_radius else max)((cut.free_at for cut in found), default=0.0)
-    free = _free(recipe, profile, free_at)
+    free = recipe.cam.free_of_undercut(free_at, recipe.mm)
     for kind in ("local", "global"):
         cuts = [cut for cut in found if cut.kind == kind]
         if kind == "global" and profile.roller_radius == 0.0 and not cuts:
@@ -139,40 +147,27 @@ def sound(recipe: Recipe, profile: Profile, intent: Lift | Transmission) -> tupl
             checks.append(Check(of_kind[kind].name, True, 0.0, 0.0, "mm"))
             continue
         worst = max(cuts, key=lambda cut: cut.depth)
-        detail = f"{_extent(profile, intent, worst)}; {free}{outcome}"
+        detail = f"{_extent(profile, shaft_deg, worst)}; {free}{outcome}"
         depth = worst.depth if math.isfinite(worst.depth) else None
-        ok, at_deg, limit = contour is not None, shaft_deg(intent, worst.at), None if cut_off else 0.0
+        ok, at_deg, limit = contour is not None, shaft_deg(worst.at), None if cut_off else 0.0
         checks.append(Check(of_kind[kind].name, ok, depth, limit, "mm", at_deg, detail=detail))
     return checks, contour
 
 
-def _extent(profile: Profile, intent: Lift | Transmission, cut: Undercut) -> str:
+def _extent(profile: Profile, shaft_deg: Callable[[float], float], cut: Undercut) -> str:
     """Say from where to where contact is lost, in shaft angles."""
     if cut.end - cut.start >= profile.curve.shape.period:
         return "all round"
-    return f"from {shaft_deg(intent, cut.start):.6g} to {shaft_deg(intent, cut.end):.6g} deg"
+    return f"from {shaft_deg(cut.start):.6g} to {shaft_deg(cut.end):.6g} deg"
 
 
-def _free(recipe: Recipe, profile: Profile, free_at: float) -> str:
-    """Say what would be free of undercut; `free_at` in mm."""
-    value = free_at / recipe.mm
-    if isinstance(recipe.cam, FlatPairCam):
-        # r + const closes no pair: there is no base radius to enlarge
-        return f"{less_swing(recipe.cam, recipe.mm)} would be free of it"
-    if profile.roller_radius and not value > 0.0:
-        return "no roller radius is proved to be free of it"
-    if profile.roller_radius:
-        return f"a roller radius below {downward(value)} would be free of it"
-    return f"{larger(recipe.cam, value)} would be free of it"
-
-
-def _unproved(recipe: Recipe, error: CurveError, intent: Lift | Transmission) -> str:
+def _unproved(recipe: Recipe, error: CurveError, intent: Intent) -> str:
     """Say what could not be proved of a curve, and what would do."""
     from camgeo.curve.undercut.bottleneck import OpenNeckError
 
     if not isinstance(error, OpenNeckError):
         return str(error)
-    first, second = (shaft_deg(intent, t) for t in error.pair)
+    first, second = map(recipe.cam.position(intent).shaft_deg, error.pair)
     most, least = error.most / recipe.mm, error.least / recipe.mm
     half = f"lies between {least:.9g} and {most:.9g}" if error.seen else f"is at least {least:.9g}"
     return (
@@ -188,30 +183,7 @@ def _trimmed(curve: Curve) -> Curve:
     return trimmed(curve)
 
 
-def shaft_deg(intent: Lift | Transmission, parameter: float) -> float:
-    """Shaft angle in degrees at which the follower touches the contour at a parameter of it."""
-    at = getattr(intent, "at", None)
-    return degrees(parameter if at is None else float(at(parameter, 0)[0][0, 0]))
-
-
-def _figures(recipe: Recipe, intent: Lift | Transmission, profile: Profile) -> tuple[float | None, str, list[Check]]:
-    """Breadth of the yoke if there is one, the follower's name, and the checks of the intended motion."""
-    from camgeo.synthesis.checks import breadth_of, flat_face_checks, is_constant, pressure_angle, transmission_checks
-
-    cam = recipe.cam
-    if isinstance(cam, DoubleRollerCam | FlatPairCam):
-        law = cast("Transmission", intent)  # the kind of cam decides the kind of intent
-        if isinstance(cam, FlatPairCam):
-            return None, "flat pair", transmission_checks(law)
-        return None, "double roller", [*transmission_checks(law), pressure_angle(profile, law)]
-    lift = cast("Lift", intent)
-    breadth = breadth_of(lift)
-    yoke = isinstance(cam, ConstantBreadthCam) or is_constant(*breadth[:2])
-    held = "square frame" if recipe.linkage is not None else "yoke" if yoke else "flat face"
-    return breadth[0] if yoke else None, held, flat_face_checks(lift, breadth if yoke else None)
-
-
-def _part(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> tuple[Body | None, list[Check]]:
+def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, list[Check]]:
     """The body of a part that has more than a bore, and the checks of the walls."""
     part = recipe.part
     if part.plain:
@@ -223,35 +195,33 @@ def _part(recipe: Recipe, contour: Curve, intent: Lift | Transmission) -> tuple[
         ok = wall > 0.0 if part.wall is None else wall >= part.wall
         told = "" if ok else "bore and contour" if wall > -0.5 * part.bore else "the shaft lies outside the contour"
         return None, [
-            Check(WALL.name, ok, wall, part.wall or 0.0, "mm", shaft_deg(intent, at), "at_least", detail=told)
+            Check(
+                WALL.name,
+                ok,
+                wall,
+                part.wall or 0.0,
+                "mm",
+                recipe.cam.position(intent).shaft_deg(at),
+                "at_least",
+                detail=told,
+            )
         ]
     from camgeo.synthesis.part.body import body_of
     from camgeo.synthesis.part.checks import part_checks
 
     body = body_of(part, contour)
-    return body, part_checks(body, contour, part.wall, lambda t: shaft_deg(intent, t))
+    return body, part_checks(body, contour, part.wall, recipe.cam.position(intent).shaft_deg)
 
 
-def intended(recipe: Recipe, design: Design) -> Intent:
+def intended(recipe: Recipe, design: Design) -> Judged:
     """What kin is told of the part: the follower with its law, and how the part is drawn."""
-    from kin.follower import follower
     from kin.judge.contour_checks import DwellAsked
     from kin.judge.verify import Intent
 
-    cam = recipe.cam
-    held: Follower
-    if isinstance(cam, DoubleRollerCam):
-        held = follower.DoubleRoller(cast("Transmission", design.intent), cam.roller_radius)
-    elif isinstance(cam, FlatPairCam):
-        held = follower.FlatPair(cast("Transmission", design.intent), design.face)
-    elif design.yoke_breadth is not None:
-        held = follower.Yoke(cast("Lift", design.intent), breadth=design.yoke_breadth)
-    else:
-        held = follower.FlatFace(cast("Lift", design.intent))
     driven, asked = design.driven, recipe.dwell
     turns = driven is not None and driven.turns
     intent = Intent(
-        follower=held,
+        follower=recipe.cam.judged(design.intent, design.yoke_breadth, design.face),
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,
@@ -275,6 +245,6 @@ def permitted(recipe: Recipe, tolerance: float) -> Limits:
     motion, output = recipe.verify.motion_error, recipe.verify.output_error
     if output is not None and recipe.linkage is not None and not output_slides(recipe.linkage):
         output = math.degrees(output)
-    if motion is not None and isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
+    if motion is not None and recipe.cam.unit == "deg":
         motion = math.degrees(motion)
     return Limits(tolerance, motion, output=output)

@@ -141,15 +141,14 @@ def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
     """What drives the follower, as intended or as a file's contour gives it."""
     from camgeo.synthesis.design import intended
     from kin.dynamics.excitation import METRE, Faces, OfMechanism, intended_faces, measured_faces
-    from kin.follower.follower import DoubleRoller, FlatPair
 
     if design.driven is not None:
         return Faces(OfMechanism(design.driven.mechanism), None)
     intent = intended(scene.recipe, design)
     play = scene.asked.play
     if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
-        held = intent.follower
-        play = play / held.transmission.arm if isinstance(held, DoubleRoller | FlatPair) else METRE * play
+        lever = scene.recipe.cam.play_lever
+        play = METRE * play if lever is None else play / lever
     if path is None:
         return intended_faces(intent.follower, play)
     return measured_faces(

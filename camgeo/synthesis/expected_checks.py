@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import EVERY, Scene
-from camgeo.recipe.cam import ConstantBreadthCam, SupportCam
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -41,12 +40,6 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
 
 
 def _in_a_yoke(recipe: Recipe) -> bool:
-    """Whether two parallel faces hold the cam. Builds the motion in any case: one that cannot be is told first."""
-    from camgeo.synthesis.checks import is_constant_breadth
-    from camgeo.synthesis.profile import intent_of
-    from kin.law.support_function import Lift
-
-    intent = intent_of(recipe.cam)
-    if isinstance(recipe.cam, ConstantBreadthCam):
-        return True
-    return isinstance(recipe.cam, SupportCam) and isinstance(intent, Lift) and is_constant_breadth(intent)
+    """Whether two parallel faces hold the cam; the motion is built, so that one that cannot be is reported first."""
+    framed = recipe.linkage is not None
+    return recipe.cam.follower(recipe.cam.intent(), framed=framed).breadth is not None

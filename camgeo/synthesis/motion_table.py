@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
-
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -27,14 +24,8 @@ def motion_table(recipe: Recipe, intent: Lift | Transmission) -> tuple[tuple[str
     """
     count = recipe.verify.angles
     phi = np.linspace(0.0, 2.0 * np.pi, count + 1)
-    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
-        law = cast("Transmission", intent)  # the kind of cam decides the kind of intent
-        rows = np.concatenate([law.psi_of_shaft(phi[:-1], ORDER), law.psi_of_shaft(phi[-1:], ORDER, -1)], axis=1)
-        name, scale = "follower_deg", math.degrees(0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0)
-    else:
-        lift = cast("Lift", intent)
-        rows = np.concatenate([lift.derivatives(phi[:-1], ORDER), lift.derivatives(phi[-1:], ORDER, -1)], axis=1)
-        rows[0] -= lift.datum
-        name, scale = ("lift_in" if recipe.units == "inch" else "lift_mm"), 1.0 / recipe.mm
+    position = recipe.cam.position(intent)
+    rows = position.turn(phi, ORDER)
+    name, scale = position.column(recipe.units), position.shown(recipe.mm)
     table = np.column_stack([np.linspace(0.0, 360.0, count + 1), *(rows * scale)])
     return ("shaft_deg", name, "velocity", "acceleration", "jerk"), table

@@ -28,7 +28,6 @@ from camgeo.report.limits import limit_checks
 from camgeo.sweep.search.figures import REASONS, asked_of, evaluate
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
-from camgeo.synthesis.profile import intent_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -136,7 +135,7 @@ def test_what_a_figure_is_against_the_motion_itself() -> None:
     limits = wide(FLAT)
     values = {check["name"].removeprefix(LIMIT): check for check in held(FLAT, limits)}
     t = np.linspace(0, 2 * math.pi, 100_001)
-    p = intent_of(loaded(FLAT).cam).derivatives(t, 3)
+    p = loaded(FLAT).cam.intent().derivatives(t, 3)
     wanted = {
         "swing": np.ptp(p[0]),
         "peak-velocity": np.abs(p[1]).max(),
@@ -175,7 +174,7 @@ def test_a_roller_s_motion_is_that_of_the_table() -> None:
     from camgeo.synthesis.motion_table import motion_table
 
     recipe = loaded(ROLLER.replace("angles: 120", "angles: 20000"))
-    _, table = motion_table(recipe, intent_of(recipe.cam))
+    _, table = motion_table(recipe, recipe.cam.intent())
     said = (
         "{swing: {at_most: 1}, peak-velocity: {at_most: 1}, peak-acceleration: {at_most: 1}, peak-jerk: {at_most: 1}}"
     )
@@ -396,7 +395,7 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
     recipe = loaded(text)
     design = designed(recipe)
     t = np.linspace(0, 2 * math.pi, 20_001)
-    p = intent_of(recipe.cam).derivatives(t, 3)
+    p = recipe.cam.intent().derivatives(t, 3)
     peaks = np.abs(p[1:]).max(axis=1)
     wanted = [np.ptp(p[0]), *peaks, np.ptp(p[1]), (p[0] + p[2]).min(), np.hypot(p[0], p[1]).max()]
     figures = of_design(design, design.checks, names)

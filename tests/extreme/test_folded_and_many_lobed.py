@@ -19,7 +19,6 @@ from camgeo.curve.undercut.trim import remains
 from camgeo.curve.undercut.undercut import undercuts
 from camgeo.curve.wunderlich import PitchShape
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.profile import intent_of, profile_of
 from kin.contour.contour import Contour
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.roller import DoubleRoller
@@ -121,7 +120,7 @@ def undercut_by_small_rise(radius):
     """A rise of a thousandth of a degree in a hundredth, on rollers that pass over it: where contact is lost."""
     cam, _ = to_and_fro("double-roller", "7/5", 1e-3, 0.01, f"roller_radius: {radius}")
     with in_time(20):
-        curve = profile_of(asked := recipe(cam, files=ARCS).cam, intent_of(asked)).curve
+        curve = (asked := recipe(cam, files=ARCS).cam).profile(asked.intent()).curve
         lost = remains(curve, causes(curve)).lost
     corners = np.concatenate([one.corners for one in lost])
     ends = PitchCurve.of(curve).at(np.array([[one.start, one.end] for one in lost]).ravel()).point

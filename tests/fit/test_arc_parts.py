@@ -10,12 +10,11 @@ from camgeo.fit.arcs import FLOOR, fit_arcs
 from camgeo.fit.nodes import rounding
 from camgeo.fit.parts import CONSTANT, Part, refined
 from camgeo.recipe.load import load
-from camgeo.synthesis.profile import intent_of, profile_of
 
 
 def curve_of(name):
     cam = load(RECIPES / f"{name}.yaml").cam
-    return profile_of(cam, intent_of(cam)).curve
+    return cam.profile(cam.intent()).curve
 
 
 class Counted:

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from camgeo.cams.family import Profile
 from camgeo.curve.curve import Curve
 from camgeo.curve.wunderlich import PitchShape
 from camgeo.synthesis.checks import pressure_angle, transmission_checks
-from camgeo.synthesis.profile import Profile
 from kin.law.programme import Segment, law, programme
 from kin.law.transmission import from_delta, from_law
 

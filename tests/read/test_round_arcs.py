@@ -5,7 +5,6 @@ import pytest
 
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.load import load_text
-from camgeo.synthesis.profile import intent_of, profile_of
 from kin.contour.contour import Contour
 
 LAW = "[{rise: 1, over: 30, law: modified-sine}, {dwell: 30}, {return: 1, over: 30, law: cycloidal}]"
@@ -21,7 +20,7 @@ DISCS = [
 
 def curve_of(cam):
     cam = load_text(f"cam: {{kind: {cam}}}\nexport: {{files: [dxf]}}\n", "cam.yaml").cam
-    return profile_of(cam, intent_of(cam)).curve
+    return cam.profile(cam.intent()).curve
 
 
 def turned(arcs):

@@ -16,30 +16,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.places import SHIPPED
 
+from camgeo.cams.constant_breadth import ConstantBreadthCam
+from camgeo.cams.double_roller import DoubleRollerCam
+from camgeo.cams.flat_pair import FlatPairCam
+from camgeo.cams.motion import MotionSegment, SccaLaw
+from camgeo.cams.pairs import ArcRoute, DeltaRoute, LawRoute, RosetteRoute
+from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, ReuleauxShape, SupportCam
 from camgeo.recipe import Recipe, RecipeErrors, load, read
-from camgeo.recipe.cam import (
-    ArcRoute,
-    ConstantBreadthCam,
-    DeltaRoute,
-    DoubleRollerCam,
-    FlatPairCam,
-    FormulaShape,
-    FourierShape,
-    HypocycloidShape,
-    LawRoute,
-    ReuleauxShape,
-    RosetteRoute,
-    SupportCam,
-)
 from camgeo.recipe.export import Export, FileRequest
 from camgeo.recipe.machining import Compensation, Manufacture
-from camgeo.recipe.motion import MotionSegment, SccaLaw
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import RECIPE, Verify
 from camgeo.recipe.schema.json_schema import json_schema
 from camgeo.recipe.schema.scalars import Complaint, read_number
 from camgeo.recipe.starter import KINDS, starter
-from camgeo.synthesis.profile import intent_of, profile_of
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named as named_law
 from kin.law.sources.programme import Dwell, Matched, RiseAndFall, State
@@ -431,8 +421,8 @@ FIGURES = {
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> None:
     recipe = load(path)
-    intent = intent_of(recipe.cam)
-    assert profile_of(recipe.cam, intent).curve is not None
+    intent = recipe.cam.intent()
+    assert recipe.cam.profile(intent).curve is not None
     bore = (recipe.part.bore or 0) / 2
     if isinstance(intent, Lift):
         theta = np.linspace(0, 2 * np.pi, 7201)
@@ -472,7 +462,7 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
 def test_a_starter_is_a_cam_as_it_stands(kind: str) -> None:
     recipe = text(starter(kind))
     assert recipe.cam is not None
-    assert intent_of(recipe.cam) is not None
+    assert recipe.cam.intent() is not None
     assert {file.kind for file in recipe.export.files} == {"dxf", "svg", "stl", "csv", "html"}
 
 

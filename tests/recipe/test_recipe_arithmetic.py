@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from camgeo.recipe.cam import ConstantBreadthCam
+from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.recipe.load import load_text
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 from support.places import RECIPES
 
+from camgeo.cams.plates import breadth_of
 from camgeo.recipe.load import load, load_text
 from camgeo.sweep.search import refine
 from camgeo.sweep.search.ask import Ask
 from camgeo.sweep.search.figures import evaluate
 from camgeo.sweep.search.refine import polish
-from camgeo.synthesis.checks import breadth_of
 from camgeo.synthesis.linkage import mechanism_of
-from camgeo.synthesis.profile import intent_of
 
 pytest.importorskip("scipy")
 
@@ -128,7 +127,7 @@ def test_designs_made_one_by_one(monkeypatch):
 
 
 def exact(recipe):
-    lift = intent_of(recipe.cam)
+    lift = recipe.cam.intent()
     mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])
     both = (mechanism.dwells(math.radians(0.1), over)[0].length for over in ("shaft", "relative"))
     return mechanism, [math.degrees(length) for length in both]

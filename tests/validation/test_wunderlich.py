@@ -13,7 +13,6 @@ from ledger import Row
 
 from camgeo.recipe import RecipeErrors, read
 from camgeo.synthesis.design import designed, intended
-from camgeo.synthesis.profile import intent_of
 from kin.law.programme import IntentError
 
 PI = np.pi
@@ -105,7 +104,7 @@ def turns(ratio, share):
     route = f"delta: {{cos: {{1: {share * ARM**2!r}}}}}"
     cam = f"{{kind: double-roller, ratio: {ratio}, arm: {ARM}, roller_radius: 1, {route}}}"
     try:
-        intent_of(read(f"cam: {cam}\n".encode(), "law.yaml").cam)
+        read(f"cam: {cam}\n".encode(), "law.yaml").cam.intent()
     except IntentError:
         return False
     return True

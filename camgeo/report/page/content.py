@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
 from camgeo.curve.ring import Ring, disc
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from camgeo.report.page import curves, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, flat, flat_pair
-from camgeo.report.page.scene import Scene, Shape, pivot
+from camgeo.report.page.scene import Body, Scene, Shape, pivot
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from camgeo.recipe.recipe import Recipe
@@ -103,20 +102,6 @@ def _mechanism(
     note = "" if design.contour is not None else "No such cam is made: a check of the exact contour fails."
     on_it = _on_face(design)
     disk = cam(drawn, bore, size, -SHAFT, on_it)
-    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
-        law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
-        if isinstance(recipe.cam, DoubleRollerCam):
-            bodies, angles = double_roller(law, recipe.cam.roller_radius, size)
-            more = curves.pressure(angles)
-        else:
-            bodies, lever = flat_pair(law, size)
-            more = curves.levers(recipe, lever)
-        return (
-            Scene((disk, pivot("shaft", 0.0, 0.0, size, "O"), *bodies), note),
-            [*curves.motion(recipe, design), more],
-            SHAFT,
-        )
-    lift = cast("Lift", design.intent)
     if design.driven is not None and design.driven.turns:
         from camgeo.report.page.linked import Driven, linked
 
@@ -132,5 +117,37 @@ def _mechanism(
         where = "; ".join(check.detail for check in design.driven.checks if not check.ok and check.detail)
         slides = "The mechanism does not turn right round: the cam is shown in a frame that only slides. "
         note = f"{slides}{where[0].upper()}{where[1:]}. {note}" if where else slides + note
-    bodies = flat(lift, design.yoke_breadth, reach, size)
-    return Scene((disk, pivot("shaft", 0.0, 0.0, size), *bodies), note), curves.motion(recipe, design), SHAFT
+    drawn_as = DRAWN[design.follower.name]
+    bodies, more = drawn_as.bodies(recipe, design, reach, size)
+    shaft = pivot("shaft", 0.0, 0.0, size, drawn_as.letter)
+    return Scene((disk, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
+
+
+class _Drawn(NamedTuple):
+    """How a follower is drawn: its bodies with the plots they give, and the letter at the shaft."""
+
+    bodies: Callable[[Recipe, Design, float, float], tuple[list[Body], list[curves.Plot]]]
+    letter: str
+
+
+def _faces(_: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    return flat(cast("Lift", design.intent), design.yoke_breadth, reach, size), []
+
+
+def _two_rollers(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    bodies, angles = double_roller(cast("Transmission", design.intent), recipe.cam.touch_radius, size)
+    return bodies, [curves.pressure(angles)]
+
+
+def _two_faces(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    bodies, lever = flat_pair(cast("Transmission", design.intent), size)
+    return bodies, [curves.levers(recipe, lever)]
+
+
+DRAWN: dict[str, _Drawn] = {
+    "flat face": _Drawn(_faces, ""),
+    "yoke": _Drawn(_faces, ""),
+    "square frame": _Drawn(_faces, ""),  # of a linkage that does not turn right round
+    "double roller": _Drawn(_two_rollers, "O"),
+    "flat pair": _Drawn(_two_faces, "O"),
+}

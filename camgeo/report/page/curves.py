@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from camgeo.checks.declared import CURVATURE
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from camgeo.report.page.followers import SHAFT
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
     from camgeo.report.page.outline import Exact
     from camgeo.synthesis.design import Design
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
 ORDER = 3
@@ -70,16 +65,9 @@ def derivatives(title: str, unit: str, rows: Array) -> list[Plot]:
 
 def motion(recipe: Recipe, design: Design) -> list[Plot]:
     """Return plots of the follower's motion: what the motion table holds, at the page's steps."""
-    head, last = SHAFT[:-1], SHAFT[-1:]
-    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
-        law = cast("Transmission", design.intent)  # the kind of cam decides the kind of intent
-        rows = np.concatenate([law.psi_of_shaft(head, ORDER), law.psi_of_shaft(last, ORDER, -1)], axis=1)
-        scale = DEGREES * (0.5 if isinstance(recipe.cam, FlatPairCam) else 1.0)
-        return derivatives("Swing", "°", scale * rows)
-    lift = cast("Lift", design.intent)
-    rows = np.concatenate([lift.derivatives(head, ORDER), lift.derivatives(last, ORDER, -1)], axis=1)
-    rows[0] -= lift.datum
-    return derivatives("Lift", length_unit(recipe), rows / recipe.mm)
+    position = design.position
+    unit = "°" if position.unit == "deg" else length_unit(recipe)
+    return derivatives(position.title.capitalize(), unit, position.turn(SHAFT, ORDER) * position.shown(recipe.mm))
 
 
 def output(recipe: Recipe, driven: Driven) -> list[Plot]:
@@ -149,17 +137,7 @@ def rests(recipe: Recipe, design: Design) -> list[Rest]:
         dwells_of = design.driven.dwells.get("shaft", ())
         counted = [dwell for dwell in dwells_of if dwell.length >= COUNTS * dwells_of[0].length]
         return [_rest(dwell.start, dwell.start + dwell.length, band) for dwell in counted]
-    found: Sequence[tuple[float, float]]
-    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
-        from kin.follower.flat import dwell_angles
-
-        ends = dwell_angles(cast("Transmission", design.intent), np.empty(0))
-        found = [(float(pair[0]), float(pair[-1])) for pair in ends]
-    else:
-        from kin.follower.flat import dwells
-
-        found = list(dwells(cast("Lift", design.intent)))
-    return [_rest(begin, end, "") for begin, end in found]
+    return [_rest(begin, end, "") for begin, end in design.position.dwells()]
 
 
 def _rest(begin: float, end: float, band: str) -> Rest:

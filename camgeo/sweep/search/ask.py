@@ -7,7 +7,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam, cam_kind
 from camgeo.recipe.export import Export
 from camgeo.recipe.figures import FACE_LENGTH, HOLLOW_RADIUS, PEAKS
 from camgeo.recipe.linkage import output_slides
@@ -104,7 +103,7 @@ class Ask:
     def units(self, figures: Iterable[str]) -> dict[str, Unit]:
         """Unit of each figure, lengths in that of the recipe."""
         length = Unit(_LENGTH[self.recipe.units], self.recipe.mm)
-        linkage, swings = self.recipe.linkage, isinstance(self.recipe.cam, DoubleRollerCam | FlatPairCam)
+        linkage, swings = self.recipe.linkage, self.recipe.cam.unit == "deg"
         slides = not swings if linkage is None else output_slides(linkage)
         by_kind = {
             Kind.ANGLE: Unit("deg"),
@@ -121,7 +120,7 @@ class Ask:
     def axis_unit(self, path: str) -> str:
         """Unit in which the recipe writes a field that is varied; empty for a plain number."""
         linkage = "" if self.recipe.linkage is None else self.recipe.linkage.kind
-        field = field_at(RECIPE, path, {"cam": cam_kind(self.recipe.cam), "linkage": linkage})
+        field = field_at(RECIPE, path, {"cam": self.recipe.cam.kind, "linkage": linkage})
         length = _LENGTH[self.recipe.units]
         if field is None:
             return ""

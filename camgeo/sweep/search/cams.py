@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.recipe.cam import FourierShape, HypocycloidShape, SupportCam
+from camgeo.cams.plates import is_constant_breadth
 from camgeo.recipe.load import load_text
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.sweep.search.ends import least
 from camgeo.sweep.search.linkages import Support, angles
-from camgeo.synthesis.checks import is_constant_breadth
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,17 +68,15 @@ class Cams:
     def of(recipe: Recipe, paths: Sequence[str], count: int) -> Cams:
         """Sort the fields that vary; `paths` are those of all columns, `count` is that of the angles."""
         cam, mm = recipe.cam, recipe.mm
-        place = cam.pivot if isinstance(cam, SupportCam) else (0.0, 0.0)
+        place = cam.shaft_at
         columns = {path: column for column, path in enumerate(paths) if path.startswith("cam.")}
         pivot = tuple((columns.pop(f"cam.pivot[{i}]", None), place[i]) for i in (0, 1))
         terms = []
-        shape = cam.shape if isinstance(cam, SupportCam) else None
-        if isinstance(shape, FourierShape | HypocycloidShape):
-            for path in list(columns):
-                found = _term(shape, path)
-                if found is not None:
-                    order, is_sine, scale = found
-                    terms.append((order, is_sine, columns.pop(path), scale * mm))
+        for path in list(columns):
+            found = cam.harmonic(path)
+            if found is not None:
+                order, is_sine, scale = found
+                terms.append((order, is_sine, columns.pop(path), scale * mm))
         others = tuple(columns.values())
         if others:  # whatever else varies with them is part of the same cam
             others, terms = tuple(sorted({*others, *(term[2] for term in terms)})), []
@@ -158,51 +155,27 @@ class Cams:
         )
 
 
-def _term(shape: FourierShape | HypocycloidShape, path: str) -> tuple[int, bool, float] | None:
-    """Order, kind and scale of the harmonic whose size stands at a path."""
-    if isinstance(shape, HypocycloidShape):
-        return {"cam.hypocycloid.size": (shape.cusps, False, 1.0), "cam.hypocycloid.breadth": (0, False, 0.5)}.get(path)
-    if path == "cam.fourier.mean":
-        return 0, False, 1.0
-    kind, _, order = path.removeprefix("cam.fourier.").partition(".")
-    return (int(order), kind == "sin", 1.0) if kind in {"cos", "sin"} and order.isdigit() else None
-
-
 def _silent(recipe: Recipe, terms: Sequence[tuple[int, bool, int, float]]) -> Recipe:
     """The recipe without the harmonics that vary, but for the mean radius."""
-    cam = recipe.cam
-    if not terms or not isinstance(cam, SupportCam):
+    if not terms:
         return recipe
-    shape = cam.shape
-    orders = {(order, is_sine) for order, is_sine, _, _ in terms}
-    if isinstance(shape, FourierShape):
-        shape = FourierShape(
-            shape.mean,
-            tuple((k, 0.0 if (k, False) in orders else a) for k, a in shape.cos),
-            tuple((k, 0.0 if (k, True) in orders else a) for k, a in shape.sin),
-        )
-    elif isinstance(shape, HypocycloidShape):
-        shape = replace(shape, size=0.0 if (shape.cusps, False) in orders else shape.size)
-    return replace(recipe, cam=replace(cam, shape=shape))
+    return replace(recipe, cam=recipe.cam.silent({(order, is_sine) for order, is_sine, _, _ in terms}))
 
 
 def _base(recipe: Recipe, count: int) -> _Base:
     """Sample the cam of a recipe about the origin of its axes. An intent that does not exist is a fault."""
     from camgeo.curve.curvature import least_radius
     from camgeo.curve.curve import CurveError
-    from camgeo.synthesis.profile import intent_of, profile_of
     from kin.law.programme import IntentError
     from kin.law.support_function import Lift
 
-    cam = recipe.cam
-    if isinstance(cam, SupportCam):
-        cam = replace(cam, pivot=(0.0, 0.0))
+    cam = recipe.cam.about_origin()
     nothing = _Base(np.nan, np.nan, np.full((3, count), np.nan), smooth=False, fault=IMPOSSIBLE)
     try:
-        lift = intent_of(cam)
+        lift = cam.intent()
         if not isinstance(lift, Lift):
             return nothing
-        radius, _ = least_radius(profile_of(cam, lift).curve)
+        radius, _ = least_radius(cam.profile(lift).curve)
     except (IntentError, CurveError):
         return nothing
     fault = FINE if is_constant_breadth(lift) else IMPOSSIBLE
@@ -210,6 +183,6 @@ def _base(recipe: Recipe, count: int) -> _Base:
 
 
 def _breadth(lift: Lift) -> float:
-    from camgeo.synthesis.checks import breadth_of
+    from camgeo.cams.plates import breadth_of
 
     return breadth_of(lift)[0]

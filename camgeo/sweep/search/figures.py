@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.recipe.cam import cam_kind
 from camgeo.recipe.figures import DWELL, FACE_LENGTH, RADIUS, SIZE, there
 from camgeo.recipe.linkage import FourBarLinkage, InvertedSliderCrankLinkage, output_slides
 from camgeo.recipe.schema.edit import with_values
@@ -81,7 +80,7 @@ def compute(recipe: Recipe, values: Array) -> dict[str, Array]:
 def asked_of(recipe: Recipe) -> tuple[str, ...]:
     """Names of the figures that a recipe's designs have."""
     given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
-    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, cam_kind(recipe.cam), given))
+    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.kind, given))
 
 
 def evaluate(

@@ -96,14 +96,13 @@ def chains(recipe: Recipe, paths: Sequence[str], values: Array, count: int) -> t
 
 def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
     """Fill in the rows (n,) of one mechanism, and return its least margin: -inf where it binds."""
-    from camgeo.synthesis.checks import breadth_of
+    from camgeo.cams.plates import breadth_of
     from camgeo.synthesis.linkage import mechanism_of
-    from camgeo.synthesis.profile import intent_of
     from kin.linkage.loop import BindingError
     from kin.linkage.transmission_angle import force, transmission
     from kin.numeric.elementary import Jet
 
-    lift = intent_of(recipe.cam)
+    lift = recipe.cam.intent()
     if not isinstance(lift, Lift):
         raise TypeError("a linkage is driven by the lift of a frame")
     mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])

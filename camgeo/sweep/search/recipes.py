@@ -97,9 +97,7 @@ def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
     In degrees or the recipe's units. Raises PlaceError for a linkage that does not turn, TypeError for one on a cam
     without a lift, which no recipe has, and IntentError as the intent does.
     """
-    from camgeo.synthesis.profile import intent_of
-
-    intent = intent_of(recipe.cam)
+    intent = recipe.cam.intent()
     if recipe.linkage is None:
         from camgeo.synthesis.motion_table import motion_table
 

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.checks.declared import CURVATURE, PRESSURE, REVERSAL, WALL
-from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from camgeo.synthesis.design import intended
-from kin.law.feasibility import steepest
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.law.transmission import Transmission
 
 LOOKS = 1440  # parameters over the turn at which smooth figures are looked at
 SMALL = 1e-7  # mm: an error of the profile that stands for the limit of small ones
@@ -41,8 +38,7 @@ class Margin:
 def margins(recipe: Recipe, design: Design) -> list[Margin]:
     """Everything that applies to the scene, in mm and degrees."""
     found = _undercut(design)
-    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
-        found += _swinging(recipe.cam, cast("Transmission", design.intent))
+    found += [Margin(*margin) for margin in recipe.cam.margins(design.intent)]
     for check in design.checks:
         if check.name == PRESSURE.name and check.value is not None:
             found.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", "the cam cannot drive the roller"))
@@ -63,22 +59,6 @@ def _undercut(design: Design) -> list[Margin]:
     found = [Margin("undercut", check.value - roller, "mm", f"{what} (least radius of curvature)")]
     base = roller or design.profile.curve.size
     return [*found, Margin("undercut-relative", (check.value - roller) / base, "", f"{what}, as a part of the size")]
-
-
-def _swinging(cam: DoubleRollerCam | FlatPairCam, law: Transmission) -> list[Margin]:
-    tau = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
-    tau = np.sort(np.concatenate([tau, law.breaks]))
-    psi = law.at(tau, 0)[1]
-    rate = steepest(law)[1]
-    widest = float(np.abs(psi[0]).max())
-    turning = [Margin("turning-through", 1.0 - rate, "", "the cam cannot be turned through: psi' = 1")]
-    # D = -l^2 sin psi under the roots of the analytic route
-    edge = Margin("square-root", math.degrees(0.5 * math.pi - widest), "deg", "D reaches l^2: psi = 90 degrees")
-    reach = float(np.cos(0.5 * (psi[0] + law.alpha)).min())
-    shaft = Margin("shaft", 2.0 * cam.arm * reach, "mm", "the pitch curve reaches the shaft: r = 0")
-    pivot = float(1.0 - np.cos(0.5 * (psi[0] + law.alpha)).max())
-    stretched = Margin("stretched", 2.0 * cam.arm * pivot, "mm", "the arm is stretched: r = 2 l")
-    return [*turning, edge, shaft, stretched]
 
 
 def _linkage(design: Design) -> list[Margin]:

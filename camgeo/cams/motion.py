@@ -12,6 +12,8 @@ from camgeo.recipe.schema.json_schema import table_schema
 from camgeo.recipe.schema.yaml_source import Scalar, join
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import kin.law.programme
     from camgeo.recipe.schema.fields import Schema
     from camgeo.recipe.schema.reader import Reader, Values
@@ -250,3 +252,13 @@ def check_filled(segments: list[Values], path: str, angle: float, wanted: str, r
         more = why if covered > angle else "an angle may be a fraction such as 180/7"
         remedy = f"let them cover {wanted}; {more}"
         reader.fault_at(path, "the segments do not fill their angle", value, remedy)
+
+
+def programme_of(
+    segments: Sequence[MotionSegment], total: float, field: str, around: int | None = None
+) -> kin.law.programme.Programme:
+    """Join segments to a motion over an angle (rad); raises kin's IntentError with the field of what does not fit."""
+    from kin.law.sources.programme import programme
+
+    steps = [segment.step(f"{field}[{i}]") for i, segment in enumerate(segments)]
+    return programme(steps, total, around=around, field=field)

@@ -1,0 +1,117 @@
+"""Single-disk cams that work two rollers on one oscillating arm (Wunderlich 1984, sections 2 to 4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, Literal, cast
+
+from camgeo.cams.family import (
+    Cam,
+    Circle,
+    Family,
+    Follower,
+    GrownError,
+    Intent,
+    Oscillating,
+    Profile,
+    Roller,
+    Undercut,
+)
+from camgeo.cams.pairs import PairCam, Route, build_route, check, pair_table
+from camgeo.cams.position import Position, SwingPosition
+from camgeo.common.rounding import downward
+from camgeo.curve.curve import Curve
+from camgeo.curve.parallel import Parallel
+from camgeo.recipe.schema.fields import length
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.reader import Values
+    from kin.follower.follower import Follower as Judged
+    from kin.law.transmission import Transmission
+
+
+@dataclass(frozen=True)
+class DoubleRollerCam(PairCam):
+    """A single disk that works two rollers on one arm (Wunderlich); pi/alpha = lam/mu in lowest terms, mu odd."""
+
+    kind: ClassVar[str] = "double-roller"
+    swing_of: ClassVar[Literal["arm", "pair"]] = "arm"
+    lam: int
+    mu: int
+    arm: float
+    roller_radius: float
+    route: Route
+    undercut: Undercut
+
+    @property
+    def touch_radius(self) -> float:
+        """Radius of both rollers, mm."""
+        return self.roller_radius
+
+    def position(self, intent: Intent) -> Position:
+        """The swing psi of the first arm."""
+        return SwingPosition(cast("Transmission", intent))
+
+    def profile(self, intent: Intent) -> Profile:
+        """The pitch curve (W section 4), and the contour within it by the roller's radius."""
+        from camgeo.curve.wunderlich import PitchShape
+        from kin.law.transmission import Transmission
+
+        if not isinstance(intent, Transmission):
+            raise TypeError("a lift is no motion of a double follower")
+        pitch = PitchShape(intent)
+        return Profile(Curve.whole(pitch), Curve.whole(Parallel(pitch, self.roller_radius)), self.roller_radius)
+
+    def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
+        """Two rollers on one arm, its pivot as far from the shaft as from them."""
+        touches = (Roller(self.roller_radius), Roller(self.roller_radius))
+        checks = ("closing-equation", "transmission", "pressure-angle")
+        return Follower("double roller", Oscillating(self.arm, self.arm), touches, checks)
+
+    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
+        """A double roller."""
+        from kin.follower import follower
+
+        return follower.DoubleRoller(cast("Transmission", intent), self.roller_radius)
+
+    def free_of_undercut(self, free_at: float, mm: float) -> str:
+        """A smaller roller."""
+        if not free_at / mm > 0.0:
+            return "no roller radius is proved to be free of it"
+        return f"a roller radius below {downward(free_at / mm)} would be free of it"
+
+    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
+        """A smaller roller."""
+        return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
+
+    @property
+    def least_pressure_angle(self) -> float:
+        """Without a swing the normal points to the shaft; the arm is at alpha/2 to it, alpha = 180 mu/lambda."""
+        return 90.0 * (1.0 - self.mu / self.lam)
+
+    def circles(self) -> tuple[Circle, ...]:
+        """The prime circle, and the pivot's."""
+        return (Circle("prime circle"), Circle("pivot circle", self.arm))
+
+    def grown(self, out: float, scale: float) -> Cam:
+        """A smaller roller on the same pitch curve."""
+        if not self.roller_radius > out:
+            raise GrownError("the roller's radius", self.roller_radius)
+        return replace(self, arm=scale * self.arm, roller_radius=scale * (self.roller_radius - out))
+
+
+TABLE = pair_table(
+    "swing psi of the follower, over 180/lambda degrees of shaft angle from psi = 0",
+    (length("roller_radius", "radius of both rollers", required=True),),
+)
+
+
+def build(cam: Values, mm: float) -> Cam:
+    """Make the cam of values in which there is no fault."""
+    lam, mu = cam["ratio"]
+    return DoubleRollerCam(
+        lam, mu, cam["arm"], cam["roller_radius"], build_route(cam, mm), cam.get("undercut", "refuse")
+    )
+
+
+FAMILY = Family(DoubleRollerCam, TABLE, build, check, frozenset({"roller", "swings"}))

@@ -1,0 +1,197 @@
+"""What Wunderlich's single-disk cams have in common: the routes to their law, and how such a law may fail (W 1984)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, cast
+
+import numpy as np
+
+from camgeo.cams.family import (
+    UNDERCUT,
+    Cam,
+    Harmonics,
+    Intent,
+    Margin,
+    Unit,
+)
+from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
+from camgeo.recipe.schema.fields import Field, Kind, Table, length, mapping
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.reader import Reader, Values
+    from kin.law.transmission import Transmission
+
+LOOKS = 1440  # parameters of a law at which its margins are looked at
+_OTHER_PARTS = "both sides of the follower touch the cam at once, so the motion after that follows"
+
+
+@dataclass(frozen=True)
+class DeltaRoute:
+    """D(t) = sum over odd j of cos[j] cos(j lambda t) + sin[j] sin(j lambda t), in mm^2 (Wunderlich 6.5)."""
+
+    cos: Harmonics
+    sin: Harmonics
+
+
+@dataclass(frozen=True)
+class LawRoute:
+    """The follower's swing over delta = pi/lambda of shaft angle; of a flat pair the swing is psi/2."""
+
+    motion: tuple[MotionSegment, ...]
+
+
+@dataclass(frozen=True)
+class ArcRoute:
+    """A circular first arc of the pitch curve, radius in mm, symmetric about its bisector."""
+
+    radius: float
+    side: Literal["convex", "concave"]
+
+
+@dataclass(frozen=True)
+class RosetteRoute:
+    """One leaf of the path of the third arm's tip: |OQ| as text in x, 0 to 1; `scale` times its value is in mm."""
+
+    text: str
+    scale: float
+
+
+Route: TypeAlias = DeltaRoute | LawRoute | ArcRoute | RosetteRoute
+
+
+class PairCam(Cam):
+    """A single disk that works a rigid pair of contacts about one pivot; pi/alpha = lam/mu in lowest terms, mu odd."""
+
+    unit: ClassVar[Unit] = "deg"
+    gain: ClassVar[float | None] = None
+    swing_of: ClassVar[Literal["arm", "pair"]]
+    lam: int
+    mu: int
+    arm: float
+    route: Route
+
+    def intent(self) -> Intent:
+        """Wunderlich's law of transmission, by the route that the recipe takes."""
+        from kin.law import transmission
+
+        route = self.route
+        if isinstance(route, DeltaRoute):
+            return transmission.from_delta(self.lam, self.mu, self.arm, dict(route.cos), dict(route.sin))
+        if isinstance(route, LawRoute):
+            motion = programme_of(route.motion, math.pi / self.lam, "law")
+            return transmission.from_law(self.lam, self.mu, self.arm, motion, self.swing_of)
+        if isinstance(route, ArcRoute):
+            return transmission.from_arc(self.lam, self.mu, self.arm, route.radius, route.side)
+        from kin.law.formula.formula import Formula
+
+        leaf = Formula(route.text, ("x",))
+        return transmission.from_rosette(self.lam, self.mu, self.arm, leaf, route.scale)
+
+    def less_swing(self, mm: float) -> str:
+        """An arc about the shaft, its radius the mean distance R = 2 l cos(alpha/2), has no swing at all."""
+        if not isinstance(self.route, ArcRoute):
+            return super().less_swing(mm)
+        mean = 2.0 * self.arm * math.cos(0.5 * math.pi * self.mu / self.lam)
+        return f"an arc.radius nearer to {mean / mm:.6g}"
+
+    @property
+    def play_lever(self) -> float | None:
+        """About an arm's length."""
+        return self.arm
+
+    def grown_intent(self, intent: Intent, out: float, scale: float) -> Intent:  # noqa: ARG002
+        """The same swing about a pivot farther away."""
+        return cast("Transmission", intent).scaled(scale)
+
+    def margins(self, intent: Intent) -> list[Margin]:
+        """Turning through, the root of the analytic route, and the arms' end at the shaft or stretched out."""
+        from kin.law.feasibility import steepest
+
+        law = cast("Transmission", intent)
+        tau = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
+        tau = np.sort(np.concatenate([tau, law.breaks]))
+        psi = law.at(tau, 0)[1]
+        rate = steepest(law)[1]
+        widest = float(np.abs(psi[0]).max())
+        # D = -l^2 sin psi under the roots of the analytic route
+        edge = Margin("square-root", math.degrees(0.5 * math.pi - widest), "deg", "D reaches l^2: psi = 90 degrees")
+        reach = float(np.cos(0.5 * (psi[0] + law.alpha)).min())
+        pivot = float(1.0 - np.cos(0.5 * (psi[0] + law.alpha)).max())
+        return [
+            Margin("turning-through", 1.0 - rate, "", "the cam cannot be turned through: psi' = 1"),
+            edge,
+            Margin("shaft", 2.0 * self.arm * reach, "mm", "the pitch curve reaches the shaft: r = 0"),
+            Margin("stretched", 2.0 * self.arm * pivot, "mm", "the arm is stretched: r = 2 l"),
+        ]
+
+
+_DELTA = mapping(
+    "delta",
+    "D(t), the sum of cos[j]*cos(j*lambda*t) + sin[j]*sin(j*lambda*t), j odd",
+    Field("cos", Kind.HARMONICS, "coefficients of the cosines", default="none", unit=Kind.AREA, odd=True),
+    Field("sin", Kind.HARMONICS, "coefficients of the sines", default="none", unit=Kind.AREA, odd=True),
+)
+
+
+_ARC = mapping(
+    "arc",
+    "first arc of the pitch curve, symmetric about its bisector",
+    length("radius", "radius of the arc", required=True),
+    Field("side", Kind.CHOICE, "how the arc bulges", default="convex", choices=("convex", "concave")),
+)
+
+
+_ROSETTE = mapping(
+    "rosette",
+    "one leaf of the path of the third arm's tip",
+    Field(
+        "leaf",
+        Kind.FORMULA,
+        "distance of the tip from the shaft, x from 0 to 1 over the leaf, its value a length",
+        required=True,
+        variable="x",
+    ),
+)
+
+
+def pair_table(law: str, roller: tuple[Field, ...]) -> Table:
+    """Make the table of a double roller or a flat pair, which differ in the roller and in what swings."""
+    routes = (_DELTA, motion_field("law", Kind.ANGLE, law), _ARC, _ROSETTE)
+    return Table(
+        (
+            Field("ratio", Kind.RATIO, "pi/alpha = lambda/mu in lowest terms, mu odd", required=True),
+            length("arm", "arm length, the distance l of the closing equation", required=True),
+            *roller,
+            *routes,
+            UNDERCUT,
+        ),
+        alternatives=tuple((route.name, ()) for route in routes),
+    )
+
+
+def check(cam: Values, reader: Reader) -> None:
+    """Note harmonics that make no motion, and segments that do not fill their angle."""
+    _harmonics(cam, reader)
+    if "law" in cam and "ratio" in cam:
+        lam, _ = cam["ratio"]
+        check_filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader, why=_OTHER_PARTS)
+
+
+def _harmonics(cam: Values, reader: Reader) -> None:
+    delta = cam.get("delta")
+    faulty = any(error.path.startswith("cam.delta") for error in reader.errors)
+    if delta is not None and not faulty and not (delta.get("cos") or delta.get("sin")):
+        reader.fault_at("cam.delta", "no harmonics, so no motion", None, "give some, such as {cos: {1: 625}}")
+
+
+def build_route(cam: Values, mm: float) -> Route:
+    """Make the route of values in which there is no fault."""
+    if "delta" in cam:
+        return DeltaRoute(**{"cos": (), "sin": (), **cam["delta"]})
+    if "law" in cam:
+        return LawRoute(build_motion(cam["law"], math.pi / 180))
+    if "arc" in cam:
+        return ArcRoute(**{"side": "convex", **cam["arc"]})
+    return RosetteRoute(cam["rosette"]["leaf"], mm)

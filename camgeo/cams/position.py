@@ -1,0 +1,177 @@
+"""The follower's position over the shaft angle, by either law of kin: a lift along a line, or a swing about a pivot."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+import numpy as np
+
+from kin.numeric.angles import degrees
+
+if TYPE_CHECKING:
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+
+class Position(Protocol):
+    """Where the follower stands, from its datum: mm, or radians of its own swing."""
+
+    @property
+    def unit(self) -> str:
+        """Of the position: `mm` or `deg`."""
+        ...
+
+    @property
+    def title(self) -> str:
+        """What it is called: `lift` or `swing`."""
+        ...
+
+    def column(self, units: str) -> str:
+        """Name of its column in a table, in a recipe's unit of length."""
+        ...
+
+    def shown(self, mm: float) -> float:
+        """Factor from `rows` to what tables and plots show: lengths in units of `mm` mm, or degrees."""
+        ...
+
+    def rows(self, shaft: Array, order: int, side: int = 1) -> Array:
+        """Position and its derivatives by the shaft angle, (order + 1, n); at a break those of a side."""
+        ...
+
+    def turn(self, shaft: Array, order: int) -> Array:
+        """The same over one turn whose last angle is its end: there the derivatives are those that precede."""
+        ...
+
+    def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:
+        """Parameters of the contour (n,) at which each contact touches, by the label of its columns.
+
+        `relative` is the cam's angle against the frame that carries the follower, the shaft's without one.
+        """
+        ...
+
+    def shaft_deg(self, parameter: float) -> float:
+        """Shaft angle in degrees, from 0 to less than 360, at which the contour is touched at a parameter of it."""
+        ...
+
+    def dwells(self) -> list[tuple[float, float]]:
+        """Shaft angles at which each rest begins and ends, rad."""
+        ...
+
+    def stroke(self, parameter: Array) -> tuple[float, float]:
+        """Stroke in mm, or swing in rad and the arm in mm that works it (1 for a stroke), looked at at parameters."""
+        ...
+
+    def by_parameter(self, parameter: Array, order: int) -> Array:
+        """Position, without datum, and its derivatives by the shaft angle at parameters of the law, (order + 1, n)."""
+        ...
+
+
+@dataclass(frozen=True)
+class LiftPosition:
+    """Along a line, by a lift, whose parameter is the shaft angle."""
+
+    law: Lift
+    title: ClassVar[str] = "lift"
+    unit: ClassVar[str] = "mm"
+
+    def column(self, units: str) -> str:
+        """Name of its column."""
+        return "lift_in" if units == "inch" else "lift_mm"
+
+    def shown(self, mm: float) -> float:
+        """Lengths in units of `mm` mm."""
+        return 1.0 / mm
+
+    def rows(self, shaft: Array, order: int, side: int = 1) -> Array:
+        """Lift from its datum, mm, and its derivatives."""
+        found = np.array(self.law.derivatives(shaft, order, side))
+        found[0] -= self.law.datum
+        return found
+
+    def turn(self, shaft: Array, order: int) -> Array:
+        """The same over one turn."""
+        return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
+
+    def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
+        """Of one face; a second one, opposite, is not tabled."""
+        return {"": relative}
+
+    def shaft_deg(self, parameter: float) -> float:
+        """The parameter is the shaft angle."""
+        return degrees(parameter)
+
+    def dwells(self) -> list[tuple[float, float]]:
+        """Where the radius of curvature is that of a circle about the shaft."""
+        from kin.follower.flat import dwells
+
+        return list(dwells(self.law))
+
+    def stroke(self, parameter: Array) -> tuple[float, float]:
+        """Stroke in mm."""
+        return float(np.ptp(self.law.derivatives(parameter, 0)[0])), 1.0
+
+    def by_parameter(self, parameter: Array, order: int) -> Array:
+        """Lift, mm."""
+        return self.law.derivatives(parameter, order)
+
+
+@dataclass(frozen=True)
+class SwingPosition:
+    """About a pivot, by a law of transmission; `share` of its angle psi is the follower's own swing."""
+
+    law: Transmission
+    share: float = 1.0
+    title: ClassVar[str] = "swing"
+    unit: ClassVar[str] = "deg"
+
+    def column(self, units: str) -> str:  # noqa: ARG002
+        """Name of its column."""
+        return "follower_deg"
+
+    def shown(self, mm: float) -> float:  # noqa: ARG002
+        """Degrees."""
+        return math.degrees(1.0)
+
+    def rows(self, shaft: Array, order: int, side: int = 1) -> Array:
+        """Swing, rad, and its derivatives."""
+        return self.share * self.law.psi_of_shaft(shaft, order, side)
+
+    def turn(self, shaft: Array, order: int) -> Array:
+        """The same over one turn."""
+        return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
+
+    def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
+        """Of A and B. The law repeats itself with phi - psi + delta in place of phi and -psi in place of psi (W 4.9).
+
+        Done mu times, mu odd, that puts A where B is, at phi - psi + alpha.
+        """
+        psi = self.law.psi_of_shaft(shaft, 0)[0]
+        return {"a_": self.law.parameter(shaft), "b_": self.law.parameter(shaft - psi + self.law.alpha)}
+
+    def shaft_deg(self, parameter: float) -> float:
+        """Shaft angle of a parameter of the law."""
+        return degrees(float(self.law.at(parameter, 0)[0][0, 0]))
+
+    def dwells(self) -> list[tuple[float, float]]:
+        """Where the arm rests."""
+        from kin.follower.flat import dwell_angles
+
+        return [(float(pair[0]), float(pair[-1])) for pair in dwell_angles(self.law, np.empty(0))]
+
+    def stroke(self, parameter: Array) -> tuple[float, float]:
+        """Swing in rad, and the arm in mm."""
+        return float(np.ptp(self.law.at(parameter, 0)[1][0])) * self.share, self.law.arm
+
+    def by_parameter(self, parameter: Array, order: int) -> Array:
+        """Swing, rad: derivatives by the shaft angle as quotients of series, where phi' and psi' nearly meet too."""
+        from kin.numeric.elementary import Jet
+
+        shaft, psi = self.law.jets(Jet.variable(parameter, order))
+        found = [psi.c[0]]
+        for k in range(1, order + 1):
+            psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1 - k])
+            found.append(psi.c[0])
+        return self.share * np.array(found)

@@ -1,0 +1,249 @@
+"""Cams by their support function: a formula, a Fourier series, a Reuleaux polygon or a hypocycloid (AS 2023)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
+
+import numpy as np
+
+from camgeo.cams.family import (
+    UNDERCUT,
+    Cam,
+    Circle,
+    Family,
+    Harmonics,
+    Intent,
+    Undercut,
+)
+from camgeo.cams.plates import Plate
+from camgeo.common.rounding import upward
+from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length, mapping
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.reader import Reader, Values
+    from kin.law.support_function import Lift
+
+LOOKS = 72  # places at which the size of a formula's values is looked at
+LEAST_PART = 1e-9  # of its farthest point from the shaft: a cam with a smaller mean radius is lost in rounding
+ROUNDING = 1e-15  # of the same: a mean radius below it is 0
+
+
+@dataclass(frozen=True)
+class FormulaShape:
+    """A support function p(t), t in radians, as text; `scale` times its value is in mm."""
+
+    text: str
+    scale: float
+
+
+@dataclass(frozen=True)
+class FourierShape:
+    """A support function mean + sum of cos[j] cos(j t) + sin[j] sin(j t), in mm."""
+
+    mean: float
+    cos: Harmonics
+    sin: Harmonics
+
+
+@dataclass(frozen=True)
+class ReuleauxShape:
+    """A regular Reuleaux polygon with an odd number of sides and rounded corners, in mm."""
+
+    sides: int
+    breadth: float
+    rounding: float
+
+
+@dataclass(frozen=True)
+class HypocycloidShape:
+    """The parallel curve of an odd hypocycloid, p = breadth/2 + size cos(cusps t), in mm."""
+
+    cusps: int
+    size: float
+    breadth: float
+
+
+Shape: TypeAlias = FormulaShape | FourierShape | ReuleauxShape | HypocycloidShape
+
+
+@dataclass(frozen=True)
+class SupportCam(Plate):
+    """A cam given by its support function; `pivot` is the shaft in the axes of that function, mm."""
+
+    kind: ClassVar[str] = "support"
+    less_steep: ClassVar[str] = ""  # a support function has no stroke of its own
+    shape: Shape
+    pivot: tuple[float, float]
+    undercut: Undercut
+
+    def intent(self) -> Intent:
+        """The support function about the shaft."""
+        from kin.law import support_function
+
+        shape = self.shape
+        if isinstance(shape, FormulaShape):
+            return _with_size(_formula(shape, self.pivot), "p", shape.scale)
+        if isinstance(shape, FourierShape):
+            found = support_function.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), self.pivot)
+            return _with_size(found, "fourier.mean")
+        if isinstance(shape, ReuleauxShape):
+            found = support_function.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, self.pivot)
+            return _with_size(found, "reuleaux.breadth")
+        found = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, self.pivot)
+        return _with_size(found, "hypocycloid.breadth")
+
+    @property
+    def size_field(self) -> tuple[str, float]:
+        """The mean radius, or what stands for it."""
+        if isinstance(self.shape, ReuleauxShape):
+            return "reuleaux.rounding", 1.0
+        if isinstance(self.shape, HypocycloidShape):
+            return "hypocycloid.breadth", 2.0
+        return ("fourier.mean" if isinstance(self.shape, FourierShape) else "p"), 1.0
+
+    def circles(self) -> tuple[Circle, ...]:
+        """The base circle about the shaft, where the shaft does not stand on the contour."""
+        return (Circle("base circle"),)
+
+    @property
+    def shaft_at(self) -> tuple[float, float]:
+        """The pivot."""
+        return self.pivot
+
+    def about_origin(self) -> Cam:
+        """The shaft at the origin of p."""
+        return replace(self, pivot=(0.0, 0.0))
+
+    def harmonic(self, path: str) -> tuple[int, bool, float] | None:
+        """Harmonics of a Fourier series or a hypocycloid: all that these are linear in."""
+        if isinstance(self.shape, HypocycloidShape):
+            own = {"cam.hypocycloid.size": (self.shape.cusps, False, 1.0), "cam.hypocycloid.breadth": (0, False, 0.5)}
+            return own.get(path)
+        if not isinstance(self.shape, FourierShape):
+            return None
+        if path == "cam.fourier.mean":
+            return 0, False, 1.0
+        kind, _, order = path.removeprefix("cam.fourier.").partition(".")
+        return (int(order), kind == "sin", 1.0) if kind in {"cos", "sin"} and order.isdigit() else None
+
+    def silent(self, orders: set[tuple[int, bool]]) -> Cam:
+        """Without these harmonics, but for the mean radius."""
+        shape = self.shape
+        if isinstance(shape, FourierShape):
+            shape = FourierShape(
+                shape.mean,
+                tuple((k, 0.0 if (k, False) in orders else a) for k, a in shape.cos),
+                tuple((k, 0.0 if (k, True) in orders else a) for k, a in shape.sin),
+            )
+        elif isinstance(shape, HypocycloidShape):
+            shape = replace(shape, size=0.0 if (shape.cusps, False) in orders else shape.size)
+        return replace(self, shape=shape)
+
+
+def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
+    """Give the lift back unless its mean is no length: 2 pi times the mean is the perimeter, wherever the shaft is.
+
+    Raises IntentError with the mean in the recipe's unit, `scale` mm.
+    """
+    from kin.law.programme import IntentError
+
+    p = lift.derivatives(np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False), 0)[0]
+    mean, farthest = float(np.mean(p)), float(np.abs(p).max())
+    least = LEAST_PART * farthest
+    if mean > least or not farthest:  # of p = 0 the radius of curvature is held against 0 like any other
+        return lift
+    mean = 0.0 if abs(mean) < ROUNDING * farthest else mean
+    remedy = f"add more than {upward((least - mean) / scale)} to p" if field == "p" else "give a larger one"
+    raise IntentError(
+        f"the mean radius is {mean / scale:.6g}, not above {least / scale:.3g}: a cam's perimeter is 2 pi times it, "
+        f"and this one's points lie up to {farthest / scale:.6g} from the shaft; {remedy}",
+        field,
+    )
+
+
+def _formula(shape: FormulaShape, pivot: tuple[float, float]) -> Lift:
+    from kin.law.formula.formula import Formula
+    from kin.law.from_formula import lift_from_formula
+    from kin.law.programme import IntentError
+
+    lift = lift_from_formula(Formula(shape.text), pivot, shape.scale)
+    t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
+    size = np.abs(lift.derivatives(t, 0)[0]) / shape.scale
+    largest = int(np.argmax(size))
+    if size[largest] > MOST:  # other lengths are bounded as they are read
+        at = math.degrees(t[largest])
+        raise IntentError(f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}", "p", at)
+    return lift
+
+
+def _odd(name: str, about: str) -> Field:
+    return Field(name, Kind.INTEGER, about, required=True, at_least=3, at_most=99, odd=True)
+
+
+_FOURIER = mapping(
+    "fourier",
+    "support function as a Fourier series",
+    length("mean", "mean of the support function", required=True),
+    Field("cos", Kind.HARMONICS, "coefficients of cos(k t)", default="none", unit=Kind.LENGTH),
+    Field("sin", Kind.HARMONICS, "coefficients of sin(k t)", default="none", unit=Kind.LENGTH),
+)
+
+
+_REULEAUX = mapping(
+    "reuleaux",
+    "a regular Reuleaux polygon with rounded corners",
+    _odd("sides", "number of sides"),
+    length("breadth", "constant breadth", required=True),
+    length("rounding", "radius of the corners, below half the breadth", required=True),
+)
+
+
+_HYPOCYCLOID = mapping(
+    "hypocycloid",
+    "the parallel curve of a hypocycloid, p = breadth/2 + size*cos(cusps*t)",
+    _odd("cusps", "number of cusps"),
+    length("size", "radius of the circle inscribed in the hypocycloid", required=True),
+    length("breadth", "constant breadth", required=True),
+)
+
+
+TABLE = Table(
+    (
+        Field("p", Kind.FORMULA, "support function p(t), t in radians, its value a length"),
+        _FOURIER,
+        _REULEAUX,
+        _HYPOCYCLOID,
+        Field("pivot", Kind.POINT, "the shaft [x, y] in the axes in which p is written", default="[0, 0]"),
+        UNDERCUT,
+    ),
+    alternatives=(("p", ()), ("fourier", ()), ("reuleaux", ()), ("hypocycloid", ())),
+)
+
+
+def check(cam: Values, reader: Reader) -> None:
+    """Note corners that leave no side."""
+    reuleaux = cam.get("reuleaux", {})
+    if {"breadth", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] >= reuleaux["breadth"] / 2:
+        remedy = f"give less than {reuleaux['breadth'] / 2 / reader.mm:g} {reader.units}"
+        value = f"{reuleaux['rounding'] / reader.mm:g}"
+        reader.fault_at("cam.reuleaux.rounding", "not below half the breadth", value, remedy)
+
+
+def build(cam: Values, mm: float) -> Cam:
+    """Make the cam of values in which there is no fault."""
+    return SupportCam(_shape(cam, mm), cam.get("pivot", (0.0, 0.0)), cam.get("undercut", "refuse"))
+
+
+def _shape(cam: Values, mm: float) -> Shape:
+    if "fourier" in cam:
+        return FourierShape(**{"cos": (), "sin": (), **cam["fourier"]})
+    if "reuleaux" in cam:
+        return ReuleauxShape(**cam["reuleaux"])
+    if "hypocycloid" in cam:
+        return HypocycloidShape(**cam["hypocycloid"])
+    return FormulaShape(cam["p"], mm)
+
+
+FAMILY = Family(SupportCam, TABLE, build, check, frozenset({"plate"}))
