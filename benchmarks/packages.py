@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 from camgeo.output import pipeline
-from camgeo.recipe.load import read
+from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed, intended
 from kin.judge.verify import Limits, verify
 

@@ -23,7 +23,7 @@ import numpy as np
 import yaml
 from peer import PEERS
 
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from camgeo.sweep.study.tolerance_ladder import Rung, climb
 from camgeo.synthesis.design import designed, intended
 from kin.judge.verify import Limits, verify

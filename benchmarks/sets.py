@@ -12,7 +12,7 @@ from pathlib import Path
 from camgeo.assembly.build import assembly_of
 from camgeo.assembly.interference import collision_checks
 from camgeo.output.job import Job
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
 
 RECIPES = Path(__file__).parents[1] / "recipes"

@@ -27,7 +27,7 @@ from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from kin.contour.contour import Contour
 from kin.follower.flat import FlatPair, Yoke
 from kin.follower.roller import DoubleRoller

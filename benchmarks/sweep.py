@@ -25,7 +25,7 @@ import numpy as np
 
 from camgeo.cams.plates import breadth_of
 from camgeo.recipe.figures import Limit
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.sweep.search.figures import Evaluator
 from camgeo.sweep.search.rebuilt import recipe_with
 from camgeo.synthesis.linkage import mechanism_of

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.flat_pair import FlatPairCam
 from camgeo.output.pipeline import shown
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from camgeo.report.page.page import asset
 from camgeo.report.page.scene import STEPS
 from camgeo.report.page.svg import still

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import matplotlib as mpl
 import numpy as np
 
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
 from kin.linkage.four_bar import InvertedSliderCrank, SliderCrank
 

@@ -11,7 +11,7 @@ import numpy as np
 from make_part_pictures import LIGHT, raster
 
 from camgeo.output import pipeline
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from kin.read.mesh.threemf import read_placed
 
 mpl.use("Agg")

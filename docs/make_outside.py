@@ -25,7 +25,7 @@ import trimesh
 
 from camgeo.output import pipeline
 from camgeo.recipe.export import FileRequest
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed, intended
 from kin.judge.contour_checks import exact_area
 from kin.judge.layers import volume

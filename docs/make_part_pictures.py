@@ -13,7 +13,7 @@ import numpy as np
 from ezdxf import path as drawn
 
 from camgeo.output import pipeline
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from kin.read.mesh.stl import triangles_of
 
 mpl.use("Agg")

@@ -12,7 +12,7 @@ import matplotlib as mpl
 import numpy as np
 
 from camgeo.output import pipeline
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed, intended
 from kin.read.drawing.dxf import read_dxf
 

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
 
-    Intent: TypeAlias = Lift | Transmission
-
+Intent: TypeAlias = "Lift | Transmission"
 Undercut: TypeAlias = Literal["refuse", "trim"]
 Harmonics: TypeAlias = tuple[tuple[int, float], ...]  # (harmonic, coefficient), rising
 Unit: TypeAlias = Literal["mm", "deg"]

@@ -189,7 +189,7 @@ def _watch(arguments: argparse.Namespace) -> int:
     from camgeo.cli.watch import watch
     from camgeo.output.output_folder import REJECTED
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.load import load
+    from camgeo.recipe.loading import load
     from camgeo.recipe.schema.errors import RecipeErrors
 
     if len(arguments.recipes) != 1 or arguments.json:
@@ -221,7 +221,7 @@ def _watch(arguments: argparse.Namespace) -> int:
 
 def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) -> tuple[list[Recipe], int]:
     """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong."""
-    from camgeo.recipe.load import load
+    from camgeo.recipe.loading import load
     from camgeo.recipe.schema.errors import RecipeErrors
 
     recipes: list[Recipe] = []
@@ -291,7 +291,7 @@ def _show(report: dict[str, Any], *, verbose: bool) -> None:
 def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
     from camgeo.output import pipeline
-    from camgeo.recipe.load import load
+    from camgeo.recipe.loading import load
     from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.report.document import encoded
     from kin.judge.verify import UnitsError

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -
 
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
-    from camgeo.recipe.load import load
+    from camgeo.recipe.loading import load
     from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.sweep.search.ask import Ask
 

@@ -22,7 +22,7 @@ from camgeo.assembly.sizes import BodyError, sizes_of
 from camgeo.files.precision import DECIMALS
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.assembly import MechanismAsked
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
 from kin.numeric.angles import TURN

@@ -9,7 +9,7 @@ import pytest
 
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
 

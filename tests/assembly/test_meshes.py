@@ -17,7 +17,7 @@ from camgeo.files.triangulate import RegionError
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import ArcSpline, Bound, Polygon
 from camgeo.output.job import Job
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
 from kin.clearance.clearance import Slab
 from kin.contour.contour import Contour

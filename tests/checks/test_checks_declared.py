@@ -13,7 +13,7 @@ import pytest
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT, OUTLINE, READABLE
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES
-from camgeo.recipe.load import load, load_text
+from camgeo.recipe.loading import load, load_text
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "camgeo"

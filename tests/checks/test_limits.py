@@ -17,7 +17,7 @@ from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.recipe.schema.json_schema import json_schema

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from camgeo.cli.main import main
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.report.page import tables
 from camgeo.report.remarks import remarks_of
 from camgeo.synthesis.design import designed

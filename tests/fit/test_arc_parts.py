@@ -9,7 +9,7 @@ from camgeo.fit import free_arcs
 from camgeo.fit.arcs import FLOOR, fit_arcs
 from camgeo.fit.nodes import rounding
 from camgeo.fit.parts import CONSTANT, Part, refined
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 
 
 def curve_of(name):

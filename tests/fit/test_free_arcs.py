@@ -26,7 +26,7 @@ from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.deviation import Chain, chain_deviation
 from camgeo.fit.parts import Part
 from camgeo.output.pipeline import check
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_arc, from_delta

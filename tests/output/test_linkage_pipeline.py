@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from camgeo.output import pipeline
-from camgeo.recipe.load import read
+from camgeo.recipe.loading import read
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.document import summary
 from camgeo.synthesis.design import designed

@@ -17,7 +17,7 @@ from support.places import SHIPPED as RECIPES
 from camgeo.common.clock import Clock
 from camgeo.output import pipeline
 from camgeo.recipe.export import FileRequest
-from camgeo.recipe.load import load, read
+from camgeo.recipe.loading import load, read
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
@@ -192,7 +192,7 @@ def test_an_stl_alone_imports_nothing_of_what_it_does_not_ask_for(tmp_path: Path
 
     code = (
         "import sys; from pathlib import Path; from dataclasses import replace\n"
-        "from camgeo import pipeline; from camgeo.recipe.load import load\n"
+        "from camgeo import pipeline; from camgeo.recipe.loading import load\n"
         f"r = load({str(RECIPES[0])!r})\n"
         "r = replace(r, export=replace(r.export, files=tuple(f for f in r.export.files if f.kind == 'stl')))\n"
         f"assert pipeline.export(r, Path({str(tmp_path)!r})).ok\n"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from camgeo.output import pipeline
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.sweep.study.document import document
 from camgeo.sweep.study.margins import margins
 from camgeo.sweep.study.tolerance_ladder import Ended, Rung

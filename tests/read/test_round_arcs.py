@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from camgeo.fit.arcs import fit_arcs
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from kin.contour.contour import Contour
 
 LAW = "[{rise: 1, over: 30, law: modified-sine}, {dwell: 30}, {return: 1, over: 30, law: cycloidal}]"

@@ -11,7 +11,7 @@ import pytest
 
 from camgeo.output import pipeline
 from camgeo.recipe.dynamics import Dynamics
-from camgeo.recipe.load import read
+from camgeo.recipe.loading import read
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.document import encoded
 from camgeo.synthesis.expected_checks import foreseen

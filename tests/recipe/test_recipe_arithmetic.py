@@ -8,7 +8,7 @@ import re
 import pytest
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.recipe.schema.json_schema import json_schema

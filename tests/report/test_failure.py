@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.report.failure import remedy
 
 CAMS = {

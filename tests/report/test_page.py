@@ -23,7 +23,7 @@ from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
 from camgeo.cli.main import main
 from camgeo.cli.watch import watch
 from camgeo.curve.ring import Ring, disc
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from camgeo.report.page import svg, tables
 from camgeo.report.page.content import content
 from camgeo.report.page.outline import MEASURED, read

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.output.pipeline import shown
-from camgeo.recipe.load import load
+from camgeo.recipe.loading import load
 from camgeo.report.page.pack import unpacked
 from camgeo.report.page.page import page
 from camgeo.report.page.scene import STEPS

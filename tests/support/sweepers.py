@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.recipe.load import read
+from camgeo.recipe.loading import read
 from camgeo.sweep.search.ask import Ask
 from camgeo.sweep.search.gather import REASON
 from camgeo.sweep.search.job import Job

@@ -11,7 +11,7 @@ import pytest
 from support.places import RECIPES
 
 from camgeo.cli import main
-from camgeo.recipe.load import load, read
+from camgeo.recipe.loading import load, read
 from camgeo.sweep.study.least_pieces import least_pieces
 from camgeo.sweep.study.margins import Margin, margins
 from camgeo.sweep.study.tolerance_ladder import Ended, Rung, climb

@@ -21,7 +21,7 @@ from support.cases import few
 from support.heavy import distributed
 from support.sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
 
-from camgeo.recipe.load import read
+from camgeo.recipe.loading import read
 from camgeo.sweep.search import engines
 from camgeo.sweep.search.ask import Ask
 from camgeo.sweep.search.evaluator import figures

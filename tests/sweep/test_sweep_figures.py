@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from support.cases import examples, few
 
 from camgeo.cams.plates import breadth_of
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.recipe.sweep import FIGURES
 from camgeo.sweep.search import evaluator
 from camgeo.sweep.search.ask import Ask

@@ -17,7 +17,7 @@ from support.sweepers import GRID, MEANS, ask, hills
 
 from camgeo.output.output_folder import SurroundingsError
 from camgeo.recipe.figures import Limit
-from camgeo.recipe.load import load, read
+from camgeo.recipe.loading import load, read
 from camgeo.sweep.search import gather as gathering
 from camgeo.sweep.search import outputs
 from camgeo.sweep.search.ask import Ask

@@ -9,7 +9,7 @@ import pytest
 from support.places import RECIPES
 
 from camgeo.cams.plates import breadth_of
-from camgeo.recipe.load import load, load_text
+from camgeo.recipe.loading import load, load_text
 from camgeo.sweep.search import refine
 from camgeo.sweep.search.ask import Ask
 from camgeo.sweep.search.figures import evaluate

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from support.sweepers import GRID, ask, calls, fail, hills, job
 
-from camgeo.recipe.load import read
+from camgeo.recipe.loading import read
 from camgeo.sweep.search import job as jobs
 from camgeo.sweep.search.ask import Ask
 from camgeo.sweep.search.gather import Ranking

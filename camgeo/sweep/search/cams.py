@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camgeo.cams.plates import is_constant_breadth
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.sweep.search.ends import least

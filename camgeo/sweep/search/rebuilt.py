@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.recipe.load import load_text
+from camgeo.recipe.loading import load_text
 from camgeo.recipe.part import Part
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors

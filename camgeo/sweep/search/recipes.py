@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.recipe.load import read
+from camgeo.recipe.loading import read
 from camgeo.recipe.schema.edit import with_values, without
 from camgeo.recipe.schema.fields import MOST_TEXT
 from camgeo.recipe.schema.yaml_source import Mapping, read_source
