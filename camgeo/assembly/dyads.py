@@ -7,74 +7,61 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.assembly.assembly import Fit
-from camgeo.assembly.base import BLOCK, BLOCK_COLOUR, Carrier, Mount, block, slotted
+from camgeo.assembly.base import BLOCK, BLOCK_COLOUR, Carrier, block, slotted
 from camgeo.assembly.body import Plate
-from camgeo.assembly.link_poses import jet
 from camgeo.assembly.shapes import bars, eye, pin
 from camgeo.assembly.sizes import BodyError
-from kin.linkage.dyad import RRP, RRR
 
 if TYPE_CHECKING:
-    from camgeo.assembly.base import Site
-    from kin.linkage.dyad import RPR
+    from camgeo.assembly.base import Mount, Site
+    from kin.linkage.dyad import RPR, RRP, RRR
 
 
-def hang(site: Site, carriers: dict[str, Carrier]) -> None:
-    """Add the bodies of all dyads of a mechanism; `carriers` are its frame and its rocker.
-
-    Raises BodyError where a dyad hangs on a block or a slide, or finds no room.
-    """
-    output = carriers.get("output")
-    previous: Carrier | None = None
-    for number, dyad in enumerate(site.links.mechanism.dyads):
-        path = f"linkage.dyads[{number}]"
-        carrier = {"coupler": carriers.get("coupler"), "output": output, "previous": previous}[dyad.on]
-        if carrier is None:
-            message = "hangs on a block or a slide, which has no room for it"
-            raise BodyError(f"{path}.on", message, "hang it on the frame or on a rocker, or leave parts: all out")
-        mount = Mount(carrier, carrier.reach(dyad.point, site.s, f"{path}.point"))
-        if isinstance(dyad, RRR | RRP):
-            previous = _rod(site, number, dyad, mount)
-        else:
-            previous = _slotted(site, number, dyad, mount)
-
-
-def _rod(site: Site, number: int, dyad: RRR | RRP, mount: Mount) -> Carrier | None:
-    """Add the bar PQ, and the rocker GQ above it or the slide on the base; give the rocker."""
-    s, links, name = site.s, site.links, f"{number + 1}"
+def rod_and_rocker(site: Site, loop: int, dyad: RRR, mount: Mount) -> tuple[Carrier]:
+    """Add the bar PQ and the rocker GQ above it."""
+    s = site.s
+    rod = _rod(site, loop, dyad.links[0], mount)
     low, high = site.level()
-    mount.hold(site, f"p{name}", low, high)
-    length = dyad.links[0] if isinstance(dyad, RRR) else dyad.link
-    end = (length, 0.0)
-    holes = ((0.0, 0.0),) if isinstance(dyad, RRR) else ((0.0, 0.0), end)
-    rod = Carrier(f"rod-{name}", bars(s, [((0.0, 0.0), end)], holes, low, high), links.rod(number), low, high)
-    site.add(rod)
-    site.fits.append(Fit(f"rod {name} on its pins", s.clearance))
-    place = links.link(links.dyad(number))
-    if isinstance(dyad, RRP):
-        slide = Carrier(f"slide-{name}", site.slide(low, high), place, 0.0, 0.0, BLOCK_COLOUR)
-        site.add(slide)
-        site.rails(place, dyad.through, dyad.direction)
-        site.hold(f"q{name}", slide.name, (0.0, 0.0), high, place)
-        site.fits.append(Fit(f"slide {name} between its rails", s.clearance))
-        return None
-    low, high = site.level()
+    end = (dyad.links[0], 0.0)
     rod.plates += pin(s, end, rod.high, low, high)
-    site.hold(f"q{name}", rod.name, end, high, rod.place)
-    site.post(f"g{name}", dyad.ground, low, high)
+    site.hold(f"q{loop}", rod.name, end, high, rod.place)
+    site.post(f"g{loop}", dyad.ground, low, high)
     holes = ((0.0, 0.0), (dyad.links[1], 0.0))
-    site.fits.append(Fit(f"rocker {name} on its pins", s.clearance))
-    return site.add(Carrier(f"rocker-{name}", bars(s, [holes], holes, low, high), place, low, high, holes=holes))
+    site.fits.append(Fit(f"rocker {loop} on its pins", s.clearance))
+    place = site.links.output(loop)
+    return (site.add(Carrier(f"rocker-{loop}", bars(s, [holes], holes, low, high), place, low, high, holes=holes)),)
 
 
-def _slotted(site: Site, number: int, dyad: RPR, mount: Mount) -> Carrier:
-    """Add the block on the pin P and the slotted rocker about G."""
-    s, links, name = site.s, site.links, f"{number + 1}"
-    place = links.link(links.dyad(number))
+def rod_and_slide(site: Site, loop: int, dyad: RRP, mount: Mount) -> tuple[()]:
+    """Add the bar PQ and the slide on the base."""
+    rod = _rod(site, loop, dyad.link, mount, (dyad.link, 0.0))
+    place = site.links.joint(loop, "Q")
+    slide = Carrier(f"slide-{loop}", site.slide(rod.low, rod.high), place, 0.0, 0.0, BLOCK_COLOUR)
+    site.add(slide)
+    site.rails(place, dyad.through, dyad.direction)
+    site.hold(f"q{loop}", slide.name, (0.0, 0.0), rod.high, place)
+    site.fits.append(Fit(f"slide {loop} between its rails", site.s.clearance))
+    return ()
+
+
+def _rod(site: Site, loop: int, length: float, mount: Mount, *holes: tuple[float, float]) -> Carrier:
+    """Add the bar PQ, with a hole at P and those given."""
+    s = site.s
     low, high = site.level()
-    mount.hold(site, f"p{name}", low, high)
-    block_place = links.place(lambda motion: (*links.hung(number)(motion), jet(motion.outputs[number + 1])))
-    site.add(Carrier(f"block-{name}", [Plate(block(s), (eye(s),), low, high)], block_place, low, high, BLOCK_COLOUR))
+    mount.hold(site, f"p{loop}", low, high)
+    at = (0.0, 0.0)
+    plates = bars(s, [(at, (length, 0.0))], (at, *holes), low, high)
+    site.fits.append(Fit(f"rod {loop} on its pins", s.clearance))
+    return site.add(Carrier(f"rod-{loop}", plates, site.links.rod(loop), low, high))
+
+
+def slotted_rocker(site: Site, loop: int, dyad: RPR, mount: Mount) -> tuple[Carrier]:
+    """Add the block on the pin P and the slotted rocker about G. Raises BodyError."""
+    s, place = site.s, site.links.output(loop)
+    low, high = site.level()
+    mount.hold(site, f"p{loop}", low, high)
+    block_place = site.links.joint(loop, "P")
+    site.add(Carrier(f"block-{loop}", [Plate(block(s), (eye(s),), low, high)], block_place, low, high, BLOCK_COLOUR))
     at, turned = site.sampled(block_place), site.sampled(place)
     along = (at[:, 0] - dyad.ground[0]) * np.cos(turned[:, 2]) + (at[:, 1] - dyad.ground[1]) * np.sin(turned[:, 2])
     first, last = float(along.min()), float(along.max())
@@ -82,11 +69,11 @@ def _slotted(site: Site, number: int, dyad: RPR, mount: Mount) -> Carrier:
     if start < 0.5 * s.bar:
         message = "the block comes too near to the pivot, by {short}"
         remedy = "move the pivot away, or give a smaller mechanism.bar"
-        raise BodyError(f"linkage.dyads[{number}].ground", message, remedy, short=0.5 * s.bar - start)
-    site.post(f"g{name}", dyad.ground, low, high)
-    site.fits.append(Fit(f"block {name} in its slot and on its pin", s.clearance))
+        raise BodyError(f"linkage.dyads[{loop - 1}].ground", message, remedy, short=0.5 * s.bar - start)
+    site.post(f"g{loop}", dyad.ground, low, high)
+    site.fits.append(Fit(f"block {loop} in its slot and on its pin", s.clearance))
     holes = ((0.0, 0.0),)
     outer, slot = slotted(first, last, dyad.offset, s)
     plates = bars(s, [((0.0, 0.0), (start, dyad.offset))], holes, low, high)
     plates.append(Plate(outer, (slot,), low, high))
-    return site.add(Carrier(f"rocker-{name}", plates, place, low, high, holes=holes))
+    return (site.add(Carrier(f"rocker-{loop}", plates, place, low, high, holes=holes)),)

@@ -6,23 +6,26 @@ them, each with room for the retainers below it. A slide runs under the frame, w
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from camgeo.assembly.assembly import Assembly, Fit
-from camgeo.assembly.base import BLOCK, BLOCK_COLOUR, FRAME_COLOUR, Carrier, Site, block, slotted
+from camgeo.assembly.base import BLOCK, BLOCK_COLOUR, FRAME_COLOUR, Carrier, Mount, Site, block, slotted
 from camgeo.assembly.body import Plate
-from camgeo.assembly.dyads import hang
+from camgeo.assembly.dyads import rod_and_rocker, rod_and_slide, slotted_rocker
 from camgeo.assembly.link_poses import Links
 from camgeo.assembly.poses import Turning
 from camgeo.assembly.shaft import base, base_radius, bearing, shaft_fits, turned
 from camgeo.assembly.shapes import bar, bars, box, disc, eye, moved, pin
 from camgeo.assembly.sizes import BodyError
+from kin.linkage.dyad import RPR, RRP, RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.assembly.assembly import Place
     from camgeo.assembly.shaft import Drive
     from camgeo.assembly.sizes import Sizes
@@ -33,20 +36,17 @@ def linked(mechanism: Mechanism, drive: Drive) -> Assembly:
     """Return the bodies of a mechanism that turns. Raises BodyError where one of them finds no room."""
     s, disk = drive.sizes, drive.disk
     linkage = mechanism.linkage
-    low = s.plate + s.gap + (s.link + s.gap if isinstance(linkage, SliderCrank) else 0.0)
+    maker = MAKERS[type(linkage)]
+    low = s.plate + s.gap + (s.link + s.gap if maker.under_frame else 0.0)
     low = max(low, s.plate + s.gap - disk.bottom)
     high = low + disk.thickness
     links = Links(mechanism)
     site = Site(s, links, high + s.gap, 2.0 * max(s.bar, base_radius(drive)))
-    frame = site.add(Carrier("frame", _frame(mechanism.breadth, s, low, high), links.place(links.frame), low, high))
+    frame = site.add(Carrier("frame", _frame(mechanism.breadth, s, low, high), links.frame(), low, high))
     frame.colour = FRAME_COLOUR
-    if isinstance(linkage, FourBar):
-        carriers = _four_bar(site, frame, linkage)
-    elif isinstance(linkage, SliderCrank):
-        carriers = _slider_crank(site, frame, linkage)
-    else:
-        carriers = _inverted(site, frame, linkage)
-    hang(site, carriers)
+    carriers = maker.make(site, frame, linkage)
+    for loop, dyad in enumerate(mechanism.dyads, 1):
+        carriers += MAKERS[type(dyad)].make(site, loop, dyad, _mount(site, carriers, loop))
     beneath = max(base_radius(drive), 0.5 * mechanism.breadth + s.wall)
     foot = bearing(drive, [disc(beneath), *site.pads], low + disk.bottom - s.gap)
     ground = base((*foot, *_support(beneath, drive, low - s.gap), *site.ground))
@@ -59,6 +59,20 @@ def linked(mechanism: Mechanism, drive: Drive) -> Assembly:
     members = (*site.closed(), ground)
     place = Turning(mechanism.start + 0.25 * TURN)
     return Assembly((*turned(drive, low, place, members), *members), fits, s)
+
+
+def _mount(site: Site, carriers: tuple[Carrier, ...], loop: int) -> Mount:
+    """Extend the carrier of a dyad to the point that it hangs on.
+
+    Raises BodyError where the dyad hangs on a block or a slide, or finds no room.
+    """
+    mechanism, path = site.links.mechanism, f"linkage.dyads[{loop - 1}]"
+    name = mechanism.chain.carrier(loop - 1).name
+    for carrier in carriers:
+        if carrier.name == name:
+            return Mount(carrier, carrier.reach(mechanism.dyads[loop - 1].point, site.s, f"{path}.point"))
+    message = "hangs on a block or a slide, which has no room for it"
+    raise BodyError(f"{path}.on", message, "hang it on the frame or on a rocker, or leave parts: all out")
 
 
 def _frame(breadth: float, s: Sizes, low: float, high: float) -> list[Plate]:
@@ -88,16 +102,16 @@ def _coupler(frame: Carrier, coupler: float, site: Site) -> None:
     frame.plates.append(Plate(bar((start, 0.0), frame.origin, s.bar), (), frame.low, frame.high))
 
 
-def _four_bar(site: Site, frame: Carrier, linkage: FourBar) -> dict[str, Carrier]:
-    s, links = site.s, site.links
+def _four_bar(site: Site, frame: Carrier, linkage: FourBar) -> tuple[Carrier, ...]:
+    s = site.s
     _coupler(frame, linkage.coupler, site)
     low, high = site.level()
     frame.plates += pin(s, frame.origin, frame.high, low, high)
     site.hold("d", frame.name, frame.origin, high, frame.place)
-    return {"coupler": frame, "output": _rocker(site, linkage, links, low, high)}
+    return frame, _rocker(site, linkage, low, high)
 
 
-def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, links: Links, low: float, high: float) -> Carrier:
+def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, low: float, high: float) -> Carrier:
     """Add the rocker from its post B to D."""
     s = site.s
     holes = ((0.0, 0.0), (linkage.rocker, 0.0))
@@ -107,29 +121,29 @@ def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, links: Links, lo
     site.post("b", (linkage.ground, 0.0), low, high)
     site.fits += [Fit("rocker on the pivot B", s.clearance), Fit("rocker on the joint D", s.clearance)]
     plates = bars(s, [holes], holes, low, high)
-    return site.add(Carrier("rocker", plates, links.link(links.output), low, high, holes=holes))
+    return site.add(Carrier("rocker", plates, site.links.output(0), low, high, holes=holes))
 
 
-def _slider_crank(site: Site, frame: Carrier, linkage: SliderCrank) -> dict[str, Carrier]:
-    s, links = site.s, site.links
+def _slider_crank(site: Site, frame: Carrier, linkage: SliderCrank) -> tuple[Carrier, ...]:
+    s = site.s
     _coupler(frame, linkage.coupler, site)
     last = frame.plates.pop()
     frame.plates.append(Plate(last.outline, (eye(s, *frame.origin),), last.low, last.high))
     frame.holes = (frame.origin,)
-    place = links.link(links.output)
+    place = site.links.output(0)
     slide = Carrier("slide", site.slide(frame.low, frame.high), place, 0.0, 0.0, BLOCK_COLOUR)
     site.add(slide)
     site.rails(place, (0.0, linkage.offset), 0.0)
     site.hold("d", slide.name, (0.0, 0.0), frame.high, place)
     site.floor += s.gap + s.clip
     site.fits += [Fit("slide between its rails", s.clearance), Fit("coupler on the joint D", s.clearance)]
-    return {"coupler": frame}
+    return (frame,)
 
 
-def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> dict[str, Carrier]:
+def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> tuple[Carrier, ...]:
     """The block slides in a slot of the frame's bar; it turns on the post B, or carries the end of a rocker."""
-    s, links, half = site.s, site.links, 0.5 * site.links.mechanism.breadth
-    place = links.block()
+    s, half = site.s, 0.5 * site.links.mechanism.breadth
+    place = site.links.joint(0, "D")
     _slot(site, frame, place, half)
     plates = [Plate(block(s), () if linkage.rocker else (eye(s),), frame.low, frame.high)]
     site.fits.append(Fit("block in the frame's slot", s.clearance))
@@ -139,12 +153,12 @@ def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> dict[
         site.floor += s.gap + s.clip
         site.fits.append(Fit("block on the pivot B", s.clearance))
         site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))
-        return {}
+        return ()
     low, high = site.level()
     plates += pin(s, (0.0, 0.0), frame.high, low, high)
     site.add(Carrier("block", plates, place, frame.low, frame.high, BLOCK_COLOUR))
     site.hold("d", "block", (0.0, 0.0), high, place)
-    return {"output": _rocker(site, linkage, links, low, high)}
+    return (_rocker(site, linkage, low, high),)
 
 
 def _slot(site: Site, frame: Carrier, block_place: Place, half: float) -> None:
@@ -166,3 +180,21 @@ def _slot(site: Site, frame: Carrier, block_place: Place, half: float) -> None:
     tie = box(half + s.play, -0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, 0.5 * s.bar)
     outer, slot, tie = (moved(outline, 0.0, 0.0, 0.0 if side > 0.0 else 0.5 * TURN) for outline in (outer, slot, tie))
     frame.plates += [Plate(outer, (slot,), frame.low, frame.high), Plate(tie, (), frame.low, frame.high)]
+
+
+class Maker(NamedTuple):
+    """What makes the bodies of a loop, and gives those that dyads may hang on."""
+
+    make: Callable[..., tuple[Carrier, ...]]
+    under_frame: bool = False
+    """Whether a slide runs under the frame."""
+
+
+MAKERS: dict[type, Maker] = {
+    FourBar: Maker(_four_bar),
+    InvertedSliderCrank: Maker(_inverted),
+    SliderCrank: Maker(_slider_crank, under_frame=True),
+    RRR: Maker(rod_and_rocker),
+    RRP: Maker(rod_and_slide),
+    RPR: Maker(slotted_rocker),
+}

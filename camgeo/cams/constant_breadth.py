@@ -14,8 +14,8 @@ from camgeo.cams.family import (
     Intent,
     Undercut,
 )
+from camgeo.cams.flat_faced import FlatFacedCam
 from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
-from camgeo.cams.plates import Plate
 from camgeo.recipe.schema.fields import Kind, Table, length
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _OTHER_HALF = "two parallel faces hold the cam, so the other half turn's motion 
 
 
 @dataclass(frozen=True)
-class ConstantBreadthCam(Plate):
+class ConstantBreadthCam(FlatFacedCam):
     """A cam between two parallel faces, from the motion over one half turn (Shu and Wu)."""
 
     kind: ClassVar[str] = "constant-breadth"

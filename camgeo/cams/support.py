@@ -17,7 +17,7 @@ from camgeo.cams.family import (
     Intent,
     Undercut,
 )
-from camgeo.cams.plates import Plate
+from camgeo.cams.flat_faced import FlatFacedCam
 from camgeo.common.rounding import upward
 from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length, mapping
 
@@ -69,7 +69,7 @@ Shape: TypeAlias = FormulaShape | FourierShape | ReuleauxShape | HypocycloidShap
 
 
 @dataclass(frozen=True)
-class SupportCam(Plate):
+class SupportCam(FlatFacedCam):
     """A cam given by its support function; `pivot` is the shaft in the axes of that function, mm."""
 
     kind: ClassVar[str] = "support"

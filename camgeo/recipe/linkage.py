@@ -11,6 +11,8 @@ from camgeo.recipe.schema.json_schema import one_of_schema
 from camgeo.recipe.schema.yaml_source import join
 
 if TYPE_CHECKING:
+    import kin.linkage.dyad
+    import kin.linkage.four_bar
     from camgeo.recipe.schema.fields import Schema
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
@@ -37,6 +39,12 @@ class RRRDyad:
 
     slides: ClassVar[bool] = False
 
+    def made(self) -> kin.linkage.dyad.RRR:
+        """Make the dyad of the recipe."""
+        from kin.linkage.dyad import RRR
+
+        return RRR(self.on, self.point, self.ground, self.links, self.assembly)
+
 
 @dataclass(frozen=True)
 class RRPDyad:
@@ -51,6 +59,12 @@ class RRPDyad:
 
     slides: ClassVar[bool] = True
 
+    def made(self) -> kin.linkage.dyad.RRP:
+        """Make the dyad of the recipe."""
+        from kin.linkage.dyad import RRP
+
+        return RRP(self.on, self.point, self.link, self.through, self.direction, self.assembly)
+
 
 @dataclass(frozen=True)
 class RPRDyad:
@@ -62,6 +76,12 @@ class RPRDyad:
     offset: float
 
     slides: ClassVar[bool] = False
+
+    def made(self) -> kin.linkage.dyad.RPR:
+        """Make the dyad of the recipe."""
+        from kin.linkage.dyad import RPR
+
+        return RPR(self.on, self.point, self.ground, self.offset)
 
 
 Dyad: TypeAlias = RRRDyad | RRPDyad | RPRDyad
@@ -80,6 +100,12 @@ class FourBarLinkage:
     kind: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
 
+    def made(self) -> kin.linkage.four_bar.FourBar:
+        """Make the linkage of the recipe."""
+        from kin.linkage.four_bar import FourBar
+
+        return FourBar(self.ground, self.coupler, self.rocker, self.assembly)
+
 
 @dataclass(frozen=True)
 class InvertedSliderCrankLinkage:
@@ -93,6 +119,12 @@ class InvertedSliderCrankLinkage:
     kind: ClassVar[str] = "inverted-slider-crank"
     slides: ClassVar[bool] = False
 
+    def made(self) -> kin.linkage.four_bar.InvertedSliderCrank:
+        """Make the linkage of the recipe."""
+        from kin.linkage.four_bar import InvertedSliderCrank
+
+        return InvertedSliderCrank(self.ground, self.rocker, self.assembly)
+
 
 @dataclass(frozen=True)
 class SliderCrankLinkage:
@@ -105,6 +137,12 @@ class SliderCrankLinkage:
 
     kind: ClassVar[str] = "slider-crank"
     slides: ClassVar[bool] = True
+
+    def made(self) -> kin.linkage.four_bar.SliderCrank:
+        """Make the linkage of the recipe."""
+        from kin.linkage.four_bar import SliderCrank
+
+        return SliderCrank(self.coupler, self.offset, self.assembly)
 
 
 Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage

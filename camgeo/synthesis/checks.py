@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from camgeo.cams.plates import SAME_BREADTH, breadth_of, spread
+from camgeo.cams.flat_faced import SAME_BREADTH, breadth_of, spread
 from camgeo.checks.declared import BREADTH, CLOSING, FACE, PRESSURE, TRANSMISSION
 from kin.judge.check import Check
 from kin.law.feasibility import steepest

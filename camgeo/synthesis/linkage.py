@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from camgeo.checks.declared import DWELL, MOBILITY, REVERSAL
-from camgeo.recipe.linkage import FourBarLinkage, InvertedSliderCrankLinkage, RPRDyad, RRPDyad, RRRDyad
 from kin.judge.check import Check, failed
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.monotone import RoughError
@@ -21,10 +20,9 @@ from kin.numeric.monotone import RoughError
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from camgeo.recipe.linkage import DwellAsked, Dyad, Linkage
+    from camgeo.recipe.linkage import DwellAsked
     from camgeo.recipe.recipe import Recipe
     from kin.law.support_function import Lift
-    from kin.linkage import dyad, four_bar
     from kin.linkage.extremes import Figures
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array
@@ -43,41 +41,15 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
     from kin.law.programme import IntentError
     from kin.linkage.mechanism import Mechanism
 
-    asked = _linkage(recipe)
+    asked = recipe.linkage
+    if asked is None:
+        raise ValueError(f"{recipe.name}: there is no linkage")
     try:
-        return Mechanism(_loop(asked), lift, breadth, tuple(map(_dyad, asked.dyads)))
+        return Mechanism(asked.made(), lift, breadth, tuple(dyad.made() for dyad in asked.dyads))
     except IntentError as error:
         part = "linkage" if error.field.startswith("dyads") else "cam"
         field = f"{part}.{error.field}"
         raise recipe.error(field if field in recipe.marks else part, error.message) from error
-
-
-def _linkage(recipe: Recipe) -> Linkage:
-    if recipe.linkage is None:
-        raise ValueError(f"{recipe.name}: there is no linkage")
-    return recipe.linkage
-
-
-def _loop(asked: Linkage) -> four_bar.Linkage:
-    from kin.linkage import four_bar
-
-    if isinstance(asked, FourBarLinkage):
-        return four_bar.FourBar(asked.ground, asked.coupler, asked.rocker, asked.assembly)
-    if isinstance(asked, InvertedSliderCrankLinkage):
-        return four_bar.InvertedSliderCrank(asked.ground, asked.rocker, asked.assembly)
-    return four_bar.SliderCrank(asked.coupler, asked.offset, asked.assembly)
-
-
-def _dyad(asked: Dyad) -> dyad.Dyad:
-    from kin.linkage import dyad
-
-    if isinstance(asked, RRRDyad):
-        return dyad.RRR(asked.on, asked.point, asked.ground, asked.links, asked.assembly)
-    if isinstance(asked, RRPDyad):
-        return dyad.RRP(asked.on, asked.point, asked.link, asked.through, asked.direction, asked.assembly)
-    if isinstance(asked, RPRDyad):
-        return dyad.RPR(asked.on, asked.point, asked.ground, asked.offset)
-    raise TypeError(f"no such dyad: {asked!r}")
 
 
 # --- checks before any file -------------------------------------------------------------------------------------------

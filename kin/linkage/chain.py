@@ -7,27 +7,29 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.linkage.dyad import coupler, output_link
-from kin.numeric.elementary import Jet
+from kin.linkage.links import Link, bar
+from kin.numeric.elementary import Jet, cos, sin
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
-    from kin.linkage.dyad import Dyad, Link, Reached
+    from kin.linkage.dyad import Dyad, Reached
     from kin.linkage.four_bar import Linkage, Positions
+    from kin.linkage.links import Joint, Place
     from kin.numeric.arrays import Array
 
-__all__ = ["Chain", "Solved"]
+__all__ = ["Carrier", "Chain", "Solved"]
 
 
 class Solved(NamedTuple):
-    """The linkage's positions, and what each dyad reaches, as jets."""
+    """The linkage's positions, and what each dyad reaches, for the lifts S and S1: all as jets."""
 
+    lifts: tuple[Jet, Jet]
     linkage: Positions
-    dyads: tuple[Reached, ...]
+    dyads: tuple[Reached, ...] = ()
 
     @property
-    def joints(self) -> tuple[tuple[Jet, Jet], ...]:
+    def joints(self) -> tuple[Place, ...]:
         """Joint D of the linkage, then the joint that each dyad's point drives; mm."""
         return (self.linkage.joint, *(reached.joint for reached in self.dyads))
 
@@ -35,6 +37,13 @@ class Solved(NamedTuple):
     def outputs(self) -> tuple[Jet, ...]:
         """Output of the linkage, then of each dyad; rad or mm."""
         return (self.linkage.output, *(reached.output for reached in self.dyads))
+
+
+class Carrier(NamedTuple):
+    """A link that a dyad hangs on: its name, and its pose in axes that the dyad's `point` is given in."""
+
+    name: str
+    pose: Callable[[Solved], Link]
 
 
 @dataclass(frozen=True)
@@ -62,23 +71,47 @@ class Chain:
 
         `about` may be shorter than the dyads: the rest of them are left out. Raises BindingError.
         """
-        solved = Solved(self.linkage.solve(s, s1, self.breadth), ())
+        solved = Solved((s, s1), self.linkage.solve(s, s1, self.breadth))
         for k, direction in enumerate(about):
             reached = self.dyads[k].solve(*self.hung(solved, k), direction)
-            solved = Solved(solved.linkage, (*solved.dyads, reached))
+            solved = solved._replace(dyads=(*solved.dyads, reached))
         return solved
 
-    def hung(self, solved: Solved, k: int) -> tuple[Jet, Jet]:
+    def frame(self, solved: Solved) -> Link:
+        """Return the square frame: origin in its middle, x along u(theta_3)."""
+        half = 0.5 * self.breadth
+        s, s1 = solved.lifts
+        angle = solved.linkage.frame
+        x, y, c, n = half - s1, s - half, cos(angle), sin(angle)
+        return Link((c * x - n * y, n * x + c * y), angle)
+
+    def output(self, loop: int) -> Carrier:
+        """Return the link that a loop drives: rocker or slide, that of a dyad with its number from 1."""
+        if loop == 0:
+            return Carrier(self.linkage.driven, lambda solved: self.linkage.output_link(solved.linkage))
+        dyad, k = self.dyads[loop - 1], loop - 1
+        return Carrier(f"{dyad.driven}-{loop}", lambda solved: dyad.output_link(solved.dyads[k]))
+
+    def carrier(self, k: int) -> Carrier:
+        """Return the link on which dyad k hangs."""
+        on = self.dyads[k].on
+        if on == "coupler":
+            return Carrier(self.linkage.joined, lambda solved: solved.linkage.coupler)
+        return self.output(0 if on == "output" else k)
+
+    def hung(self, solved: Solved, k: int) -> Place:
         """Return the point on which dyad k hangs, mm, from what is solved before it."""
-        dyad = self.dyads[k]
-        link: Link
-        if dyad.on == "coupler":
-            link = coupler(solved.linkage)
-        elif dyad.on == "output":
-            link = output_link(solved.linkage)
-        else:
-            link = self.dyads[k - 1].output_link(solved.dyads[k - 1])
-        return link.point(*dyad.point)
+        return self.carrier(k).pose(solved).point(*self.dyads[k].point)
+
+    def rod(self, solved: Solved, k: int) -> Link:
+        """Return the bar of dyad k, from the point on which it hangs towards the joint Q."""
+        return bar(self.hung(solved, k), solved.dyads[k].joint)
+
+    def joints(self, solved: Solved, loop: int) -> dict[str, Joint]:
+        """Return the joints of a loop by name: B and D of the linkage, P, Q and G of a dyad."""
+        if loop == 0:
+            return self.linkage.joints(solved.linkage)
+        return self.dyads[loop - 1].joints(self.hung(solved, loop - 1), solved.dyads[loop - 1])
 
     def margin(self, loop: int, s: Array, s1: Array, about: Sequence[float]) -> Array:
         """How far a loop is from binding, mm (n,), negative where it binds; BindingError where an earlier loop does."""

@@ -3,6 +3,10 @@
 A point P of the earlier link drives each dyad: RRR (two bars to a ground pivot G), RRP (a bar to a slide on a fixed
 line) and RPR (a block at P in a slotted rocker about G). All are triangles or right triangles, solved and
 differentiated as in `kin.linkage.loop`. Angles are counter-clockwise from the x axis.
+
+What a dyad reaches it also tells: `output_link` is the link that it drives, `driven` its name; `joints` are P, Q and
+G. For P on the closed path x, y (n,), the direction of GP is taken about the `middle` of its range, so that the output
+is continuous on it, and `turned` is the angle by which that direction turns once round the path: there must be none.
 """
 
 from __future__ import annotations
@@ -13,6 +17,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
+from kin.linkage.links import Joint, Link, Place, pivot, rocker
 from kin.linkage.loop import (
     Assembly,
     BindingError,
@@ -27,52 +32,22 @@ from kin.linkage.loop import (
     triangle_margin,
     with_value,
 )
-from kin.numeric.elementary import Jet, cos, sin, sqrt
+from kin.numeric.elementary import Jet, sqrt
 
 if TYPE_CHECKING:
-    from kin.linkage.four_bar import Positions
     from kin.numeric.arrays import Array
 
-__all__ = ["RPR", "RRP", "RRR", "Assembly", "BindingError", "Dyad", "Link", "On", "Reached", "coupler", "output_link"]
+__all__ = ["RPR", "RRP", "RRR", "Assembly", "BindingError", "Dyad", "Link", "On", "Reached"]
 
 On = Literal["output", "coupler", "previous"]
 Point = tuple[float, float]
-
-
-@dataclass(frozen=True, eq=False)
-class Link:
-    """A moving link as jets: its origin in the fixed frame, mm, and the direction of its x axis, rad (None: fixed)."""
-
-    origin: tuple[Jet, Jet]
-    direction: Jet | None
-
-    def point(self, x: float, y: float) -> tuple[Jet, Jet]:
-        """Position of the point (x, y) of the link, mm."""
-        a, b = self.origin
-        if self.direction is None:
-            return a + x, b + y
-        c, s = cos(self.direction), sin(self.direction)
-        return a + c * x - s * y, b + s * x + c * y
-
-
-def coupler(at: Positions) -> Link:
-    """Return the frame as a link: origin D, x along u(theta_3), away from the frame."""
-    return Link(at.joint, at.frame)
-
-
-def output_link(at: Positions) -> Link:
-    """Return the output link of a linkage: a rocker has its origin in B and x towards D, a slide its origin in D."""
-    if at.ground is None:
-        return Link(at.joint, None)
-    x, y = at.ground
-    return Link((at.output.constant(x), at.output.constant(y)), math.pi - at.output)
 
 
 class Reached(NamedTuple):
     """A dyad at n points, as jets: its output (rad or mm), and the joint Q that the point P drives (RPR: P itself)."""
 
     output: Jet
-    joint: tuple[Jet, Jet]
+    joint: Place
 
 
 @dataclass(frozen=True)
@@ -88,6 +63,7 @@ class RRR:
     links: tuple[float, float]
     assembly: Assembly
     unit: ClassVar[str] = "deg"
+    driven: ClassVar[str] = "rocker"
 
     def __post_init__(self) -> None:
         _demand_place(self.on, self.point, self.ground)
@@ -110,11 +86,23 @@ class RRR:
 
     def output_link(self, reached: Reached) -> Link:
         """Return the output link, QG."""
-        return _rocker(self.ground, reached.output)
+        return rocker(self.ground, reached.output)
+
+    def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
+        """P, Q and the pivot G."""
+        pins = {"P": point, "Q": reached.joint}
+        return {
+            **{name: Joint("pin", Link(place, None)) for name, place in pins.items()},
+            "G": pivot(self.ground, reached.output),
+        }
 
     def middle(self, x: Array, y: Array) -> float:
-        """Direction to take GP about, for P on the closed path x, y (n,): the output is then continuous on it."""
+        """Middle of the range of GP's directions, rad."""
         return _middle(x, y, self.ground)
+
+    def turned(self, x: Array, y: Array) -> float:
+        """Angle by which GP turns, rad."""
+        return _turned(x - self.ground[0], y - self.ground[1])
 
 
 @dataclass(frozen=True)
@@ -132,6 +120,7 @@ class RRP:
     direction: float
     assembly: Assembly
     unit: ClassVar[str] = "mm"
+    driven: ClassVar[str] = "slide"
 
     def __post_init__(self) -> None:
         _demand_place(self.on, self.point, (*self.through, self.direction))
@@ -159,8 +148,17 @@ class RRP:
         """Return the slide."""
         return Link(reached.joint, None)
 
+    def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
+        """P, and Q on the fixed line."""
+        slide = Link(reached.joint, reached.output.constant(self.direction))
+        return {"P": Joint("pin", Link(point, None)), "Q": Joint("slide", slide)}
+
     def middle(self, x: Array, y: Array) -> float:  # noqa: ARG002 - one call for all dyads
         """Return 0: no angle is taken."""
+        return 0.0
+
+    def turned(self, x: Array, y: Array) -> float:  # noqa: ARG002 - one call for all dyads
+        """Return 0: nothing turns."""
         return 0.0
 
 
@@ -177,6 +175,7 @@ class RPR:
     ground: Point
     offset: float
     unit: ClassVar[str] = "deg"
+    driven: ClassVar[str] = "rocker"
 
     def __post_init__(self) -> None:
         _demand_place(self.on, self.point, (*self.ground, self.offset))
@@ -196,11 +195,19 @@ class RPR:
 
     def output_link(self, reached: Reached) -> Link:
         """Return the slotted rocker."""
-        return _rocker(self.ground, reached.output)
+        return rocker(self.ground, reached.output)
+
+    def joints(self, point: Place, reached: Reached) -> dict[str, Joint]:
+        """P in the slot, and the pivot G."""
+        return {"P": Joint("slot", Link(point, reached.output)), "G": pivot(self.ground, reached.output)}
 
     def middle(self, x: Array, y: Array) -> float:
-        """Direction to take GP about, for P on the closed path x, y (n,): the output is then continuous on it."""
+        """Middle of the range of GP's directions, rad."""
         return _middle(x, y, self.ground)
+
+    def turned(self, x: Array, y: Array) -> float:
+        """Angle by which GP turns, rad."""
+        return _turned(x - self.ground[0], y - self.ground[1])
 
 
 Dyad = RRR | RRP | RPR
@@ -228,11 +235,13 @@ def _square(x_terms: tuple[float | Array, float], y_terms: tuple[float | Array, 
     return square
 
 
-def _rocker(ground: Point, direction: Jet) -> Link:
-    return Link((direction.constant(ground[0]), direction.constant(ground[1])), direction)
-
-
 def _middle(x: Array, y: Array, ground: Point) -> float:
     """Middle of the range of directions; a path once round the ground pivot has none that is continuous."""
     directions = np.unwrap(np.arctan2(y - ground[1], x - ground[0]))
     return float(directions.min() + directions.max()) / 2
+
+
+def _turned(x: Array, y: Array) -> float:
+    """Angle by which a vector (x, y), (n,) each, turns round a closed path, rad."""
+    steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
+    return float(np.sum(steps - 2 * np.pi * np.round(steps / (2 * np.pi))))

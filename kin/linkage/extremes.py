@@ -39,7 +39,7 @@ class Figures:
     least, greatest           of the output
     frame_least, frame_greatest                         of theta_3
     transmission_least, transmission_greatest           of the angle between frame and rocker, 0 to pi/2
-    force_least               of the force angle, 0 to pi/2 (`kin.linkage.transmission_angle`)
+    force_least               of the force angle, 0 to pi/2 (`kin.linkage.forces`)
     velocity, acceleration    of the output by the shaft angle: the greatest absolute value, with its sign
     velocity_relative, acceleration_relative            likewise by the relative angle
     dead_centres              where the joint D stands in the middle between faces 1 and 3, S = w/2; where it rests

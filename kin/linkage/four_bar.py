@@ -6,6 +6,13 @@ theta_3 occurs anywhere (AS 11-13, 19, 22 have it). B = (r1, 0) is the fixed piv
 to BD, clockwise as in AS Figure 7. Each loop is a triangle or a right triangle, solved by half angles and
 differentiated implicitly (`kin.linkage.loop`); AS 34 is 0/0 at theta_3 = theta_4 and theta_4 + pi, the forms here are
 not.
+
+A linkage tells all that others ask of it, at positions that it has solved: `output_link` is the link that it drives,
+`driven` its name, and `joined` the name of the link that D is fixed in and whose axes are the frame's: the frame, or a
+block in it. `joints` are D and the pivot B. `transmission` is the sine and cosine (n,) of the angle from the frame's
+line u to the rocker BD, or to the slide's normal; `force` those of the force angle, the sine of the sign of phi'
+(`kin.linkage.forces`), for the slopes S' and S1' (n,), the sine 0 where there is no line of force.
+`force_line` is that line.
 """
 
 from __future__ import annotations
@@ -16,6 +23,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from kin.linkage.forces import ForceLine, angle, pushing
+from kin.linkage.links import Joint, Link, Place, pivot, rocker
 from kin.linkage.loop import (
     Assembly,
     BindingError,
@@ -45,14 +54,28 @@ class Positions:
     """A linkage at n points, as jets in whatever parameter the lifts were given.
 
     `frame` is theta_3 (rad), continuous round a turn; `output` is theta_4 (rad) or D_x (mm); `joint` is D (mm);
-    `ground` is B (mm), None where the output slides; `slide` is the X of D along the frame (mm).
+    `slide` is the X of D along the frame (mm).
     """
 
     frame: Jet
     output: Jet
-    joint: tuple[Jet, Jet]
-    ground: tuple[float, float] | None
+    joint: Place
     slide: Jet
+
+    @property
+    def coupler(self) -> Link:
+        """The link with the joint D, its origin, and x along u(theta_3), away from the frame."""
+        return Link(self.joint, self.frame)
+
+    def instant_centre(self, slope: Array, slope1: Array) -> tuple[Array, Array]:
+        """P = -S' u - S1' n, where the normals of the contacts meet (n,), mm; S' and S1' (n,)."""
+        c, s = np.cos(self.frame.c[0]), np.sin(self.frame.c[0])
+        return -slope * c + slope1 * s, -slope * s - slope1 * c
+
+    def from_instant_centre(self, slope: Array, slope1: Array) -> tuple[Array, Array]:
+        """Vector from there to D (n,), mm."""
+        px, py = self.instant_centre(slope, slope1)
+        return self.joint[0].c[0] - px, self.joint[1].c[0] - py
 
 
 @dataclass(frozen=True)
@@ -67,6 +90,8 @@ class FourBar:
     rocker: float
     assembly: Assembly = "open"
     unit: ClassVar[str] = "deg"
+    driven: ClassVar[str] = "rocker"
+    joined: ClassVar[str] = "frame"
 
     def __post_init__(self) -> None:
         demand_lengths(self.assembly, ground=self.ground, coupler=self.coupler, rocker=self.rocker)
@@ -89,7 +114,33 @@ class FourBar:
         abd = Triangle.of(r1, r4, ad)
         joint = abd.along / (2 * r1), abd.root * (side / (2 * r1))
         frame = abd.beside * side - ad.bearing()
-        return Positions(frame, abd.between * side, joint, (r1, 0.0), ad.x)
+        return Positions(frame, abd.between * side, joint, ad.x)
+
+    def output_link(self, at: Positions) -> Link:
+        """Return the rocker: origin B, x towards D."""
+        return _rocker(self.ground, at)
+
+    def joints(self, at: Positions) -> dict[str, Joint]:
+        """B and D."""
+        return {"B": pivot((self.ground, 0.0), at.output), "D": Joint("pin", Link(at.joint, None))}
+
+    def transmission(self, at: Positions) -> tuple[Array, Array]:
+        """Between frame and rocker."""
+        frame, output = at.frame.c[0], at.output.c[0]
+        return np.sin(frame + output), -np.cos(frame + output)
+
+    def force(self, at: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+        """Between DP and DB."""
+        ax, ay = at.from_instant_centre(slope, slope1)
+        dx, dy = (row.c[0] for row in at.joint)
+        bx, by = dx - self.ground, dy
+        return angle(ax * by - ay * bx, ax * bx + ay * by, dy)
+
+    def force_line(self, at: Positions, slope: Array, slope1: Array) -> ForceLine:
+        """Along DP, in the sense in which it pushes the rocker on; the positions to first order."""
+        dx, dy = (row.c[0] for row in at.joint)
+        along = at.from_instant_centre(slope, slope1)
+        return pushing((dx, dy), along, (-dy, dx - self.ground), -at.output.c[1])
 
 
 @dataclass(frozen=True)
@@ -104,6 +155,8 @@ class InvertedSliderCrank:
     rocker: float
     assembly: Assembly = "open"
     unit: ClassVar[str] = "deg"
+    driven: ClassVar[str] = "rocker"
+    joined: ClassVar[str] = "block"
 
     def __post_init__(self) -> None:
         demand_lengths(self.assembly, ground=self.ground)
@@ -134,7 +187,37 @@ class InvertedSliderCrank:
         value = 2 * side * np.arctan2(np.sqrt(near_value), np.sqrt(far_value))
         output = (s.derivative() / lower(slide)).integral(value) if s.order else Jet(value[None])
         joint = near * (r4 / r1) + (r1 - r4), slide * (r4 / r1)
-        return Positions(math.pi / 2 - output, output, joint, (r1, 0.0), slide)
+        return Positions(math.pi / 2 - output, output, joint, slide)
+
+    def output_link(self, at: Positions) -> Link:
+        """Return the rocker: origin B, x towards D."""
+        return _rocker(self.ground, at)
+
+    def joints(self, at: Positions) -> dict[str, Joint]:
+        """B, and D in a slot of the frame along u."""
+        return {"B": pivot((self.ground, 0.0), at.output), "D": Joint("slot", at.coupler)}
+
+    def transmission(self, at: Positions) -> tuple[Array, Array]:
+        """A right angle throughout: the block presses across the frame's line."""
+        frame = at.frame.c[0]
+        return np.ones_like(frame), np.zeros_like(frame)
+
+    def force(self, at: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+        """Between BP and the force, which passes through P across the frame's line."""
+        frame = at.frame.c[0]
+        c, s = np.cos(frame), np.sin(frame)
+        px, py = at.instant_centre(slope, slope1)
+        ax, ay = self.ground - px, -py
+        return angle(ax * c + ay * s, ay * c - ax * s, at.slide.c[0])
+
+    def force_line(self, at: Positions, slope: Array, slope1: Array) -> ForceLine:
+        """Across the frame's line, where P stands along it; the positions to first order."""
+        frame = at.frame.c[0]
+        c, s = np.cos(frame), np.sin(frame)
+        fx, fy = at.from_instant_centre(slope, slope1)
+        back = fx * c + fy * s
+        x, y = at.joint[0].c[0] - back * c, at.joint[1].c[0] - back * s
+        return pushing((x, y), (-s, c), (-y, x - self.ground), -at.output.c[1])
 
 
 @dataclass(frozen=True)
@@ -148,6 +231,8 @@ class SliderCrank:
     offset: float
     assembly: Assembly = "open"
     unit: ClassVar[str] = "mm"
+    driven: ClassVar[str] = "slide"
+    joined: ClassVar[str] = "frame"
 
     def __post_init__(self) -> None:
         demand_lengths(self.assembly, coupler=self.coupler)
@@ -169,10 +254,37 @@ class SliderCrank:
         demand_mobile(longer(q.c[0], square, offset), order=q.order, fixed=q.c[0] == 0)
         output = sqrt(with_value(q, square)) * side
         height = output.constant(offset)
-        return Positions(bearing(output, height, q) - ad.bearing(), output, (output, height), None, ad.x)
+        return Positions(bearing(output, height, q) - ad.bearing(), output, (output, height), ad.x)
+
+    def output_link(self, at: Positions) -> Link:
+        """Return the slide: origin D, its axes fixed."""
+        return Link(at.joint, None)
+
+    def joints(self, at: Positions) -> dict[str, Joint]:
+        """D, on the fixed line."""
+        return {"D": Joint("slide", Link(at.joint, at.output.constant(0.0)))}
+
+    def transmission(self, at: Positions) -> tuple[Array, Array]:
+        """Between frame and the slide's normal."""
+        frame = at.frame.c[0]
+        return np.cos(frame), np.sin(frame)
+
+    def force(self, at: Positions, slope: Array, slope1: Array) -> tuple[Array, Array]:
+        """Between DP and the slide's normal."""
+        return angle(*at.from_instant_centre(slope, slope1), at.joint[0].c[0])
+
+    def force_line(self, at: Positions, slope: Array, slope1: Array) -> ForceLine:
+        """Along DP, in the sense in which it pushes the slide on; the positions to first order."""
+        dx, dy = (row.c[0] for row in at.joint)
+        way = np.ones_like(dx), np.zeros_like(dx)
+        return pushing((dx, dy), at.from_instant_centre(slope, slope1), way, at.output.c[1])
 
 
 Linkage = FourBar | InvertedSliderCrank | SliderCrank
+
+
+def _rocker(ground: float, at: Positions) -> Link:
+    return rocker((ground, 0.0), math.pi - at.output)
 
 
 def _frame_terms(

@@ -16,12 +16,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.linkage.chain import Chain, Solved
-from kin.linkage.dyad import RRP
+from kin.linkage.chain import Chain
 from kin.linkage.extremes import Figures, Rows, figures
 from kin.linkage.loop import BindingError
 from kin.linkage.mobility import Mobility, mobility
-from kin.linkage.transmission_angle import force, transmission
 from kin.numeric.angles import TURN
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
@@ -35,6 +33,7 @@ if TYPE_CHECKING:
 
     from kin.law.piecewise import Side
     from kin.law.support_function import Lift
+    from kin.linkage.chain import Solved
     from kin.linkage.dyad import Dyad
     from kin.linkage.four_bar import Linkage
     from kin.numeric.arrays import Array, Indices
@@ -64,17 +63,33 @@ class PlaceError(BindingError):
 class Motion:
     """A mechanism at relative angles theta (n,): derivatives by theta, (order + 1, n) each; rad and mm.
 
-    `shaft` is phi; `frame` is theta_3; `output` is that of the last link; `outputs` are those of the linkage and of
-    each dyad; `joints` (2, order + 1, n) each are D and the joint that each dyad's point drives, in the fixed axes;
-    `faces` (2, order + 1, n) are the lifts S and S1.
+    `shaft` is phi; `joints` (2, order + 1, n) each are in the fixed axes; `faces` (2, order + 1, n); `solved` has all
+    as jets.
     """
 
     theta: Array
     shaft: Array
-    frame: Array
-    outputs: tuple[Array, ...]
-    joints: tuple[Array, ...]
-    faces: Array
+    solved: Solved
+
+    @cached_property
+    def frame(self) -> Array:
+        """theta_3."""
+        return self.solved.linkage.frame.derivatives()
+
+    @cached_property
+    def outputs(self) -> tuple[Array, ...]:
+        """Output of the linkage, then of each dyad."""
+        return tuple(output.derivatives() for output in self.solved.outputs)
+
+    @cached_property
+    def joints(self) -> tuple[Array, ...]:
+        """Joint D, then the joint that each dyad's point drives."""
+        return tuple(np.stack([row.derivatives() for row in joint]) for joint in self.solved.joints)
+
+    @cached_property
+    def faces(self) -> Array:
+        """Lifts S and S1."""
+        return np.stack([lift.derivatives() for lift in self.solved.lifts])
 
     @property
     def joint(self) -> Array:
@@ -155,23 +170,16 @@ class Mechanism:
         """
         theta = np.atleast_1d(np.asarray(theta, dtype=float))
         s, s1 = self._lifts(theta, order, side)
-        solved = self._solved(theta, s, s1)
-        return self._motion(theta, s, s1, solved)
-
-    def _motion(self, theta: Array, s: Jet, s1: Jet, solved: Solved) -> Motion:
+        try:
+            solved = self.chain.solve(s, s1, self.about)
+        except BindingError as error:
+            raise _placed(error, theta) from error
         frame = solved.linkage.frame
         shaft = -frame.derivatives()
         shaft[0] += theta + self.start
         if frame.order > 0:
             shaft[1] += 1.0
-        return Motion(
-            theta,
-            shaft,
-            frame.derivatives(),
-            tuple(output.derivatives() for output in solved.outputs),
-            tuple(np.stack([row.derivatives() for row in joint]) for joint in solved.joints),
-            np.stack([s.derivatives(), s1.derivatives()]),
-        )
+        return Motion(theta, shaft, solved)
 
     def driven(self, s: Jet, s1: Jet) -> tuple[Jet, Jet]:
         """theta_3 and output for any lifts of the frame's faces 1 and 2, as jets at n points. Raises BindingError."""
@@ -244,13 +252,11 @@ class Mechanism:
         return dwells(output, self.at(self.breaks, 0).shaft[0], band, TURN, most)
 
     def _rows(self, theta: Array) -> Rows:
-        s, s1 = self._lifts(theta, 2)
-        solved = self._solved(theta, s, s1)
-        at = solved.linkage
-        motion = self._motion(theta, s, s1, solved)
+        motion = self.at(theta, 2)
+        at, (s, s1) = motion.solved.linkage, motion.solved.lifts
         over = motion.over_shaft(motion.output)
-        sine, cosine = transmission(self.linkage, at)
-        force_sine, force_cosine = force(self.linkage, at, s.c[1], s1.c[1])
+        sine, cosine = self.linkage.transmission(at)
+        force_sine, force_cosine = self.linkage.force(at, s.c[1], s1.c[1])
         return Rows(
             output=motion.output[0],
             velocity_relative=motion.output[1],
@@ -278,17 +284,11 @@ class Mechanism:
             raise _placed(error, theta) from error
         return at.frame, at.output
 
-    def _solved(self, theta: Array, s: Jet, s1: Jet) -> Solved:
-        try:
-            return self.chain.solve(s, s1, self.about)
-        except BindingError as error:
-            raise _placed(error, theta) from error
-
     def _sense(self, theta: Array) -> Array:
         """Sine of the force angle (n,): bounded, and of the sign of phi'."""
         s, s1 = self._lifts(theta, 1)
         at = self.linkage.solve(Jet(s.c[:1]), Jet(s1.c[:1]), self.breadth)
-        return force(self.linkage, at, s.c[1], s1.c[1])[0]
+        return self.linkage.force(at, s.c[1], s1.c[1])[0]
 
     @cached_property
     def about(self) -> tuple[float, ...]:
@@ -302,21 +302,14 @@ class Mechanism:
                 return (*found, *(0.0,) * (len(self.dyads) - loop))
             s0, s01 = self._lifts(theta, 0)
             x, y = self.chain.hung(self.chain.solve(s0, s01, found), loop)
-            if not isinstance(dyad, RRP) and len(theta) == _TABLE:
-                self._demand_swinging(loop, x.c[0] - dyad.ground[0], y.c[0] - dyad.ground[1])
+            if len(theta) == _TABLE and abs(dyad.turned(x.c[0], y.c[0])) > math.pi:
+                raise IntentError(
+                    f"the point that dyad {loop + 1} hangs on goes right round the dyad's ground pivot: its output "
+                    "would turn on and on, not swing",
+                    "dyads",
+                )
             found = (*found, dyad.middle(x.c[0], y.c[0]))
         return found
-
-    def _demand_swinging(self, loop: int, x: Array, y: Array) -> None:
-        """Refuse a dyad whose point, at x, y (n,) from its ground pivot, goes right round that."""
-        steps = np.diff(np.arctan2(y, x), append=math.atan2(y[0], x[0]))
-        turned = float(np.sum(steps - TURN * np.round(steps / TURN)))
-        if abs(turned) > math.pi:
-            raise IntentError(
-                f"the point that dyad {loop + 1} hangs on goes right round the dyad's ground pivot: its output would "
-                "turn on and on, not swing",
-                "dyads",
-            )
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array]:

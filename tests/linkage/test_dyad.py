@@ -12,7 +12,8 @@ from support.cases import few
 from support.linkage_oracle import judged_dyad, ratio
 
 from kin.law.support_function import lift_hypocycloid
-from kin.linkage.dyad import RPR, RRP, RRR, BindingError, Link, coupler, output_link
+from kin.linkage.chain import Chain
+from kin.linkage.dyad import RPR, RRP, RRR, BindingError, Link, Reached
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 from kin.numeric.elementary import Jet
 
@@ -29,7 +30,7 @@ def lifts(order=ORDER):
 
 
 FOUR_BAR = FourBar(80.0, 70.0, 105.0).solve(*lifts(), W)
-POINT = output_link(FOUR_BAR).point(60.0, 20.0)
+POINT = FourBar(80.0, 70.0, 105.0).output_link(FOUR_BAR).point(60.0, 20.0)
 DYADS = [
     *(RRR("output", (60.0, 20.0), (150.0, 0.0), (110.0, 160.0), assembly) for assembly in ASSEMBLIES),
     *(RRP("output", (60.0, 20.0), 140.0, (10.0, 60.0), 0.3, assembly) for assembly in ASSEMBLIES),
@@ -147,22 +148,21 @@ def test_direction_is_taken_about_the_middle():
 
 def test_points_of_links():
     s, s1 = lifts()
-    four, inverted, slider = (
-        linkage.solve(s, s1, W)
-        for linkage in (FourBar(80.0, 70.0, 105.0), InvertedSliderCrank(130.0, 70.0), SliderCrank(70.0, 12.0))
-    )
-    for at, length in ((four, 105.0), (inverted, 70.0)):
-        for ours, theirs in zip(output_link(at).point(length, 0.0), at.joint, strict=True):
+    linkages = FourBar(80.0, 70.0, 105.0), InvertedSliderCrank(130.0, 70.0), SliderCrank(70.0, 12.0)
+    four, inverted, slider = (linkage.solve(s, s1, W) for linkage in linkages)
+    for linkage, at in zip(linkages[:2], (four, inverted), strict=True):
+        length = linkage.rocker
+        for ours, theirs in zip(linkage.output_link(at).point(length, 0.0), at.joint, strict=True):
             assert ours.derivatives() == pytest.approx(theirs.derivatives(), rel=1e-10, abs=1e-9)
         # to the left of the way from B to D
-        bx, side = at.ground[0], output_link(at).point(0.0, 1.0)
-        assert cross((bx, 0.0), at.joint, side) == pytest.approx(np.full(len(THETA), length), rel=1e-12)
+        side = linkage.output_link(at).point(0.0, 1.0)
+        assert cross((linkage.ground, 0.0), at.joint, side) == pytest.approx(np.full(len(THETA), length), rel=1e-12)
     for at in (four, slider):  # back along the frame's axes lies the shaft
         x, y = at.slide.c[0], s.c[0] - W / 2
         for i in (0, 73 // 2, 50):
-            shaft = coupler(at).point(-x[i], -y[i])
+            shaft = at.coupler.point(-x[i], -y[i])
             assert [shaft[0].c[0, i], shaft[1].c[0, i]] == pytest.approx([0, 0], abs=1e-12)
-    beside = output_link(slider).point(5.0, 7.0)
+    beside = linkages[2].output_link(slider).point(5.0, 7.0)
     assert (beside[0].c[0] == slider.output.c[0] + 5).all()
     assert (beside[1].c[0] == 19).all()
     assert (beside[0].c[1:] == slider.output.c[1:]).all()
@@ -350,3 +350,65 @@ def test_any_rpr(part, ground, driven):
 def test_a_fixed_link_does_not_turn():
     origin = POINT
     assert Link(origin, None).point(1.0, 2.0)[0].c[1:] == pytest.approx(origin[0].c[1:])
+
+
+@pytest.mark.parametrize("dyad", DYADS)
+def test_joints_are_where_the_links_are(dyad):
+    reached = dyad.solve(*POINT)
+    joints, link = dyad.joints(POINT, reached), dyad.output_link(reached)
+    kinds = {name: joint.kind for name, joint in joints.items()}
+    wanted = {
+        RRR: {"P": "pin", "Q": "pin", "G": "pivot"},
+        RRP: {"P": "pin", "Q": "slide"},
+        RPR: {"P": "slot", "G": "pivot"},
+    }
+    assert kinds == wanted[type(dyad)]
+    assert joints["P"].place.origin == POINT
+    if dyad.driven == "rocker":
+        assert [row.c[:, 0].tolist() for row in joints["G"].place.origin] == [[g] + [0] * ORDER for g in dyad.ground]
+        for row, other in zip(link.origin, joints["G"].place.origin, strict=True):
+            assert (row.c == other.c).all()
+    for joint in joints.values():  # along what slides, a slide keeps to its line, or the link to its pin
+        if joint.kind == "slide":
+            assert joint.place.direction.c[0] == pytest.approx(dyad.direction)
+            assert not joint.place.direction.c[1:].any()
+        if joint.kind == "slot":
+            assert (joint.place.direction.c == link.direction.c).all()
+
+
+def test_a_chain_gives_the_link_that_carries_each_dyad():
+    """Name and pose: the point of a dyad is a point of that link, whose distance to the link's joints is constant."""
+    hung = [
+        RRR("coupler", (20.0, 30.0), (150.0, 60.0), (110.0, 110.0), "open"),
+        RPR("previous", (40.0, 5.0), (0, 0), 2),
+    ]
+    hung += [
+        RRP("output", (60.0, 20.0), 300.0, (10.0, 60.0), 0.3, "open"),
+        RRR("previous", (0, 0), (0, 0), (9, 9), "open"),
+    ]
+    s, s1 = lifts()
+    for linkage, names in (
+        (FourBar(80.0, 70.0, 105.0), ["frame", "rocker-1", "rocker", "slide-3"]),
+        (InvertedSliderCrank(130.0, 70.0), ["block", "rocker-1", "rocker", "slide-3"]),
+        (SliderCrank(70.0, 12.0), ["frame", "rocker-1", "slide", "slide-3"]),
+    ):
+        chain = Chain(linkage, W, tuple(hung))
+        assert [chain.carrier(k).name for k in range(4)] == names
+        solved = chain.solve(s, s1, ())
+        reached = solved._replace(dyads=(Reached(s, POINT),) * 3)
+        poses = [chain.carrier(k).pose(reached) for k in range(4)]
+        assert poses[0].origin == solved.linkage.joint
+        assert poses[0].direction is solved.linkage.frame
+        assert (poses[1].origin[0].c[0] == 150).all()
+        assert poses[1].direction is s
+        assert poses[3].origin == POINT
+        for k, pose in enumerate(poses):
+            for ours, theirs in zip(chain.hung(reached, k), pose.point(*hung[k].point), strict=True):
+                assert (ours.c == theirs.c).all()
+        joints = chain.joints(reached, 0)
+        ends = linkage.output_link(solved.linkage).point(linkage.rocker if "B" in joints else 0.0, 0.0)
+        for ours, theirs in zip(ends, joints["D"].place.origin, strict=True):
+            assert ours.c == pytest.approx(theirs.c, abs=1e-9)
+        frame = chain.frame(solved)  # the shaft, which is the origin, by S and S1 from its faces
+        shaft = frame.point(s1 - W / 2, W / 2 - s)
+        assert [np.abs(row.c).max() for row in shaft] == pytest.approx([0, 0], abs=1e-11)

@@ -17,7 +17,6 @@ from kin.linkage.dyad import RPR, RRP, RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
 from kin.linkage.loop import BindingError
 from kin.linkage.mechanism import Mechanism, PlaceError
-from kin.linkage.transmission_angle import force
 from kin.numeric.elementary import Jet
 from kin.numeric.extrema import extremes
 
@@ -200,7 +199,7 @@ def test_force_angle_vanishes_exactly_where_the_shaft_stands_still():
     of = mechanism(InvertedSliderCrank(20.0, 0.0))
     still = np.array(of.mobility().reverses).ravel()
     s, s1 = (Jet(rows) for rows in of.at(still, 1).faces)
-    sine, cosine = force(of.linkage, of.linkage.solve(s, s1, 50.0), s.c[1], s1.c[1])
+    sine, cosine = of.linkage.force(of.linkage.solve(s, s1, 50.0), s.c[1], s1.c[1])
     assert np.abs(of.at(still, 1).shaft[1]).max() < 1e-10
     assert np.abs(sine).max() < 1e-10
     assert np.abs(cosine) == pytest.approx(1)
@@ -223,6 +222,32 @@ def close(of, theta):
 
 @settings(max_examples=examples(60))
 @given(linkages, pivots)
+def test_the_line_of_force_pushes_the_output_on(linkage, pivot):
+    """It passes P, does no negative work on the output link, and its lever about the pivot is that of the angle."""
+    of = mechanism(linkage, pivot)
+    theta = close(of, np.linspace(0, 6.2, 40))
+    s, s1 = (Jet(of.lift.derivatives(theta + k, 1)) for k in (0, math.pi / 2))
+    at = linkage.solve(s, s1, 50.0)
+    (px, py), line = at.instant_centre(s.c[1], s1.c[1]), linkage.force_line(at, s.c[1], s1.c[1])
+    reach = 1 + np.hypot(line.x - px, line.y - py)
+    certain = reach > 1.001
+    assert np.hypot(line.along_x, line.along_y)[certain] == pytest.approx(1)
+    assert ((line.x - px) * line.along_y - (line.y - py) * line.along_x) / reach == pytest.approx(0, abs=1e-9)
+    link, sine = linkage.output_link(at), np.abs(linkage.force(at, s.c[1], s1.c[1])[0])
+    if link.direction is None:
+        lever, rate = line.along_x, link.origin[0].c[1]
+    else:
+        bx, by = (row.c[0] for row in linkage.joints(at)["B"].place.origin)
+        arm = linkage.rocker if linkage.joined == "frame" else np.hypot(px - bx, py - by)
+        certain &= arm > 1e-3
+        lever = ((line.x - bx) * line.along_y - (line.y - by) * line.along_x) / np.maximum(arm, 1e-3)
+        rate = link.direction.c[1]
+    assert (lever * rate >= -1e-12 * np.abs(rate)).all()
+    assert np.abs(lever)[certain] == pytest.approx(sine[certain], abs=1e-6)
+
+
+@settings(max_examples=60)
+@given(linkages, pivots)
 def test_the_rate_of_the_shaft_is_the_lever_of_the_force_on_the_output(linkage, pivot):
     """phi' = lever of P / lever of the shaft, whatever the linkage: virtual work, from forces alone."""
     of = mechanism(linkage, pivot)
@@ -230,7 +255,7 @@ def test_the_rate_of_the_shaft_is_the_lever_of_the_force_on_the_output(linkage, 
     s, s1 = (Jet(of.lift.derivatives(theta + k, 1)) for k in (0, math.pi / 2))
     at = linkage.solve(s, s1, 50.0)
     rate = 1 - at.frame.c[1]
-    sine, cosine = force(linkage, at, s.c[1], s1.c[1])
+    sine, cosine = linkage.force(at, s.c[1], s1.c[1])
     assert np.hypot(sine, cosine) == pytest.approx(1)
     certain = np.abs(rate) > 1e-9
     assert (np.sign(sine) == np.sign(rate))[certain].all()

@@ -11,13 +11,13 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
 
-from camgeo.cams.plates import breadth_of
+from camgeo.cams.flat_faced import breadth_of
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.sweep import FIGURES
 from camgeo.sweep.search import evaluator
 from camgeo.sweep.search.ask import Ask
 from camgeo.sweep.search.figures import REASONS, Evaluator, compute, evaluate
-from camgeo.sweep.search.linkages import Lengths, Loop, Support, angles
+from camgeo.sweep.search.linkages import Lengths, Support, angles, engine
 from camgeo.sweep.search.rebuilt import recipe_with
 from camgeo.synthesis.linkage import mechanism_of
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
@@ -368,18 +368,18 @@ def test_few_samples_are_made_a_multiple_of_four():
 
 
 @pytest.mark.parametrize(
-    ("kind", "linkage", "lengths"),
+    ("linkage", "lengths"),
     [
-        ("four-bar", FourBar(80, 70, 105), (80, 70, 105, 0)),
-        ("inverted-slider-crank", InvertedSliderCrank(90, 20), (90, 0, 20, 0)),
-        ("slider-crank", SliderCrank(70, 12), (0, 70, 0, 12)),
+        (FourBar(80, 70, 105), (80, 70, 105, 0)),
+        (InvertedSliderCrank(90, 20), (90, 0, 20, 0)),
+        (SliderCrank(70, 12), (0, 70, 0, 12)),
     ],
 )
-def test_the_margin_of_a_linkage_that_binds_is_negative(kind, linkage, lengths):
+def test_the_margin_of_a_linkage_that_binds_is_negative(linkage, lengths):
     n = 48
     p = 25 + 200 * np.cos(angles(n))[None]
     cams = Support(np.array([[50.0]]), p, 0 * p, 0 * p)
-    loop = Loop.of(kind, 1.0, cams, Lengths(*(np.array([[float(length)]]) for length in lengths)))
+    loop = engine(linkage).of(1.0, cams, Lengths(*(np.array([[float(length)]]) for length in lengths)))
     margin = loop.margin(lambda rows: rows.min(axis=1))
     s1 = np.roll(p[0], -n // 4)
     wanted = linkage.margin(p[0], s1, 50.0).min()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.places import RECIPES
 
-from camgeo.cams.plates import breadth_of
+from camgeo.cams.flat_faced import breadth_of
 from camgeo.recipe.loading import load, load_text
 from camgeo.sweep.search import refine
 from camgeo.sweep.search.ask import Ask

@@ -7,21 +7,22 @@ u(theta_3) along the coupler and n across; the face of lift S has the normal n, 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from camgeo.curve.ring import Ring, bar, box, disc
 from camgeo.report.page.followers import SHAFT, contact
 from camgeo.report.page.scene import Body, Label, Shape, arrow, block, pin, pivot, poses, still
-from kin.linkage.dyad import RRP, RRR, coupler, output_link
+from kin.linkage.dyad import RPR, RRP, RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
-from kin.linkage.transmission_angle import force, transmission
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kin.linkage.chain import Solved
-    from kin.linkage.dyad import Dyad, Link
+    from kin.linkage.links import Joint, Link
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array
     from kin.numeric.elementary import Jet
@@ -63,26 +64,23 @@ class Driven:
         return turned
 
     @property
-    def joint(self) -> tuple[Array, Array]:
-        """Joint D."""
-        x, y = self.solved.linkage.joint
-        return value(x), value(y)
+    def slopes(self) -> tuple[Array, Array]:
+        """Slopes S' and S1' of faces 1 and 2."""
+        return self.lifts[0, 1], self.lifts[1, 1]
 
-    def along(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Give the point x u + y n of the fixed frame."""
-        c, s = np.cos(self.frame), np.sin(self.frame)
-        return x * c - y * s, x * s + y * c
+    def joints(self, loop: int) -> dict[str, Joint]:
+        """Joints of a loop."""
+        return self.mechanism.chain.joints(self.solved, loop)
 
-    @property
-    def instant_centre(self) -> tuple[Array, Array]:
-        """The point -S' u - S1' n in which the normals of the contacts meet."""
-        return self.along(-self.lifts[0, 1], -self.lifts[1, 1])
+    def output(self, loop: int) -> Array:
+        """Poses (STEPS + 1, 3) of the link that a loop drives."""
+        return _pose(self.mechanism.chain.output(loop).pose(self.solved))
 
     def angles(self) -> tuple[Array, Array]:
         """Transmission angle and force angle, rad, from 0 to a quarter turn."""
         linkage, at = self.mechanism.linkage, self.solved.linkage
-        sine, cosine = transmission(linkage, at)
-        pushed, held = force(linkage, at, self.lifts[0, 1], self.lifts[1, 1])
+        sine, cosine = linkage.transmission(at)
+        pushed, held = linkage.force(at, *self.slopes)
         return np.arctan2(np.abs(sine), np.abs(cosine)), np.arctan2(np.abs(pushed), np.abs(held))
 
 
@@ -92,50 +90,76 @@ def value(jet: Jet) -> Array:
     return values
 
 
+class Layers(NamedTuple):
+    """Bodies of a loop: the links, the pivots on the ground, and the joints on top."""
+
+    links: list[Body]
+    pivots: list[Body]
+    joints: list[Body]
+
+
 def linked(driven: Driven, size: float) -> list[Body]:
     """Return frame, links, pivots, contacts and forces, the hindmost first; `size` is that of a joint."""
-    mechanism, at = driven.mechanism, driven.solved.linkage
-    linkage, w = mechanism.linkage, mechanism.breadth
-    bodies, pivots, tops = [], [], []
-    dx, dy = driven.joint
-    s, s1 = driven.lifts[0, 0], driven.lifts[1, 0]
-    centre = driven.along(0.5 * w - s1, s - 0.5 * w)
-    reach, low = 0.5 * w, 0.0
-    if isinstance(linkage, InvertedSliderCrank):
-        beyond = value(at.slide) - (0.5 * w - s1)
-        low, reach = min(0.0, float(beyond.min()) - 3.5 * size), max(0.0, float(beyond.max()) + 3.5 * size)
-    else:
-        reach += linkage.coupler
-    bodies.append(_frame(w, low, reach, size, poses(*centre, driven.frame)))
-    if isinstance(linkage, SliderCrank):
-        bodies.insert(0, _rail(dx, dy, 0.0, size))
-        tops.append(Body("slide", "links", (block(4.2 * size, 2.6 * size, "slide"), pin(size)), poses(dx, dy, 0.0)))
-        tops[-1] = _labelled(tops[-1], "D")
-    else:
-        pivots.append(pivot("pivot B", linkage.ground, 0.0, size, "B"))
-        direction = 0.5 * TURN - value(at.output)
-        if linkage.rocker > 0.0:
-            rocker = Shape("rocker", (bar((0.0, 0.0), (linkage.rocker, 0.0), 1.5 * size),), "rocker")
-            bodies.append(Body("rocker", "links", (rocker,), poses(linkage.ground, 0.0, direction)))
-        if isinstance(linkage, FourBar):
-            tops.append(_labelled(Body("joint D", "links", (pin(size),), poses(dx, dy, 0.0)), "D"))
-        else:
-            shapes = (block(4.2 * size, 2.8 * size, "block"), pin(size))
-            tops.append(Body("block", "links", shapes, poses(dx, dy, driven.frame)))
-    for number, dyad in enumerate(mechanism.dyads):
-        under, over, fixed = _dyad(driven, number, dyad, size)
-        bodies += under
-        tops += over
-        pivots += fixed
-    return [*bodies, *pivots, *tops, *_contacts(driven, size), *_forces(driven, size)]
+    mechanism = driven.mechanism
+    loops = [
+        MAKERS[type(loop)](driven, number, loop, size)
+        for number, loop in enumerate([mechanism.linkage, *mechanism.dyads])
+    ]
+    layers = [body for layer in zip(*loops, strict=True) for bodies in layer for body in bodies]
+    return [*layers, *_contacts(driven, size), *_forces(driven, size)]
+
+
+def _four_bar(driven: Driven, number: int, linkage: FourBar, size: float) -> Layers:
+    joints = driven.joints(number)
+    frame = _frame(driven, 0.0, 0.5 * driven.mechanism.breadth + linkage.coupler, size)
+    joint = _labelled(_joint("joint D", joints["D"], size), "D")
+    return Layers([frame, *_rocker(driven, linkage.rocker, size)], [_pivot("pivot B", joints["B"], size, "B")], [joint])
+
+
+def _slider_crank(driven: Driven, number: int, linkage: SliderCrank, size: float) -> Layers:
+    joint = driven.joints(number)["D"]
+    frame = _frame(driven, 0.0, 0.5 * driven.mechanism.breadth + linkage.coupler, size)
+    return Layers([_rail(joint, 0.0, size), frame], [], [_labelled(_joint("slide", joint, size), "D")])
+
+
+def _inverted(driven: Driven, number: int, linkage: InvertedSliderCrank, size: float) -> Layers:
+    joints = driven.joints(number)
+    beyond = value(driven.solved.linkage.slide) - (0.5 * driven.mechanism.breadth - driven.lifts[1, 0])
+    low, reach = min(0.0, float(beyond.min()) - 3.5 * size), max(0.0, float(beyond.max()) + 3.5 * size)
+    links = [_frame(driven, low, reach, size), *_rocker(driven, linkage.rocker, size)]
+    return Layers(links, [_pivot("pivot B", joints["B"], size, "B")], [_joint("block", joints["D"], size)])
+
+
+def _rocker(driven: Driven, length: float, size: float) -> list[Body]:
+    """Return the linkage's rocker, of any length but 0."""
+    if length <= 0.0:
+        return []
+    rocker = Shape("rocker", (bar((0.0, 0.0), (length, 0.0), 1.5 * size),), "rocker")
+    return [Body("rocker", "links", (rocker,), driven.output(0))]
+
+
+def _joint(name: str, joint: Joint, size: float) -> Body:
+    """Return a pin, with the block that it sits in if one slides."""
+    shapes = {
+        "pin": (),
+        "slide": (block(4.2 * size, 2.6 * size, "slide"),),
+        "slot": (block(4.2 * size, 2.8 * size, "block"),),
+    }
+    return Body(name, "links", (*shapes[joint.kind], pin(size)), _pose(joint.place))
+
+
+def _pivot(name: str, joint: Joint, size: float, letter: str = "") -> Body:
+    x, y = (float(value(place)[0]) for place in joint.place.origin)
+    return pivot(name, x, y, size, letter)
 
 
 def _labelled(body: Body, text: str) -> Body:
     return Body(body.name, body.kind, body.shapes, body.pose, (Label(text, 0.0, 0.0),))
 
 
-def _frame(w: float, low: float, reach: float, size: float, pose: Array) -> Body:
+def _frame(driven: Driven, low: float, reach: float, size: float) -> Body:
     """Return the square frame about its middle, with the coupler's bar along u from `low` to `reach`."""
+    w, middle = driven.mechanism.breadth, driven.mechanism.chain.frame(driven.solved)
     inner, outer = 0.5 * w, 0.5 * w + 1.8 * size
     square = Shape("follower", (box(-outer, -outer, outer, outer), box(-inner, -inner, inner, inner)), "square frame")
     bars = []
@@ -143,11 +167,12 @@ def _frame(w: float, low: float, reach: float, size: float, pose: Array) -> Body
         bars.append(Shape("follower", (bar((inner + 0.9 * size, 0.0), (reach, 0.0), 1.5 * size),), "coupler"))
     if low < -outer:
         bars.append(Shape("follower", (bar((-inner - 0.9 * size, 0.0), (low, 0.0), 1.5 * size),), "coupler"))
-    return Body("frame", "follower", (square, *bars), pose)
+    return Body("frame", "follower", (square, *bars), _pose(middle))
 
 
-def _rail(x: Array, y: Array, angle: float, size: float) -> Body:
+def _rail(joint: Joint, angle: float, size: float) -> Body:
     """Return the two sides of a straight guide along the places of a slide."""
+    x, y = map(value, joint.place.origin)
     c, s = np.cos(angle), np.sin(angle)
     along, across = x * c + y * s, float(np.mean(y * c - x * s))
     first, last = float(along.min()) - 4.0 * size, float(along.max()) + 4.0 * size
@@ -157,61 +182,81 @@ def _rail(x: Array, y: Array, angle: float, size: float) -> Body:
     return Body("guide", "ground", (Shape("hatch", sides, "guide"),), still(0.0, 0.0, angle))
 
 
-def _carrier(driven: Driven, number: int) -> Link:
-    dyads, solved = driven.mechanism.dyads, driven.solved
-    if dyads[number].on == "coupler":
-        return coupler(solved.linkage)
-    if dyads[number].on == "output":
-        return output_link(solved.linkage)
-    return dyads[number - 1].output_link(solved.dyads[number - 1])
-
-
 def _pose(link: Link) -> Array:
     x, y = link.origin
-    return poses(value(x), value(y), 0.0 if link.direction is None else value(link.direction))
+    return poses(value(x), value(y), _direction(link))
 
 
-def _dyad(driven: Driven, number: int, dyad: Dyad, size: float) -> tuple[list[Body], list[Body], list[Body]]:
-    """Return a dyad's bodies under the joints, its joints, and its pivots."""
-    reached = driven.solved.dyads[number]
-    qx, qy = map(value, reached.joint)
-    carrier = _carrier(driven, number)
-    px, py = map(value, carrier.point(*dyad.point))
-    thin = 1.3 * size
-    # of an inverted slider-crank D slides along the frame, and the point with it: it belongs to the block
-    own = dyad.on == "coupler" and not isinstance(driven.mechanism.linkage, InvertedSliderCrank)
+def _direction(link: Link) -> Array | float:
+    return 0.0 if link.direction is None else value(link.direction)
+
+
+def _arm(driven: Driven, number: int, size: float) -> Body:
+    """Return the arm to a dyad, on the link that carries it."""
+    dyad, carrier = driven.mechanism.dyads[number - 1], driven.mechanism.chain.carrier(number - 1)
+    own = carrier.name == "frame"
     role = "follower" if own else "output" if dyad.on == "previous" else "rocker"
-    stub = Shape(role, (bar((0.0, 0.0), dyad.point, thin),), "link")
-    under = [Body(f"arm to dyad {number + 1}", "follower" if own else "links", (stub,), _pose(carrier))]
-    over = [Body("joint", "links", (pin(size),), poses(px, py, 0.0))]
-    if isinstance(dyad, RRR | RRP):
-        length = dyad.links[0] if isinstance(dyad, RRR) else dyad.link
-        rod = Shape("rod", (bar((0.0, 0.0), (length, 0.0), thin),), "connecting rod")
-        towards = np.unwrap(np.arctan2(qy - py, qx - px))
-        under.append(Body(f"rod of dyad {number + 1}", "links", (rod,), poses(px, py, towards)))
-    if isinstance(dyad, RRP):
-        under.insert(0, _rail(qx, qy, dyad.direction, size))
-        over.append(
-            Body(
-                "slide",
-                "links",
-                (block(4.2 * size, 2.6 * size, "slide"), pin(size)),
-                poses(qx, qy, dyad.direction),
-            )
-        )
-        return under, over, []
-    turned = value(reached.output)
-    if isinstance(dyad, RRR):
-        rocker = Shape("output", (bar((0.0, 0.0), (dyad.links[1], 0.0), 1.5 * size),), "output rocker")
-        over.append(Body("joint", "links", (pin(size),), poses(qx, qy, 0.0)))
-    else:
-        slide = np.sqrt(np.maximum((px - dyad.ground[0]) ** 2 + (py - dyad.ground[1]) ** 2 - dyad.offset**2, 0.0))
-        slot = bar((0.0, dyad.offset), (float(slide.max()) + 3.0 * size, dyad.offset), 1.2 * size)
-        hub = bar((0.0, 0.0), (0.0, dyad.offset), 1.5 * size)
-        rocker = Shape("output", (slot, hub) if dyad.offset else (slot,), "slotted rocker")
-        over.insert(0, Body("block", "links", (block(3.6 * size, 2.4 * size, "block"),), poses(px, py, turned)))
-    under.append(Body(f"output of dyad {number + 1}", "links", (rocker,), poses(*dyad.ground, turned)))
-    return under, over, [pivot(f"pivot of dyad {number + 1}", *dyad.ground, size)]
+    stub = Shape(role, (bar((0.0, 0.0), dyad.point, 1.3 * size),), "link")
+    return Body(f"arm to dyad {number}", "follower" if own else "links", (stub,), _pose(carrier.pose(driven.solved)))
+
+
+def _rod(driven: Driven, number: int, length: float, size: float) -> Body:
+    """Return the bar of a dyad from P to Q."""
+    rod = Shape("rod", (bar((0.0, 0.0), (length, 0.0), 1.3 * size),), "connecting rod")
+    link = driven.mechanism.chain.rod(driven.solved, number - 1)
+    x, y = map(value, link.origin)
+    return Body(f"rod of dyad {number}", "links", (rod,), poses(x, y, np.unwrap(_direction(link))))
+
+
+def _rrr(driven: Driven, number: int, dyad: RRR, size: float) -> Layers:
+    joints = driven.joints(number)
+    rocker = Shape("output", (bar((0.0, 0.0), (dyad.links[1], 0.0), 1.5 * size),), "output rocker")
+    output = Body(f"output of dyad {number}", "links", (rocker,), driven.output(number))
+    return Layers(
+        [_arm(driven, number, size), _rod(driven, number, dyad.links[0], size), output],
+        [_pivot(f"pivot of dyad {number}", joints["G"], size)],
+        [_joint("joint", joints[name], size) for name in "PQ"],
+    )
+
+
+def _rrp(driven: Driven, number: int, dyad: RRP, size: float) -> Layers:
+    joints = driven.joints(number)
+    return Layers(
+        [
+            _rail(joints["Q"], dyad.direction, size),
+            _arm(driven, number, size),
+            _rod(driven, number, dyad.link, size),
+        ],
+        [],
+        [_joint("joint", joints["P"], size), _joint("slide", joints["Q"], size)],
+    )
+
+
+def _rpr(driven: Driven, number: int, dyad: RPR, size: float) -> Layers:
+    joints = driven.joints(number)
+    px, py = map(value, joints["P"].place.origin)
+    slide = np.sqrt(np.maximum((px - dyad.ground[0]) ** 2 + (py - dyad.ground[1]) ** 2 - dyad.offset**2, 0.0))
+    slot = bar((0.0, dyad.offset), (float(slide.max()) + 3.0 * size, dyad.offset), 1.2 * size)
+    hub = bar((0.0, 0.0), (0.0, dyad.offset), 1.5 * size)
+    rocker = Shape("output", (slot, hub) if dyad.offset else (slot,), "slotted rocker")
+    output = Body(f"output of dyad {number}", "links", (rocker,), driven.output(number))
+    inside = Body("block", "links", (block(3.6 * size, 2.4 * size, "block"),), _pose(joints["P"].place))
+    return Layers(
+        [_arm(driven, number, size), output],
+        [_pivot(f"pivot of dyad {number}", joints["G"], size)],
+        [inside, Body("joint", "links", (pin(size),), poses(px, py, 0.0))],
+    )
+
+
+# What draws each kind of loop, at its number in the chain.
+MAKERS: dict[type, Callable[..., Layers]] = {
+    FourBar: _four_bar,
+    InvertedSliderCrank: _inverted,
+    SliderCrank: _slider_crank,
+    RRR: _rrr,
+    RRP: _rrp,
+    RPR: _rpr,
+}
 
 
 def _contacts(driven: Driven, size: float) -> list[Body]:
@@ -231,28 +276,12 @@ def _forces(driven: Driven, size: float) -> list[Body]:
 
     It points to the side to which it has to push while that link moves against a load.
     """
-    linkage = driven.mechanism.linkage
-    px, py = driven.instant_centre
-    dx, dy = driven.joint
-    fx, fy = dx - px, dy - py
-    if isinstance(linkage, InvertedSliderCrank):  # across the frame's line, where P stands along it
-        c, s = np.cos(driven.frame), np.sin(driven.frame)
-        back = fx * c + fy * s
-        dx, dy, fx, fy = dx - back * c, dy - back * s, -s, c
-    size_of = np.hypot(fx, fy)
-    fx, fy = (np.divide(part, size_of, out=np.zeros_like(part), where=size_of > 0.0) for part in (fx, fy))
-    # the output moves along its velocity: along the slide, or about B
-    if isinstance(linkage, SliderCrank):
-        vx, vy = np.ones_like(dx), np.zeros_like(dx)
-        moving = driven.solved.linkage.output.c[1]
-    else:
-        vx, vy = -dy, dx - linkage.ground
-        moving = -driven.solved.linkage.output.c[1]  # theta_4 is clockwise
-    side = np.where((fx * vx + fy * vy) * moving < 0.0, -1.0, 1.0)
-    direction = np.arctan2(side * fy, side * fx)
+    at = driven.solved.linkage
+    line = driven.mechanism.linkage.force_line(at, *driven.slopes)
+    direction = np.arctan2(line.along_y, line.along_x)
     shapes = arrow(8.0 * size, 1.2 * size, "load")
     centre = (Shape("load dot", (disc(0.0, 0.0, 0.5 * size),)),)
     return [
-        Body("where the contact normals meet", "forces", centre, poses(px, py, 0.0)),
-        Body("force of the frame on the link it drives", "forces", shapes, poses(dx, dy, direction)),
+        Body("where the contact normals meet", "forces", centre, poses(*at.instant_centre(*driven.slopes), 0.0)),
+        Body("force of the frame on the link it drives", "forces", shapes, poses(line.x, line.y, direction)),
     ]

@@ -200,8 +200,8 @@ def facts(report: dict[str, Any]) -> str:
     unit = "in" if report["units"] == "inch" else "mm"
     kind = report["follower"]
     if "linkage" in report:
-        linkage_kind = {"inverted-slider-crank": "an inverted slider-crank"}.get(report["linkage"]["kind"])
-        kind += f" in {linkage_kind or 'a ' + report['linkage']['kind']}"
+        linkage = report["linkage"]["kind"].replace("inverted-", "inverted ")
+        kind += f" in {'an' if linkage[0] in 'aeiou' else 'a'} {linkage}"
     return escape(f"{kind} · the shaft turns {sense} · tolerance {report['tolerance']:.6g} {unit}")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.cams.plates import is_constant_breadth
+from camgeo.cams.flat_faced import is_constant_breadth
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
@@ -183,6 +183,6 @@ def _base(recipe: Recipe, count: int) -> _Base:
 
 
 def _breadth(lift: Lift) -> float:
-    from camgeo.cams.plates import breadth_of
+    from camgeo.cams.flat_faced import breadth_of
 
     return breadth_of(lift)[0]

@@ -17,21 +17,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from camgeo.recipe.figures import DWELL, FACE_LENGTH, RADIUS, SIZE, there
-from camgeo.recipe.linkage import FourBarLinkage, InvertedSliderCrankLinkage, output_slides
+from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.sweep import FIGURES
 from camgeo.sweep.search import rebuilt
 from camgeo.sweep.search.cams import BINDS, BROKEN, FINE, REVERSES, Cams
 from camgeo.sweep.search.ends import Ends, cell_bounds, ends, greatest, least, lengths
-from camgeo.sweep.search.linkages import Lengths, Loop, angles
+from camgeo.sweep.search.linkages import Lengths, angles, engine
 from camgeo.sweep.search.windows import Samples, longest
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.recipe.figures import Limit
+    from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.recipe import Recipe
-    from camgeo.sweep.search.linkages import Kind
     from camgeo.sweep.search.windows import Engine
 
 __all__ = ["REASONS", "Evaluator", "Found", "Scene", "asked_of", "compute", "evaluate"]
@@ -43,7 +43,6 @@ Codes: TypeAlias = NDArray[np.uint8]
 REASONS = ("", "impossible", "undercut", "shaft-outside", "binds", "reverses", "limits")
 BLOCK = 11_520  # samples of a block: a dozen arrays of them stay in a cache of 1 MB
 _SAMPLES = 360
-_LENGTHS = ("ground", "coupler", "rocker", "offset")
 _DWELLS = (DWELL, "dwell-relative")
 
 
@@ -237,11 +236,13 @@ class Evaluator:
         if not index.size:
             return index, {}
         motion: _Motion
-        if self.recipe.linkage is not None and self.recipe.linkage.dyads:
+        linkage = self.recipe.linkage
+        if linkage is None or linkage.dyads:
             margin, motion = rebuilt.chains(self.recipe, self.paths, values[index], self.count)
         else:
             support = cams.support if alive.all() else cams.support.part(alive)
-            loop = Loop.of(self._kind, self._side, support, self._lengths(values[index]))
+            kind, side = engine(linkage.made()), -1.0 if linkage.assembly == "crossed" else 1.0
+            loop = kind.of(side, support, self._lengths(linkage, kind.dimensions, values[index]))
             smooth = cams.smooth[index]
             margin, motion = loop.margin(lambda rows: least(rows, smooth)), loop
         if "margin" in figures:
@@ -314,26 +315,16 @@ class Evaluator:
         start, cells = longest(Samples(output[0], *bounds, abscissae), self._band, self.engine)
         return {name: ends((start[k], cells[k]), output, over[name], bounds) for k, name in enumerate(names)}
 
-    @property
-    def _kind(self) -> Kind:
-        linkage = self.recipe.linkage
-        if isinstance(linkage, FourBarLinkage):
-            return "four-bar"
-        return "inverted-slider-crank" if isinstance(linkage, InvertedSliderCrankLinkage) else "slider-crank"
-
-    @property
-    def _side(self) -> float:
-        return -1.0 if self.recipe.linkage is not None and self.recipe.linkage.assembly == "crossed" else 1.0
-
-    def _lengths(self, values: Array) -> Lengths:
-        columns = []
-        for name in _LENGTHS:
+    def _lengths(self, linkage: Linkage, dimensions: tuple[str, ...], values: Array) -> Lengths:
+        """Dimensions, of those that there are, of linkages that differ from this one in the values (m, k)."""
+        numbers, columns = vars(linkage), []
+        for name in Lengths._fields:
             path = f"linkage.{name}"
             if path in self.paths:
                 column = self.paths.index(path)
                 columns.append(values[:, column : column + 1] * self.recipe.mm)
             else:
-                columns.append(np.full((len(values), 1), getattr(self.recipe.linkage, name, 0.0)))
+                columns.append(np.full((len(values), 1), numbers[name] if name in dimensions else 0.0))
         return Lengths(*columns)
 
 

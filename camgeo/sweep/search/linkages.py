@@ -11,17 +11,20 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from kin.linkage.four_bar import Linkage
+
 Array: TypeAlias = NDArray[np.float64]
 _Rows = TypeVar("_Rows")
-Kind: TypeAlias = Literal["four-bar", "inverted-slider-crank", "slider-crank"]
 
 
 class Lengths(NamedTuple):
@@ -80,11 +83,13 @@ def _quarter_on(values: Array) -> Array:
 class Loop:
     """What the loops of a kind come down to, (m, n) each.
 
-    `x`, `y` are D in the frame's axes, `q` their squares' sum AD^2. `near` and `far` are positive where the loop
-    closes, and vanish at its limits. `root` is the root of near far, negative for crossed.
+    `side` is -1 for crossed. `x`, `y` are D in the frame's axes, `q` their squares' sum AD^2. `near` and `far` are
+    positive where the loop closes, and vanish at its limits. Each kind tells `output`, `frame` (theta_3 but for a
+    constant, continuous round the turn) and their derivatives by the relative angle, the signed sine of the
+    `transmission` angle at D, None where that is always a right angle, and the sine of the `force` angle, at least 0
+    (`kin.linkage.forces`).
     """
 
-    kind: Kind
     side: float
     cams: Support
     lengths: Lengths
@@ -94,87 +99,168 @@ class Loop:
     near: Array
     far: Array
 
-    @staticmethod
-    def of(kind: Kind, side: float, cams: Support, lengths: Lengths) -> Loop:
-        """Set the loops up; those of the given designs need not close."""
-        r1, r3, r4, offset = lengths
-        y = cams.p - 0.5 * cams.breadth
-        if kind == "inverted-slider-crank":
-            near, far = y + (r1 - r4), (r1 + r4) - y
-            return Loop(kind, side, cams, lengths, y, y, y, near, far)
-        x = (cams.breadth + r3) - cams.p1
-        yy = y * y
-        q = x * x + yy
-        if kind == "four-bar":
-            least = np.abs(r1 - r4)
-            near = (x - least) * (x + least) + yy
-            return Loop(kind, side, cams, lengths, x, y, q, near, (r1 + r4) ** 2 - q)
-        least = np.abs(offset)
-        near = (x - least) * (x + least) + yy
-        return Loop(kind, side, cams, lengths, x, y, q, near, near)
-
-    def margin(self, extreme: Callable[[Array], Array]) -> Array:
-        """Least distance from binding, mm (m,); `extreme` gives the least of each row (m, n)."""
-        r1, _, r4, offset = (length[:, 0] for length in self.lengths)
-        near = extreme(self.near)
-        if self.kind == "inverted-slider-crank":
-            return np.minimum(near, extreme(self.far))
-        least = np.abs(r1 - r4) if self.kind == "four-bar" else np.abs(offset)
-        # AD - least from AD^2 - least^2; where that is negative it is a distance too, if not quite that one
-        margin = near / (np.sqrt(np.maximum(near + least * least, 0.0)) + least)
-        if self.kind == "four-bar":
-            far, most = extreme(self.far), r1 + r4
-            margin = np.minimum(margin, far / (np.sqrt(np.maximum(most * most - far, 0.0)) + most))
-        return np.asarray(margin, dtype=np.float64)
-
-    def part(self, rows: NDArray[np.bool_]) -> Loop:
+    def part(self, rows: NDArray[np.bool_]) -> Self:
         """Return some of the designs."""
         lengths = Lengths(*(length[rows] for length in self.lengths))
         fields = (self.x, self.y, self.q, self.near, self.far)
-        part = Loop(self.kind, self.side, self.cams.part(rows), lengths, *(field[rows] for field in fields))
+        part = self.__class__(self.side, self.cams.part(rows), lengths, *(field[rows] for field in fields))
         return _with_found(self, part, rows)
 
-    @cached_property
-    def root(self) -> Array:
-        """Signed root of near far: r1 r4 2 sin theta_4, r1 sin theta_4, or, of near alone, D_x."""
-        square = self.near if self.kind == "slider-crank" else self.near * self.far
+    def signed(self, square: Array) -> Array:
+        """Root of a square, of the assembly's sign."""
         root = np.sqrt(square)
         return root if self.side > 0 else -root
 
     @cached_property
+    def root(self) -> Array:
+        """Signed root of near far: 2 r1 r4 sin theta_4, or r1 sin theta_4; a slider-crank has D_x."""
+        return self.signed(self.near * self.far)
+
+    @cached_property
     def output(self) -> Array:
         """theta_4, rad, or D_x, mm."""
-        if self.kind == "slider-crank":
-            return self.root
-        angle = np.arctan(self.near / self.root)
+        angle: Array = np.arctan(self.near / self.root)
         angle += angle
         return angle
+
+
+class InvertedLoop(Loop):
+    """The frame slides on a rocker: theta_3 and -theta_4 differ by a constant; x and q stand empty."""
+
+    dimensions: ClassVar[tuple[str, ...]] = ("ground", "rocker")
+
+    @classmethod
+    def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
+        """Set the loops up."""
+        r1, _, r4, _ = lengths
+        y = cams.p - 0.5 * cams.breadth
+        return cls(side, cams, lengths, y, y, y, y + (r1 - r4), (r1 + r4) - y)
+
+    def margin(self, extreme: Callable[[Array], Array]) -> Array:
+        """Least distance from binding."""
+        return np.minimum(extreme(self.near), extreme(self.far))
+
+    @cached_property
+    def rate(self) -> Array:
+        """Its derivative."""
+        return self.cams.dp / self.root
+
+    @cached_property
+    def second(self) -> Array:
+        """Its second derivative."""
+        rate = self.rate
+        return (self.cams.ddp - (self.lengths.rocker - self.y) * rate * rate) / self.root
+
+    @cached_property
+    def frame(self) -> Array:
+        """theta_3, but for a constant."""
+        return -self.output
+
+    @cached_property
+    def frame_rate(self) -> Array:
+        """theta_3'."""
+        return -self.rate
+
+    @cached_property
+    def frame_second(self) -> Array:
+        """theta_3''."""
+        return -self.second
+
+    @cached_property
+    def transmission(self) -> None:
+        """A right angle throughout."""
+        return None
+
+    @cached_property
+    def force(self) -> Array:
+        """The force runs along the line through B and P = -S' u - S1' n, where the normals of the contacts meet."""
+        cams = self.cams
+        along, across = cams.dp + self.root, cams.dp1 + (self.y - self.lengths.rocker)
+        return np.abs(along) / _length(along, across)
+
+
+class CouplerLoop(Loop):
+    """The frame is the coupler: what a four-bar and a slider-crank share."""
+
+    @staticmethod
+    def vector(cams: Support, coupler: Array, least: Array) -> tuple[Array, Array, Array, Array]:
+        """Give x, y, q, and near for the least AD at which the loop closes, (m, 1)."""
+        y = cams.p - 0.5 * cams.breadth
+        x = (cams.breadth + coupler) - cams.p1
+        yy = y * y
+        return x, y, x * x + yy, (x - least) * (x + least) + yy
+
+    def _beyond(self, least: Array, extreme: Callable[[Array], Array]) -> Array:
+        """AD - least from AD^2 - least^2; where that is negative it is a distance too, if not quite that one."""
+        near = extreme(self.near)
+        return np.asarray(near / (np.sqrt(np.maximum(near + least * least, 0.0)) + least))
 
     @cached_property
     def half_rate(self) -> Array:
         """Half the derivative of AD^2."""
         return self.y * self.cams.dp - self.x * self.cams.dp1
 
+    @property
+    def half_second(self) -> Array:
+        """Half its second derivative."""
+        cams = self.cams
+        return cams.dp * cams.dp + cams.dp1 * cams.dp1 + self.y * cams.ddp - self.x * cams.ddp1
+
+    @property
+    def spin(self) -> Array:
+        """Derivative of the polar angle of D in the frame's axes, times Q, negative."""
+        return self.x * self.cams.dp + self.y * self.cams.dp1
+
+    @property
+    def spin_rate(self) -> Array:
+        """Its derivative."""
+        return self.x * self.cams.ddp + self.y * self.cams.ddp1
+
+    def turned(self, along: Array, across: Array) -> tuple[Array, Array]:
+        """Vector (along, across) times the conjugate of X + iY.
+
+        It keeps clear of the ray on which the arctangent of `frame` jumps: D keeps to one side of AB, or of the
+        slide's foot, and X > 0.
+        """
+        x, y = self.x, self.y
+        return along * x + across * y, across * x - along * y
+
+    @property
+    def lever(self) -> tuple[Array, Array]:
+        """Vector to D from P = -S' u - S1' n, where the normals of the contacts meet: the force runs along it."""
+        return self.cams.dp + self.x, self.cams.dp1 + self.y
+
+
+class FourBarLoop(CouplerLoop):
+    """The coupler's end D is on a rocker."""
+
+    dimensions: ClassVar[tuple[str, ...]] = ("ground", "coupler", "rocker")
+
+    @classmethod
+    def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
+        """Set the loops up."""
+        r1, r3, r4, _ = lengths
+        x, y, q, near = cls.vector(cams, r3, np.abs(r1 - r4))
+        return cls(side, cams, lengths, x, y, q, near, (r1 + r4) ** 2 - q)
+
+    def margin(self, extreme: Callable[[Array], Array]) -> Array:
+        """Least distance from binding."""
+        r1, _, r4, _ = (length[:, 0] for length in self.lengths)
+        margin = self._beyond(np.abs(r1 - r4), extreme)
+        far, most = extreme(self.far), r1 + r4
+        return np.minimum(margin, far / (np.sqrt(np.maximum(most * most - far, 0.0)) + most))
+
     @cached_property
     def rate(self) -> Array:
-        """Derivative of the output by the relative angle."""
-        if self.kind == "inverted-slider-crank":
-            return self.cams.dp / self.root
+        """Its derivative."""
         rate = self.half_rate / self.root
-        if self.kind == "four-bar":
-            rate += rate
+        rate += rate
         return rate
 
     @cached_property
     def second(self) -> Array:
-        """Second derivative of the output by the relative angle."""
-        cams, rate = self.cams, self.rate
-        if self.kind == "inverted-slider-crank":
-            return (cams.ddp - (self.lengths.rocker - self.y) * rate * rate) / self.root
-        half = cams.dp * cams.dp + cams.dp1 * cams.dp1 + self.y * cams.ddp - self.x * cams.ddp1
-        if self.kind == "slider-crank":
-            return (half - rate * rate) / self.root
-        r1, _, r4, _ = self.lengths
+        """Its second derivative."""
+        (r1, _, r4, _), rate, half = self.lengths, self.rate, self.half_second
         return (half + half - ((r1 * r1 + r4 * r4) - self.q) * rate * rate) / self.root
 
     @cached_property
@@ -184,93 +270,119 @@ class Loop:
         return self.q - (r1 * r1 - r4 * r4)
 
     @cached_property
-    def _turning(self) -> Array:
-        """theta_3' times Q."""
-        cams = self.cams
-        spin = self.x * cams.dp + self.y * cams.dp1
-        if self.kind == "slider-crank":
-            return -(self.lengths.offset * self.rate) - spin
-        # (arg D)' Q = theta_4' (r1 D_x - Q)
-        return -0.5 * self.rate * self._lean - spin
+    def frame(self) -> Array:
+        """theta_3, but for a constant."""
+        r1, _, r4, _ = self.lengths
+        cosine, sine = self.turned(self.q + (r1 * r1 - r4 * r4), self.root)
+        return np.arctan2(-cosine, sine) if self.side > 0 else np.arctan2(cosine, -sine)
 
     @cached_property
     def frame_rate(self) -> Array:
         """theta_3'."""
-        return -self.rate if self.kind == "inverted-slider-crank" else self._turning / self.q
+        # (arg D)' Q = theta_4' (r1 D_x - Q)
+        return (-0.5 * self.rate * self._lean - self.spin) / self.q
 
     @cached_property
     def frame_second(self) -> Array:
         """theta_3''."""
-        if self.kind == "inverted-slider-crank":
-            return -self.second
-        cams = self.cams
-        spin = self.x * cams.ddp + self.y * cams.ddp1
-        if self.kind == "slider-crank":
-            turning = -(self.lengths.offset * self.second) - spin
-        else:
-            turning = -0.5 * self.second * self._lean - self.rate * self.half_rate - spin
+        turning = -0.5 * self.second * self._lean - self.rate * self.half_rate - self.spin_rate
         return (turning - 2.0 * self.frame_rate * self.half_rate) / self.q
 
     @cached_property
-    def joint(self) -> tuple[Array, Array]:
-        """D in the fixed frame, mm; not for the inverted slider-crank."""
-        if self.kind == "slider-crank":
-            return self.root, np.broadcast_to(self.lengths.offset, self.root.shape)
-        r1 = self.lengths.ground
-        scale = 0.5 / r1
-        return r1 - scale * self._lean_ground, scale * self.root
-
-    @cached_property
-    def _lean_ground(self) -> Array:
-        """r1^2 + r4^2 - Q: 2 r1 r4 cos theta_4."""
-        r1, _, r4, _ = self.lengths
-        return (r1 * r1 + r4 * r4) - self.q
-
-    @cached_property
-    def frame(self) -> Array:
-        """theta_3, rad, but for a constant: continuous round the turn."""
-        if self.kind == "inverted-slider-crank":
-            return -self.output
-        r1, _, r4, offset = self.lengths
-        x, y = self.x, self.y
-        # D times the conjugate of X + iY; it keeps clear of the ray on which the arctangent jumps:
-        # D keeps to one side of AB, or of the slide's foot, and X > 0
-        if self.kind == "four-bar":
-            along, across = self.q + (r1 * r1 - r4 * r4), self.root
-        else:
-            along, across = self.root, offset
-        cosine, sine = along * x + across * y, across * x - along * y
-        if self.kind == "slider-crank":
-            return np.arctan2(sine, cosine) if self.side > 0 else np.arctan2(-sine, -cosine)
-        return np.arctan2(-cosine, sine) if self.side > 0 else np.arctan2(cosine, -sine)
-
-    @cached_property
-    def transmission(self) -> Array | None:
-        """Signed sine of the transmission angle at D; None where it is always a right angle."""
-        if self.kind == "inverted-slider-crank":
-            return None
-        if self.kind == "slider-crank":
-            return (self.root * self.x + self.lengths.offset * self.y) / self.q
+    def transmission(self) -> Array:
+        """Sine of the angle between coupler and rocker."""
         return (self.x * self.root + self.y * self._lean) / (2.0 * self.lengths.rocker * self.q)
 
     @cached_property
     def force(self) -> Array:
-        """Sine of the force angle at D, at least 0 (`kin.linkage.transmission_angle`).
-
-        The force runs along the line through D (inverted slider-crank: B) and P = -S' u - S1' n, where the normals of
-        the contacts meet.
-        """
-        cams, (_, _, r4, offset) = self.cams, self.lengths
-        if self.kind == "inverted-slider-crank":
-            along, across = cams.dp + self.root, cams.dp1 + (self.y - r4)
-            return np.abs(along) / np.sqrt(along * along + across * across)
-        along, across = cams.dp + self.x, cams.dp1 + self.y
-        length = np.sqrt(along * along + across * across)
-        if self.kind == "slider-crank":  # P to D, along the slide
-            cosine, sine = self.root * self.x + offset * self.y, offset * self.x - self.root * self.y
-            return np.abs(along * cosine - across * sine) / (length * self.q)
+        """Sine of the force angle at D."""
+        along, across = self.lever
         cosine, sine = self.y * self.root - self.x * self._lean, self.x * self.root + self.y * self._lean
-        return np.abs(along * sine + across * cosine) / (length * (2.0 * r4 * self.q))
+        scale = _length(along, across) * (2.0 * self.lengths.rocker * self.q)
+        return np.abs(along * sine + across * cosine) / scale
+
+
+class SliderLoop(CouplerLoop):
+    """The coupler's end D is on a slide, on the line at the height `offset`; far stands for near."""
+
+    dimensions: ClassVar[tuple[str, ...]] = ("coupler", "offset")
+
+    @classmethod
+    def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
+        """Set the loops up."""
+        x, y, q, near = cls.vector(cams, lengths.coupler, np.abs(lengths.offset))
+        return cls(side, cams, lengths, x, y, q, near, near)
+
+    def margin(self, extreme: Callable[[Array], Array]) -> Array:
+        """Least distance from binding."""
+        return self._beyond(np.abs(self.lengths.offset[:, 0]), extreme)
+
+    @cached_property
+    def root(self) -> Array:
+        """Root of near: D_x."""
+        return self.signed(self.near)
+
+    @property
+    def output(self) -> Array:
+        """D_x."""
+        return self.root
+
+    @cached_property
+    def rate(self) -> Array:
+        """Its derivative."""
+        return self.half_rate / self.root
+
+    @cached_property
+    def second(self) -> Array:
+        """Its second derivative."""
+        rate = self.rate
+        return (self.half_second - rate * rate) / self.root
+
+    @cached_property
+    def frame(self) -> Array:
+        """theta_3, but for a constant."""
+        cosine, sine = self.turned(self.root, self.lengths.offset)
+        return np.arctan2(sine, cosine) if self.side > 0 else np.arctan2(-sine, -cosine)
+
+    @cached_property
+    def frame_rate(self) -> Array:
+        """theta_3'."""
+        return (-(self.lengths.offset * self.rate) - self.spin) / self.q
+
+    @cached_property
+    def frame_second(self) -> Array:
+        """theta_3''."""
+        turning = -(self.lengths.offset * self.second) - self.spin_rate
+        return (turning - 2.0 * self.frame_rate * self.half_rate) / self.q
+
+    @cached_property
+    def transmission(self) -> Array:
+        """Sine of the angle between coupler and the slide's normal."""
+        return (self.root * self.x + self.lengths.offset * self.y) / self.q
+
+    @cached_property
+    def force(self) -> Array:
+        """Sine of the force angle at D."""
+        along, across = self.lever
+        cosine, sine = self.turned(self.root, self.lengths.offset)
+        return np.abs(along * cosine - across * sine) / (_length(along, across) * self.q)
+
+
+def _length(x: Array, y: Array) -> Array:
+    return np.sqrt(x * x + y * y)
+
+
+# What computes each kind of linkage.
+ENGINES: dict[type, type[InvertedLoop | FourBarLoop | SliderLoop]] = {
+    FourBar: FourBarLoop,
+    InvertedSliderCrank: InvertedLoop,
+    SliderCrank: SliderLoop,
+}
+
+
+def engine(linkage: Linkage) -> type[InvertedLoop | FourBarLoop | SliderLoop]:
+    """Return the loops of a linkage's kind."""
+    return ENGINES[type(linkage)]
 
 
 def angles(n: int) -> Array:

@@ -96,11 +96,9 @@ def chains(recipe: Recipe, paths: Sequence[str], values: Array, count: int) -> t
 
 def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
     """Fill in the rows (n,) of one mechanism, and return its least margin: -inf where it binds."""
-    from camgeo.cams.plates import breadth_of
+    from camgeo.cams.flat_faced import breadth_of
     from camgeo.synthesis.linkage import mechanism_of
     from kin.linkage.loop import BindingError
-    from kin.linkage.transmission_angle import force, transmission
-    from kin.numeric.elementary import Jet
 
     lift = recipe.cam.intent()
     if not isinstance(lift, Lift):
@@ -109,15 +107,14 @@ def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
     theta = angles(count)
     try:
         at = mechanism.at(theta, 2)
-        s, s1 = (Jet(at.faces[k, :1]) for k in (0, 1))
         margin = min(
-            float(mechanism.chain.margin(loop, s.c[0], s1.c[0], mechanism.about).min())
+            float(mechanism.chain.margin(loop, at.faces[0, 0], at.faces[1, 0], mechanism.about).min())
             for loop in range(mechanism.outputs)
         )
     except BindingError:
         return -np.inf
-    place = mechanism.linkage.solve(s, s1, mechanism.breadth)
-    sines = transmission(mechanism.linkage, place)[0], np.abs(force(mechanism.linkage, place, *at.faces[:, 1])[0])
+    linkage, positions = mechanism.linkage, at.solved.linkage
+    sines = linkage.transmission(positions)[0], np.abs(linkage.force(positions, *at.faces[:, 1])[0])
     for row, values in zip(rows, (*at.output, *at.frame, *sines), strict=True):
         row[:] = values
     return margin

@@ -31,7 +31,7 @@ LOOKS = 1440  # shaft angles of a turn at which the breadth is looked at
 STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however short
 
 
-class Plate(Cam):
+class FlatFacedCam(Cam):
     """A cam whose follower's face is pushed along its normal."""
 
     def position(self, intent: Intent) -> Position:

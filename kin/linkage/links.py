@@ -1,0 +1,53 @@
+"""Moving links and the joints in which they meet, at n points: what a linkage and its dyads tell of themselves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+from kin.numeric.elementary import Jet, atan2, cos, sin
+
+__all__ = ["Joint", "Link", "Place", "bar", "pivot", "rocker"]
+
+Place = tuple[Jet, Jet]
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A moving link as jets: its origin in the fixed frame, mm, and the direction of its x axis, rad (None: fixed)."""
+
+    origin: Place
+    direction: Jet | None
+
+    def point(self, x: float | Jet, y: float | Jet) -> Place:
+        """Position of the point (x, y) of the link, mm."""
+        a, b = self.origin
+        if self.direction is None:
+            return a + x, b + y
+        c, s = cos(self.direction), sin(self.direction)
+        return a + c * x - s * y, b + s * x + c * y
+
+
+class Joint(NamedTuple):
+    """A pin, a `pivot` (a pin on the ground), a `slide` (a pin in a block on the ground) or a `slot` (in a link).
+
+    `place` has its origin in the pin, and its x axis along the line on which a block slides: None where nothing does.
+    """
+
+    kind: Literal["pin", "pivot", "slide", "slot"]
+    place: Link
+
+
+def bar(p: Place, q: Place) -> Link:
+    """Return the link from P, its origin, to Q, which is on its x axis; within [-pi, pi]."""
+    return Link(p, atan2(q[1] - p[1], q[0] - p[0]))
+
+
+def rocker(ground: tuple[float, float], direction: Jet) -> Link:
+    """Return the link that turns about a fixed point, its origin."""
+    return Link((direction.constant(ground[0]), direction.constant(ground[1])), direction)
+
+
+def pivot(ground: tuple[float, float], like: Jet) -> Joint:
+    """Return a pin on the ground, as jets of the order and number of `like`."""
+    return Joint("pivot", Link((like.constant(ground[0]), like.constant(ground[1])), None))

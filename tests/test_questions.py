@@ -1,0 +1,226 @@
+"""Questions after a kind: code asks a linkage or a dyad for what it needs by name, not which one it is.
+
+A family of kinds has its row in FAMILIES, with the files that may ask and how often. What counts as a question is
+said by `questions`, and tried on planted sources. The tables from class to maker have an entry for every class.
+"""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, make_dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, get_args
+
+import pytest
+
+from kin.linkage import dyad, four_bar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import ModuleType
+
+ROOT = Path(__file__).parents[1]
+
+
+@dataclass(frozen=True)
+class Family:
+    """Kinds that nobody asks for: their classes, their names in recipes, and what variables that hold one are called.
+
+    `exempt` are the files that may ask, each with its number of questions.
+    """
+
+    classes: frozenset[str]
+    kinds: frozenset[str]
+    nouns: frozenset[str]
+    exempt: dict[str, int]
+
+
+FAMILIES = {
+    "linkages": Family(
+        classes=frozenset(
+            [
+                *("FourBar", "InvertedSliderCrank", "SliderCrank", "RRR", "RRP", "RPR"),
+                *("FourBarLinkage", "InvertedSliderCrankLinkage", "SliderCrankLinkage"),
+                *("RRRDyad", "RRPDyad", "RPRDyad"),
+            ]
+        ),
+        kinds=frozenset(["four-bar", "inverted-slider-crank", "slider-crank", "rrr", "rrp", "rpr"]),
+        nouns=frozenset(["linkage", "dyad", "loop"]),
+        exempt={
+            # what a recipe may say, and what is made of it
+            "camgeo/recipe/linkage.py": 7,
+            "camgeo/recipe/starter.py": 1,
+            # one table each from class to maker, and its look-ups
+            "camgeo/assembly/linked.py": 3,
+            "camgeo/report/page/linked.py": 2,
+            "camgeo/sweep/search/linkages.py": 2,
+        },
+    ),
+    "cams": Family(
+        classes=frozenset(
+            ["SupportCam", "ConstantBreadthCam", "DoubleRollerCam", "FlatPairCam", "FlatFacedCam", "PairCam"]
+        ),
+        kinds=frozenset(["support", "constant-breadth", "double-roller", "flat-pair"]),
+        nouns=frozenset(["cam"]),
+        exempt={"camgeo/recipe/starter.py": 1},
+    ),
+    "followers in camgeo": Family(
+        classes=frozenset(["Translating", "Oscillating", "Carried"]),
+        kinds=frozenset(["flat face", "yoke", "square frame", "double roller", "flat pair"]),
+        nouns=frozenset(["follower", "guide", "touch"]),
+        # one table each from follower to maker
+        exempt={"camgeo/assembly/build.py": 1, "camgeo/report/page/content.py": 1, "camgeo/cams/flat_faced.py": 1},
+    ),
+}
+
+
+def questions(source: str, family: Family) -> list[int]:
+    """Lines that ask for a kind: by isinstance, match, type(), a probe, a comparison, or a table of kinds."""
+    return sorted(node.lineno for node in ast.walk(ast.parse(source)) if _asks(node, family))
+
+
+def _asks(node: ast.AST, family: Family) -> bool:
+    match node:
+        case ast.Call(func=ast.Name(id="isinstance" | "issubclass"), args=[_, kinds]):
+            return any(_is_class(part, family) for part in ast.walk(kinds))
+        case ast.Call(func=ast.Name(id="type"), args=[of]) | ast.Attribute(value=of, attr="__class__"):
+            return _is_one(of, family)
+        case ast.Call(func=ast.Name(id="hasattr" | "getattr"), args=[of, *_]):
+            return _is_one(of, family)
+        case ast.MatchClass(cls=kind) | ast.MatchValue(value=kind):
+            return _is_kind(kind, family)
+        case ast.Compare():
+            return any(_is_kind(side, family) or _is_kind_of_one(side, family) for side in _sides(node))
+        case ast.Dict(keys=members) | ast.Tuple(elts=members) | ast.List(elts=members) | ast.Set(elts=members):
+            return any(member is not None and _is_kind(member, family) for member in members)
+    return False
+
+
+def _sides(node: ast.Compare) -> list[ast.expr]:
+    return [node.left, *node.comparators]
+
+
+def _is_kind_of_one(node: ast.AST, family: Family) -> bool:
+    return isinstance(node, ast.Attribute) and node.attr == "kind" and _is_one(node.value, family)
+
+
+def _is_kind(node: ast.AST, family: Family) -> bool:
+    return _is_class(node, family) or (isinstance(node, ast.Constant) and node.value in family.kinds)
+
+
+def _is_class(node: ast.AST, family: Family) -> bool:
+    return _name(node) in family.classes
+
+
+def _is_one(node: ast.AST, family: Family) -> bool:
+    """Whether an expression is called as one of the family: `linkage`, `self.linkage`, `dyads[k]`, `the_dyad()`."""
+    while isinstance(node, ast.Subscript | ast.Call):
+        node = node.value if isinstance(node, ast.Subscript) else node.func
+    words = _name(node).strip("_").split("_")
+    return words[-1].removesuffix("s") in family.nouns
+
+
+def _name(node: ast.AST) -> str:
+    return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
+
+
+def sources() -> Iterator[tuple[str, str]]:
+    for package in ("kin", "camgeo"):
+        for path in sorted((ROOT / package).rglob("*.py")):
+            yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_nobody_asks_which_kind_it_is(name: str) -> None:
+    family = FAMILIES[name]
+    asking = {path: lines for path, text in sources() if (lines := questions(text, family))}
+    assert {path: lines for path, lines in asking.items() if path not in family.exempt} == {}
+    assert {path: len(asking.get(path, [])) for path in family.exempt} == family.exempt
+
+
+@pytest.mark.parametrize(
+    "planted",
+    [
+        "isinstance(chosen, FourBar)",
+        "isinstance(chosen, kin.linkage.dyad.RRR | RRP)",
+        "isinstance(chosen, (str, RPR))",
+        "issubclass(chosen, SliderCrankLinkage)",
+        "match chosen:\n    case FourBar(ground=r1): pass",
+        "match chosen:\n    case {'kind': 'rrp'}: pass",
+        "match chosen.kind:\n    case 'four-bar' | 'other': pass",
+        "type(self.linkage)",
+        "type(chosen) is FourBar",
+        "type(dyads[-1]).__name__",
+        "self.dyads[k].__class__",
+        "hasattr(mechanism.linkage, 'coupler')",
+        "getattr(first_dyad, 'ground', None)",
+        "getattr(recipe.linkage, name)",
+        "chosen.kind == 'slider-crank'",
+        "'rrr' != chosen",
+        "chosen in ('inverted-slider-crank', 'slider-crank')",
+        "linkage.kind == other",
+        "{FourBar: 1}[chosen]",
+        "{'four-bar': 2}.get(chosen)",
+        "SLIDING = ['slider-crank', 'rrp']",
+    ],
+)
+def test_each_way_of_asking_is_found(planted: str) -> None:
+    assert len(questions(planted, FAMILIES["linkages"])) >= 1
+    assert questions(f"def f(chosen):\n    return None\n{planted}", FAMILIES["linkages"])[0] >= 3
+
+
+@pytest.mark.parametrize(
+    "innocent",
+    [
+        "FourBar(80, 70, 105)",
+        "isinstance(linkage, Mapping)",
+        "made = linkage.output_link(at), linkage.unit == 'deg'",
+        "def f(linkage: FourBar | None) -> RRR: ...",
+        "report['kind'] = recipe.linkage.kind",
+        "type(error).__name__, getattr(options, 'linkage', None)",
+        "Linkage = FourBar | SliderCrank",
+        "kind: ClassVar[str] = 'four-bar'",
+        "dyad.on == 'coupler' and linkage is not None",
+    ],
+)
+def test_what_is_no_question_is_none(innocent: str) -> None:
+    assert questions(innocent, FAMILIES["linkages"]) == []
+
+
+# --- tables from class to maker ---------------------------------------------------------------------------------------
+
+
+def kinds(module: ModuleType) -> set[type]:
+    """Classes of a module of kin that are loops: they tell how far they are from binding."""
+    return {
+        found
+        for found in vars(module).values()
+        if isinstance(found, type) and found.__module__ == module.__name__ and "margin" in vars(found)
+    }
+
+
+def missing() -> dict[str, set[str]]:
+    """Names of the kinds that the tables lack."""
+    from camgeo.assembly.linked import MAKERS
+    from camgeo.report.page import linked
+    from camgeo.sweep.search.linkages import ENGINES
+
+    loops = kinds(four_bar) | kinds(dyad)
+    wanted = {"page": (linked.MAKERS, loops), "bodies": (MAKERS, loops), "sweep": (ENGINES, kinds(four_bar))}
+    return {name: {kind.__name__ for kind in all_ ^ set(table)} for name, (table, all_) in wanted.items()}
+
+
+def test_the_tables_have_an_entry_for_every_class() -> None:
+    assert missing() == {"page": set(), "bodies": set(), "sweep": set()}
+    assert kinds(four_bar) == set(get_args(four_bar.Linkage))
+    assert kinds(dyad) == set(get_args(dyad.Dyad))
+    assert {kind.__name__ for kind in kinds(four_bar) | kinds(dyad)} <= FAMILIES["linkages"].classes
+
+
+@pytest.mark.parametrize(("module", "rooms"), [(four_bar, {"page", "bodies", "sweep"}), (dyad, {"page", "bodies"})])
+def test_a_class_without_an_entry_is_found(
+    module: ModuleType, rooms: set[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    new = make_dataclass("Scotch", ["throw"], namespace={"margin": None, "__module__": module.__name__})
+    monkeypatch.setattr(module, "Scotch", new, raising=False)
+    assert {room for room, names in missing().items() if names == {"Scotch"}} == rooms
