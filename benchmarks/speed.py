@@ -30,8 +30,7 @@ from camgeo.fit.spline import fit_spline
 from camgeo.recipe.load import load
 from camgeo.synthesis.profile import intent_of, profile_of
 from kin.contour.contour import Contour
-from kin.follower.flat import FlatPair, Yoke
-from kin.follower.roller import DoubleRoller
+from kin.follower.follower import DoubleRoller, FlatPair, Yoke
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 

@@ -8,9 +8,10 @@ from support.integrated import integrated
 
 from kin.contour.contour import Contour
 from kin.dynamics.drive import drives
-from kin.dynamics.excitation import OfFace, OfPair, OfRoller, intended_faces, measured_faces, rests
+from kin.dynamics.excitation import intended_faces, measured_faces
 from kin.dynamics.train import Train, steady
 from kin.follower.contact import dilated
+from kin.follower.drive import OfFace, OfPair, OfRoller
 from kin.follower.follower import DoubleRoller, FlatFace, FlatPair, Roller, Yoke
 from kin.follower.guide import LEADING, TRAILING, Arm
 from kin.follower.support import bearing_of
@@ -153,10 +154,10 @@ def test_one_face_has_no_play(follower):
 
 
 def test_rests_are_the_dwells():
-    (one, two) = rests(Yoke(constant_breadth(), 100.0))
+    (one, two) = Yoke(constant_breadth(), 100.0).rests
     assert np.degrees(one) == pytest.approx([120.0, 180.0])
     assert np.degrees(two) == pytest.approx([300.0, 360.0])
-    assert rests(FlatPair(PAIR)) == ()
+    assert FlatPair(PAIR).rests == ()
 
 
 # --- planted faults ---------------------------------------------------------------------------------------------------

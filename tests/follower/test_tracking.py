@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from camfiles import arcs_through, write_dxf
+from support.camfiles import arcs_through, write_dxf
 
 import kin.follower.roller
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.follower import DoubleRoller, Roller
 from kin.follower.guide import LEADING, TRAILING, Arm, Translating
-from kin.follower.roller import ByLaw, BySwing
+from kin.follower.laws import ByLaw, BySwing
 from kin.judge.contour_checks import Intent, Limits
 from kin.judge.verify import verify
 from kin.law.piecewise import Piecewise

@@ -11,10 +11,9 @@ import numpy as np
 from camgeo.checks.declared import CURVATURE
 from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam
 from camgeo.report.page.followers import SHAFT
+from camgeo.synthesis.design import intended
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
     from camgeo.report.page.outline import Exact
@@ -149,17 +148,7 @@ def rests(recipe: Recipe, design: Design) -> list[Rest]:
         dwells_of = design.driven.dwells.get("shaft", ())
         counted = [dwell for dwell in dwells_of if dwell.length >= COUNTS * dwells_of[0].length]
         return [_rest(dwell.start, dwell.start + dwell.length, band) for dwell in counted]
-    found: Sequence[tuple[float, float]]
-    if isinstance(recipe.cam, DoubleRollerCam | FlatPairCam):
-        from kin.follower.flat import dwell_angles
-
-        ends = dwell_angles(cast("Transmission", design.intent), np.empty(0))
-        found = [(float(pair[0]), float(pair[-1])) for pair in ends]
-    else:
-        from kin.follower.flat import dwells
-
-        found = list(dwells(cast("Lift", design.intent)))
-    return [_rest(begin, end, "") for begin, end in found]
+    return [_rest(begin, end, "") for begin, end in intended(recipe, design).follower.rests]
 
 
 def _rest(begin: float, end: float, band: str) -> Rest:
