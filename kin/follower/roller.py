@@ -51,7 +51,7 @@ class _Rollers(Follower):
     radius: float
 
     def contact(self, contour: Contour, phi: Array) -> Array:
-        """Position, mm or radians, with the roller resting, (n,), or with either one, (2, n). ContactError where loose."""
+        """Position, mm or radians: (n,), or (2, n) with either roller held. ContactError where nothing is met."""
         found = self._positions(self._obstacle(contour), phi)
         return found if len(found) > 1 else found[0]
 
