@@ -29,8 +29,7 @@ from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.recipe.loading import load
 from kin.contour.contour import Contour
-from kin.follower.flat import FlatPair, Yoke
-from kin.follower.roller import DoubleRoller
+from kin.follower.follower import DoubleRoller, FlatPair, Yoke
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 

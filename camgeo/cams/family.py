@@ -176,11 +176,6 @@ class Cam(ABC):
         return "a smaller swing"
 
     @property
-    def play_lever(self) -> float | None:
-        """Distance of the contacts from the pivot by which backlash at them turns the follower, mm; None on a line."""
-        return None
-
-    @property
     def least_pressure_angle(self) -> float:
         """Pressure angle without any motion, degrees: no smaller stroke stays below it."""
         return 0.0

@@ -96,11 +96,6 @@ class PairCam(Cam):
         mean = 2.0 * self.arm * math.cos(0.5 * math.pi * self.mu / self.lam)
         return f"an arc.radius nearer to {mean / mm:.6g}"
 
-    @property
-    def play_lever(self) -> float | None:
-        """About an arm's length."""
-        return self.arm
-
     def grown_intent(self, intent: Intent, out: float, scale: float) -> Intent:  # noqa: ARG002
         """The same swing about a pivot farther away."""
         return cast("Transmission", intent).scaled(scale)

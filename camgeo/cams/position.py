@@ -56,10 +56,6 @@ class Position(Protocol):
         """Shaft angle in degrees, from 0 to less than 360, at which the contour is touched at a parameter of it."""
         ...
 
-    def dwells(self) -> list[tuple[float, float]]:
-        """Shaft angles at which each rest begins and ends, rad."""
-        ...
-
     def stroke(self, parameter: Array) -> tuple[float, float]:
         """Stroke in mm, or swing in rad and the arm in mm that works it (1 for a stroke), looked at at parameters."""
         ...
@@ -102,12 +98,6 @@ class LiftPosition:
     def shaft_deg(self, parameter: float) -> float:
         """The parameter is the shaft angle."""
         return degrees(parameter)
-
-    def dwells(self) -> list[tuple[float, float]]:
-        """Where the radius of curvature is that of a circle about the shaft."""
-        from kin.follower.flat import dwells
-
-        return list(dwells(self.law))
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
         """Stroke in mm."""
@@ -154,12 +144,6 @@ class SwingPosition:
     def shaft_deg(self, parameter: float) -> float:
         """Shaft angle of a parameter of the law."""
         return degrees(float(self.law.at(parameter, 0)[0][0, 0]))
-
-    def dwells(self) -> list[tuple[float, float]]:
-        """Where the arm rests."""
-        from kin.follower.flat import dwell_angles
-
-        return [(float(pair[0]), float(pair[-1])) for pair in dwell_angles(self.law, np.empty(0))]
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
         """Swing in rad, and the arm in mm."""

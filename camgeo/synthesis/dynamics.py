@@ -118,13 +118,13 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
 
 def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn: float | None) -> _Scene:
     from camgeo.synthesis.design import intended
-    from kin.dynamics.excitation import METRE, rests
     from kin.dynamics.train import Train
+    from kin.follower.guide import METRE
 
     train = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
     if design.driven is None:
         follower = intended(recipe, design).follower
-        swings, found = follower.unit == "deg", rests(follower)
+        swings, found = follower.unit == "deg", follower.rests
     else:
         if not design.driven.turns:
             raise recipe.error("dynamics", "the mechanism does not turn: it has no motion over the shaft angle")
@@ -140,15 +140,14 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn
 def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
     """What drives the follower, as intended or as a file's contour gives it."""
     from camgeo.synthesis.design import intended
-    from kin.dynamics.excitation import METRE, Faces, OfMechanism, intended_faces, measured_faces
+    from kin.dynamics.excitation import Faces, OfMechanism, intended_faces, measured_faces
 
     if design.driven is not None:
         return Faces(OfMechanism(design.driven.mechanism), None)
     intent = intended(scene.recipe, design)
     play = scene.asked.play
     if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
-        lever = scene.recipe.cam.play_lever
-        play = METRE * play if lever is None else play / lever
+        play = intent.follower.moved_by(play)
     if path is None:
         return intended_faces(intent.follower, play)
     return measured_faces(

@@ -45,6 +45,9 @@ class Envelope(Protocol):
     def area_and_perimeter(self) -> tuple[float, float]:
         """Enclosed area and length of a regular contour, mm^2 and mm."""
 
+    def inset(self, distance: float) -> Envelope:
+        """Give the parallel contour inside, at a distance, mm."""
+
 
 class SupportLaw(Protocol):
     """A support function of period 2 pi; `kin.law.support_function.Lift` is one."""
@@ -184,6 +187,10 @@ class FlatEnvelope:
         p, slope = self.support.derivatives(theta, 1)
         return float(0.5 * weight @ (p * p - slope * slope)), float(weight @ p)
 
+    def inset(self, distance: float) -> FlatEnvelope:
+        """Give the parallel contour inside."""
+        return FlatEnvelope(Outset(self.support, -distance))
+
 
 class Pitch(Protocol):
     """A closed pitch curve over a parameter of period 2 pi."""
@@ -304,6 +311,10 @@ class RollerEnvelope:
         area = float(0.5 * weight @ cross(point, first))
         perimeter = float(weight @ np.hypot(first[:, 0], first[:, 1]))
         return area - self.radius * perimeter + np.pi * self.radius**2, perimeter - TURN * self.radius
+
+    def inset(self, distance: float) -> RollerEnvelope:
+        """Give the parallel contour inside, that of a larger roller on the same pitch curve."""
+        return RollerEnvelope(self.pitch, self.radius + distance)
 
 
 def _angle(v: Array) -> Array:

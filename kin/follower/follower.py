@@ -1,18 +1,16 @@
-"""Followers: what each one does on a given contour, by contact, against what it is meant to do.
-
-Every follower has `intended(phi)`, its position at shaft angles (n,), in mm or radians; `contact(contour, phi)`, its
-position (n,) or, for one that is held from two sides, (2, n), with the contour as it lies; `judge(contour, phi)`, the
-motion error and the play; `motion_limit(tolerance)` and, with play, `play_limit(tolerance)`, what a contour within a
-tolerance of the exact one can do at most; and `envelope`, that exact contour, with `shaft_angle` of its parameter.
-"""
+"""Followers: what each one does on a given contour, by contact, against what it is meant to do."""
 
 from __future__ import annotations
 
-from kin.follower.flat import FlatFace, FlatPair, Yoke
+from kin.follower.base import Closure, Contact, Follower
+from kin.follower.flat import FlatFace, Yoke
+from kin.follower.flat_pair import FlatPair
 from kin.follower.motion_error import ContactError, Judged, MotionError, Play
-from kin.follower.roller import DoubleRoller, Roller
+from kin.follower.roller import DoubleRoller, Roller, RollerYoke
 
 __all__ = [
+    "Closure",
+    "Contact",
     "ContactError",
     "DoubleRoller",
     "FlatFace",
@@ -22,7 +20,6 @@ __all__ = [
     "MotionError",
     "Play",
     "Roller",
+    "RollerYoke",
     "Yoke",
 ]
-
-Follower = FlatFace | Yoke | FlatPair | Roller | DoubleRoller

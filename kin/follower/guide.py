@@ -30,6 +30,7 @@ Unit = Literal["mm", "deg"]
 TRAILING: Side = -1  # roller A
 LEADING: Side = 1  # roller B
 
+METRE = 1e-3  # a millimetre in metres
 SLACK = 1e-12  # of the guide's reach, by which neighbouring pieces may overlap, against rounding at their joints
 MOST_SHARE = 0.1  # of the arm, or of the cam: pieces that are searched for contact are shorter
 
@@ -40,6 +41,13 @@ class Guide(Protocol):
     @property
     def unit(self) -> Unit:
         """Unit of the position: mm, or deg for radians."""
+
+    @property
+    def si(self) -> float:
+        """Metres or radians in one of position."""
+
+    def moved_by(self, length: float) -> float:
+        """Position, metres or radians, by which a way of the centre of that length, mm, moves it."""
 
     def slack(self, extent: float) -> float:
         """Length, mm, that rounding may make of nothing on a cam of that extent."""
@@ -70,6 +78,9 @@ class Guide(Protocol):
 
     def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
         """First and second derivative (n, 2) of the centre by its position."""
+
+    def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
+        """Two derivatives of the position by phi (n,), where the centre (n, 2) runs on pieces of that shape."""
 
     def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
         """Both places (2, n, 2), seen from the starts of pieces, where the centre meets their circles; else nan."""
@@ -110,6 +121,15 @@ class Arm:
     def unit(self) -> Unit:
         """Degrees."""
         return "deg"
+
+    @property
+    def si(self) -> float:
+        """Radians in a radian."""
+        return 1.0
+
+    def moved_by(self, length: float) -> float:
+        """Angle by which a way of the roller of that length, mm, swings the arm, radians."""
+        return length / self.length
 
     def slack(self, extent: float = 0.0) -> float:  # noqa: ARG002 - an arm knows its own size
         """Length, mm, that rounding may make of nothing."""
@@ -180,6 +200,23 @@ class Arm:
         arm = -self.length * unit(phi - self.side * position)
         return -self.side * left(arm), -arm
 
+    def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
+        """Two derivatives of the lean by phi (n,), where the roller's centre (n, 2) runs on pieces of that shape.
+
+        With X on a piece of curvature k and tangent t, X' = w t and X'' = w' t + w^2 k left(t), and the arm's length
+        stays: w and w' follow from (X - P)^2 = l^2, and the lean's derivatives from those of X - P.
+        """
+        pivot = self.pivot * unit(phi)
+        pivot_rate, pivot_bend = left(pivot), -pivot
+        d = centre - pivot
+        along = dot(d, tangent)
+        w = dot(d, pivot_rate) / along
+        rate = w[:, None] * tangent - pivot_rate
+        hollow = (w**2 * curvature)[:, None] * left(tangent) - pivot_bend
+        bend = hollow - ((dot(d, hollow) + dot(rate, rate)) / along)[:, None] * tangent
+        square = self.length**2
+        return self.side * (1.0 - cross(d, rate) / square), -self.side * cross(d, bend) / square
+
     def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
         """Both places (2, n, 2), seen from the starts of pieces, where the arm's circle meets theirs.
 
@@ -238,6 +275,15 @@ class Translating:
         """Millimetres."""
         return "mm"
 
+    @property
+    def si(self) -> float:
+        """Metres in a millimetre."""
+        return METRE
+
+    def moved_by(self, length: float) -> float:
+        """The length, metres."""
+        return METRE * length
+
     def slack(self, extent: float) -> float:
         """Length, mm, that rounding may make of nothing on a cam of that extent."""
         return SLACK * (extent + abs(self.offset))
@@ -291,6 +337,20 @@ class Translating:
         """First and second derivative (n, 2) of the centre by its position."""
         u = unit(phi)
         return u + 0.0 * position[:, None], np.zeros_like(u)
+
+    def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
+        """Two derivatives of the position by phi (n,), where the centre (n, 2) runs on pieces of that shape.
+
+        Along the line of travel d the centre X has X' = p' d + left(X) and X'' = p'' d + 2 p' left(d) - X. Their parts
+        across the piece, of tangent t and curvature k, are 0 and (X'.t)^2 k.
+        """
+        d, across = unit(phi), left(tangent)
+        reach = dot(d, across)
+        turning = left(centre)
+        first = -dot(turning, across) / reach
+        along = dot(first[:, None] * d + turning, tangent)
+        bend = 2.0 * first[:, None] * left(d) - centre
+        return first, (along**2 * curvature - dot(bend, across)) / reach
 
     def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
         """Both places (2, n, 2), seen from the starts of pieces, where the line of travel meets their circles.

@@ -1,39 +1,40 @@
-"""Roller followers: a single roller on an arm or on a line of travel, and two on rigid arms, the cam between them.
+"""Rollers on a guide: one, two on rigid arms with the cam between them, and two opposite ones in a translating frame.
 
 Positions are mm or swings in radians, error figures mm or degrees. The greatest motion error is that over all shaft
 angles, with a proved remainder (`kin.follower.tracking`). On a contour of more than MOST_PIECES pieces, and where the
 proof does not succeed, it is that of samples: at the given shaft angles and, up to MOST_PIECES, where the roller
-passes from piece to piece and midway along each. So is the gap at a second roller.
+passes from piece to piece and midway along each. So is the play between two rollers.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kin.contour.arcs import cross, dot, left, right
 from kin.contour.nearest import signed_distance
+from kin.follower.base import Closure, Contact, Follower, Rests, Swing
 from kin.follower.contact import dilated, first_contact, shortened
+from kin.follower.drive import OfRoller
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
-from kin.follower.flat import dwell_angles
-from kin.follower.guide import LEADING, TRAILING, Arm, polar_rows
-from kin.follower.motion_error import ContactError, Judged, Play, Unit, motion_error, with_steps
+from kin.follower.guide import LEADING, TRAILING, Arm, Translating, polar_rows
+from kin.follower.laws import ByLaw, BySwing, GuidedPitch
+from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import grid
-from kin.follower.steepness import ParameterTable, Steepness, steepness_of_law, steepness_of_transmission
+from kin.follower.rests import dwell_angles, dwells_of_law, dwells_of_transmission
 from kin.follower.tracking import Greatest, Held, greatest_error
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import UnsettledError
-from kin.numeric.jet import Jet
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kin.contour.arcs import Arcs
     from kin.contour.contour import Contour
-    from kin.follower.guide import Guide, Side
+    from kin.follower.guide import Guide
     from kin.follower.tracking import Law
     from kin.law.piecewise import Piecewise
     from kin.law.transmission import Transmission
@@ -41,11 +42,89 @@ if TYPE_CHECKING:
 
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
 ONE_ANGLE = 1e-12  # rad; shaft angles this near are one
-NEAR = 1e-7  # rad; a step of third order is good to rounding
+SPLINE_ERROR = 1e-7  # mm, within which arcs stand in for a spline that drives a train
+
+
+class _Rollers(Follower):
+    """What one roller and two have in common; each of the contacts has a roller of the same radius."""
+
+    radius: float
+
+    def contact(self, contour: Contour, phi: Array) -> Array:
+        """Position, mm or radians: (n,), or (2, n) with either roller held. ContactError where nothing is met."""
+        found = self._positions(self._obstacle(contour), phi)
+        return found if len(found) > 1 else found[0]
+
+    def drives(self, contour: Contour) -> list[OfRoller]:
+        """Position of each roller on its guide; arcs within SPLINE_ERROR stand in for splines."""
+        obstacle = self._obstacle(contour, SPLINE_ERROR)
+        return [OfRoller(obstacle, one.guide, one.turned) for one in self.contacts]
+
+    def _obstacle(self, contour: Contour, *spline: float) -> Arcs:
+        return dilated(contour.as_arcs(*spline)[0], self.radius)
+
+    def _positions(self, obstacle: Arcs, phi: Array) -> Array:
+        return np.stack([one.position(held_position(obstacle, one.guide, phi + one.turned)) for one in self.contacts])
+
+
+class _OfLaw(_Rollers):
+    """A law over the shaft angle is what the first roller is meant to do."""
+
+    law: Piecewise
+
+    @property
+    def motion(self) -> Piecewise:
+        """The law."""
+        return self.law
+
+    @cached_property
+    def rests(self) -> Rests:
+        """Dwells of the law."""
+        return tuple(dwells_of_law(self.law))
+
+    @cached_property
+    def envelope(self) -> RollerEnvelope:
+        """The exact contour; its parameter is the shaft angle."""
+        return RollerEnvelope(GuidedPitch(self.contacts[0].guide, self.law), self.radius)
+
+    @cached_property
+    def _by_law(self) -> ByLaw:
+        return ByLaw(self.law)
+
+    def judge(self, contour: Contour, phi: Array) -> Judged:
+        """Motion error of the first roller, and the play; rms and increments are from the shaft angles phi (n,).
+
+        ContactError where nothing is met.
+        """
+        obstacle, guide = self._obstacle(contour), self.contacts[0].guide
+        steps = with_steps(phi)
+        held = held_on(obstacle, guide, steps)
+        errors = (held.position[: len(steps)] - self.intended(steps))[None]
+        worst, remainder = settled([held], self._by_law, errors, few=len(obstacle) <= MOST_PIECES)
+        dwells = [float(np.ptp(held_position(obstacle, guide, angle))) for angle in dwell_angles(self.rests, phi)]
+        motion = motion_error(worst, errors[0], max(dwells, default=None), self.unit, remainder=remainder)
+        return Judged(motion, self._play(obstacle, phi))
+
+    def _play(self, obstacle: Arcs, phi: Array) -> Play | None:  # noqa: ARG002 - one roller has none
+        return None
+
+    def motion_limit(self, tolerance: float) -> float:
+        """Greatest error, degrees or mm, of a contour within `tolerance` of the exact one.
+
+        That is e/cos(pressure angle), of an arm over its length, the largest over the turn, and the term of second
+        order.
+        """
+        greatest = float(self._leeway(tolerance, grid(self.law.breaks)).max())
+        return float(np.degrees(greatest)) if self.unit == "deg" else greatest
+
+    def _leeway(self, tolerance: float, tau: Array) -> Array:
+        """How far the roller may move at shaft angles tau (n,) before it leaves the pitch curve by `tolerance`."""
+        along = self.contacts[0].guide.along(tau, self.intended(tau))
+        return leeway(self.envelope.pitch.points(tau), *along, tolerance)[0]
 
 
 @dataclass(frozen=True, eq=False)
-class Roller:
+class Roller(_OfLaw):
     """A roller of `radius`, mm, on a guide that stands at the shaft angle in the cam's frame.
 
     Its position, of which `law` is the intended one over the shaft angle, grows as the roller is lifted: the angle at
@@ -57,56 +136,47 @@ class Roller:
     law: Piecewise
 
     @property
-    def unit(self) -> Unit:
-        """Unit of the errors."""
-        return self.guide.unit
-
-    def intended(self, phi: Array) -> Array:
-        """Intended position at shaft angles phi (n,), radians or mm (n,)."""
-        position: Array = self.law.derivatives(phi, 0)[0]
-        return position
-
-    def contact(self, contour: Contour, phi: Array) -> Array:
-        """Position with the roller in contact, radians or mm (n,). ContactError where it meets nothing."""
-        return held_position(dilated(contour.as_arcs()[0], self.radius), self.guide, phi)
-
-    @cached_property
-    def envelope(self) -> RollerEnvelope:
-        """The exact contour; its parameter is the shaft angle."""
-        return RollerEnvelope(GuidedPitch(self.guide, self.law), self.radius)
-
-    def shaft_angle(self, parameter: Array) -> Array:
-        """Shaft angle at which the envelope's point of that parameter is touched (n,)."""
-        return parameter
-
-    @cached_property
-    def _law(self) -> ByLaw:
-        return ByLaw(self.law)
-
-    def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion error; rms and increments from the given shaft angles phi (n,). ContactError where nothing is met."""
-        obstacle = dilated(contour.as_arcs()[0], self.radius)
-        steps = with_steps(phi)
-        held = held_on(obstacle, self.guide, steps)
-        errors = (held.position[: len(steps)] - self.intended(steps))[None]
-        worst, remainder = settled([held], self._law, errors, few=len(obstacle) <= MOST_PIECES)
-        return Judged(motion_error(worst, errors[0], None, self.unit, remainder=remainder), None)
-
-    def motion_limit(self, tolerance: float) -> float:
-        """Greatest error, degrees or mm, of a contour within `tolerance` of the exact one.
-
-        That is e/cos(pressure angle), of an arm over its length, the largest over the turn, and the term of second
-        order.
-        """
-        pitch = self.envelope.pitch
-        tau = grid(pitch.breaks)
-        along = self.guide.along(tau, self.intended(tau))
-        swing = float(leeway(pitch.points(tau), *along, tolerance)[0].max())
-        return float(np.degrees(swing)) if self.unit == "deg" else swing
+    def contacts(self) -> tuple[Contact, ...]:
+        """The roller."""
+        return (Contact(self.guide),)
 
 
 @dataclass(frozen=True, eq=False)
-class DoubleRoller:
+class RollerYoke(_OfLaw):
+    """Two rollers of `radius` opposite each other in a frame that travels on a line through the shaft.
+
+    Their centres are `breadth` w apart, mm. The position is the distance p of roller 1's centre from the shaft, of
+    which `law` is the intended one; p(theta) + p(theta + pi) = w, so the pitch curve has constant diameters through the
+    shaft, and roller 2 makes the error that roller 1 makes half a turn on.
+    """
+
+    radius: float
+    law: Piecewise
+    breadth: float
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """Roller 1 and, half a turn on, roller 2."""
+        return Contact(Translating()), Contact(Translating(), -1, self.breadth, np.pi)
+
+    @property
+    def closure(self) -> Closure:
+        """The way that the frame can travel with the cam at rest."""
+        return Closure(self.play_limit)
+
+    def play_limit(self, tolerance: float) -> float:
+        """Greatest play or interference, mm: what either roller may be off."""
+        tau = grid(np.sort(np.mod(np.concatenate([self.law.breaks, self.law.breaks + np.pi]), TURN)))
+        return float((self._leeway(tolerance, tau) + self._leeway(tolerance, tau + np.pi)).max())
+
+    def _play(self, obstacle: Arcs, phi: Array) -> Play:
+        angle = np.concatenate([phi, passing_angles(obstacle, self.contacts[0].guide)])
+        near, far = self._positions(obstacle, angle)
+        return sampled_play(far - near, angle)
+
+
+@dataclass(frozen=True, eq=False)
+class DoubleRoller(_Rollers):
     """W's two rollers of `radius` on rigid arms of length l that include 2 alpha, the pivot at l from the shaft.
 
     The position is psi, clockwise positive; roller A trails the pivot, roller B leads it (W 4.4).
@@ -114,28 +184,30 @@ class DoubleRoller:
 
     transmission: Transmission
     radius: float
-    unit: ClassVar[Unit] = "deg"
 
-    def intended(self, phi: Array) -> Array:
-        """Intended psi at shaft angles phi (n,), radians (n,)."""
-        psi: Array = self.transmission.psi_of_shaft(phi, 0)[0]
-        return psi
+    @cached_property
+    def contacts(self) -> tuple[Contact, ...]:
+        """Roller A, which keeps the swing below, and roller B: psi is alpha' less the lean of A, and that of B less it.
 
-    def contact(self, contour: Contour, phi: Array) -> Array:
-        """psi, radians (2, n): with roller A held in contact, and with roller B. ContactError where nothing is met."""
-        return self._contact(dilated(contour.as_arcs()[0], self.radius), phi)
+        alpha' is pi - alpha.
+        """
+        arm, straight = self.transmission.arm, np.pi - self.transmission.alpha
+        return tuple(Contact(Arm(arm, arm, side), side, straight) for side in (TRAILING, LEADING))
 
-    def _contact(self, obstacle: Arcs, phi: Array) -> Array:
-        return np.stack(
-            [self._psi(held_position(obstacle, self._arm(side), phi), side) for side in (TRAILING, LEADING)]
-        )
+    @cached_property
+    def motion(self) -> Swing:
+        """Psi over the shaft angle."""
+        return Swing(self.transmission)
 
-    def _psi(self, lean: Array, side: int) -> Array:
-        """Swing psi (n,) of the arms at which the roller on that side leans so, radians (n,)."""
-        return side * (lean - np.pi + self.transmission.alpha)
+    @property
+    def rests(self) -> Rests:
+        """Dwells of psi."""
+        return tuple(dwells_of_transmission(self.transmission))
 
-    def _arm(self, side: Side) -> Arm:
-        return Arm(self.transmission.arm, self.transmission.arm, side)
+    @property
+    def closure(self) -> Closure:
+        """The gap at roller B while A is held in contact."""
+        return Closure(self.play_limit)
 
     @cached_property
     def envelope(self) -> RollerEnvelope:
@@ -152,29 +224,25 @@ class DoubleRoller:
 
         Rms and increments are from the given shaft angles phi (n,). ContactError where a roller meets nothing.
         """
-        chain, _ = contour.as_arcs()
-        obstacle, steps = dilated(chain, self.radius), with_steps(phi)
-        passing = [passing_angles(obstacle, self._arm(side)) for side in (TRAILING, LEADING)]
-        # psi = alpha' - lean with roller A in contact, lean - alpha' with B, alpha' = pi - alpha
-        straight = np.pi - self.transmission.alpha
+        chain, obstacle, steps = contour.as_arcs()[0], self._obstacle(contour), with_steps(phi)
+        passing = [passing_angles(obstacle, one.guide) for one in self.contacts]
+        looked = np.concatenate([steps, *passing]), steps
         held = [
-            held_on(obstacle, self._arm(side), looked, straight, side)
-            for side, looked in ((TRAILING, np.concatenate([steps, *passing])), (LEADING, steps))
+            held_on(obstacle, one.guide, angle, one.datum, one.sense)
+            for one, angle in zip(self.contacts, looked, strict=True)
         ]
-        psi = np.stack([self._psi(one.position[: len(steps)], one.sense) for one in held])
-        errors = psi - self.intended(steps)
+        psi = [one.position(there.position) for one, there in zip(self.contacts, held, strict=True)]
+        errors = np.stack([found[: len(steps)] for found in psi]) - self.intended(steps)
         worst, remainder = settled(held, self._law, errors, few=len(obstacle) <= MOST_PIECES)
-        dwells = dwell_angles(self.transmission, phi)
-        flatness = [float(np.ptp(self._contact(obstacle, angle), axis=1).max()) for angle in dwells]
-        motion = motion_error(worst, errors, max(flatness, default=None), "deg", remainder=remainder)
+        flatness = [
+            float(np.ptp(self._positions(obstacle, angle), axis=1).max()) for angle in dwell_angles(self.rests, phi)
+        ]
+        motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=remainder)
         # the increments tell nothing new of the gap
         chosen = np.r_[: len(phi), len(steps) : len(steps) + sum(map(len, passing))]
-        angle = held[0].phi[chosen]
-        second = self._arm(LEADING).centre(angle, straight + self._psi(held[0].position[chosen], TRAILING))
-        gap = signed_distance(chain, second) - self.radius
-        least, most = int(np.argmin(gap)), int(np.argmax(gap))
-        at_least, at_most = degrees(angle[least]), degrees(angle[most])
-        return Judged(motion, Play(float(gap[least]), at_least, float(gap[most]), at_most, "mm", "sampled"))
+        angle, b = held[0].phi[chosen], self.contacts[1]
+        second = b.guide.centre(angle, b.datum + psi[0][chosen])
+        return Judged(motion, sampled_play(signed_distance(chain, second) - self.radius, angle))
 
     @cached_property
     def _law(self) -> BySwing:
@@ -206,77 +274,6 @@ class DoubleRoller:
             first, second, third = (c + a for c, a in zip(centre, arm, strict=True))
             found.append(leeway((first, second, third), left(arm[0]), -arm[0], tolerance))
         return found
-
-
-@dataclass(frozen=True, eq=False)
-class GuidedPitch:
-    """Pitch curve of a guided roller whose position is a law over the shaft angle."""
-
-    guide: Guide
-    law: Piecewise
-
-    @property
-    def breaks(self) -> Array:
-        """Shaft angles where the second derivative may jump."""
-        return self.law.breaks
-
-    def points(self, tau: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives by the shaft angle, each (n, 2)."""
-        phi = np.stack([tau, np.ones_like(tau), np.zeros_like(tau)])
-        return self.guide.path(phi, self.law.derivatives(tau, 2))
-
-
-@dataclass(frozen=True, eq=False)
-class ByLaw:
-    """`kin.follower.tracking.Law`: a position that is a law over the shaft angle."""
-
-    law: Piecewise
-
-    def rows(self, phi: Array) -> Array:
-        """Position and two derivatives at shaft angles phi (n,): (3, n)."""
-        return self.law.derivatives(phi, 2)
-
-    @cached_property
-    def _steepness(self) -> Steepness:
-        return steepness_of_law(self.law)
-
-    def steepest(self, low: Array, high: Array) -> Array:
-        """Bounds of three derivatives over shaft angles from low to high, each (n,): (3, n)."""
-        return self._steepness.over(low, high)
-
-
-@dataclass(frozen=True, eq=False)
-class BySwing:
-    """`kin.follower.tracking.Law`: the swing psi over the shaft angle."""
-
-    transmission: Transmission
-
-    def rows(self, phi: Array) -> Array:
-        """Swing and two derivatives at shaft angles phi (n,): (3, n)."""
-        tau, side = self._parameter.at(phi)
-        shaft, psi = self.transmission.jets(Jet.variable(tau, 3), side)
-        p = [psi.c[0]]
-        for order in (2, 1, 0):
-            psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1])
-            p.append(psi.c[0])
-        h = np.mod(phi - shaft.c[0] + np.pi, TURN) - np.pi  # tau is near enough for a step of third order
-        rows = np.stack([p[0] + h * (p[1] + 0.5 * h * p[2]), p[1] + h * (p[2] + 0.5 * h * p[3]), p[2] + h * p[3]])
-        far = np.abs(h) > NEAR
-        if far.any():
-            rows[:, far] = self.transmission.psi_of_shaft(phi[far], 2)
-        return rows
-
-    @cached_property
-    def _parameter(self) -> ParameterTable:
-        return ParameterTable.of(self.transmission)
-
-    @cached_property
-    def _steepness(self) -> Steepness:
-        return steepness_of_transmission(self.transmission)
-
-    def steepest(self, low: Array, high: Array) -> Array:
-        """Bounds of three derivatives over shaft angles from low to high, each (n,): (3, n)."""
-        return self._steepness.over(low, high)
 
 
 def held_on(obstacle: Arcs, guide: Guide, looked: Array, offset: float = 0.0, sense: int = 1) -> Held:
@@ -346,6 +343,12 @@ def passing_angles(obstacle: Arcs, guide: Guide) -> Array:
     points = np.concatenate([obstacle.start, obstacle.points(0.5 * obstacle.length)])
     angle = guide.shaft_angle(points)
     return np.mod(angle[np.isfinite(angle)], TURN)
+
+
+def sampled_play(gap: Array, phi: Array) -> Play:
+    """Least and greatest of the gaps, mm, at shaft angles phi (n,)."""
+    least, most = int(np.argmin(gap)), int(np.argmax(gap))
+    return Play(float(gap[least]), degrees(phi[least]), float(gap[most]), degrees(phi[most]), "mm", "sampled")
 
 
 def greatest(error: Array, phi: Array) -> tuple[float, float]:

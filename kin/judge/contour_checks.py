@@ -10,7 +10,7 @@ import numpy as np
 from kin.contour.arcs import dot, left
 from kin.contour.contour import ARC_SHARE
 from kin.follower.deviation import Deviation, convex_deviation, deviation
-from kin.follower.follower import ContactError, DoubleRoller, FlatPair, Follower, Judged, MotionError, Yoke
+from kin.follower.follower import ContactError, Follower, Judged, MotionError
 from kin.follower.motion_error import ALLOWANCE
 from kin.judge.check import Check, at_most, failed
 from kin.numeric.errors import UnsettledError
@@ -85,7 +85,7 @@ class Limits:
     """What is permitted: `tolerance` of the contour, mm; greatest motion error, and greatest play or interference.
 
     Motion and play are in mm or degrees as the follower has them, `output`, the greatest error of a mechanism's output,
-    as the mechanism has it; None is what the tolerance implies, see `motion_limit` and `play_limit` of the followers
+    as the mechanism has it; None is what the tolerance implies, see `motion_limit` and `closure` of the followers
     and `kin.follower.frame.implied_limit`.
     """
 
@@ -152,9 +152,9 @@ def _less_sure(judged: Judged, follower: Follower, uneven: float) -> Judged:
     """Count in what a contour that is off by `uneven`, mm, can do to the motion and the play."""
     if not uneven:
         return judged
-    play = judged.play
-    if play is not None and isinstance(follower, Yoke | FlatPair | DoubleRoller):
-        play = play.less_sure(follower.play_limit(uneven))
+    play, closure = judged.play, follower.closure
+    if play is not None and closure is not None:
+        play = play.less_sure(closure.limit(uneven))
     return judged._replace(motion=judged.motion.less_sure(follower.motion_limit(uneven)), play=play)
 
 
@@ -184,23 +184,20 @@ def _motion_checks(judged: Judged, intent: Intent, limits: Limits, slack: float)
         worst = motion.max if limits.motion is None else motion.bound
         at, detail = np.radians(motion.at_deg), _found(motion)
         checks.append(at_most("motion", worst, limit, motion.unit, at=at, detail=detail, slack=room))
-    if play is None or not isinstance(follower, Yoke | FlatPair | DoubleRoller):
+    closure = follower.closure
+    if play is None or closure is None:
         return checks
     if limits.play is None and intent.trimmed:
         return checks
-    limit, room = _limit(follower.play_limit, limits.play, limits.tolerance, slack)
+    limit, room = _limit(closure.limit, limits.play, limits.tolerance, slack)
     tight, loose = (-play.least, np.radians(play.least_at_deg)), (play.most, np.radians(play.most_at_deg))
     worst, at = max(tight, loose)
     if play.extremes == "sampled" and limits.play is not None:
         worst += ALLOWANCE * abs(worst)
-    if isinstance(follower, Yoke):
-        detail = f"breadth {follower.breadth - play.most:.9g} to {follower.breadth - play.least:.9g} mm"
-        checks.append(at_most("constant-breadth", worst, limit, "mm", at=at, detail=detail, slack=room))
-        checks.append(at_most("breadth-max", tight[0], limit, "mm", at=tight[1], slack=room))
-    else:
-        detail = f"play from {play.least:.3g} to {play.most:.3g} {play.unit}"
-        detail += ", sampled" if play.extremes == "sampled" else ""
-        checks.append(at_most("form-closure", worst, limit, play.unit, at=at, detail=detail, slack=room))
+    detail = closure.detail(play)
+    checks.append(at_most(closure.name, worst, limit, play.unit, at=at, detail=detail, slack=room))
+    if closure.tight is not None:
+        checks.append(at_most(closure.tight, tight[0], limit, play.unit, at=tight[1], slack=room))
     return checks
 
 

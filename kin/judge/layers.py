@@ -6,19 +6,17 @@ runs along a radius through layers with an outline of their own.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kin.contour.arcs import cross
 from kin.contour.contour import Contour
-from kin.follower.envelope import FlatEnvelope, Outset, RollerEnvelope
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.follower.envelope import Envelope
     from kin.judge.holes import Hole
     from kin.numeric.arrays import Array, Indices
 
@@ -239,12 +237,3 @@ def _bored(one: CrossHole, outline: Hole, hole: Hole) -> float:
     y = radius * np.sin(angle)
     way = reach(outer, y)[0] - reach(inner, y)[0]
     return float(np.sum(share * 2.0 * (radius * np.cos(angle)) ** 2 * way))
-
-
-def inset(envelope: Envelope, distance: float) -> Envelope:
-    """The exact contour's parallel inside it."""
-    if isinstance(envelope, FlatEnvelope):
-        return FlatEnvelope(Outset(envelope.support, -distance))
-    if isinstance(envelope, RollerEnvelope):
-        return replace(envelope, radius=envelope.radius + distance)
-    raise TypeError(f"no parallel of a {type(envelope).__name__}")

@@ -10,7 +10,7 @@ from kin.follower.deviation import deviation
 from kin.judge.check import Check, at_most, less_sure
 from kin.judge.contour_checks import exact_area
 from kin.judge.holes import FINE, Tallies, Tally, apart, tally
-from kin.judge.layers import faces, heights, inset, slotted, volume, wall_area
+from kin.judge.layers import faces, heights, slotted, volume, wall_area
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -104,7 +104,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Section, int
             if intent.trimmed or not envelope.regular:
                 return
         else:
-            kind, envelope = "chamfer", inset(exact, layer.inset_at(z))
+            kind, envelope = "chamfer", exact.inset(layer.inset_at(z))
         strayed = deviation(section.contour.as_arcs()[0], envelope)
         if strayed.rounds != 1:
             tallies[kind].faults.append(f"the section{where} goes {strayed.rounds} times round the exact one")

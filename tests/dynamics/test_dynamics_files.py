@@ -8,11 +8,12 @@ from support.integrated import integrated
 
 from kin.contour.contour import Contour
 from kin.dynamics.drive import drives
-from kin.dynamics.excitation import OfFace, OfPair, OfRoller, intended_faces, measured_faces, rests
+from kin.dynamics.excitation import intended_faces, measured_faces
 from kin.dynamics.train import Train, steady
 from kin.follower.contact import dilated
-from kin.follower.follower import DoubleRoller, FlatFace, FlatPair, Roller, Yoke
-from kin.follower.guide import LEADING, TRAILING, Arm
+from kin.follower.drive import OfFace, OfPair, OfRoller
+from kin.follower.follower import DoubleRoller, FlatFace, FlatPair, Roller, RollerYoke, Yoke
+from kin.follower.guide import LEADING, TRAILING, Arm, Translating
 from kin.follower.support import bearing_of
 from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
@@ -93,6 +94,46 @@ def test_a_roller_on_an_eccentric_is_a_four_bar():
     assert got[2] == pytest.approx(rows[2], abs=1e-9)
 
 
+@pytest.mark.parametrize("offset", [0.0, 7.0, -7.0])
+def test_a_translating_roller_on_an_eccentric_is_a_slider_crank(offset):
+    """Its travel in closed form, differentiated by Fourier series; and on a polygon, against differences."""
+    e, radius = 6.0, 25.0
+    roller = OfRoller(dilated(circle_about(e, 0.0, radius - 5.0).as_arcs()[0], 5.0), Translating(offset))
+    count = 512
+    phi = TURN / count * (np.arange(count) + 0.37)
+    # the circle's centre lies e cos phi along the line of travel, and -e sin phi towards its left
+    travel = 1e-3 * (e * np.cos(phi) + np.sqrt(radius**2 - (offset + e * np.sin(phi)) ** 2))
+    series, k = np.fft.rfft(travel), np.arange(count // 2 + 1)
+    got = roller.rows(phi)
+    for order, tight in ((0, 1e-15), (1, 1e-13), (2, 1e-11)):
+        assert got[order] == pytest.approx(np.fft.irfft(series * (1j * k) ** order, count), abs=tight)
+    follower = Roller(Translating(offset), 5.0, lift_from_fourier(25.0, {2: 1.5}, {}).law)
+    polygon = Contour.from_vertices(follower.envelope.points(TURN / 60 * np.arange(60)))
+    faces = measured_faces(follower, polygon, None)
+    assert faces.upper is None
+    consistent(faces.lower, step=1e-5)
+    meant = intended_faces(follower, None).lower
+    assert faces.lower.rows(PHI)[0] == pytest.approx(meant.rows(PHI)[0], abs=5e-5)
+    assert meant.rows(PHI)[0] == pytest.approx(1e-3 * follower.intended(PHI), abs=1e-16)
+
+
+def test_opposite_rollers_hold_a_frame_from_both_sides():
+    lift = lift_from_fourier(40.0, {3: 2.0}, {}, (1.0, 2.0))
+    follower = RollerYoke(8.0, lift.law, 80.0)
+    contour = Contour.from_vertices(follower.envelope.points(TURN / 300 * np.arange(300)))
+    lower, upper = measured_faces(follower, contour, 2e-5)
+    assert upper is not None
+    consistent(lower, step=1e-5)
+    consistent(upper, step=1e-5)
+    near, below = follower.contact(contour, PHI)
+    assert lower.rows(PHI)[0] == pytest.approx(1e-3 * near, abs=1e-15)
+    assert upper.rows(PHI)[0] == pytest.approx(1e-3 * below + 2e-5, abs=1e-15)
+    exact = intended_faces(follower, 2e-5)
+    assert exact.upper is not None
+    assert exact.upper.rows(PHI)[0] - exact.lower.rows(PHI)[0] == pytest.approx(2e-5, abs=1e-15)
+    assert follower.moved_by(0.05) == pytest.approx(5e-5)
+
+
 def test_a_circle_drives_a_face_as_its_closed_form():
     contour = circle_about(4.0, 0.0, 30.0, 7)
     (drive,) = drives([OfFace(bearing_of(contour))])
@@ -153,10 +194,10 @@ def test_one_face_has_no_play(follower):
 
 
 def test_rests_are_the_dwells():
-    (one, two) = rests(Yoke(constant_breadth(), 100.0))
+    (one, two) = Yoke(constant_breadth(), 100.0).rests
     assert np.degrees(one) == pytest.approx([120.0, 180.0])
     assert np.degrees(two) == pytest.approx([300.0, 360.0])
-    assert rests(FlatPair(PAIR)) == ()
+    assert FlatPair(PAIR).rests == ()
 
 
 # --- planted faults ---------------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from kin.contour.contour import Contour
 from kin.follower.envelope import FlatEnvelope
 from kin.follower.follower import FlatFace
 from kin.judge.holes import Hole, Tally, apart, round_hole, tally
-from kin.judge.layers import CrossHole, Layer, faces, heights, inset, slotted, volume
+from kin.judge.layers import CrossHole, Layer, faces, heights, slotted, volume
 from kin.law.support_function import lift_from_fourier
 from kin.read.drawing.dxf import read_dxf
 from kin.read.errors import ReadError
@@ -346,7 +346,7 @@ def test_faces_and_heights_of_layers():
 def test_parallel_of_a_flat_envelope():
     envelope = FlatFace(lift_from_fourier(25.0, {3: 2.0}, {}, (3.0, 2.0))).envelope
     assert isinstance(envelope, FlatEnvelope)
-    inner = inset(envelope, 1.5)
+    inner = envelope.inset(1.5)
     (area, length), (inside, shorter) = envelope.area_and_perimeter(), inner.area_and_perimeter()
     assert shorter == pytest.approx(length - 3 * math.pi, rel=1e-13)
     assert inside == pytest.approx(area - 1.5 * length + math.pi * 2.25, rel=1e-13)

@@ -19,7 +19,7 @@ from support.camfiles import (
 )
 from support.cases import few
 
-from kin.follower.follower import DoubleRoller, Yoke
+from kin.follower.follower import DoubleRoller, RollerYoke, Yoke
 from kin.judge.verify import Intent, Limits, verify
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
@@ -31,12 +31,25 @@ LIMITS = Limits(tolerance=1e-3)
 HOLLOW = (4, 3, 60.0, {1: 625.0})
 YOKE = Yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0)
 ROLLERS = DoubleRoller(from_delta(*HOLLOW, {}), 8.0)
+FRAME = RollerYoke(8.0, lift_from_fourier(40.0, {3: 2.0}, {5: 0.3}).law, 80.0)
+
+
+def opposite_roller_points(count):
+    """Points at 8 mm inside the pitch curve r(theta) = 40 + 2 cos 3 theta + 0.3 sin 5 theta."""
+    t = np.arange(count) * 2 * np.pi / count
+    r, slope = 40 + 2 * np.cos(3 * t) + 0.3 * np.sin(5 * t), -6 * np.sin(3 * t) + 1.5 * np.cos(5 * t)
+    along = (slope + 1j * r) * np.exp(1j * t)
+    points = r * np.exp(1j * t) + 8.0 * 1j * along / np.abs(along)
+    return np.stack([points.real, points.imag], axis=-1)
+
+
 CAMS = {
     "yoke": (Intent(YOKE, bore=10.0, thickness=8.0), support_points),
     "double roller": (
         Intent(ROLLERS, bore=10.0, thickness=8.0),
         lambda count: roller_points(count, HOLLOW, 8.0),
     ),
+    "roller yoke": (Intent(FRAME, bore=10.0, thickness=8.0), opposite_roller_points),
 }
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from camgeo.checks.declared import CURVATURE
 from camgeo.report.page.followers import SHAFT
+from camgeo.synthesis.design import intended
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -137,7 +138,7 @@ def rests(recipe: Recipe, design: Design) -> list[Rest]:
         dwells_of = design.driven.dwells.get("shaft", ())
         counted = [dwell for dwell in dwells_of if dwell.length >= COUNTS * dwells_of[0].length]
         return [_rest(dwell.start, dwell.start + dwell.length, band) for dwell in counted]
-    return [_rest(begin, end, "") for begin, end in design.position.dwells()]
+    return [_rest(begin, end, "") for begin, end in intended(recipe, design).follower.rests]
 
 
 def _rest(begin: float, end: float, band: str) -> Rest:

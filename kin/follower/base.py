@@ -1,0 +1,165 @@
+"""What every follower answers: contacts on guides, the motion it is meant to make, and what its play is judged by.
+
+A follower is its contacts, each on a guide, and its motion. What depends on the pair of guide and touch is a file of
+formulas: a flat face on a line of travel `kin.follower.flat`, on an arm `kin.follower.flat_pair`, a roller on either
+`kin.follower.roller`. All others ask a follower by the names below, and never of what kind it is.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kin.contour.contour import Contour
+    from kin.follower.drive import Drive
+    from kin.follower.envelope import Envelope
+    from kin.follower.guide import Guide, Side
+    from kin.follower.motion_error import Judged, Play, Unit
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+Rests = tuple[tuple[float, float], ...]
+
+
+class Motion(Protocol):
+    """An intended motion over the shaft angle; `Lift`, `Piecewise` and `Swing` are."""
+
+    @property
+    def breaks(self) -> Array:
+        """Shaft angles in [0, 2 pi) where the second derivative may jump."""
+
+    def derivatives(self, phi: Array, order: int) -> Array:
+        """Position, mm or radians, and its derivatives at shaft angles phi (n,): (order + 1, n)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Swing:
+    """The swing of a double follower over the shaft angle, `share` times psi, radians."""
+
+    transmission: Transmission
+    share: float = 1.0
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Shaft angles of the law's breaks."""
+        phi: Array = self.transmission.at(self.transmission.breaks, 0)[0][0]
+        return phi
+
+    def derivatives(self, phi: Array, order: int) -> Array:
+        """Swing and its derivatives at shaft angles phi (n,): (order + 1, n)."""
+        rows: Array = self.share * self.transmission.psi_of_shaft(phi, order)
+        return rows
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One touch of a follower, which at shaft angle phi is where its guide stands at phi + turned.
+
+    Its own position on the guide, growing away from the cam, is datum + sense * the follower's: a sense of 1 pushes
+    the follower towards greater positions, -1 towards lesser ones. A face on an arm touches about the arm's length
+    from the pivot.
+    """
+
+    guide: Guide
+    sense: Side = 1
+    datum: float = 0.0
+    turned: float = 0.0
+
+    def position(self, own: Array) -> Array:
+        """Position of the follower from the contact's own."""
+        position: Array = self.sense * (own - self.datum)
+        return position
+
+
+@dataclass(frozen=True)
+class Closure:
+    """How the play of a follower that is held from two sides is judged.
+
+    limit    greatest play or interference of a contour within a tolerance of the exact one
+    name     of the check on both, play and interference
+    tight    name of a check on interference alone; None for none
+    breadth  of a frame, mm: what is told is how broad the contour is; None where play is told
+    """
+
+    limit: Callable[[float], float]
+    name: str = "form-closure"
+    tight: str | None = None
+    breadth: float | None = None
+
+    def detail(self, play: Play) -> str:
+        """What the check tells of a play that was found."""
+        if self.breadth is not None:
+            return f"breadth {self.breadth - play.most:.9g} to {self.breadth - play.least:.9g} mm"
+        sampled = ", sampled" if play.extremes == "sampled" else ""
+        return f"play from {play.least:.3g} to {play.most:.3g} {play.unit}{sampled}"
+
+
+class Follower(ABC):
+    """A follower; positions and motions are in mm or radians, error figures and limits in mm or degrees."""
+
+    @property
+    @abstractmethod
+    def contacts(self) -> tuple[Contact, ...]:
+        """One, which a spring holds on the cam, or two that hold the follower from both sides."""
+
+    @property
+    @abstractmethod
+    def motion(self) -> Motion:
+        """The intended motion."""
+
+    @property
+    @abstractmethod
+    def rests(self) -> Rests:
+        """Dwells of the intended motion: from, to, as shaft angles in radians, to > from."""
+
+    @property
+    @abstractmethod
+    def envelope(self) -> Envelope:
+        """The exact contour."""
+
+    @property
+    def closure(self) -> Closure | None:
+        """How play is judged; None for a follower with one contact, which has none."""
+        return None
+
+    @property
+    def unit(self) -> Unit:
+        """Unit of the errors: mm, or deg where it swings."""
+        return self.contacts[0].guide.unit
+
+    def intended(self, phi: Array) -> Array:
+        """Intended position at shaft angles phi (n,), mm or radians (n,)."""
+        position: Array = self.motion.derivatives(phi, 0)[0]
+        return position
+
+    def shaft_angle(self, parameter: Array) -> Array:
+        """Shaft angle at which the envelope's point of that parameter is touched (n,)."""
+        return parameter
+
+    def moved_by(self, length: float) -> float:
+        """Position, metres or radians, by which a contact that moves by a length, mm, moves the follower, about."""
+        return self.contacts[0].guide.moved_by(length)
+
+    @abstractmethod
+    def contact(self, contour: Contour, phi: Array) -> Array:
+        """Position, mm or radians, on the contour as it lies: (n,), or (2, n) with each of two contacts resting."""
+
+    @abstractmethod
+    def drives(self, contour: Contour) -> Sequence[Drive]:
+        """What each contact feels of a contour over the shaft angle: its own position, in SI."""
+
+    @abstractmethod
+    def judge(self, contour: Contour, phi: Array) -> Judged:
+        """Motion error and play; rms and increments are from the shaft angles phi (n,).
+
+        ContactError where the follower finds no contact.
+        """
+
+    @abstractmethod
+    def motion_limit(self, tolerance: float) -> float:
+        """Greatest motion error, mm or degrees, of a contour within `tolerance` of the exact one."""

@@ -1,0 +1,51 @@
+"""Where an intended motion rests: its dwells."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kin.law.piecewise import Piecewise
+    from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
+
+INSIDE = np.array([0.07, 0.25, 0.43, 0.6, 0.78, 0.94])  # of a stretch: places at which a dwell has no slope
+
+
+def dwells(lift: Lift) -> Iterator[tuple[float, float]]:
+    """Stretches of constant p: from, to, in radians, to > from."""
+    ends = lift.breaks if len(lift.breaks) else np.zeros(1)
+    widths = np.diff(ends, append=ends[0] + TURN)
+    for begin, width, steady in zip(ends, widths, lift.steady, strict=True):
+        p, slope = lift.derivatives(begin + width * np.array([0.25, 0.6]), 1)
+        if steady and (np.abs(slope) <= 1e-12 * np.abs(p)).all():
+            yield float(begin), float(begin + width)
+
+
+def dwells_of_law(law: Piecewise) -> Iterator[tuple[float, float]]:
+    """Stretches of a constant law over the shaft angle: from, to, in radians, to > from."""
+    ends = law.breaks if len(law.breaks) else np.zeros(1)
+    for begin, width in zip(ends, np.diff(ends, append=ends[0] + TURN), strict=True):
+        if not law.derivatives(begin + width * INSIDE, 2)[1:].any():
+            yield float(begin), float(begin + width)
+
+
+def dwells_of_transmission(transmission: Transmission) -> Iterator[tuple[float, float]]:
+    """Stretches of constant psi: from, to, as shaft angles in radians, to > from."""
+    ends = transmission.breaks if len(transmission.breaks) else np.zeros(1)
+    shaft = transmission.at(np.append(ends, ends[0] + TURN), 0)[0][0].tolist()
+    return ((a, b) for a, b, steady in zip(shaft[:-1], shaft[1:], transmission.steady, strict=True) if steady)
+
+
+def dwell_angles(rests: Iterable[tuple[float, float]], phi: Array) -> Iterator[Array]:
+    """For each dwell its ends and the given shaft angles phi (n,) within it."""
+    for begin, end in rests:
+        inside = begin + np.mod(phi - begin, TURN)
+        yield np.concatenate([[begin], np.sort(inside[inside < end]), [end]])
