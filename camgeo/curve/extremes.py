@@ -31,7 +31,9 @@ ORDER = 4  # of the variable: a figure may use up two derivatives and still tell
 class Figure(Protocol):
     """A figure of the shaft angle, as a jet or ball jet; the side decides at breaks."""
 
-    def __call__(self, tau: Series, side: Side = 1, /) -> Series: ...
+    def __call__(self, tau: Series, side: Side = 1, /) -> Series:
+        """Give it, of an order or two less."""
+        ...
 
 
 @dataclass(frozen=True)

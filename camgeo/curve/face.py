@@ -79,5 +79,3 @@ class FaceShape(OfLaw[FacingT]):
         bend = (r.derivative() / turn).derivative()
         turn = cut(turn, bend.order)
         return cut(r, bend.order) * turn + bend, turn
-
-

@@ -22,13 +22,17 @@ Series = TypeVar("Series", Jet, BallJet)
 class Figures(Protocol):
     """Figures of a motion as jets of its parameter: phi and psi, or S alone; the side decides at breaks."""
 
-    def __call__(self, tau: Series, side: Side = 1, /) -> tuple[Series, ...]: ...
+    def __call__(self, tau: Series, side: Side = 1, /) -> tuple[Series, ...]:
+        """Give the figures."""
+        ...
 
 
 class Rates(Protocol):
     """Speed and turn of a shape from jets of those figures."""
 
-    def __call__(self, figures: tuple[Series, ...], /) -> tuple[Series, Series]: ...
+    def __call__(self, figures: tuple[Series, ...], /) -> tuple[Series, Series]:
+        """Give speed and turn."""
+        ...
 
 
 ROUNDING = 1e-10  # relative: what the rounding of a few dozen operations is far below

@@ -15,16 +15,17 @@ import numpy as np
 from camgeo.curve.curve import Bounds, Frame, columns
 from camgeo.curve.face import FaceShape
 from camgeo.curve.rates import OfLaw, bounds_of, cut, series_of, steady_rates
+from kin.law.transmission_law import Transmission
 from kin.numeric import elementary
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side
     from camgeo.curve.rates import Series
-    from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
+
 @dataclass(frozen=True)
-class PitchShape(OfLaw["Transmission"]):
+class PitchShape(OfLaw[Transmission]):
     """Path of a roller's centre round the standing cam.
 
     In the complex plane the centre is ``c = l (exp(i phi) + exp(i chi))``, ``chi = phi - psi - alpha``: the pivot and
@@ -101,5 +102,5 @@ class PitchShape(OfLaw["Transmission"]):
 
 
 @dataclass(frozen=True)
-class FlatPairShape(FaceShape["Transmission"]):
+class FlatPairShape(FaceShape[Transmission]):
     """Curve with an isoptic circle: r as the support function (W section 5)."""
