@@ -218,11 +218,14 @@ class _Intervals:
         )
 
     def bend(self, v: float) -> Array:
-        """Bound of the second derivative of ``sigma - v omega`` (n,)."""
-        return self.speed_bend + abs(v) * self.turn_bend
+        """Bound of the second derivative of ``sigma - v omega``, of ``-omega`` for an infinite v (n,)."""
+        return self.turn_bend if math.isinf(v) else self.speed_bend + abs(v) * self.turn_bend
 
     def floor(self, v: float) -> Array:
-        """Proved lower bound of ``sigma - v omega`` over each interval (n,)."""
+        """Proved lower bound of ``sigma - v omega``, of ``-omega`` for an infinite v, over each interval (n,)."""
+        if math.isinf(v):  # nothing convex has been found yet
+            ends = np.minimum(-self.at_low.turn, -self.at_high.turn)
+            return ends - 0.125 * self.turn_bend * (self.high - self.low) ** 2
         a = self.at_low.speed - v * self.at_low.turn
         b = self.at_high.speed - v * self.at_high.turn
         return np.minimum(a, b) - 0.125 * self.bend(v) * (self.high - self.low) ** 2

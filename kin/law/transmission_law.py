@@ -77,6 +77,11 @@ class Transmission:
         return np.sort((self.psi.breaks[None, :] + turns[:, None]).ravel())
 
     @property
+    def repeats(self) -> int:
+        """Equal parts of a turn of tau."""
+        return self.lam
+
+    @property
     def level(self) -> Array:
         """For each stretch the value of psi if it is exactly constant there, a dwell, else nan."""
         functions = [self.psi.functions[i] for i in self._stretches()]

@@ -1,0 +1,175 @@
+"""Flat faces of disc cams: where the face stands at each shaft angle, and where the cam touches it.
+
+A face is a support function: its distance p from the shaft over the direction t of its normal. Per shaft angle theta
+
+    straight, normal tilted by beta     t = theta + beta               p = Rb + S cos beta
+    oscillating, face f nearer the cam  t = theta + s (psi - pi/2)     p = C sin psi - f
+
+and the contact is ``E(t)(p + i q)``, q = p'/t' (`camgeo.curve.face`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.extremes import least
+from camgeo.curve.face import FaceShape
+from camgeo.curve.rates import cut, stretches
+from kin.law.programme import IntentError
+from kin.numeric import elementary
+from kin.numeric.elementary import Jet
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Side
+    from camgeo.curve.moving_frame import Displacement
+    from camgeo.curve.rates import Series
+    from kin.numeric.arrays import Array, Mask
+
+
+@dataclass(frozen=True)
+class _Face:
+    """A face led by a motion."""
+
+    motion: Displacement
+
+    @property
+    def breaks(self) -> Array:
+        """Breaks of the motion."""
+        return self.motion.breaks
+
+    @property
+    def repeats(self) -> int:
+        """Equal parts of the motion."""
+        return self.motion.repeats
+
+
+@dataclass(frozen=True)
+class StraightFace(_Face):
+    """A face on a stem, `base` mm from the shaft at S = 0, its normal turned ahead of travel by `tilt` (rad).
+
+    `offset` is the eccentricity of the stem: it moves the place of contact on the face, not the cam.
+    """
+
+    base: float
+    tilt: float = 0.0
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not abs(self.tilt) < 0.5 * math.pi:
+            raise IntentError(
+                f"a face tilted by {math.degrees(self.tilt):.6g} degrees is not driven; below 90 it is", "follower.tilt"
+            )
+
+    @property
+    def steady(self) -> Mask:
+        """For each stretch whether the contour is a circular arc: a dwell, or an eccentric."""
+        return self.motion.eccentric
+
+    def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Give the face's distance and its normal's direction."""
+        return self.motion.on(tau, side) * math.cos(self.tilt) + self.base, tau + self.tilt
+
+    def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Give both with their derivatives at shaft angles (n,), (order + 1, n) each."""
+        p = self.motion.derivatives(tau, order, side) * math.cos(self.tilt)
+        p[0] += self.base
+        t = np.zeros_like(p)
+        t[0], t[1] = tau + self.tilt, 1.0
+        return p, t
+
+    def contact(self, tau: Series, side: Side = 1) -> Series:
+        """Where the cam touches the face, mm from the stem's axis along the face, above 0 ahead of it."""
+        s, sine, cosine = self.motion.on(tau, side), math.sin(self.tilt), math.cos(self.tilt)
+        level = (self.base - self.offset * sine) / cosine
+        v = s.derivative()
+        return v * cosine + (cut(s, v.order) + level) * sine - self.offset * cosine
+
+    def slope(self, tau: Series, side: Side = 1) -> Series:
+        """Tangent of the pressure angle: that of the tilt."""
+        return self.motion.on(tau, side) * 0.0 + math.tan(self.tilt)
+
+
+@dataclass(frozen=True)
+class SwingingFace(_Face):
+    """A face on an arm about a pivot at distance C, `face` mm nearer the cam than its parallel through the pivot.
+
+    psi = rest + S is its angle to the line from pivot to shaft; `side` is +1 trailing, -1 leading. IntentError where
+    the face would reach the line, or swing as fast as the cam turns: k = 1 + s psi' must stay above 0.
+    """
+
+    pivot: float
+    face: float
+    rest: float
+    side: int
+
+    @staticmethod
+    def on(motion: Displacement, base: float, pivot: float, face: float, side: int) -> SwingingFace:
+        """Give the face that stands `base` mm from the shaft at S = 0, psi acute."""
+        if not 0.0 < base + face < pivot:
+            raise IntentError(
+                f"base radius and face offset together, {base + face:.6g} mm, must lie between 0 and the pivot's "
+                f"distance, {pivot:.6g} mm",
+                "follower.arm",
+            )
+        return SwingingFace(motion, pivot, face, math.asin((base + face) / pivot), side)
+
+    def __post_init__(self) -> None:
+        low, high = (self.rest + s for s in self.motion.range)
+        if not (low > 0.0 and high < math.pi):
+            raise IntentError(
+                f"the face swings from {math.degrees(low):.6g} to {math.degrees(high):.6g} degrees to the line from "
+                "pivot to shaft; only angles between 0 and 180 can be driven",
+                "follower.arm",
+            )
+        slowest = least(self._rate, stretches(self.motion))
+        if not slowest.value > 0.0:
+            raise IntentError(
+                f"at {math.degrees(slowest.at):.6g} degrees the face swings back {1.0 - slowest.value:.6g} times as "
+                "fast as the cam turns; a cam can be turned through below 1",
+                "motion",
+            )
+
+    def _rate(self, tau: Series, side: Side = 1) -> Series:
+        return self.motion.on(tau, side).derivative() * float(self.side) + 1.0
+
+    @property
+    def base(self) -> float:
+        """Distance of the face from the shaft at S = 0, mm."""
+        return self.pivot * math.sin(self.rest) - self.face
+
+    @property
+    def steady(self) -> Mask:
+        """For each stretch whether it is a dwell."""
+        return self.motion.steady
+
+    def polar(self, tau: Series, side: Side = 1) -> tuple[Series, Series]:
+        """Give the face's distance and its normal's direction."""
+        psi, sense = self.motion.on(tau, side) + self.rest, float(self.side)
+        return elementary.sin(psi) * self.pivot - self.face, tau + (psi - 0.5 * math.pi) * sense
+
+    def pitch(self, tau: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Give both with their derivatives at shaft angles (n,), (order + 1, n) each."""
+        p, t = self.polar(Jet.variable(tau, order), side)
+        return p.derivatives(), t.derivatives()
+
+    def contact(self, tau: Series, side: Side = 1) -> Series:
+        """Where the cam touches the face, mm from the pivot's foot along the face."""
+        psi = self.motion.on(tau, side) + self.rest
+        rate = psi.derivative() * float(self.side) + 1.0
+        return elementary.cos(cut(psi, rate.order)) * self.pivot / rate
+
+    def slope(self, tau: Series, side: Side = 1) -> Series:
+        """Tangent of the pressure angle: the face's offset over the place of contact."""
+        return self.face / self.contact(tau, side)
+
+
+Face = StraightFace | SwingingFace
+
+
+def face_shape(face: Face) -> FaceShape[Face]:
+    """Contour of the cam that drives a flat face."""
+    return FaceShape(face)

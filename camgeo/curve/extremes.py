@@ -1,0 +1,104 @@
+"""Greatest and least values of a figure over a whole turn, found and proved.
+
+A figure is a function in jet arithmetic: at points it has its exact derivatives, over intervals enclosures of them. On
+an interval of width w no value lies above the greater end by more than ``max(0, -f'') w^2/8``; where f' keeps its sign
+none lies above it at all. Intervals that may still hold more than the best value found are divided.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from kin.numeric.elementary import BallJet, Jet
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Side
+    from camgeo.curve.rates import Series
+    from kin.numeric.arrays import Array
+
+CELLS = 16  # of each stretch, at first
+PARTS = 4  # into which an undecided interval is divided
+LEVELS = 24
+MOST = 20_000  # undecided intervals; then the rest is told as room
+SHARPNESS = 1e-13  # of the figure's size: how far the proof goes
+NEWTON = 5
+ORDER = 4  # of the variable: a figure may use up two derivatives and still tell two
+
+
+class Figure(Protocol):
+    """A figure of the shaft angle, as a jet or ball jet; the side decides at breaks."""
+
+    def __call__(self, tau: Series, side: Side = 1, /) -> Series:
+        """Give it, of an order or two less."""
+        ...
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """A value that is taken at `at`, and by how much at most a value elsewhere may surpass it."""
+
+    value: float
+    at: float
+    room: float
+
+
+def least(figure: Figure, stretches: Array) -> Extreme:
+    """Least value of a figure over stretches (m, 2), none of which spans a break."""
+    found = greatest(lambda tau, side=1: -figure(tau, side), stretches)
+    return Extreme(-found.value, found.at, found.room)
+
+
+def greatest(figure: Figure, stretches: Array) -> Extreme:
+    """Greatest value of a figure over stretches (m, 2), none of which spans a break; limits at breaks count."""
+    share = np.linspace(0.0, 1.0, CELLS + 1)
+    knots = stretches[:, :1] * (1.0 - share) + stretches[:, 1:] * share
+    low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
+    best, at, size = -np.inf, float(low[0]), 0.0
+    for _ in range(LEVELS):
+        ends = np.concatenate([low, high])
+        rows = figure(Jet.variable(ends, ORDER), np.repeat([1, -1], low.size)).derivatives()
+        size = max(size, float(np.abs(rows[0]).max()))
+        places, values = _improved(figure, low, high, rows)
+        top = int(np.argmax(values))
+        if values[top] > best:
+            best, at = float(values[top]), float(places[top])
+        reach = _most(figure, low, high, rows)
+        open_ = ~(reach <= best + SHARPNESS * size)
+        if not open_.any():
+            return Extreme(best, at, SHARPNESS * size)
+        low, high, reach = low[open_], high[open_], reach[open_]
+        if low.size > MOST:
+            break
+        share = np.linspace(0.0, 1.0, PARTS + 1)
+        knots = low[:, None] * (1.0 - share) + high[:, None] * share
+        low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
+    return Extreme(best, at, float(reach.max()) - best)
+
+
+def _improved(figure: Figure, low: Array, high: Array, rows: Array) -> tuple[Array, Array]:
+    """Places and values: the ends of the intervals, and the tops that Newton's method finds inside."""
+    ends, count = np.concatenate([low, high]), low.size
+    near = np.flatnonzero((rows[1, :count] > 0.0) & (rows[1, count:] < 0.0))
+    if not near.size:
+        return ends, rows[0]
+    a, b = low[near], high[near]
+    x = 0.5 * (a + b)
+    for _ in range(NEWTON):
+        _, slope, bend = figure(Jet.variable(x, ORDER)).derivatives()[:3]
+        step = np.divide(slope, bend, out=np.zeros_like(slope), where=bend < 0.0)
+        x = np.minimum(np.maximum(x - step, a), b)
+    inside = figure(Jet.variable(x, ORDER)).derivatives()[0]
+    return np.concatenate([ends, x]), np.concatenate([rows[0], inside])
+
+
+def _most(figure: Figure, low: Array, high: Array, rows: Array) -> Array:
+    """Upper bound of the figure over each interval (n,)."""
+    below, above = figure(BallJet.variable(low, high, ORDER)).bounds()
+    top = np.maximum(*rows[0].reshape(2, -1))
+    width = high - low
+    dip = np.where((below[1] >= 0.0) | (above[1] <= 0.0), 0.0, np.maximum(-below[2], 0.0) * width**2 / 8.0)
+    reach: Array = np.fmin(top + dip, above[0])
+    return np.where(np.isnan(reach), np.inf, reach)

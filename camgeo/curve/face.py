@@ -1,0 +1,81 @@
+"""Profiles that a flat face touches, from the face's distance from the shaft and the direction it faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+import numpy as np
+
+from camgeo.curve.curve import Bounds, Frame, columns
+from camgeo.curve.rates import OfLaw, Source, bounds_of, cut, series_of, steady_rates
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Side
+    from camgeo.curve.rates import Series
+    from kin.numeric.arrays import Array
+
+
+class Facing(Source, Protocol):
+    """A face as it moves round the standing cam: its distance r from the shaft and its normal's direction."""
+
+    def polar(self, tau: Series, side: Side = 1, /) -> tuple[Series, Series]:
+        """Give both for jets or ball jets of the parameter."""
+        ...
+
+    def pitch(self, tau: Array, order: int, side: Side = 1, /) -> tuple[Array, Array]:
+        """Give both with their derivatives at parameters (n,), (order + 1, n) each."""
+        ...
+
+
+FacingT = TypeVar("FacingT", bound=Facing)
+
+
+@dataclass(frozen=True)
+class FaceShape(OfLaw[FacingT]):
+    """Envelope of a face: r is the support function of the curve.
+
+    The parameter is the law's; the normal turns as ``t`` does, the point is ``E(t)(r + i r'/t')``, and
+    ``sigma = (r + d2r/dt2) t'``.
+    """
+
+    @property
+    def steady(self) -> Array:
+        """Speed and turn (m, 2) where the follower rests."""
+        return steady_rates(self, self.law.steady)
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,)."""
+        steady = self.steady
+        return steady[:, 0] / steady[:, 1]
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,) of the law."""
+        r, normal = self.law.pitch(t, 3, side)
+        turn, turn1, turn2 = normal[1:]
+        # `_rates` by hand
+        slope = r[1] / turn
+        slope1 = (r[2] - slope * turn1) / turn
+        slope2 = (r[3] - slope * turn2 - 2.0 * slope1 * turn1) / turn
+        cosine, sine = np.cos(normal[0]), np.sin(normal[0])
+        point = columns(r[0] * cosine - slope * sine, r[0] * sine + slope * cosine)
+        return Frame(
+            point, columns(-sine, cosine), r[0] * turn + slope1, turn, r[1] * turn + r[0] * turn1 + slope2, turn1
+        )
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,) of the law."""
+        return series_of(self.law.polar, t, order, side, self._rates)
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over intervals (n,)."""
+        return bounds_of(self.law.polar, low, high, self._rates)
+
+    def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        """Speed and turn from the support function and the normal's angle: ``r t' + (r'/t')'``."""
+        r, normal = figures
+        turn = normal.derivative()
+        bend = (r.derivative() / turn).derivative()
+        turn = cut(turn, bend.order)
+        return cut(r, bend.order) * turn + bend, turn

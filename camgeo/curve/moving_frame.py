@@ -1,0 +1,305 @@
+"""Pitch curves of disc cams: one moving frame for every roller, knife edge and curved shoe.
+
+The cam stands still and the follower runs round it by the shaft angle theta. The roller's centre travels in the
+direction tau, at the distance b from the shaft along it; a is its velocity less the eccentricity of the travel line,
+
+    N = E(tau) (b - i a)/sigma,  T = i N,  sigma = hypot(a, b),  omega = tau' + (b' a - a' b)/sigma^2,
+
+E(t) = exp(i t), N the outward normal. tan alpha = a/b is the pressure angle, above 0 where the cam drives a rise.
+Nothing is divided but by sigma, which is above 0 as long as b is. An oscillating arm is a translating follower of
+momentary eccentricity s (C cos psi - L).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from camgeo.curve.curve import Bounds, Frame, columns
+from camgeo.curve.rates import OfLaw, bounds_of, cut, series_of, steady_rates
+from kin.law.programme import IntentError, first_harmonic
+from kin.law.segment import Affine, Constant
+from kin.numeric import elementary
+from kin.numeric.elementary import Jet
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Side
+    from camgeo.curve.rates import Series
+    from kin.law.piecewise import Piecewise
+    from kin.law.segment import Stretch
+    from kin.law.sources.motion import Motion
+    from kin.numeric.arrays import Array, Mask
+
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, eq=False)
+class Displacement:
+    """S over the shaft angle, mm or rad, all round: a periodic motion, `repeats` times a turn."""
+
+    over: Piecewise
+    repeats: int
+    range: tuple[float, float]
+
+    @staticmethod
+    def of(motion: Motion) -> Displacement:
+        """Take a motion over a whole turn or an equal part of one; IntentError unless S and S' join all round."""
+        repeats = round(TURN / motion.total)
+        if not (motion.around == 1 and repeats >= 1 and abs(repeats * motion.total - TURN) <= 1e-9):
+            raise ValueError(f"a motion over {motion.total!r} rad does not go round a turn")
+        return Displacement(motion.periodic(), repeats, motion.range)
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Angles in [0, 2 pi) at which a derivative of S may jump, rising."""
+        parts = np.arange(self.repeats) * (TURN / self.repeats)
+        return np.sort((self.over.breaks[None, :] + parts[:, None]).ravel())
+
+    @cached_property
+    def functions(self) -> tuple[Stretch, ...]:
+        """The function of each stretch between breaks; of one alone where there is no break."""
+        begin = self.over.breaks if len(self.over.breaks) else self.over.knots[:1]
+        index, _ = self.over.locate(begin, 1)
+        part = tuple(self.over.functions[i] for i in index)
+        return part * self.repeats if len(self.over.breaks) else part
+
+    @property
+    def steady(self) -> Mask:
+        """For each stretch whether it is a dwell."""
+        return np.array([isinstance(f, Constant) for f in self.functions])
+
+    @property
+    def eccentric(self) -> Mask:
+        """For each stretch whether S + S'' is constant: a dwell, or the harmonic law over a half turn."""
+        found = [isinstance(f, Affine) and first_harmonic(f) is not None for f in self.functions]
+        both: Mask = self.steady | np.array(found)
+        return both
+
+    def on(self, tau: Series, side: Side = 1) -> Series:
+        """Apply S to jets or ball jets of the shaft angle; `side` decides at breaks."""
+        return self.over.on(tau, side)
+
+    def derivatives(self, theta: Array, order: int, side: Side = 1) -> Array:
+        """Give S and its derivatives at theta (n,), (order + 1, n)."""
+        return self.over.derivatives(theta, order, side)
+
+
+class Guide(Protocol):
+    """How a roller's centre is led: its place, its direction of travel, and the frame's b, a and tau'."""
+
+    @property
+    def prime(self) -> float:
+        """Radius of the prime circle, mm: the centre's distance from the shaft at S = 0."""
+        ...
+
+    def demand(self, least: float, greatest: float) -> None:
+        """Raise IntentError where the frame breaks down between two displacements."""
+        ...
+
+    def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
+        """Give the centre as complex numbers (n,) and the direction of travel, rad (n,)."""
+        ...
+
+    def rows(self, s: Array) -> tuple[Array, Array, Array]:
+        """Give b and a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""
+        ...
+
+    def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
+        """Give b, a and tau' as series: of the order of S, one fewer, one fewer."""
+        ...
+
+
+@dataclass(frozen=True)
+class Translating:
+    """A stem whose line passes the shaft at `offset`, e > 0 on the side from which the surface comes; `foot` is d.
+
+    The centre is at d + S along the line, d^2 = Rp^2 - e^2.
+    """
+
+    foot: float
+    offset: float = 0.0
+
+    @staticmethod
+    def on(prime: float, offset: float = 0.0) -> Translating:
+        """Give the guide of a prime circle, mm; IntentError unless the stem's line meets the circle."""
+        if not (math.isfinite(prime) and abs(offset) < prime):
+            raise IntentError(
+                f"the offset, {offset:.6g} mm, must be below the prime circle's radius, {prime:.6g} mm",
+                "follower.offset",
+            )
+        return Translating(math.sqrt((prime - offset) * (prime + offset)), offset)
+
+    @property
+    def prime(self) -> float:
+        """Radius of the prime circle, mm."""
+        return math.hypot(self.foot, self.offset)
+
+    def demand(self, least: float, greatest: float) -> None:  # noqa: ARG002
+        """Raise IntentError where the centre would pass the shaft."""
+        if not self.foot + least > 0.0:
+            raise IntentError(
+                f"the roller's centre would come down to the shaft: {self.foot + least:.6g} mm along its line",
+                "base_radius",
+            )
+
+    def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
+        """Give the centre as complex numbers (n,) and the direction of travel (n,)."""
+        return np.exp(1j * theta) * (self.foot + s + 1j * self.offset), theta
+
+    def rows(self, s: Array) -> tuple[Array, Array, Array]:
+        """Give b, a (3, n) and tau' (2, n) with their derivatives."""
+        b, a, rate = s[:3].copy(), s[1:].copy(), np.zeros_like(s[:2])
+        b[0] += self.foot
+        a[0] -= self.offset
+        rate[0] = 1.0
+        return b, a, rate
+
+    def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
+        """Give b, a and tau' as series."""
+        return s + self.foot, s.derivative() - self.offset, 1.0
+
+
+@dataclass(frozen=True)
+class Oscillating:
+    """An arm of length L about a pivot at distance C: psi = rest + S is its angle to the line from pivot to shaft.
+
+    `side` is +1 for a trailing arm (the roller clockwise of the pivot as drawn), -1 for a leading one.
+    """
+
+    pivot: float
+    length: float
+    rest: float
+    side: int
+
+    @staticmethod
+    def on(prime: float, pivot: float, length: float, side: int) -> Oscillating:
+        """Give the guide of a prime circle, mm; IntentError unless the arm reaches it."""
+        if not abs(pivot - length) < prime < pivot + length:
+            raise IntentError(
+                f"an arm of {length:.6g} mm about a pivot at {pivot:.6g} mm does not reach a prime circle of "
+                f"{prime:.6g} mm: it reaches {abs(pivot - length):.6g} to {pivot + length:.6g} mm",
+                "follower.arm",
+            )
+        # half-angle formula: keeps its digits near a stretched or folded arm
+        low, high = (prime - pivot + length) * (prime + pivot - length), (pivot + length - prime)
+        rest = 2.0 * math.atan2(math.sqrt(low), math.sqrt(high * (pivot + length + prime)))
+        return Oscillating(pivot, length, rest, side)
+
+    @property
+    def prime(self) -> float:
+        """Radius of the prime circle, mm."""
+        return math.hypot(self.pivot * math.cos(self.rest) - self.length, self.pivot * math.sin(self.rest))
+
+    def demand(self, least: float, greatest: float) -> None:
+        """Raise IntentError where the arm would point at the shaft or away from it."""
+        low, high = self.rest + least, self.rest + greatest
+        if not (low > 0.0 and high < math.pi):
+            raise IntentError(
+                f"the arm swings from {math.degrees(low):.6g} to {math.degrees(high):.6g} degrees to the line from "
+                "pivot to shaft; only angles between 0 and 180 can be driven",
+                "follower.arm",
+            )
+
+    def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
+        """Give the centre as complex numbers (n,) and the direction of travel (n,)."""
+        psi = self.rest + s
+        centre = np.exp(1j * theta) * (self.pivot - self.length * np.exp(1j * self.side * psi))
+        return centre, theta + self.side * (psi - 0.5 * math.pi)
+
+    def rows(self, s: Array) -> tuple[Array, Array, Array]:
+        """Give b, a (3, n) and tau' (2, n) with their derivatives."""
+        sine, cosine = self.pivot * np.sin(self.rest + s[0]), self.pivot * np.cos(self.rest + s[0])
+        _, v, w, j = s
+        b = np.stack([sine, cosine * v, cosine * w - sine * v * v])
+        a = np.stack(
+            [
+                self.length * v - self.side * (cosine - self.length),
+                self.length * w + self.side * sine * v,
+                self.length * j + self.side * (b[1] * v + sine * w),
+            ]
+        )
+        return b, a, np.stack([1.0 + self.side * v, self.side * w])
+
+    def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
+        """Give b, a and tau' as series."""
+        psi, side = s + self.rest, float(self.side)
+        slope = s.derivative()
+        lean = elementary.cos(cut(psi, slope.order)) * self.pivot - self.length
+        return elementary.sin(psi) * self.pivot, slope * self.length - lean * side, slope * side + 1.0
+
+
+@dataclass(frozen=True)
+class CentreShape(OfLaw[Displacement]):
+    """Path of a roller's centre round the standing cam, over the shaft angle; a knife edge's is the contour itself."""
+
+    guide: Guide
+
+    def __post_init__(self) -> None:
+        self.guide.demand(*self.law.range)
+
+    @property
+    def steady(self) -> Array:
+        """Speed and turn (m, 2) where the follower dwells and the curve is a circle about the shaft."""
+        return steady_rates(self, self.law.steady)
+
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,): dwells."""
+        steady = self.steady
+        return steady[:, 0] / steady[:, 1]
+
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at shaft angles t (n,)."""
+        s = self.law.derivatives(t, 3, side)
+        b, a, rate = self.guide.rows(s)
+        centre, travel = self.guide.place(t, s[0])
+        # `_rates` by hand
+        speed = np.hypot(a[0], b[0])
+        square = speed * speed
+        along = a[0] * a[1] + b[0] * b[1]
+        bend = (b[1] * a[0] - a[1] * b[0]) / square
+        turn_slope = rate[1] + (b[2] * a[0] - a[2] * b[0] - 2.0 * along * bend) / square
+        tangent = np.exp(1j * travel) * (a[0] + 1j * b[0]) / speed
+        return Frame(
+            columns(centre.real, centre.imag),
+            columns(tangent.real, tangent.imag),
+            speed,
+            rate[0] + bend,
+            along / speed,
+            turn_slope,
+        )
+
+    def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
+        """Taylor coefficients (order + 1, n) of speed and turn at shaft angles t (n,)."""
+        return series_of(self._figures, t, order, side, self._rates)
+
+    def bounds(self, low: Array, high: Array) -> Bounds:
+        """Proved bounds over intervals (n,)."""
+        return bounds_of(self._figures, low, high, self._rates)
+
+    def _figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
+        return (self.law.on(tau, side),)
+
+    def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
+        """Speed and turn from S: two orders fewer."""
+        b, a, rate = self.guide.frame(figures[0])
+        a_slope = a.derivative()
+        order = a_slope.order
+        b_slope, a, b = cut(b.derivative(), order), cut(a, order), cut(b, order)
+        square = a**2 + b**2
+        bend = (b_slope * a - a_slope * b) * square**-1
+        return elementary.sqrt(square), bend + (rate if isinstance(rate, float) else cut(rate, order))
+
+    def slope(self, tau: Series, side: Side = 1) -> Series:
+        """Tangent of the pressure angle as a series: a/b."""
+        b, a, _ = self.guide.frame(self.law.on(tau, side))
+        return a / cut(b, a.order)
+
+    def pressure_angle(self, theta: Array, side: Side = 1) -> Array:
+        """Pressure angle at shaft angles (n,), rad: above 0 where the cam drives a rise."""
+        angle: Array = np.arctan(self.slope(Jet.variable(theta, 1), side).c[0])
+        return angle

@@ -1,0 +1,155 @@
+"""Speed and turn of a shape from the figures that define it: their Taylor series, and proved bounds of both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from camgeo.curve.curve import Bounds
+from kin.numeric.elementary import BallJet, Jet
+from kin.numeric.interval import Ball
+from kin.numeric.taylor import factorials
+
+if TYPE_CHECKING:
+    from camgeo.curve.curve import Shape, Side
+    from kin.numeric.arrays import Array, Mask
+
+Series = TypeVar("Series", Jet, BallJet)
+
+
+class Figures(Protocol):
+    """Figures of a motion as jets of its parameter: phi and psi, or S alone; the side decides at breaks."""
+
+    def __call__(self, tau: Series, side: Side = 1, /) -> tuple[Series, ...]:
+        """Give the figures."""
+        ...
+
+
+class Rates(Protocol):
+    """Speed and turn of a shape from jets of those figures."""
+
+    def __call__(self, figures: tuple[Series, ...], /) -> tuple[Series, Series]:
+        """Give speed and turn."""
+        ...
+
+
+ROUNDING = 1e-10  # relative: what the rounding of a few dozen operations is far below
+ORDER = 5  # of the series that bounds come from
+NARROW = 0.01  # rad: intervals narrower to either side were halved, at a fold; there a higher order saves most of them
+FINE_ORDER = 9
+
+
+class Source(Protocol):
+    """What every motion tells of its stretches."""
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters in [0, 2 pi) at which a derivative may jump, rising."""
+        ...
+
+    @property
+    def repeats(self) -> int:
+        """Equal parts of the turn."""
+        ...
+
+    @property
+    def steady(self) -> Mask:
+        """For each stretch whether speed and turn are exactly constant there."""
+        ...
+
+
+SourceT = TypeVar("SourceT", bound=Source)
+
+
+@dataclass(frozen=True)
+class OfLaw(Generic[SourceT]):
+    """What a shape has of its motion alone, whose parameter it shares."""
+
+    law: SourceT
+
+    @property
+    def period(self) -> float:
+        """A full turn."""
+        return 2.0 * np.pi
+
+    @property
+    def breaks(self) -> Array:
+        """Breaks of the motion."""
+        return self.law.breaks
+
+    @property
+    def repeats(self) -> int:
+        """Equal parts of the motion: so has the curve, but for a turn."""
+        return self.law.repeats
+
+
+def steady_rates(shape: Shape, rests: Mask) -> Array:
+    """Speed and turn (m, 2) of a shape on the stretches where they are constant; nan on the others."""
+    out = np.full((rests.size, 2), np.nan)
+    if rests.any():
+        at = shape.sample(stretches(shape).mean(axis=1)[rests])
+        out[rests] = np.column_stack([at.speed, at.turn])
+    return out
+
+
+def stretches(of: Source | Shape) -> Array:
+    """Ends (m, 2) of the stretches between breaks; the whole turn where there is none."""
+    breaks = of.breaks if len(of.breaks) else np.zeros(1)
+    return np.column_stack([breaks, np.append(breaks[1:], breaks[0] + 2.0 * np.pi)])
+
+
+def cut(series: Series, order: int) -> Series:
+    """Cut a series to a lower order."""
+    if isinstance(series, Jet):
+        return Jet(series.c[: order + 1])
+    return BallJet(series.mid[: order + 1], series.rad[: order + 1])
+
+
+def series_of(figures: Figures, t: Array, order: int, side: Side, rates: Rates) -> tuple[Array, Array]:
+    """Taylor coefficients of speed and turn (order + 1, n) from those of the law, two orders more."""
+    speed, turn = rates(figures(Jet.variable(t, order + 2), side))
+    return speed.c, turn.c
+
+
+def bounds_of(figures: Figures, low: Array, high: Array, rates: Rates) -> Bounds:
+    """Bounds over intervals (n,) from a motion's figures, and from speed and turn as functions of them.
+
+    Interval arithmetic alone loses how its operands hang together. So each derivative, of the law as of speed and
+    turn, is taken from the middle of the interval, plus half the width times what bounds the next derivative; only the
+    last comes from the arithmetic. In the middle too it is balls, of no width: so rounding is known for each interval.
+    """
+    middle = low + 0.5 * (high - low)
+    reach = np.maximum(high - middle, middle - low)
+    order = ORDER if reach.max(initial=0.0) > NARROW else FINE_ORDER
+    # One call for both: intervals first, then their middles.
+    both = BallJet.variable(np.concatenate([low, middle]), np.concatenate([high, middle]), order)
+    sharp = tuple(_over_sharpened(ball, reach) for ball in figures(both))
+    speed, turn = (_sharpened(ball, reach) for ball in rates(sharp))
+    speed_size, turn_size = np.abs(speed).max(axis=0), np.abs(turn).max(axis=0)
+    return Bounds(
+        speed[0][0], speed[1][0], turn[0][0], turn[1][0], speed_size[1], turn_size[1], speed_size[2], turn_size[2]
+    )  # fmt: skip
+
+
+def _sharpened(ball: BallJet, reach: Array) -> tuple[Array, Array]:
+    """Lower and upper bounds (order + 1, n) of the derivatives over intervals, from those within reach (n,).
+
+    The balls are those over the n intervals, and then those in their middles.
+    """
+    (low, least), (high, most) = (np.hsplit(rows, 2) for rows in ball.bounds())
+    for k in range(len(low) - 2, -1, -1):
+        spread = reach * np.maximum(np.abs(low[k + 1]), np.abs(high[k + 1])) * (1.0 + ROUNDING)
+        low[k] = np.fmax(low[k], least[k] - spread)
+        high[k] = np.fmin(high[k], most[k] + spread)
+    return low, high
+
+
+def _over_sharpened(ball: BallJet, reach: Array) -> BallJet:
+    """Balls over intervals sharpened, then the same in their middles."""
+    sharp = Ball.between(*_sharpened(ball, reach))
+    factorial = factorials(ball.order)
+    rad = sharp.rad / factorial * (1.0 + ROUNDING) + 1e-15 * np.abs(sharp.mid)
+    mids, rads = ball.mid[:, reach.size :], ball.rad[:, reach.size :]
+    return BallJet(np.hstack([sharp.mid / factorial, mids]), np.hstack([rad, rads]))
