@@ -127,10 +127,10 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
         raise ValueError("a follower of one contact has no play")
     si = contacts[0].guide.si
     if play is None:
-        return Faces(Moved(drives[0], 1.0, -si * contacts[0].datum), None)
-    # the follower's position is sense * (own - datum): one contact pushes it up, the other keeps it below
+        return Faces(Moved(drives[0], 1.0, -si * contacts[0].zero), None)
+    # the follower's position is sense * (own - zero): one contact pushes it up, the other keeps it below
     lower, upper = sorted(zip(contacts, drives, strict=True), key=lambda pair: -pair[0].sense)
     return Faces(
-        Moved(lower[1], 1.0, -si * lower[0].datum),
-        Moved(upper[1], -1.0, si * upper[0].datum + play),
+        Moved(lower[1], 1.0, -si * lower[0].zero),
+        Moved(upper[1], -1.0, si * upper[0].zero + play),
     )

@@ -60,19 +60,25 @@ class Swing:
 class Contact:
     """One touch of a follower, which at shaft angle phi is where its guide stands at phi + turned.
 
-    Its own position on the guide, growing away from the cam, is datum + sense * the follower's: a sense of 1 pushes
-    the follower towards greater positions, -1 towards lesser ones. A face on an arm touches about the arm's length
-    from the pivot.
+    Its own position on the guide, growing away from the cam, is datum - apart + sense * the follower's: a sense of 1
+    pushes the follower towards greater positions, -1 towards lesser ones. `apart` is how far two contacts that share
+    their guide stand from its middle. A face on an arm touches about the arm's length from the pivot.
     """
 
     guide: Guide
     sense: Side = 1
     datum: float = 0.0
+    apart: float = 0.0
     turned: float = 0.0
+
+    @property
+    def zero(self) -> float:
+        """Own position where the follower's is 0."""
+        return self.datum - self.apart
 
     def position(self, own: Array) -> Array:
         """Position of the follower from the contact's own."""
-        position: Array = self.sense * (own - self.datum)
+        position: Array = self.sense * (own - self.datum + self.apart)
         return position
 
 

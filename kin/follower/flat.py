@@ -90,7 +90,7 @@ class Yoke(FlatFace):
     @property
     def contacts(self) -> tuple[Contact, ...]:
         """Face 1 and, half a turn on, face 2."""
-        return Contact(Translating()), Contact(Translating(), -1, self.breadth, np.pi)
+        return Contact(Translating()), Contact(Translating(), -1, self.breadth, turned=np.pi)
 
     @property
     def closure(self) -> Closure:

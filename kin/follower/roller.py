@@ -157,7 +157,7 @@ class RollerYoke(_OfLaw):
     @property
     def contacts(self) -> tuple[Contact, ...]:
         """Roller 1 and, half a turn on, roller 2."""
-        return Contact(Translating()), Contact(Translating(), -1, self.breadth, np.pi)
+        return Contact(Translating()), Contact(Translating(), -1, self.breadth, turned=np.pi)
 
     @property
     def closure(self) -> Closure:
@@ -191,8 +191,8 @@ class DoubleRoller(_Rollers):
 
         alpha' is pi - alpha.
         """
-        arm, straight = self.transmission.arm, np.pi - self.transmission.alpha
-        return tuple(Contact(Arm(arm, arm, side), side, straight) for side in (TRAILING, LEADING))
+        arm, apart = self.transmission.arm, self.transmission.alpha
+        return tuple(Contact(Arm(arm, arm, side), side, np.pi, apart) for side in (TRAILING, LEADING))
 
     @cached_property
     def motion(self) -> Swing:
@@ -228,7 +228,7 @@ class DoubleRoller(_Rollers):
         passing = [passing_angles(obstacle, one.guide) for one in self.contacts]
         looked = np.concatenate([steps, *passing]), steps
         held = [
-            held_on(obstacle, one.guide, angle, one.datum, one.sense)
+            held_on(obstacle, one.guide, angle, one.zero, one.sense)
             for one, angle in zip(self.contacts, looked, strict=True)
         ]
         psi = [one.position(there.position) for one, there in zip(self.contacts, held, strict=True)]
@@ -241,7 +241,7 @@ class DoubleRoller(_Rollers):
         # the increments tell nothing new of the gap
         chosen = np.r_[: len(phi), len(steps) : len(steps) + sum(map(len, passing))]
         angle, b = held[0].phi[chosen], self.contacts[1]
-        second = b.guide.centre(angle, b.datum + psi[0][chosen])
+        second = b.guide.centre(angle, b.zero + psi[0][chosen])
         return Judged(motion, sampled_play(signed_distance(chain, second) - self.radius, angle))
 
     @cached_property
