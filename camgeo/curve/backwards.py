@@ -9,8 +9,11 @@ import numpy as np
 
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Bounds, Curve, Frame, Run, Shape
+from camgeo.curve.parallel import Parallel
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from camgeo.curve.curve import Side
@@ -75,10 +78,21 @@ class Backwards:
         return replace(b, turn_low=-b.turn_high, turn_high=-b.turn_low)
 
 
+def backwards(curve: Curve) -> Curve:
+    """A curve run through the other way; what lies outside its base is then inside, as a roller's contour is."""
+    shape = curve.shape
+    turned = Parallel(Backwards(shape.base), -shape.distance) if isinstance(shape, Parallel) else Backwards(shape)
+    return Curve(turned, runs_backwards(curve.runs))
+
+
+def runs_backwards(runs: Sequence[Run]) -> tuple[Run, ...]:
+    """Runs in the parameter of the curve run through the other way."""
+    return tuple(
+        Run(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), run.closed) for run in reversed(runs)
+    )
+
+
 def least_hollow(contour: Curve) -> tuple[float, float]:
     """Least radius of the hollow stretches of a contour, mm, and its parameter; infinite without a hollow."""
-    runs = tuple(
-        Run(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), run.closed) for run in reversed(contour.runs)
-    )
-    radius, at = least_radius(Curve(Backwards(contour.shape), runs))
+    radius, at = least_radius(backwards(contour))
     return radius, -at

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from functools import cache
 from typing import TYPE_CHECKING
 
 import mpmath as mp
@@ -15,7 +14,7 @@ from hypothesis import strategies as st
 from support.cases import examples
 from support.discs import CONTOURS, DEGREE, TURN, displaced, inline, offset, segments
 
-from camgeo.curve.backwards import Backwards
+from camgeo.curve.backwards import Backwards, least_hollow
 from camgeo.curve.curvature import least_radius, reversals
 from camgeo.curve.curve import Curve
 from camgeo.curve.disc import StraightFace, SwingingFace, face_shape
@@ -25,6 +24,8 @@ from camgeo.curve.parallel import Parallel
 from camgeo.curve.rates import stretches
 from camgeo.curve.sizing import face_needed, least_prime, least_stem, tappet_radius
 from camgeo.curve.undercut.causes import causes
+from camgeo.curve.undercut.trim import trimmed
+from camgeo.curve.undercut.undercut import undercuts
 from kin.law.programme import IntentError
 
 if TYPE_CHECKING:
@@ -278,20 +279,43 @@ def made(
     return (Parallel(pitch, radius) if radius else pitch), (centre, radius)
 
 
-@cache
-def undercut_ring() -> CentreShape:
+def hollow_pitch() -> CentreShape:
+    """A pitch curve with two hollows of 26.56 mm."""
     return CentreShape(displaced((14, 60, "cycloidal"), (-14, 60, "cycloidal"), (240,)), Translating.on(30.0))
 
 
-def test_a_ring_undercuts_where_its_pitch_curve_is_hollow() -> None:
-    """Speed sigma + R omega: the ring's own undercut is that of the pitch curve run through the other way."""
-    pitch = undercut_ring()
-    ring = Parallel(pitch, -30.0)
-    assert least_radius(Curve.whole(Backwards(pitch)))[0] < 30.0
-    found = causes(Curve.whole(Parallel(Backwards(pitch), 30.0)))
-    assert found.reversals
-    t = -np.array([0.5 * (r.start + r.end) for r in found.reversals])
-    assert (ring.sample(t).speed < 0.0).all()
+@pytest.mark.parametrize("radius", [27.0, 40.0, 80.0])
+def test_a_ring_undercuts_where_its_pitch_curve_is_hollow(radius: float) -> None:
+    """Speed sigma + R omega: what is left of the ring meets in corners, and is nowhere nearer than R to the pitch."""
+    pitch = hollow_pitch()
+    ring = Curve.whole(Parallel(pitch, -radius))
+    cuts = undercuts(ring)
+    assert [cut.kind for cut in cuts] == ["local", "local"]
+    for cut in cuts:
+        assert cut.start < cut.at < cut.end
+        assert 0.0 <= cut.start < TURN
+        assert cut.free_at == pytest.approx(least_hollow(Curve.whole(pitch))[0], abs=1e-9)
+        assert ring.sample(np.array([cut.at])).speed[0] < 0.0
+    kept = trimmed(ring)
+    assert len(kept.runs) == 2
+    after = (*kept.runs[1:], kept.runs[0])
+    for one, other in zip(kept.runs, after, strict=True):
+        assert kept.sample(np.array([one.high])).point == pytest.approx(kept.sample(np.array([other.low])).point)
+    centres = pitch.sample(np.linspace(0.0, TURN, 6_001)).point @ [1.0, 1.0j]
+    for run in kept.runs:
+        points = kept.sample(np.linspace(run.low, run.high, 301)).point @ [1.0, 1.0j]
+        assert np.abs(points[:, None] - centres).min() > radius - 1e-9
+
+
+def test_a_ring_larger_than_its_hollows_is_sound() -> None:
+    ring = Curve.whole(Parallel(hollow_pitch(), -26.5))
+    assert undercuts(ring) == ()
+    assert trimmed(ring) is ring
+
+
+def test_a_knife_edge_never_undercuts_by_bending() -> None:
+    """Hollow or not: its contour is its own path, and runs forward everywhere."""
+    assert undercuts(Curve.whole(Parallel(hollow_pitch(), 0.0))) == ()
 
 
 def test_extremes_are_proved_and_reached() -> None:

@@ -25,6 +25,10 @@ class UndercutError(ValueError):
         super().__init__(message)
         self.parameter, self.free_at = parameter, free_at
 
+    def mirrored(self) -> UndercutError:
+        """The same of a curve run through the other way."""
+        return UndercutError(str(self), None if self.parameter is None else -self.parameter, self.free_at)
+
 
 @dataclass(frozen=True)
 class Causes:
@@ -43,11 +47,19 @@ class Causes:
         return not self.reversals and not self.necks
 
 
+def in_ring(curve: Curve) -> bool:
+    """Whether a contour is the opening of a ring: the metal stands outside the pitch curve of its roller."""
+    return isinstance(curve.shape, Parallel) and curve.shape.distance < 0.0
+
+
 def follower_radius(curve: Curve) -> float:
-    """Radius of the roller whose contour this is, mm, infinite for a flat face; ValueError for an outer parallel."""
+    """Radius of the roller whose contour this is, mm: 0 of a knife edge, infinite of a flat face.
+
+    Raises ValueError for an outer parallel.
+    """
     if not isinstance(curve.shape, Parallel):
         return math.inf
-    if not curve.shape.distance > 0.0:
+    if not curve.shape.distance >= 0.0:
         raise ValueError(f"a roller's contour lies inside its pitch curve, not {-curve.shape.distance:g} mm outside")
     return curve.shape.distance
 

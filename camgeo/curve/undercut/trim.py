@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.curve.backwards import backwards, runs_backwards
 from camgeo.curve.curvature import ROUNDING, roots
 from camgeo.curve.curve import SHIFT, Curve, Run
-from camgeo.curve.undercut.causes import UndercutError, causes, follower_radius
+from camgeo.curve.undercut.causes import UndercutError, causes, follower_radius, in_ring
 from camgeo.curve.undercut.self_intersection import SHORT, all_breaks, displacement, in_parts, seen_crossings, settled
 
 if TYPE_CHECKING:
@@ -76,6 +77,17 @@ def trimmed(curve: Curve) -> Curve:
     The curve itself if it does not undercut. Raises UndercutError where nothing is left, the metal falls into pieces,
     the shaft is not inside, or the crossings cannot be told apart.
     """
+    if not in_ring(curve):
+        return _trimmed(curve, 1)
+    try:
+        opening = _trimmed(backwards(curve), -1)
+    except UndercutError as error:
+        raise error.mirrored() from error
+    return curve if opening.closed else Curve(curve.shape, runs_backwards(opening.runs))
+
+
+def _trimmed(curve: Curve, sense: int) -> Curve:
+    """What is left of a curve that goes round the shaft in a sense."""
     why = causes(curve)
     if why.none:
         return curve
@@ -87,7 +99,7 @@ def trimmed(curve: Curve) -> Curve:
         middle = 0.5 * (what.lost[0].start + what.lost[0].end)
         raise UndercutError(f"the undercut parts the metal into {what.pieces} pieces", middle)
     result = Curve(curve.shape, kept_runs(curve, what))
-    if not _encloses_shaft(result):
+    if _turns(result) != sense:
         raise UndercutError("the shaft lies outside of what the undercut leaves", where)
     return result
 
@@ -104,10 +116,10 @@ def remains(curve: Curve, why: Causes) -> Remains:
     plain = _swallowtails(curve, contact, why)
     if plain is not None:
         return plain
-    backwards = sum(not r.still for r in why.reversals)
-    if backwards > MOST_TANGLED * curve.shape.repeats:
+    reverse = sum(not r.still for r in why.reversals)
+    if reverse > MOST_TANGLED * curve.shape.repeats:
         message = (
-            f"{backwards} stretches of the contour run backwards into each other; up to {MOST_TANGLED} are told apart"
+            f"{reverse} stretches of the contour run backwards into each other; up to {MOST_TANGLED} are told apart"
         )
         raise UndercutError(message, why.reversals[0].start)
     for turn in range(ROUNDS):
@@ -410,8 +422,8 @@ def _moved(run: Run, by: float) -> Run:
     return Run(run.low + by, run.high + by, tuple(b + by for b in run.breaks), run.closed) if by else run
 
 
-def _encloses_shaft(curve: Curve) -> bool:
-    """Whether the chain of runs goes round the origin once, counter-clockwise."""
+def _turns(curve: Curve) -> int:
+    """How often the chain of runs goes round the origin, counter-clockwise."""
     points = []
     for run in curve.runs:
         count = max(8, math.ceil(NODES * (run.high - run.low) / curve.shape.period))
@@ -419,4 +431,4 @@ def _encloses_shaft(curve: Curve) -> bool:
     x, y = np.concatenate(points).T
     after_x, after_y = np.roll(x, -1), np.roll(y, -1)
     angle = np.arctan2(x * after_y - y * after_x, x * after_x + y * after_y)
-    return round(float(angle.sum()) / (2.0 * math.pi)) == 1
+    return round(float(angle.sum()) / (2.0 * math.pi))

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from camgeo.curve.backwards import backwards
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve, Run
-from camgeo.curve.undercut.causes import Causes, UndercutError, causes, follower_radius
+from camgeo.curve.undercut.causes import Causes, UndercutError, causes, follower_radius, in_ring
 
 if TYPE_CHECKING:
     from camgeo.curve.curvature import Reversal
@@ -48,18 +49,21 @@ class Undercut:
 def undercuts(curve: Curve) -> tuple[Undercut, ...]:
     """Find all undercut of a whole curve, in order of the parameter; empty for a sound contour.
 
-    A `Parallel` is a roller's contour inside its pitch curve, any other shape that of a flat face. A stretch that is
-    lost for both reasons is reported for each. Raises CurveError where freedom from undercut can be neither proved nor
-    refuted, UndercutError where the extent cannot be told or more than `MOST_TOLD` stretches run backwards.
+    A `Parallel` is a roller's contour inside its pitch curve, or outside it in a ring, which is looked at run through
+    the other way; any other shape is that of a flat face. A stretch that is lost for both reasons is reported for each.
+    Raises CurveError where freedom from undercut can be neither proved nor refuted, UndercutError where the extent
+    cannot be told or more than `MOST_TOLD` stretches run backwards.
 
     What finds the extent is imported where there is one: most contours are sound.
     """
+    if in_ring(curve):
+        return _of_ring(curve)
     why = causes(curve)
     if not why.necks and all(r.still for r in why.reversals):
         return ()
-    backwards = sum(not r.still for r in why.reversals)
-    if backwards > MOST_TOLD * curve.shape.repeats:
-        message = f"{backwards} stretches of the contour run backwards; up to {MOST_TOLD} are told one by one"
+    reverse = sum(not r.still for r in why.reversals)
+    if reverse > MOST_TOLD * curve.shape.repeats:
+        message = f"{reverse} stretches of the contour run backwards; up to {MOST_TOLD} are told one by one"
         raise UndercutError(message, why.reversals[0].start, _free_at(curve, why))
     from camgeo.curve.undercut.trim import remains
 
@@ -68,6 +72,19 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
     except UndercutError as error:
         raise UndercutError(str(error), error.parameter, _free_at(curve, why)) from error
     return stretches(curve, why, what)
+
+
+def _of_ring(curve: Curve) -> tuple[Undercut, ...]:
+    """Undercut of a ring in its own parameter."""
+    try:
+        inside = undercuts(backwards(curve))
+    except UndercutError as error:
+        raise error.mirrored() from error
+    found = []
+    for cut in inside:
+        turns = math.floor(-cut.end / curve.shape.period) * curve.shape.period
+        found.append(replace(cut, start=-cut.end - turns, end=-cut.start - turns, at=-cut.at - turns))
+    return tuple(sorted(found, key=lambda cut: cut.start))
 
 
 def stretches(curve: Curve, why: Causes, what: Remains) -> tuple[Undercut, ...]:
