@@ -7,9 +7,13 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+from support.places import RECIPES
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals are sent to a process group")
 RECIPE = """\
@@ -19,6 +23,8 @@ export: {tolerance: 0.00001, files: [dxf, stl, 3mf, svg]}
 """
 # says when interrupts are heard: Python's own start, before, is not the command's
 UP = """
+from support.places import RECIPES
+
 from camgeo import __main__ as entry
 listen = entry._Interrupts.listen
 def up(self):
@@ -27,7 +33,7 @@ def up(self):
 entry._Interrupts.listen = up
 entry.main()
 """
-SWEEP = (Path(__file__).parents[2] / "recipes" / "sweep-four-bar.yaml").read_text(encoding="utf-8")
+SWEEP = (RECIPES / "sweep-four-bar.yaml").read_text(encoding="utf-8")
 
 
 SWALLOWED = """

@@ -102,7 +102,7 @@ class Field:
     choices: tuple[str, ...] = ()
     variable: str = "t"
     table: Table | None = None  # of a mapping, or of each segment of a motion
-    unit: Kind | None = None  # of the coefficients of harmonics
+    unit: Kind | None = None  # of the coefficients of harmonics, or of a form of its own
     form: Form | None = None  # of a field of Kind.OWN
 
     @property
