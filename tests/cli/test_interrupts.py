@@ -23,8 +23,6 @@ export: {tolerance: 0.00001, files: [dxf, stl, 3mf, svg]}
 """
 # says when interrupts are heard: Python's own start, before, is not the command's
 UP = """
-from support.places import RECIPES
-
 from camgeo import __main__ as entry
 listen = entry._Interrupts.listen
 def up(self):

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from support.cases import few
 from support.heavy import distributed
+from support.places import TESTS
 from support.sweepers import GRID, MEANS, Aside, ask, calls, fail, hills, job, tree
 
 from camgeo.recipe.load import read
