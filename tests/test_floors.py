@@ -7,11 +7,14 @@ The rooms stand here, not the modules: within a room imports run in any order th
 from __future__ import annotations
 
 import ast
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+from support.places import ROOT
 
-ROOT = Path(__file__).parents[1]
+if TYPE_CHECKING:
+    from pathlib import Path
+
 MOST = 22  # files of one folder
 
 # Top floor first. A room imports from floors below its own only; neighbours on one floor do not import each other.

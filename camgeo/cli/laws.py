@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.cli.exit_status import OK, SURROUNDINGS, WRONG
+from camgeo.files.errors import install
 
 if TYPE_CHECKING:
     import argparse
@@ -95,7 +96,7 @@ def _draw(laws: list[Law], path: Path) -> int:
         content = _svg(laws).encode() if path.suffix.lower() == ".svg" else _png(laws)
         path.write_bytes(content)
     except ModuleNotFoundError as error:
-        print(f'camgeo: the package {error.name} is missing: pip install "camgeo[picture]"', file=sys.stderr)
+        print(f"camgeo: the package {error.name} is missing: {install('picture')}", file=sys.stderr)
         return SURROUNDINGS
     except OSError as error:
         print(f"camgeo: {path}: {error.strerror}", file=sys.stderr)

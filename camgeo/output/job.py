@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.checks.declared import TRANSMISSION
+from camgeo.checks.declared import MOTION, TRANSMISSION
 from camgeo.common.clock import Clock
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError
@@ -151,7 +151,7 @@ class Job:
 
     def _why_lost(self, check: Check) -> Check:
         """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""
-        if check.name != "motion" or check.value is not None:
+        if check.name != MOTION.name or check.value is not None:
             return check
         slope = next((own.value for own in self.design.checks if own.name == TRANSMISSION.name), None)
         if slope is None or slope < STEEP:

@@ -279,7 +279,13 @@ PART = mapping(
     "the part round the contour",
     length("thickness", "thickness of the disc along the shaft; solids need it"),
     Field(
-        "bore", Kind.OWN, "diameter of the bore around the shaft, or its form", default="none", table=BORE, form=_BORE
+        "bore",
+        Kind.OWN,
+        "diameter of the bore around the shaft, or its form",
+        default="none",
+        table=BORE,
+        unit=Kind.LENGTH,
+        form=_BORE,
     ),
     Field("keyway", Kind.OWN, "keyway in a round bore", default="none", table=KEYWAY, form=_KEYWAY),
     _optional(

@@ -4,16 +4,28 @@ from __future__ import annotations
 
 from typing import Any
 
+from camgeo.checks.declared import (
+    CHAMFER,
+    CLEARANCE,
+    CURVATURE,
+    MOBILITY,
+    PLAY,
+    PRESSURE,
+    REVERSAL,
+    TRANSMISSION,
+    WALL,
+)
+
 STRICT: dict[str, float | None] = {
-    "radius-of-curvature": None,
-    "chamfer": None,
-    "wall": 0.0,
-    "mobility": 0.0,
-    "reversal": 0.0,
-    "play": 0.0,
-    "clearance": 0.0,
-    "transmission": 1.0,
-    "pressure-angle": 90.0,
+    CURVATURE.name: None,
+    CHAMFER.name: None,
+    WALL.name: 0.0,
+    MOBILITY.name: 0.0,
+    REVERSAL.name: 0.0,
+    PLAY.name: 0.0,
+    CLEARANCE.name: 0.0,
+    TRANSMISSION.name: 1.0,
+    PRESSURE.name: 90.0,
 }
 """Checks that a figure on its limit does not hold, and the one limit for which that is so (None: any)."""
 

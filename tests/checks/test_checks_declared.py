@@ -5,20 +5,22 @@ from __future__ import annotations
 import ast
 import re
 from functools import cache
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
+from support.places import ROOT
 
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT, OUTLINE, READABLE
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES
 from camgeo.recipe.loading import load, load_text
 
-ROOT = Path(__file__).parents[2]
+if TYPE_CHECKING:
+    from pathlib import Path
+
 PACKAGE = ROOT / "camgeo"
 MAKERS = {"Check", "at_most", "failed", "above_zero"}
-HOMES = {"checks/declared.py", "recipe/table_figures.py"}
+HOMES = {"checks/declared.py", "recipe/figures.py"}
 # names that are no other word of a recipe, a program or a drawing
 OWN = {name for name in CHECKS if "-" in name} | {"mobility", "reversal", "watertight", "readable"}
 

@@ -296,9 +296,9 @@ FINE = "export: {tolerance: 0.0001, "
             ("radius: 8", "radius: 6.43756"),
         ),
         (ROLLER, "hollow-radius", "at_least: 19", "a roller radius of 8.60", ("radius: 8", "radius: 8.7")),
-        (FLAT, "radius-of-curvature", "at_least: 14", "a support function larger by", ("30 +", "36 +")),
+        (FLAT, "radius-of-curvature", "at_least: 14", "a p larger by more than", ("30 +", "36 +")),
         (FLAT, "wall", "at_least: 22", "a bore smaller by", ("bore: 10", "bore: 7")),
-        (YOKE + VERIFY, "radius-of-curvature", "at_least: 45", "a base radius larger by", ("40", "70")),
+        (YOKE + VERIFY, "radius-of-curvature", "at_least: 45", "a base radius larger by more than", ("40", "70")),
         (YOKE + VERIFY, "peak-acceleration", "at_most: 20", "a smaller swing", ("rise: 20", "rise: 5")),
         (
             FLAT,

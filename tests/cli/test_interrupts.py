@@ -7,9 +7,13 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+from support.places import RECIPES
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals are sent to a process group")
 RECIPE = """\
@@ -27,7 +31,7 @@ def up(self):
 entry._Interrupts.listen = up
 entry.main()
 """
-SWEEP = (Path(__file__).parents[2] / "recipes" / "sweep-four-bar.yaml").read_text(encoding="utf-8")
+SWEEP = (RECIPES / "sweep-four-bar.yaml").read_text(encoding="utf-8")
 
 
 SWALLOWED = """

@@ -66,4 +66,4 @@ def test_pictures_that_cannot_be(tmp_path, capsys, monkeypatch):
     assert "No such file or directory" in capsys.readouterr().err
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert main(["laws", "--picture", str(tmp_path / "laws.png")]) == 3
-    assert 'the package matplotlib is missing: pip install "camgeo[picture]"' in capsys.readouterr().err
+    assert "the package matplotlib is missing: pip install '.[picture]' in a clone of camgeo" in capsys.readouterr().err

@@ -313,15 +313,15 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
     result.assert_outcomes(failed=2, passed=3, skipped=len(OF_DXF))
     result.stdout.fnmatch_lines(
         [
-            "radius-of-curvature: -1 mm, at least 0 mm, at *",
-            "  would do a support function larger by more than 1 mm",
+            "radius-of-curvature: -1 mm, more than 0 mm, at *",
+            "  would do a p larger by more than 1 mm",
             "undercut-local: * mm, at most 0 mm, at *",
             "  found    from * deg; * larger by more than 1 would be free of it",
         ]
     )
     alone = run(project, "cams/small.yaml::motion[small.dxf]")
     alone.assert_outcomes(failed=1)
-    alone.stdout.fnmatch_lines(["motion*: not judged: radius-of-curvature: -1 mm, at least 0 mm*"])
+    alone.stdout.fnmatch_lines(["motion*: not judged: radius-of-curvature: -1 mm, more than 0 mm*"])
 
 
 def test_what_trimming_leaves_unjudged_is_skipped_with_the_reason(project: Pytester) -> None:

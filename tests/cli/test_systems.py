@@ -13,7 +13,8 @@ import time
 from pathlib import Path
 
 import pytest
-from sets import NAME, export
+from support.places import TESTS
+from support.sets import NAME, export
 
 from camgeo.cli.main import main
 from camgeo.common import system, workers
@@ -178,14 +179,15 @@ def test_work_under_spawn(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_workers_end_with_their_run_and_clear_up(tmp_path: Path, ended: signal.Signals, fork: str) -> None:
     marks = [tmp_path / "a", tmp_path / "b"]
     code = (
-        "import sys\nsys.path.insert(0, sys.argv[1])\nfrom camgeo import workers\nfrom test_systems import forever\n"
+        "import sys\nsys.path[:0] = sys.argv[1:3]\n"
+        "from camgeo.common import workers\nfrom test_systems import forever\n"
         "if __name__ == '__main__':\n"
         f"  with workers.pool(2, fork={fork}) as pool:\n"
-        "    [pool.submit(forever, path) for path in sys.argv[2:]][0].result()\n"
+        "    [pool.submit(forever, path) for path in sys.argv[3:]][0].result()\n"
     )
     script = tmp_path / "run.py"
     script.write_text(code, encoding="utf-8")
-    with subprocess.Popen([sys.executable, str(script), str(Path(__file__).parents[1]), *map(str, marks)]) as run:
+    with subprocess.Popen([sys.executable, str(script), str(TESTS), str(TESTS / "cli"), *map(str, marks)]) as run:
         until(lambda: all(mark.exists() and mark.read_text(encoding="utf-8") for mark in marks))
         run.send_signal(ended)
     until(lambda: not any(mark.exists() for mark in marks))

@@ -323,7 +323,7 @@ def test_a_recipe_whose_check_fails(recipe):
 @pytest.mark.parametrize("undercut", ["refuse", "trim"])
 def test_undercut(recipe, undercut):
     recipe.write_text(CAM.replace("mean: 25", "mean: 20").replace("}}}\n", f"}}}}, undercut: {undercut}}}\n", 1))
-    message = r"radius-of-curvature: -\d\S* mm, at least 0 mm, at \d(.*\n)*undercut-local"
+    message = r"radius-of-curvature: -\d\S* mm, more than 0 mm, at \d(.*\n)*undercut-local"
     with pytest.raises(AssertionError, match=message):
         testing.assert_no_undercut(recipe)
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.drives import Harmonic, Saw
 from support.dynamics_oracle import Cycloid, Oracle, harmonic
 
 from kin.dynamics.drive import Drive, DriveError, drives
@@ -19,29 +20,6 @@ from kin.numeric.chebyshev import DEGREE, DERIVATIVE, INTEGRAL, NODES, evaluated
 TURN = 2.0 * math.pi
 RATIOS = (1.25, 3.3, 10.3, 97.3, 1000.5, 1e4 + 0.3, 1e5 + 0.3)
 DAMPINGS = (0.0, 1e-3, 0.1, 0.7, 1.0 - 1e-12, 1.0, 1.0 + 1e-9, 2.0)
-
-
-class Harmonic:
-    """cos(order phi)."""
-
-    breaks = corners = np.empty(0)
-
-    def __init__(self, order, size=1.0):
-        self.order, self.size = order, size
-
-    def rows(self, phi):
-        k = self.order
-        return self.size * np.stack([np.cos(k * phi), -k * np.sin(k * phi), -k * k * np.cos(k * phi)])
-
-
-class Saw:
-    """Up with slope 1 over half a turn, and down again: corners at 0 and pi."""
-
-    breaks = corners = np.array([0.0, np.pi])
-
-    def rows(self, phi):
-        up = phi < np.pi
-        return np.stack([np.where(up, phi, TURN - phi), np.where(up, 1.0, -1.0), np.zeros_like(phi)])
 
 
 def answer(oscillator, drive, phi):

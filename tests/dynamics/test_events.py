@@ -6,10 +6,10 @@ import re
 import numpy as np
 import pytest
 from support.cases import few
+from support.drives import Harmonic, Saw
 from support.dynamics_oracle import Cycloid
 from support.integrated import integrated
 from support.places import ROOT
-from test_dynamics import Harmonic, Saw
 
 from camgeo.recipe import load
 from camgeo.synthesis.design import designed, intended

@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import ezdxf
 import numpy as np
@@ -11,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
-from test_pieces import closed_spline, periodic_spline
+from support.places import TESTS
+from support.splines import closed_spline, periodic_spline
 
 from camgeo.files.dxf import APPLICATION, VERSIONS, Circle, Point, Trace, write_dxf
 from camgeo.fit.pieces import ArcSpline, Bound, Polygon
@@ -166,9 +166,9 @@ def test_extents_with_a_corner_in_the_origin(tmp_path):
 WRITE_ALL = """
 import sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[2])
+sys.path[:0] = sys.argv[2:]
 from test_dxf import ARCS, MODERN, POLYGON, REFERENCE, VERSIONS
-from test_pieces import closed_spline
+from support.splines import closed_spline
 from camgeo.files.dxf import write_dxf
 for version in VERSIONS:
     write_dxf(Path(sys.argv[1], f"arcs-{version}.dxf"), ARCS, bore=10.0, reference=REFERENCE, version=version,
@@ -186,7 +186,7 @@ def test_same_bytes_in_any_process_and_time_zone(tmp_path):
         folder = tmp_path / str(i)
         folder.mkdir()
         environment = {**os.environ, "TZ": zone, "PYTHONHASHSEED": str(i), "LC_ALL": "C"}
-        command = [sys.executable, "-c", WRITE_ALL, str(folder), str(Path(__file__).parents[1])]
+        command = [sys.executable, "-c", WRITE_ALL, str(folder), str(TESTS), str(TESTS / "files")]
         subprocess.run(command, check=True, env=environment)
         written.append({path.name: path.read_bytes() for path in folder.iterdir()})
     assert len(written[0]) == 11

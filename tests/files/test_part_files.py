@@ -4,7 +4,6 @@ import builtins
 import math
 import subprocess
 import sys
-from pathlib import Path
 
 import ezdxf
 import numpy as np
@@ -14,6 +13,7 @@ from hypothesis import strategies as st
 from support.cases import examples, few
 from support.heavy import manifold3d, trimesh
 from support.parts import CAM, files_of, found, recipe_of
+from support.places import TESTS
 
 from camgeo.cli.main import main
 from camgeo.files.prism import loop_polygon
@@ -131,7 +131,7 @@ from support.parts import files_of, recipe_of
 part = "{thickness: 8, bore: 12, keyway: din6885, bolts: {count: 5, circle: 32, hole: 4}, mark: {as: cut, width: 1}}"
 files_of(recipe_of(part), Path(sys.argv[1]))
 """
-    subprocess.run([sys.executable, "-c", code, str(tmp_path), str(Path(__file__).parents[1])], check=True)
+    subprocess.run([sys.executable, "-c", code, str(tmp_path), str(TESTS)], check=True)
     mesh = trimesh.load(tmp_path / "part.stl")
     assert mesh.is_watertight
     assert mesh.is_winding_consistent

@@ -1,7 +1,6 @@
 """STEP files written by Open CASCADE: read back by kin and by the kernel itself, judged, and with faults planted."""
 
 import builtins
-import importlib.util
 import math
 import re
 import subprocess
@@ -11,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.cases import few
+from support.kernel import kernel, made, step_recipe
 from support.parts import CAM, failures, files_of
+from support.places import TESTS
 
 from camgeo.cli.main import main
 from camgeo.files.brep import need_kernel
@@ -28,7 +29,6 @@ from camgeo.synthesis.design import designed
 from kin.read.step.part21 import exchange
 from kin.read.step.step import read_step
 
-kernel = pytest.mark.skipif(importlib.util.find_spec("OCP") is None, reason="needs Open CASCADE: pip install '.[step]'")
 AREA = math.pi * (25**2 - 4 * 8 / 2)  # of p = 25 + 2 cos 3t: pi (m^2 + (1 - k^2) a^2/2)
 PERIMETER = 50 * math.pi
 FULL = (
@@ -42,16 +42,6 @@ BUSY = (
     "{thickness: 8, bore: 12, hub: {diameter: 22, height: 10}, set_screw: {diameter: 3.4, at: 90}, "
     "bolts: {count: 2, circle: 31, hole: 3.2}, chamfer: 0.5, mark: {length: 3, width: 0.8, depth: 0.4, radius: 21}}"
 )
-
-
-def step_recipe(part, files="step", more="", cam=CAM):
-    export = f"export: {{tolerance: 0.001, files: [{files}]}}\nverify: {{angles: 36}}\n"
-    return read(f"{cam}part: {part}\n{export}{more}".encode(), Path("part.yaml"))
-
-
-def made(recipe, folder):
-    design, files = files_of(recipe, folder)
-    return design, files["step"][0]
 
 
 def written(recipe, folder):
@@ -182,14 +172,14 @@ def test_names_and_header_and_the_same_bytes(tmp_path):
     made(recipe, tmp_path)
     assert path.read_bytes() == first
     code = (
-        "import sys; sys.path[:0] = [sys.argv[1], sys.argv[1] + '/files']; from pathlib import Path; "
-        "import test_step as t; "
-        "t.made(t.step_recipe('{thickness: 8, bore: 12}', more=sys.argv[3]), Path(sys.argv[2]))"
+        "import sys; sys.path.insert(0, sys.argv[1]); from pathlib import Path; "
+        "from support.kernel import made, step_recipe; "
+        "made(step_recipe('{thickness: 8, bore: 12}', more=sys.argv[3]), Path(sys.argv[2]))"
     )
     other = tmp_path / "other"
     other.mkdir()
     done = subprocess.run(
-        [sys.executable, "-c", code, str(Path(__file__).parents[1]), str(other), body],
+        [sys.executable, "-c", code, str(TESTS), str(other), body],
         capture_output=True,
         text=True,
         check=True,

@@ -18,7 +18,7 @@ RECIPE = "cam: {kind: support, p: 25 + 2*cos(3*t)}\nexport: {tolerance: 0.01, fi
 KILLED = """
 import os, sys
 from pathlib import Path
-from camgeo import store
+from camgeo.output import output_folder as store
 move = store._move
 def killed(source, target):
     if target.name == "report.json":

@@ -192,15 +192,15 @@ def test_an_stl_alone_imports_nothing_of_what_it_does_not_ask_for(tmp_path: Path
 
     code = (
         "import sys; from pathlib import Path; from dataclasses import replace\n"
-        "from camgeo import pipeline; from camgeo.recipe.loading import load\n"
+        "from camgeo.output import pipeline; from camgeo.recipe.loading import load\n"
         f"r = load({str(RECIPES[0])!r})\n"
         "r = replace(r, export=replace(r.export, files=tuple(f for f in r.export.files if f.kind == 'stl')))\n"
         f"assert pipeline.export(r, Path({str(tmp_path)!r})).ok\n"
         "heavy = {'ezdxf', 'shapely', 'trimesh', 'scipy', 'manifold3d', 'matplotlib', 'pydantic', 'multiprocessing'}\n"
         "heavy |= {'OCP', 'zipfile', 'xml'}\n"
-        "heavy |= {f'kin.{name}' for name in ('collision', 'dynamics', 'mechanism', 'milled')}\n"
+        "heavy |= {f'kin.{name}' for name in ('clearance', 'dynamics', 'linkage.mechanism', 'judge.milling')}\n"
         "heavy |= {f'kin.read.{kind}' for kind in ('mesh.threemf', 'gcode', 'step.step', 'drawing.svg')}\n"
-        "heavy |= {f'camgeo.{name}' for name in ('bodies', 'page', 'study', 'sweep', 'manufacture.milling')}\n"
+        "heavy |= {f'camgeo.{name}' for name in ('assembly', 'report.page', 'sweep', 'machining.milling')}\n"
         "heavy |= {f'camgeo.output.{name}' for name in ('drawing', 'gcode', 'mechanism', 'parts', 'step', 'view')}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-import zipfile
 
 import ezdxf
 import numpy as np
 import pytest
-from stepfiles import washer
-from test_read_stl import HEIGHT, binary, ring, text
+from support.meshfiles import HEIGHT, binary, in_3mf, ring, text
+from support.stepfiles import washer
 
 from kin.contour.arcs import unit
 from kin.read.files import ReadError, read_drawing, read_solid, read_stl
@@ -31,25 +30,6 @@ def small(place, low, high):
     """Another ring, 4 mm wide, at a place."""
     centre = np.array(place)
     return ring(centre + 2.0 * unit(T), centre + 0.5 * unit(T), low, high)
-
-
-def in_3mf(path, triangles):
-    points, numbers = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-    vertices = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in points.tolist())
-    rows = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in numbers.reshape(-1, 3).tolist())
-    model = (
-        '<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
-        f'<object id="1" name="cam"><mesh><vertices>{vertices}</vertices><triangles>{rows}</triangles></mesh></object>'
-        '</resources><build><item objectid="1"/></build></model>'
-    )
-    link = (
-        '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" '
-        'Target="/m.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
-    )
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("_rels/.rels", link)
-        archive.writestr("m.model", model)
-    return path
 
 
 @pytest.mark.parametrize("write", [binary, text, in_3mf])

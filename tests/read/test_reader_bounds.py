@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from test_bodies_apart import in_3mf, ring
+from support.meshfiles import in_3mf, ring
 
 from kin.contour import intersections
 from kin.contour.contour import Contour

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from parts import failures, intended
-from stepfiles import stadium
-from test_step import kernel, made, step_recipe
+from support.kernel import kernel, made, step_recipe
+from support.parts import failures, intended
+from support.stepfiles import stadium
 
 from kin.judge.verify import Limits, verify
 from kin.read.errors import ReadError

@@ -13,6 +13,7 @@ import yaml
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.places import SHIPPED as SHIPPED_FILES
 
 from camgeo.recipe import Recipe, RecipeErrors, read
 from camgeo.recipe.cam import CAMS
@@ -28,9 +29,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.fields import Table
 
 STARTERS = {f"new {kind}": starter(kind).encode() for kind in KINDS}
-SHIPPED = STARTERS | {
-    path.name: path.read_bytes() for path in sorted((Path(__file__).parents[2] / "recipes").glob("*.yaml"))
-}
+SHIPPED = STARTERS | {path.name: path.read_bytes() for path in SHIPPED_FILES}
 
 
 def reading(data: bytes) -> Recipe | RecipeErrors:

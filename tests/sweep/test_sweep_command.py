@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 from support.cases import few
+from support.places import TESTS
 from support.sweepers import FOUR_BAR, MEANS
 
 from camgeo.cli import sweep
@@ -185,7 +186,7 @@ def test_an_interrupted_sweep_exits_130_and_goes_on_later(jobs: str, tmp_path: P
     script.write_text(RUN)
     out = tmp_path / "out"
     path = written(tmp_path, comment="seconds=0.1;")
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    environment = {**os.environ, "PYTHONPATH": str(TESTS)}
     arguments = [sys.executable, str(script), "sweep", str(path), "--out", str(out), "--jobs", jobs]
     with subprocess.Popen(arguments, env=environment, stderr=subprocess.PIPE, text=True) as process:
         while not list(out.glob("four-bar/sweep/*/chunk-*.bin")) and process.poll() is None:
@@ -206,7 +207,7 @@ def test_progress_is_shown_on_a_terminal_and_taken_away_again(tmp_path: Path) ->
     script = tmp_path / "run.py"
     script.write_text(RUN)
     path = written(tmp_path, comment="seconds=0.15;")
-    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    environment = {**os.environ, "PYTHONPATH": str(TESTS)}
     leader, follower = pty.openpty()
     arguments = [sys.executable, str(script), "sweep", str(path), "--out", str(tmp_path / "out"), "--jobs", "1"]
     assert subprocess.run(arguments, env=environment, stderr=follower, capture_output=False, check=True).returncode == 0

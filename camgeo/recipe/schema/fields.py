@@ -8,7 +8,7 @@ The tables themselves stand in the topics above this room. They are data: recipe
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -93,6 +93,7 @@ class Field:
     kind: Kind
     about: str
     required: bool = False
+    _: KW_ONLY
     others: str = ""  # said of a word that is none of the choices
     default: str = ""  # as documented; `load` knows the value
     above: float | None = None
@@ -102,7 +103,7 @@ class Field:
     choices: tuple[str, ...] = ()
     variable: str = "t"
     table: Table | None = None  # of a mapping, or of each segment of a motion
-    unit: Kind | None = None  # of the coefficients of harmonics
+    unit: Kind | None = None  # of the coefficients of harmonics, or of a form of its own
     form: Form | None = None  # of a field of Kind.OWN
 
     @property
@@ -185,12 +186,12 @@ class Table:
 
 def length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
     """Make the field of a length above 0, in the recipe's unit."""
-    return Field(name, Kind.LENGTH, about, required, default, above=0, at_most=MOST)
+    return Field(name, Kind.LENGTH, about, required, default=default, above=0, at_most=MOST)
 
 
 def coordinate(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
     """Make the field of a length that may be 0 or negative."""
-    return Field(name, Kind.LENGTH, about, required, default, at_least=-MOST, at_most=MOST)
+    return Field(name, Kind.LENGTH, about, required, default=default, at_least=-MOST, at_most=MOST)
 
 
 def mapping(name: str, about: str, *fields: Field, later: tuple[str, ...] = ()) -> Field:

@@ -1,0 +1,72 @@
+"""Meshes of a ring in closed form, and STL and 3MF files of them, written with numpy alone."""
+
+from __future__ import annotations
+
+import zipfile
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.arcs import unit
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+N, HEIGHT = 120, 8.0
+T = np.arange(N) * 2.0 * np.pi / N
+OUTER = (np.array([3.0, 1.0]) + (25.0 + 2.0 * np.cos(3.0 * T))[:, None] * unit(T)).astype(np.float32).astype(float)
+BORE = (5.0 * unit(T)).astype(np.float32).astype(float)
+
+
+def quads(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+    return np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+
+
+def ring(outer: np.ndarray = OUTER, inner: np.ndarray = BORE, low: float = 0.0, high: float = HEIGHT) -> np.ndarray:
+    """Triangles (4n * 2, 3, 3) of a ring between two loops of as many corners, all facing outward."""
+
+    def at(loop: np.ndarray, z: float) -> tuple[np.ndarray, np.ndarray]:
+        here = np.column_stack([loop, np.full(len(loop), z)])
+        return here, np.roll(here, -1, axis=0)
+
+    (ob, ob1), (ot, ot1), (ib, ib1), (it, it1) = at(outer, low), at(outer, high), at(inner, low), at(inner, high)
+    return np.concatenate(
+        [quads(ob, ob1, ot1, ot), quads(ib1, ib, it, it1), quads(ot, ot1, it1, it), quads(ob1, ob, ib, ib1)]
+    )
+
+
+def binary(path: Path, triangles: np.ndarray, header: bytes = b"binary") -> Path:
+    records = np.zeros(len(triangles), dtype=RECORD)
+    records["corners"] = triangles
+    path.write_bytes(header.ljust(80) + len(triangles).to_bytes(4, "little") + records.tobytes())
+    return path
+
+
+def text(path: Path, triangles: np.ndarray) -> Path:
+    lines = ["solid cam 7 facet"]
+    for triangle in triangles.tolist():
+        lines += ["facet normal 0 0 0", "  outer loop"]
+        lines += ["    vertex " + " ".join(repr(v) for v in corner) for corner in triangle]
+        lines += ["  endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid cam 7"]) + "\n")
+    return path
+
+
+def in_3mf(path: Path, triangles: np.ndarray) -> Path:
+    points, numbers = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    vertices = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in points.tolist())
+    rows = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in numbers.reshape(-1, 3).tolist())
+    model = (
+        '<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
+        f'<object id="1" name="cam"><mesh><vertices>{vertices}</vertices><triangles>{rows}</triangles></mesh></object>'
+        '</resources><build><item objectid="1"/></build></model>'
+    )
+    link = (
+        '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" '
+        'Target="/m.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+    )
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("_rels/.rels", link)
+        archive.writestr("m.model", model)
+    return path
