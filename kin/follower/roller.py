@@ -162,10 +162,12 @@ class DoubleRoller:
             for side, looked in ((TRAILING, np.concatenate([steps, *passing])), (LEADING, steps))
         ]
         psi = np.stack([self._psi(one.position[: len(steps)], one.sense) for one in held])
-        errors = psi - self.intended(steps)
+        errors = psi - self._law.rows(steps)[0]
         worst, remainder = settled(held, self._law, errors, few=len(obstacle) <= MOST_PIECES)
-        dwells = dwell_angles(self.transmission, phi)
-        flatness = [float(np.ptp(self._contact(obstacle, angle), axis=1).max()) for angle in dwells]
+        dwells = list(dwell_angles(self.transmission, phi))
+        kept = self._contact(obstacle, np.concatenate(dwells)) if dwells else np.empty((2, 0))
+        ends = np.cumsum([len(angle) for angle in dwells])[:-1]
+        flatness = [float(np.ptp(one, axis=1).max()) for one in np.split(kept, ends, axis=1) if one.size]
         motion = motion_error(worst, errors, max(flatness, default=None), "deg", remainder=remainder)
         # the increments tell nothing new of the gap
         chosen = np.r_[: len(phi), len(steps) : len(steps) + sum(map(len, passing))]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from camfiles import arcs_through, write_dxf
+from support.camfiles import arcs_through, write_dxf
 
 import kin.follower.roller
 from kin.contour.arcs import unit
