@@ -2,8 +2,9 @@
 
 Positions are mm or swings in radians, error figures mm or degrees. The greatest motion error is that over all shaft
 angles, with a proved remainder (`kin.follower.tracking`). On a contour of more than MOST_PIECES pieces, and where the
-proof does not succeed, it is that of samples: at the given shaft angles and, up to MOST_PIECES, where the roller
-passes from piece to piece and midway along each. So is the gap at a second roller.
+proof does not succeed, it is that of samples: at the given shaft angles, where a piece stands out most and, up to
+MOST_PIECES, where the roller passes from piece to piece and midway along each; more closely about the worst of them.
+So is the gap at a second roller, without the closer look.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from kin.follower.guide import LEADING, TRAILING, Arm, polar_rows
 from kin.follower.motion_error import ContactError, Judged, Play, Unit, motion_error, with_steps
 from kin.follower.projection import grid
 from kin.follower.steepness import ParameterTable, Steepness, steepness_of_law, steepness_of_transmission
-from kin.follower.tracking import Greatest, Held, greatest_error
+from kin.follower.tracking import Greatest, Held, greatest_error, outward
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import UnsettledError
 from kin.numeric.jet import Jet
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
 ONE_ANGLE = 1e-12  # rad; shaft angles this near are one
+CLOSER = 8  # places about which samples are looked at more closely, and steps to either side
+ROUNDS = 4  # of samples, each closer than the last
 NEAR = 1e-7  # rad; a step of third order is good to rounding
 
 
@@ -300,19 +303,45 @@ def settled(held: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[
     where they are and no proof is found, all angles are looked at: None then.
     """
     found = Greatest(*greatest(np.abs(sampled).max(axis=0), held[0].phi[: sampled.shape[1]]), 0.0)
+    passing: list[Array] = []
     if few:
         try:
             found = greatest_error(held, law, found)
         except UnsettledError:
-            looked = np.concatenate([one.phi for one in held] + [passing_angles(one.pieces, one.guide) for one in held])
-            every = [
-                Held(one.pieces, one.guide, looked, *_touched(one.pieces, one.guide, looked), one.offset, one.sense)
-                for one in held
-            ]
-            found = Greatest(*max(greatest(one.errors(law), one.phi) for one in every), 0.0)
+            passing = [passing_angles(one.pieces, one.guide) for one in held]
         else:
             return (found.error, found.at), found.remainder
-    return (found.error, found.at), None
+    return _closely(held, law, np.concatenate([*(one.phi for one in held), *passing])), None
+
+
+def _closely(held: Sequence[Held], law: Law, looked: Array) -> tuple[float, float]:
+    """Greatest absolute error, and its shaft angle, at shaft angles `looked` (n,) and more closely about the worst.
+
+    Among these is where a piece by itself, touched or not, would put the roller out the most: so much is sure. And
+    about the corners that turn the most: beside a dent in a fine polygon they stand out.
+    """
+    for one in held:
+        error, phi = outward(one, law)
+        sharp = one.pieces.take(np.argsort(np.abs(one.pieces.curvature * one.pieces.length))[-2 * CLOSER :])
+        ends = one.guide.shaft_angle(np.concatenate([sharp.start, sharp.ends]))
+        looked = np.concatenate([looked, phi[np.argsort(error)[-CLOSER:]], ends[np.isfinite(ends)]])
+    worst = 0.0, 0.0
+    for _ in range(ROUNDS):
+        meant = law.rows(looked)
+        errors = [
+            np.abs(one.guide.position(_touched(one.pieces, one.guide, looked)[0]) - one.meant(meant.copy())[0])
+            for one in held
+        ]
+        error = np.max(errors, axis=0)
+        worst = max(worst, greatest(error, looked))
+        order = np.argsort(np.mod(looked, TURN))
+        at, height = np.mod(looked, TURN)[order], error[order]
+        gap = np.diff(at, append=at[0] + TURN)
+        tops = np.flatnonzero((height >= np.roll(height, 1)) & (height >= np.roll(height, -1)))
+        tops = tops[np.argsort(height[tops])[-CLOSER:]]
+        width = np.maximum(gap, np.roll(gap, 1))[tops, None]
+        looked = (at[tops, None] + width * np.linspace(-1.0, 1.0, 2 * CLOSER + 1)).ravel()
+    return worst
 
 
 def _touched(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:

@@ -7,7 +7,7 @@ f''' is bounded over an interval by magnitudes of its terms. About the middle of
     f <= max over |x| <= h of (f + f' x + f'' x^2/2) + B3 h^3/6,
 
 with B2 in place of f'' and B3 where the intended acceleration jumps inside. Intervals whose bound exceeds the greatest
-error found so far are halved. The roller's position is the greatest that any piece gives, so
+error found so far are cut in four. The roller's position is the greatest that any piece gives, so
 
 - the greatest error is the greatest over all pieces, touched or not;
 - the error is nowhere below that of a piece which spans a range of shaft angles, whether it is touched there or not:
@@ -39,11 +39,11 @@ if TYPE_CHECKING:
 SHARE = 1e-3  # of the error, to which it is found
 RESOLUTION = 1e-12  # of a radian, or of the cam's extent: what rounding leaves of nothing
 OUTWARD = 1.0 + 1e-9  # by which bounds are widened against their own rounding
-MOST_HALVINGS = 60
+MOST_CUTS = 30
 MOST_OPEN = 100_000  # intervals, beside four times those given, that may stay undecided
 MORE = 24  # contacts that may be added where pieces hide one another
 TRIES = 8  # to find the pieces that are touched between samples
-STEPS = 12  # towards the crossing of two pieces
+STEPS = 6  # towards the crossing of two pieces
 DOUBT = 1e-9  # of a radian, or of the cam's extent: pieces that are farther apart change over elsewhere
 
 
@@ -200,18 +200,22 @@ class Held:
         """
         (low, high), (f, g) = ends, gaps
         middle = 0.5 * (low + high)
-        for _ in range(STEPS if len(middle) else 0):
+        both = np.concatenate(pair)
+        open_ = np.arange(len(middle))  # those that are still sought
+        for _ in range(STEPS):
+            if not len(open_):
+                break
             with np.errstate(divide="ignore", invalid="ignore"):
-                middle = low + (high - low) * np.where(f > g, f / (f - g), 0.5)
-            gap = self._meet(pair[0], middle) - self._meet(pair[1], middle)
+                at = low + (high - low) * np.where(f > g, f / (f - g), 0.5)
+            middle[open_] = at
+            one, other = self._meet(both, np.tile(at, 2)).reshape(2, -1)
+            gap = one - other
             if not np.isfinite(gap).all():
                 raise UnsettledError("the motion error is not proved: a piece is left between its ends")
-            if (np.abs(gap) <= self.doubt).all():
-                break
-            up = gap > 0.0
+            up, far = gap > 0.0, np.abs(gap) > self.doubt
             # Illinois: an end that stays is trusted half as much
-            low, f, g = np.where(up, middle, low), np.where(up, gap, 0.5 * f), np.where(up, 0.5 * g, gap)
-            high = np.where(up, high, middle)
+            low, f, g = np.where(up, at, low)[far], np.where(up, gap, 0.5 * f)[far], np.where(up, 0.5 * g, gap)[far]
+            high, open_, both = np.where(up, high, at)[far], open_[far], both[np.tile(far, 2)]
         return middle
 
     def _meet(self, piece: Indices, phi: Array) -> Array:
@@ -249,12 +253,12 @@ class Spans:
     middle: Array
     half: Array
 
-    def halves(self, which: NDArray[np.bool_]) -> Spans:
-        """Both halves of some."""
-        half = 0.5 * self.half[which]
-        middle = np.concatenate([self.middle[which] - half, self.middle[which] + half])
-        sign, piece = np.tile(self.sign[which], 2), np.tile(self.piece[which], 2)
-        return Spans(self.held, sign, piece, middle, np.tile(half, 2))
+    def quarters(self, which: NDArray[np.bool_]) -> Spans:
+        """Quarters of some."""
+        half = 0.25 * self.half[which]
+        middle = np.concatenate([self.middle[which] + k * half for k in (-3.0, -1.0, 1.0, 3.0)])
+        sign, piece = np.tile(self.sign[which], 4), np.tile(self.piece[which], 4)
+        return Spans(self.held, sign, piece, middle, np.tile(half, 4))
 
     def state(self) -> _State:
         """The roller's centre at the middles."""
@@ -288,7 +292,7 @@ def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int =
     resolution = held[0].resolution
     most = 4 * sum(len(group.piece) for group in groups) + MOST_OPEN
     error, best, ceiling = found.error, None, found.error
-    for halved in range(MOST_HALVINGS + 1):
+    for cut in range(MOST_CUTS + 1):
         states = [group.state() for group in groups]
         limits = [state.limits(group.half) for state, group in zip(states, groups, strict=True)]
         phi = np.concatenate([state.phi for state in states])
@@ -311,10 +315,10 @@ def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int =
         count = sum(int(np.count_nonzero(one)) for one in open_)
         if not count:
             break
-        if halved == MOST_HALVINGS or 2 * count > most:  # rougher than rounding, or too many that stay undecided
+        if cut == MOST_CUTS or 4 * count > most:  # rougher than rounding, or too many that stay undecided
             ceiling = max(float(bound.max(initial=ceiling)) for bound in upper)
             break
-        groups = [group.halves(which) for group, which in zip(groups, open_, strict=True)]
+        groups = [group.quarters(which) for group, which in zip(groups, open_, strict=True)]
     if best is not None:
         # a piece may stand back behind another one there: what counts is where the roller is
         phi = best.state().phi
@@ -328,6 +332,14 @@ def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int =
     if not np.isfinite(ceiling):
         raise UnsettledError("the motion error is not proved: it has no bound")
     return found._replace(remainder=max(ceiling - found.error, 0.0))
+
+
+def outward(held: Held, law: Law) -> tuple[Array, Array]:
+    """Error (n,) by which each of n pieces, touched or not, puts the roller out midway along it, and shaft angle."""
+    spans = Spans(held, np.ones(0), np.arange(len(held.pieces)), 0.5 * held.pieces.length, np.zeros(0))
+    state = spans.state()
+    error = state.error(held.meant(law.rows(state.phi)))[0]
+    return np.where(within_reach(held.pieces, held.guide, held.slack), error, -np.inf), state.phi
 
 
 class _Limits(NamedTuple):
