@@ -43,7 +43,7 @@ MOST_CUTS = 30
 MOST_OPEN = 100_000  # intervals, beside four times those given, that may stay undecided
 MORE = 24  # contacts that may be added where pieces hide one another
 TRIES = 8  # to find the pieces that are touched between samples
-STEPS = 6  # towards the crossing of two pieces
+STEPS = 14  # towards the crossing of two pieces
 DOUBT = 1e-9  # of a radian, or of the cam's extent: pieces that are farther apart change over elsewhere
 
 
@@ -212,7 +212,7 @@ class Held:
             gap = one - other
             if not np.isfinite(gap).all():
                 raise UnsettledError("the motion error is not proved: a piece is left between its ends")
-            up, far = gap > 0.0, np.abs(gap) > self.doubt
+            up, far = gap > 0.0, np.abs(gap) > 10.0 * self.resolution
             # Illinois: an end that stays is trusted half as much
             low, f, g = np.where(up, at, low)[far], np.where(up, gap, 0.5 * f)[far], np.where(up, 0.5 * g, gap)[far]
             high, open_, both = np.where(up, high, at)[far], open_[far], both[np.tile(far, 2)]
@@ -259,6 +259,19 @@ class Spans:
         middle = np.concatenate([self.middle[which] + k * half for k in (-3.0, -1.0, 1.0, 3.0)])
         sign, piece = np.tile(self.sign[which], 4), np.tile(self.piece[which], 4)
         return Spans(self.held, sign, piece, middle, np.tile(half, 4))
+
+    def one(self, i: int) -> Spans:
+        """One of them."""
+        return Spans(self.held, self.sign[[i]], self.piece[[i]], self.middle[[i]], self.half[[i]])
+
+    def summit(self, law: Law, where: float) -> Array:
+        """Shaft angle, (1,), of the greatest error in a single span, by a Newton step from `where` off its middle."""
+        state = replace(self, middle=self.middle + where).state()
+        _, slope, bend = self.sign * state.error(self.held.meant(law.rows(state.phi)))
+        if not bend[0] < 0.0:
+            return state.phi
+        h = self.half
+        return replace(self, middle=self.middle + np.clip(where - slope / bend, -h, h)).state().phi
 
     def state(self) -> _State:
         """The roller's centre at the middles."""
@@ -307,8 +320,7 @@ def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int =
             i = int(np.argmax(reached)) if len(reached) else -1
             if i >= 0 and reached[i] > error:
                 error = float(reached[i])
-                at = group.middle[[i]] + where[i]
-                best = Spans(group.held, group.sign[[i]], group.piece[[i]], at, np.zeros(1))
+                best = group.one(i), where[i]
         enough = error + max(SHARE * error, resolution)
         open_ = [~(bound <= enough) for bound in upper]
         ceiling = max(ceiling, *(float(b[~o].max(initial=ceiling)) for b, o in zip(upper, open_, strict=True)))
@@ -321,11 +333,12 @@ def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int =
         groups = [group.quarters(which) for group, which in zip(groups, open_, strict=True)]
     if best is not None:
         # a piece may stand back behind another one there: what counts is where the roller is
-        phi = best.state().phi
-        r, piece = first_contact(best.held.pieces, best.held.guide, phi)
-        claimed, error = error, float(np.abs(best.held.guide.position(r) - best.held.meant(law.rows(phi))[0])[0])
+        span, where = best
+        on, phi = span.held, span.summit(law, where)
+        r, _ = first_contact(on.pieces, on.guide, phi)
+        claimed, error = error, float(np.abs(on.guide.position(r) - on.meant(law.rows(phi))[0])[0])
         if tries and not claimed <= error + SHARE * claimed + resolution:
-            seen = [one.looked_at_about(phi) if one is best.held else one for one in held]
+            seen = [one.looked_at_about(phi) if one is on else one for one in held]
             return greatest_error(seen, law, found, tries - 1)
         if error > found.error:
             found = Greatest(error, float(phi[0]), 0.0)
