@@ -2,8 +2,9 @@
 
 Positions are mm or swings in radians, error figures mm or degrees. The greatest motion error is that over all shaft
 angles, with a proved remainder (`kin.follower.tracking`). On a contour of more than MOST_PIECES pieces, and where the
-proof does not succeed, it is that of samples: at the given shaft angles and, up to MOST_PIECES, where the roller
-passes from piece to piece and midway along each. So is the play between two rollers.
+proof does not succeed, it is that of samples: at the given shaft angles, where a piece stands out most and, up to
+MOST_PIECES, where the roller passes from piece to piece and midway along each; more closely about the worst of them.
+So is the play between two rollers, without the closer look.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from kin.follower.laws import ByLaw, BySwing, GuidedPitch
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import grid
 from kin.follower.rests import dwell_angles, dwells_of_law, dwells_of_transmission
-from kin.follower.tracking import Greatest, Held, greatest_error
+from kin.follower.tracking import Greatest, Held, greatest, greatest_error, outward
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import UnsettledError
 
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
 
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
 ONE_ANGLE = 1e-12  # rad; shaft angles this near are one
+CLOSER = 8  # places about which samples are looked at more closely, and steps to either side
+ROUNDS = 4  # of samples, each closer than the last
 SPLINE_ERROR = 1e-7  # mm, within which arcs stand in for a spline that drives a train
 
 
@@ -232,11 +235,12 @@ class DoubleRoller(_Rollers):
             for one, angle in zip(self.contacts, looked, strict=True)
         ]
         psi = [one.position(there.position) for one, there in zip(self.contacts, held, strict=True)]
-        errors = np.stack([found[: len(steps)] for found in psi]) - self.intended(steps)
+        errors = np.stack([found[: len(steps)] for found in psi]) - self._law.rows(steps)[0]
         worst, remainder = settled(held, self._law, errors, few=len(obstacle) <= MOST_PIECES)
-        flatness = [
-            float(np.ptp(self._positions(obstacle, angle), axis=1).max()) for angle in dwell_angles(self.rests, phi)
-        ]
+        dwells = list(dwell_angles(self.rests, phi))
+        kept = self._positions(obstacle, np.concatenate(dwells)) if dwells else np.empty((2, 0))
+        ends = np.cumsum([len(angle) for angle in dwells])[:-1]
+        flatness = [float(np.ptp(one, axis=1).max()) for one in np.split(kept, ends, axis=1) if one.size]
         motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=remainder)
         # the increments tell nothing new of the gap
         chosen = np.r_[: len(phi), len(steps) : len(steps) + sum(map(len, passing))]
@@ -295,19 +299,45 @@ def settled(held: Sequence[Held], law: Law, sampled: Array, few: bool) -> tuple[
     where they are and no proof is found, all angles are looked at: None then.
     """
     found = Greatest(*greatest(np.abs(sampled).max(axis=0), held[0].phi[: sampled.shape[1]]), 0.0)
+    passing: list[Array] = []
     if few:
         try:
             found = greatest_error(held, law, found)
         except UnsettledError:
-            looked = np.concatenate([one.phi for one in held] + [passing_angles(one.pieces, one.guide) for one in held])
-            every = [
-                Held(one.pieces, one.guide, looked, *_touched(one.pieces, one.guide, looked), one.offset, one.sense)
-                for one in held
-            ]
-            found = Greatest(*max(greatest(one.errors(law), one.phi) for one in every), 0.0)
+            passing = [passing_angles(one.pieces, one.guide) for one in held]
         else:
             return (found.error, found.at), found.remainder
-    return (found.error, found.at), None
+    return _closely(held, law, np.concatenate([*(one.phi for one in held), *passing])), None
+
+
+def _closely(held: Sequence[Held], law: Law, looked: Array) -> tuple[float, float]:
+    """Greatest absolute error, and its shaft angle, at shaft angles `looked` (n,) and more closely about the worst.
+
+    Among these is where a piece by itself, touched or not, would put the roller out the most: so much is sure. And
+    about the corners that turn the most: beside a dent in a fine polygon they stand out.
+    """
+    for one in held:
+        error, phi = outward(one, law)
+        sharp = one.pieces.take(np.argsort(np.abs(one.pieces.curvature * one.pieces.length))[-2 * CLOSER :])
+        ends = one.guide.shaft_angle(np.concatenate([sharp.start, sharp.ends]))
+        looked = np.concatenate([looked, phi[np.argsort(error)[-CLOSER:]], ends[np.isfinite(ends)]])
+    worst = 0.0, 0.0
+    for _ in range(ROUNDS):
+        meant = law.rows(looked)
+        errors = [
+            np.abs(one.guide.position(_touched(one.pieces, one.guide, looked)[0]) - one.meant(meant.copy())[0])
+            for one in held
+        ]
+        error = np.max(errors, axis=0)
+        worst = max(worst, greatest(error, looked))
+        order = np.argsort(np.mod(looked, TURN))
+        at, height = np.mod(looked, TURN)[order], error[order]
+        gap = np.diff(at, append=at[0] + TURN)
+        tops = np.flatnonzero((height >= np.roll(height, 1)) & (height >= np.roll(height, -1)))
+        tops = tops[np.argsort(height[tops])[-CLOSER:]]
+        width = np.maximum(gap, np.roll(gap, 1))[tops, None]
+        looked = (at[tops, None] + width * np.linspace(-1.0, 1.0, 2 * CLOSER + 1)).ravel()
+    return worst
 
 
 def _touched(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
@@ -349,12 +379,6 @@ def sampled_play(gap: Array, phi: Array) -> Play:
     """Least and greatest of the gaps, mm, at shaft angles phi (n,)."""
     least, most = int(np.argmin(gap)), int(np.argmax(gap))
     return Play(float(gap[least]), degrees(phi[least]), float(gap[most]), degrees(phi[most]), "mm", "sampled")
-
-
-def greatest(error: Array, phi: Array) -> tuple[float, float]:
-    """Greatest absolute error (n,), and its shaft angle."""
-    i = int(np.argmax(np.abs(error)))
-    return float(abs(error[i])), float(phi[i])
 
 
 def leeway(

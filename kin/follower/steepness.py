@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 CELLS = 256  # in a turn, besides those that breaks add
+TABLED = 2048  # in a turn, of the table of parameters
 ROUNDING = 1e-12  # rad; a break this near counts as inside
 SMOOTH = 1e-9  # of the derivative's greatest, below which a jump of it is rounding
 
@@ -116,7 +117,7 @@ class ParameterTable:
     @lru_cache(maxsize=8)
     def of(transmission: Transmission) -> ParameterTable:
         """Tabulate."""
-        tau, _ = _cells(transmission.psi.knots)
+        tau, _ = _cells(transmission.psi.knots, TABLED)
         phi = transmission.at(tau, 0)[0][0]
         phi[-1] = phi[0] + 2.0 * transmission.delta
         after, before = transmission.at(tau[:-1], 1)[0][1], transmission.at(tau[1:], 1, -1)[0][1]
@@ -134,9 +135,9 @@ class ParameterTable:
         return tau, np.where(u < 0.5, 1, -1)
 
 
-def _cells(knots: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _cells(knots: Array, count: int = CELLS) -> tuple[Array, NDArray[np.bool_]]:
     """Edges of cells between knots, and whether each but the last is a knot."""
-    step = 2.0 * np.pi / CELLS
+    step = 2.0 * np.pi / count
     parts = [np.linspace(a, b, int(np.ceil((b - a) / step)) + 1)[:-1] for a, b in pairwise(knots.tolist())]
     at_knot = np.concatenate([np.arange(len(part)) == 0 for part in parts])
     return np.append(np.concatenate(parts), knots[-1]), at_knot

@@ -7,7 +7,7 @@ f''' is bounded over an interval by magnitudes of its terms. About the middle of
     f <= max over |x| <= h of (f + f' x + f'' x^2/2) + B3 h^3/6,
 
 with B2 in place of f'' and B3 where the intended acceleration jumps inside. Intervals whose bound exceeds the greatest
-error found so far are halved. The roller's position is the greatest that any piece gives, so
+error found so far are cut in four. The roller's position is the greatest that any piece gives, so
 
 - the greatest error is the greatest over all pieces, touched or not;
 - the error is nowhere below that of a piece which spans a range of shaft angles, whether it is touched there or not:
@@ -39,11 +39,12 @@ if TYPE_CHECKING:
 SHARE = 1e-3  # of the error, to which it is found
 RESOLUTION = 1e-12  # of a radian, or of the cam's extent: what rounding leaves of nothing
 OUTWARD = 1.0 + 1e-9  # by which bounds are widened against their own rounding
-MOST_HALVINGS = 60
+MOST_CUTS = 30
 MOST_OPEN = 100_000  # intervals, beside four times those given, that may stay undecided
 MORE = 24  # contacts that may be added where pieces hide one another
-TRIES = 4  # to find the pieces that are touched between samples
-STEPS = 40  # towards the crossing of two pieces
+TRIES = 8  # to find the pieces that are touched between samples
+STEPS = 14  # towards the crossing of two pieces
+DOUBT = 1e-9  # of a radian, or of the cam's extent: pieces that are farther apart change over elsewhere
 
 
 class Law(Protocol):
@@ -117,22 +118,55 @@ class Held:
         """What rounding may make of no error, mm or radians."""
         return RESOLUTION * (extent(self.pieces) if self.guide.unit == "mm" else 1.0)
 
-    def everywhere(self) -> Spans:
-        """Spans of all pieces."""
+    @property
+    def doubt(self) -> float:
+        """Difference of positions, mm or radians, that counts as one where pieces change over."""
+        return DOUBT / RESOLUTION * self.resolution
+
+    def spans(self) -> Spans:
+        """Spans of all pieces for errors outwards, and of those that are touched for errors inwards."""
         near = np.flatnonzero(within_reach(self.pieces, self.guide, self.slack))
         half = 0.5 * self.pieces.length[near]
-        return Spans(self, 1.0, near, half, half)
+        touched = self.touched()
+        return Spans(
+            self,
+            np.concatenate([np.ones(len(near)), touched.sign]),
+            np.concatenate([near, touched.piece]),
+            np.concatenate([half, touched.middle]),
+            np.concatenate([half, touched.half]),
+        )
+
+    def looked_at_about(self, phi: Array) -> Held:
+        """Contacts at shaft angles (n,) added, and midway from there to the contacts before and after."""
+        known = np.sort(np.mod(self.phi, TURN))
+        at = np.mod(phi, TURN)
+        before = known[np.searchsorted(known, at - DOUBT, side="left") - 1]
+        after = known[np.searchsorted(known, at + DOUBT, side="right") % len(known)]
+        back, on = np.mod(at - before, TURN), np.mod(after - at, TURN)
+        more = np.concatenate([at, at - 0.5 * back, at + 0.5 * on])
+        r, piece = first_contact(self.pieces, self.guide, more)
+        met = piece >= 0
+        return replace(
+            self,
+            phi=np.append(self.phi, more[met]),
+            r=np.append(self.r, r[met]),
+            piece=np.append(self.piece, piece[met]),
+        )
 
     def touched(self) -> Spans:
         """Spans of the pieces that are touched, over the whole turn."""
         phi, r, piece = self.phi, self.r, self.piece
-        for _ in range(TRIES):
+        for spare in reversed(range(TRIES)):
             change, after, a, b, one, other = changes = _changes(phi, piece)
-            spanned = self._meet(one, b), self._meet(other, a)
-            leap = ~(np.isfinite(spanned[0]) | np.isfinite(spanned[1]))
-            if not leap.any():
-                return self._spans(changes, self.guide.position(r[change]), self.guide.position(r[after]), spanned)
-            lone = 0.5 * (a + b)[leap]  # between its ends a short arc stands out alone
+            far, near = spanned = self._meet(one, b), self._meet(other, a)
+            here, there = self.guide.position(r[change]), self.guide.position(r[after])
+            leap = ~(np.isfinite(far) | np.isfinite(near))
+            # a piece that spans the gap alone, and lies deep where it is not touched, stands behind a third one there
+            below = np.where(np.isfinite(far), there - far, here - near)
+            deep = (np.isfinite(far) ^ np.isfinite(near)) & (below > self.doubt)
+            if not (leap.any() or (spare and deep.any())):
+                return self._spans(changes, here, there, spanned)
+            lone = 0.5 * (a + b)[leap | deep]  # between its ends a short arc stands out alone
             more, met = first_contact(self.pieces, self.guide, lone)
             if (met < 0).any():
                 break
@@ -157,7 +191,7 @@ class Held:
         if not (reach < 0.5 * np.pi).all():  # else there is one way only along it from one shaft angle to another
             raise UnsettledError("the motion error is not proved: a piece is reached from half the turn")
         half = 0.5 * np.abs(end - begin) + 1e-15 * self.pieces.length[number]
-        return Spans(self, -1.0, number, 0.5 * (begin + end), half)
+        return Spans(self, np.full(len(number), -1.0), number, 0.5 * (begin + end), half)
 
     def _crossing(self, pair: tuple[Indices, Indices], ends: tuple[Array, Array], gaps: tuple[Array, Array]) -> Array:
         """About where the second of a pair of pieces comes to stand out beyond the first: shaft angles (n,).
@@ -166,18 +200,22 @@ class Held:
         """
         (low, high), (f, g) = ends, gaps
         middle = 0.5 * (low + high)
-        for _ in range(STEPS if len(middle) else 0):
+        both = np.concatenate(pair)
+        open_ = np.arange(len(middle))  # those that are still sought
+        for _ in range(STEPS):
+            if not len(open_):
+                break
             with np.errstate(divide="ignore", invalid="ignore"):
-                middle = low + (high - low) * np.where(f > g, f / (f - g), 0.5)
-            gap = self._meet(pair[0], middle) - self._meet(pair[1], middle)
+                at = low + (high - low) * np.where(f > g, f / (f - g), 0.5)
+            middle[open_] = at
+            one, other = self._meet(both, np.tile(at, 2)).reshape(2, -1)
+            gap = one - other
             if not np.isfinite(gap).all():
                 raise UnsettledError("the motion error is not proved: a piece is left between its ends")
-            if (np.abs(gap) <= self.resolution).all():
-                break
-            up = gap > 0.0
+            up, far = gap > 0.0, np.abs(gap) > 10.0 * self.resolution
             # Illinois: an end that stays is trusted half as much
-            low, f, g = np.where(up, middle, low), np.where(up, gap, 0.5 * f), np.where(up, 0.5 * g, gap)
-            high = np.where(up, high, middle)
+            low, f, g = np.where(up, at, low)[far], np.where(up, gap, 0.5 * f)[far], np.where(up, 0.5 * g, gap)[far]
+            high, open_, both = np.where(up, high, at)[far], open_[far], both[np.tile(far, 2)]
         return middle
 
     def _meet(self, piece: Indices, phi: Array) -> Array:
@@ -206,20 +244,33 @@ def _changes(phi: Array, piece: Indices) -> _Changes:
 class Spans:
     """Intervals middle +- half of arc length, each (n,), on the pieces of these numbers (n,) that a roller is held on.
 
-    `sign` is -1 where errors inwards are asked for.
+    `sign` (n,) is -1 where errors inwards are asked for.
     """
 
     held: Held
-    sign: float
+    sign: Array
     piece: Indices
     middle: Array
     half: Array
 
-    def halves(self, which: NDArray[np.bool_]) -> Spans:
-        """Both halves of some."""
-        half = 0.5 * self.half[which]
-        middle = np.concatenate([self.middle[which] - half, self.middle[which] + half])
-        return replace(self, piece=np.tile(self.piece[which], 2), middle=middle, half=np.tile(half, 2))
+    def quarters(self, which: NDArray[np.bool_]) -> Spans:
+        """Quarters of some."""
+        half = 0.25 * self.half[which]
+        middle = np.concatenate([self.middle[which] + k * half for k in (-3.0, -1.0, 1.0, 3.0)])
+        sign, piece = np.tile(self.sign[which], 4), np.tile(self.piece[which], 4)
+        return Spans(self.held, sign, piece, middle, np.tile(half, 4))
+
+    def one(self, i: int) -> Spans:
+        """One of them."""
+        return Spans(self.held, self.sign[[i]], self.piece[[i]], self.middle[[i]], self.half[[i]])
+
+    def summit(self, law: Law, where: float) -> Array:
+        """Shaft angles, (2,): `where` off the middle of a single span, and a Newton step on to its greatest error."""
+        state = replace(self, middle=self.middle + where).state()
+        _, slope, bend = self.sign * state.error(self.held.meant(law.rows(state.phi)))
+        step = -slope / bend if bend[0] < 0.0 else np.zeros(1)
+        near = replace(self, middle=self.middle + np.clip(where + step, -self.half, self.half))
+        return np.concatenate([state.phi, near.state().phi])
 
     def state(self) -> _State:
         """The roller's centre at the middles."""
@@ -244,13 +295,22 @@ class Spans:
         return np.where(np.isnan(bound), np.inf, bound), np.where(better, reached, f), np.where(better, where, 0.0)
 
 
+def greatest(error: Array, phi: Array) -> tuple[float, float]:
+    """Greatest absolute error (n,), and its shaft angle."""
+    i = int(np.argmax(np.abs(error)))
+    return float(abs(error[i])), float(phi[i])
+
+
 def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int = MORE) -> Greatest:
-    """Greatest absolute error of rollers, which is at least that `found`. UnsettledError where it is not proved."""
-    groups = [one.everywhere() for one in held] + [one.touched() for one in held]
+    """Greatest absolute error of rollers, which is at least that `found`. UnsettledError where it is not proved.
+
+    Where pieces hide one another after all `tries`, what a hidden one could do is in the remainder.
+    """
+    groups = [one.spans() for one in held]
     resolution = held[0].resolution
     most = 4 * sum(len(group.piece) for group in groups) + MOST_OPEN
     error, best, ceiling = found.error, None, found.error
-    for _ in range(MOST_HALVINGS):
+    for cut in range(MOST_CUTS + 1):
         states = [group.state() for group in groups]
         limits = [state.limits(group.half) for state, group in zip(states, groups, strict=True)]
         phi = np.concatenate([state.phi for state in states])
@@ -265,36 +325,40 @@ def greatest_error(held: Sequence[Held], law: Law, found: Greatest, tries: int =
             i = int(np.argmax(reached)) if len(reached) else -1
             if i >= 0 and reached[i] > error:
                 error = float(reached[i])
-                best = replace(group, piece=group.piece[[i]], middle=group.middle[[i]] + where[i], half=np.zeros(1))
+                best = group.one(i), where[i]
         enough = error + max(SHARE * error, resolution)
         open_ = [~(bound <= enough) for bound in upper]
         ceiling = max(ceiling, *(float(b[~o].max(initial=ceiling)) for b, o in zip(upper, open_, strict=True)))
         count = sum(int(np.count_nonzero(one)) for one in open_)
         if not count:
             break
-        if 2 * count > most:
-            raise UnsettledError("the motion error is not proved: too many intervals stay undecided")
-        groups = [group.halves(which) for group, which in zip(groups, open_, strict=True)]
-    else:
-        raise UnsettledError("the motion error is not proved: it is rougher than rounding")
+        if cut == MOST_CUTS or 4 * count > most:  # rougher than rounding, or too many that stay undecided
+            ceiling = max(float(bound.max(initial=ceiling)) for bound in upper)
+            break
+        groups = [group.quarters(which) for group, which in zip(groups, open_, strict=True)]
     if best is not None:
         # a piece may stand back behind another one there: what counts is where the roller is
-        phi = best.state().phi
-        r, piece = first_contact(best.held.pieces, best.held.guide, phi)
-        claimed, error = error, float(np.abs(best.held.guide.position(r) - best.held.meant(law.rows(phi))[0])[0])
-        if not claimed <= error + SHARE * claimed + resolution:
-            if not tries:
-                raise UnsettledError("the motion error is not proved: pieces hide one another")
-            seen = [
-                replace(one, phi=np.append(one.phi, phi), r=np.append(one.r, r), piece=np.append(one.piece, piece))
-                if one is best.held
-                else one
-                for one in held
-            ]
+        span, where = best
+        on, phi = span.held, span.summit(law, where)
+        r, _ = first_contact(on.pieces, on.guide, phi)
+        errors = np.abs(on.guide.position(r) - on.meant(law.rows(phi))[0])
+        claimed, (error, at) = error, greatest(errors, phi)
+        if tries and not claimed <= error + SHARE * claimed + resolution:
+            seen = [one.looked_at_about(np.array([at])) if one is on else one for one in held]
             return greatest_error(seen, law, found, tries - 1)
         if error > found.error:
-            found = Greatest(error, float(phi[0]), 0.0)
+            found = Greatest(error, at, 0.0)
+    if not np.isfinite(ceiling):
+        raise UnsettledError("the motion error is not proved: it has no bound")
     return found._replace(remainder=max(ceiling - found.error, 0.0))
+
+
+def outward(held: Held, law: Law) -> tuple[Array, Array]:
+    """Error (n,) by which each of n pieces, touched or not, puts the roller out midway along it, and shaft angle."""
+    spans = Spans(held, np.ones(0), np.arange(len(held.pieces)), 0.5 * held.pieces.length, np.zeros(0))
+    state = spans.state()
+    error = state.error(held.meant(law.rows(state.phi)))[0]
+    return np.where(within_reach(held.pieces, held.guide, held.slack), error, -np.inf), state.phi
 
 
 class _Limits(NamedTuple):

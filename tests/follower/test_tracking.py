@@ -17,6 +17,7 @@ from kin.law.programme import Segment, law, programme
 from kin.law.segment import Affine, Constant
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta, from_law
+from kin.numeric.errors import UnsettledError
 
 PHI = np.arange(360) * 2 * np.pi / 360
 
@@ -84,7 +85,7 @@ def proved(motion, reached, scale):
     assert motion.extremes == "true"
     assert scale * reached <= motion.bound * (1 + 1e-9)
     assert motion.bound <= 1.01 * scale * reached
-    assert motion.max == pytest.approx(scale * reached, rel=1e-5)
+    assert motion.max == pytest.approx(scale * reached, rel=1e-4)
 
 
 GUIDES = {
@@ -314,3 +315,42 @@ def test_a_frame_of_rollers_tells_its_dwells_and_how_flat_they_are():
     range_ = np.ptp(positions(contour, Roller(Translating(0.0), 8.0, yoke.law), phi, yoke.intended(phi), 0.5))
     flat = yoke.judge(contour, np.arange(3600) * 2 * np.pi / 3600).motion.dwell_flatness
     assert flat == pytest.approx(range_, rel=0.02)
+
+
+@pytest.mark.parametrize("vertex", [0, 1, 1500, 1999])
+@pytest.mark.parametrize("depth", [0.02, -0.02])
+def test_a_dent_or_spike_of_one_vertex_is_proved(vertex, depth):
+    """Over a dent the roller changes over from corner to corner, each of which hides the end of the other."""
+    follower = inch()
+    points = follower.envelope.points(np.arange(2000) * 2 * np.pi / 2000)
+    points[vertex] *= 1.0 - depth / np.hypot(*points[vertex])
+    contour = Contour.from_vertices(points)
+    proved(follower.judge(contour, PHI).motion, np.degrees(dense(follower, contour, 20_000)), 1.0)
+
+
+def test_what_is_not_proved_is_looked_at_closely(monkeypatch):
+    def unsettled(*_):
+        raise UnsettledError("not proved")
+
+    monkeypatch.setattr(kin.follower.roller, "greatest_error", unsettled)
+    follower = inch()
+    for seed in range(3):
+        points = follower.envelope.points(np.arange(300) * 2 * np.pi / 300)
+        points[np.random.default_rng(seed).integers(0, 300, 5)] *= 1.0 - 4e-4
+        contour = Contour.from_vertices(points)
+        motion = follower.judge(contour, PHI[::7]).motion
+        assert motion.extremes == "sampled"
+        assert motion.max == pytest.approx(np.degrees(dense(follower, contour, 20_000)), rel=1e-3)
+
+
+@pytest.mark.parametrize("scale", [1.0 - 4e-4, 1.0 + 4e-4])
+def test_a_dent_or_spike_in_a_very_fine_polygon_is_not_lost_between_samples(scale):
+    follower = inch()
+    points = follower.envelope.points(np.arange(25_000) * 2 * np.pi / 25_000)
+    points[8333] *= scale
+    contour = Contour.from_vertices(points)
+    motion = follower.judge(contour, PHI[::3]).motion
+    assert motion.extremes == "sampled"
+    reached = np.degrees(dense(follower, contour, 40_000))
+    assert motion.max == pytest.approx(reached, rel=0.02)
+    assert reached <= motion.bound
