@@ -22,6 +22,7 @@ from camgeo.synthesis.part.shapes import EXACT
 from camgeo.synthesis.profile import Profile, profile_of
 from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from camgeo.recipe.cam import Cam
@@ -50,7 +51,7 @@ class Compensated:
     checks: tuple[Check, ...]
 
 
-class NothingLeftError(ValueError):
+class NothingLeftError(KinError, ValueError):
     """An opening that is no wider than what is taken from it."""
 
 
