@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Mapping as AnyMapping
 from collections.abc import Sequence as AnySequence
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
 from camgeo.recipe.schema.edit import index_of, line_starts, spelled
 from camgeo.recipe.schema.errors import RecipeError, RecipeErrors, shown
@@ -173,7 +173,7 @@ def _flow(value: object, path: str, file: str, depth: int) -> str:
     return _scalar(value, path, file)
 
 
-def _is_list(value: object) -> bool:
+def _is_list(value: object) -> TypeGuard[AnySequence[Value]]:
     return isinstance(value, AnySequence) and not isinstance(value, str | bytes | bytearray)
 
 
