@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING
 
 from camgeo.api.errors import CallError
 from camgeo.api.log import LOG, staged, tell_checks
 from camgeo.api.report import Report
 from camgeo.common.terminal import escaped
+from camgeo.common.units import UNIT_MM
 from camgeo.output import pipeline
 from camgeo.recipe.export import KINDS
 from camgeo.recipe.schema.fields import MOST
@@ -17,10 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from os import PathLike
 
+    from camgeo.common.units import Units
     from camgeo.recipe.recipe import Recipe
-
-Units: TypeAlias = Literal["mm", "cm", "m", "inch", "foot"]
-UNIT_MM: dict[Units, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4, "foot": 304.8}
 
 
 def export(
@@ -76,7 +75,7 @@ def verify(
     if tolerance is not None and not 0.0 < tolerance <= MOST:
         faults.append(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {tolerance!r}")
     if units is not None and units not in UNIT_MM:
-        faults.append(f"a unit is one of {', '.join(get_args(Units))}, not {units!r}")
+        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {units!r}")
     if faults:
         raise CallError(*faults)
     within = None if tolerance is None else tolerance * recipe.mm
