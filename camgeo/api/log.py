@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import logging
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
     from camgeo.recipe.recipe import Recipe
     from kin.judge.check import Check
 
 LOG = logging.getLogger("camgeo")
 LOG.addHandler(logging.NullHandler())  # whoever sets no logging up is told nothing
+
+
+@contextmanager
+def unsaid() -> Iterator[None]:
+    """Tell nothing meanwhile, where all of it is told in another way."""
+    before, LOG.disabled = LOG.disabled, True
+    try:
+        yield
+    finally:
+        LOG.disabled = before
 
 
 def staged(recipe: Recipe, progress: Callable[[str], None] | None = None) -> Callable[[str], None]:
