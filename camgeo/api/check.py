@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from camgeo.report.bound import sign, words
 from camgeo.report.document import in_units
 from kin.judge import check as judge
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.figures import Measured
-
-_SIGNS = {"at_most": "at most", "at_least": "at least"}
 
 
 @dataclass(frozen=True)
@@ -31,6 +30,15 @@ class Check(judge.Check):
         limit, _ = in_units(recipe, check.limit, check.unit)
         return Check(check.name, check.ok, value, limit, unit, check.at_deg, check.sense, check.file, check.detail)
 
+    @property
+    def bound(self) -> str:
+        """The limit with its side, such as `<= 0.001`; empty where there is none."""
+        return "" if self.limit is None else f"{sign(self._entry())} {self.limit:.6g}"
+
+    def _entry(self) -> dict[str, Any]:
+        """What a report says of the check."""
+        return {key: value for key, value in asdict(self).items() if key != "file" or value is not None}
+
     def __str__(self) -> str:
         """Write the check on one line."""
         text = f"{self.name} of {self.file}" if self.file else self.name
@@ -38,7 +46,7 @@ class Check(judge.Check):
         if self.value is not None:
             text += f", {self.value:.6g} {self.unit}".rstrip()
         if self.limit is not None:
-            text += f", {_SIGNS[self.sense]} {self.limit:.6g}"
+            text += f", {words(self._entry())} {self.limit:.6g}"
         if self.at_deg is not None:
             text += f", at {self.at_deg:.2f} deg"
         return f"{text}: {self.detail}" if self.detail else text

@@ -53,12 +53,11 @@ def line(text: str) -> str:
 
 
 def _row(check: Check) -> tuple[str, ...]:
-    sign = "≤" if check.sense == "at_most" else "≥"
     return (
         check.name,
         "ok" if check.ok else "FAILED",
         "" if check.value is None else f"{check.value:.6g} {check.unit}".rstrip(),
-        "" if check.limit is None else f"{sign} {check.limit:.6g}",
+        check.bound,
         "" if check.at_deg is None else f"{check.at_deg:.2f}°",
         check.file or "",
     )

@@ -87,12 +87,12 @@ class Report(Mapping[str, JSON]):
     @cached_property
     def checks(self) -> tuple[Check, ...]:
         """Every check, of the design and of the files."""
-        return tuple(Check(**check) for check in self._document["checks"])
+        return tuple(Check(**_known(Check, check)) for check in self._document["checks"])
 
     @cached_property
     def remarks(self) -> tuple[Remark, ...]:
         """Figures beyond a rule of thumb, which is no check."""
-        return tuple(Remark(**remark) for remark in self._document["remarks"])
+        return tuple(Remark(**_known(Remark, remark)) for remark in self._document["remarks"])
 
     @cached_property
     def files(self) -> tuple[File, ...]:
@@ -177,3 +177,8 @@ class Report(Mapping[str, JSON]):
         head = ("file", "pieces", "tolerance", "proved", "measured")
         more = [notebook.table(head, rows)] if rows else []
         return notebook.shown(self._repr_svg_(), self.recipe.name, self.checks, *more, *map(notebook.line, told))
+
+
+def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
+    """Leave out what an entry of the report tells beyond the fields of its class."""
+    return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}
