@@ -30,7 +30,7 @@ Value: TypeAlias = "str | float | bool | AnySequence[Value] | AnyMapping[str, Va
 
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")  # texts that YAML and people read as they stand
 _WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "inf"})
-_STEP = re.compile(r"\.?([A-Za-z0-9_-]+)|\[([0-9]+)\]")
+_STEP = re.compile(r"\.?(?:([A-Za-z0-9_-]+)|'([^'\\]*)')|\[([0-9]+)\]")
 
 
 def written(values: AnyMapping[str, Value], file: str) -> str:
@@ -51,6 +51,9 @@ def changed(source: Source, path: str, value: Value) -> str:
         if found is None:
             return _checked(source, path, _added(source, node, at, steps[i:], value))
         node, at = found, join(at, step)
+    own = {id(scalar) for _, scalar in scalars(node)}
+    if any(id(scalar) in own for there, scalar in scalars(source.root) if not _is_below(there, path)):
+        raise _refused(source, path, "an alias shares this place with others", "write the value out where it stands")
     text = _flow(value, path, source.file, 0)
     first, behind = _span(source, node.mark, node.end)
     old = source.text[first:behind]
@@ -63,7 +66,7 @@ def _steps(source: Source, path: str) -> list[str | int]:
     steps: list[str | int] = []
     at = 0
     while found := _STEP.match(path, at):
-        steps.append(found[1] if found[2] is None else int(found[2]))
+        steps.append(int(found[3]) if found[3] else found[1] or found[2])
         at = found.end()
     if at < len(path) or not steps or path.startswith("."):
         raise _refused(source, path, "not the path of a field", "write it like cam.base_radius or cam.motion[1].over")
@@ -114,17 +117,17 @@ def _checked(source: Source, path: str, text: str) -> str:
     except RecipeErrors as errors:
         raise _refused(source, path, "the value cannot be put there", "write it into the text by hand") from errors
     if _others(source.root, path) != _others(new, path):
-        raise _refused(source, path, "an alias shares this place with others", "write the value out where it stands")
+        raise _refused(source, path, "the value cannot be put there", "write it into the text by hand")
     return text
+
+
+def _is_below(path: str, top: str) -> bool:
+    return path == top or path.startswith((f"{top}.", f"{top}["))
 
 
 def _others(root: Node, path: str) -> dict[str, str]:
     """Give the texts at all other paths; nothing, which a value may have replaced, is none."""
-    return {
-        at: scalar.text
-        for at, scalar in scalars(root)
-        if not (at == path or at.startswith((f"{path}.", f"{path}[")) or is_empty(scalar))
-    }
+    return {at: scalar.text for at, scalar in scalars(root) if not (_is_below(at, path) or is_empty(scalar))}
 
 
 def _index(source: Source, mark: tuple[int, int]) -> int:
