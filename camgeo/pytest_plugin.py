@@ -170,7 +170,8 @@ class Run:
         return self._report
 
     def _run(self) -> None:
-        from camgeo.output import pipeline
+        from camgeo import check, export
+        from camgeo.api.log import unsaid
         from camgeo.output.output_folder import SurroundingsError
         from camgeo.recipe import RecipeErrors
 
@@ -178,8 +179,9 @@ class Run:
         # what the items that follow say, should an exception end this one
         self.fault = f"{self.shown}: the run broke off with an error of camgeo's own, told by the first item that ran"
         try:
-            outcome = pipeline.check(self.recipe) if self.out is None else pipeline.export(self.recipe, self.out)
-            self._report, self.fault = outcome.report, ""
+            with unsaid():  # each item tells of its own check
+                report = check(self.recipe) if self.out is None else export(self.recipe, self.out)
+            self._report, self.fault = dict(report), ""
         except RecipeErrors as errors:
             self._refused(errors)
         except (SurroundingsError, OSError) as error:

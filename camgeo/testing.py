@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from os import PathLike
 
+    from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
     from kin.contour.contour import Contour
     from kin.read.files import AnySolid, Drawing
@@ -198,7 +199,7 @@ def _judged(
 ) -> dict[str, Any]:
     """Judge a file and assert the checks of those names; its entry in the report."""
     __tracebackhide__ = True
-    from camgeo.output.pipeline import judged
+    from camgeo import verify as judged
 
     path, recipe = Path(path), _loaded(recipe)
     swings = recipe.cam.unit == "deg"
@@ -208,7 +209,7 @@ def _judged(
     if angles is not None:
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
-    report = judged(recipe, [path], tolerance=None if tolerance is None else tolerance * recipe.mm)
+    report: dict[str, Any] = dict(judged(recipe, path, tolerance=tolerance))
     own = [check for check in report["checks"] if check.get("file") == path.name]
     if len(own) == 1 and own[0]["name"] in UNREAD:
         _all_hold(own, report, recipe, str(path))
@@ -223,21 +224,22 @@ def _judged(
 # --- a recipe ---------------------------------------------------------------------------------------------------------
 
 
-def assert_recipe(recipe: AnyRecipe) -> dict[str, Any]:
+def assert_recipe(recipe: AnyRecipe) -> Report:
     """Assert that a recipe has no faults, and that every check of its exact curve and of its files holds.
 
-    Makes and judges the files in a temporary folder. Returns the report, as report.json has it.
+    Makes and judges the files in a temporary folder. Returns the report, which as a mapping is what report.json holds.
     """
     __tracebackhide__ = True
-    from camgeo.output import pipeline
+    from camgeo import check
     from camgeo.recipe import RecipeErrors
 
     try:
         recipe = _loaded(recipe)
-        report = pipeline.check(recipe).report
+        report = check(recipe)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
-    _all_hold(report["checks"], report, recipe, recipe.name)
+    told: dict[str, Any] = dict(report)
+    _all_hold(told["checks"], told, recipe, recipe.name)
     return report
 
 

@@ -32,6 +32,7 @@ FLOORS = {
         cli
         pytest_plugin testing
         sweep
+        api
         output
         report.page
         assembly machining report

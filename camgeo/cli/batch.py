@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
 
 PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
@@ -31,7 +32,7 @@ class Task:
 class Result:
     """What became of one recipe: its report, None where it came to none; a message for standard error; the status."""
 
-    report: dict[str, Any] | None
+    report: Report | None
     message: str
     status: int
 
@@ -66,15 +67,15 @@ def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Res
 
 def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Result:
     """Run one recipe; a wrong recipe, the disk and a missing package are told in the result, not raised."""
-    from camgeo.output import pipeline
+    from camgeo.api import run
     from camgeo.output.output_folder import SurroundingsError
     from camgeo.recipe.schema.errors import RecipeErrors
 
     try:
         if task.out is None:
-            outcome = pipeline.check(recipe, told=progress)
+            report = run.check(recipe, progress=progress)
         else:
-            outcome = pipeline.export(recipe, task.out, only=task.only, told=progress)
+            report = run.export(recipe, task.out, only=task.only, progress=progress)
     except RecipeErrors as errors:
         return Result(None, str(errors), WRONG)
     except (SurroundingsError, OSError) as error:
@@ -84,4 +85,4 @@ def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Resu
     finally:
         if progress is not None:
             progress.clear()
-    return Result(outcome.report, "", OK if outcome.ok else FAILED)
+    return Result(report, "", OK if report.ok else FAILED)

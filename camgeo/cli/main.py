@@ -17,6 +17,7 @@ from camgeo.cli import sweep as sweep_command
 from camgeo.cli.batch import Task, result, results
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
+from camgeo.common.units import UNIT_MM
 from camgeo.output.mixture import mixtures
 from camgeo.recipe.export import KINDS
 
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.recipe import Recipe
 
-UNIT_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4, "foot": 304.8}
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
 
@@ -187,7 +187,6 @@ def _check(arguments: argparse.Namespace) -> int:
 def _watch(arguments: argparse.Namespace) -> int:
     """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
     from camgeo.cli.watch import watch
-    from camgeo.output.output_folder import REJECTED
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.loading import load
     from camgeo.recipe.schema.errors import RecipeErrors
@@ -211,9 +210,9 @@ def _watch(arguments: argparse.Namespace) -> int:
         if found.report is None:
             complain(found.message)
             return None, found.message
-        _show(found.report, verbose=arguments.verbose)
-        folder = out / (recipe.name if found.report["ok"] else f"{recipe.name}{REJECTED}")
-        return (folder / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
+        _show(dict(found.report), verbose=arguments.verbose)
+        assert found.report.path is not None
+        return (found.report.path / page.filename(recipe.name, (page,))).read_text("utf-8"), ""
 
     watch(path, exported, lambda address: say(f"watching {escaped(str(path))}: {address}  (ctrl-c ends)", at_once=True))
     return OK
@@ -255,13 +254,14 @@ def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> i
     for found in results(recipes, task, arguments.jobs):
         status = max(status, found.status)
         if found.report is not None:
+            report: dict[str, Any] = dict(found.report)
             if task.out is None:
-                _mention(found.report, mixtures(Path(arguments.out) / found.report["recipe"]))
-            reports.append(found.report)
+                _mention(report, mixtures(Path(arguments.out) / found.report.recipe.name))
+            reports.append(report)
             if not arguments.json:
                 if arguments.verbose and len(reports) > 1:
                     say("")
-                _show(found.report, verbose=arguments.verbose)
+                _show(report, verbose=arguments.verbose)
         if found.message:
             complain(found.message)
     if arguments.json:
@@ -290,29 +290,23 @@ def _show(report: dict[str, Any], *, verbose: bool) -> None:
 
 def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
-    from camgeo.output import pipeline
+    from camgeo.api.errors import CallError
+    from camgeo.api.run import verify
     from camgeo.recipe.loading import load
     from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.report.document import encoded
     from kin.judge.verify import UnitsError
-    from kin.read.files import SUFFIXES
 
     try:
         recipe = _at(load(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
-        files = [path for path in paths if path.is_file()]
-        faults = [f"{escaped(str(p))}: {_no_file(p)}" for p in paths if p not in files]
-        known = ", ".join(SUFFIXES)
-        faults += [f"{escaped(str(p))}: none of {known}" for p in files if p.suffix.lower() not in SUFFIXES]
-        if faults:
-            for fault in faults:
-                _complain(fault)
-            return WRONG
-        given = arguments.tolerance
-        units = None if arguments.units is None else UNIT_MM[arguments.units]
-        report = pipeline.judged(recipe, paths, tolerance=None if given is None else given * recipe.mm, units=units)
+        report = dict(verify(recipe, *paths, tolerance=arguments.tolerance, units=arguments.units))
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
+    except CallError as error:
+        for fault in error.faults:
+            _complain(fault)
+        return WRONG
     except UnitsError as error:
         _complain(f"{error}; leave --units out")
         return WRONG
@@ -324,12 +318,6 @@ def _verify(arguments: argparse.Namespace) -> int:
     else:
         _show(report, verbose=arguments.verbose)
     return OK if report["ok"] else FAILED
-
-
-def _no_file(path: Path) -> str:
-    if path.is_dir():
-        return "a folder; name the files in it"
-    return "not a regular file" if path.exists() else "there is no such file"
 
 
 def _new(arguments: argparse.Namespace) -> int:

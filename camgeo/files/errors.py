@@ -1,7 +1,9 @@
 """The one error for a library that a file needs and that is not installed."""
 
+from kin.numeric.errors import KinError
 
-class MissingExtraError(ImportError):
+
+class MissingExtraError(KinError, ImportError):
     """An extra of this package is not installed; the message names it and says how to get it."""
 
 

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.numeric.errors import KinError
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
     Triangles = NDArray[np.int64]
 
 
-class RegionError(ValueError):
+class RegionError(KinError, ValueError):
     """A region that has no triangles: its boundary touches or crosses itself, or a hole reaches its edge."""
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from kin.numeric.errors import KinError
+
 Box = tuple[float, float, float, float]
 
 
-class FormError(ValueError):
+class FormError(KinError, ValueError):
     """A contour that cannot be written in the form asked for, with the reason."""
 
 

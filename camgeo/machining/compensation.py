@@ -21,6 +21,7 @@ from camgeo.synthesis.design import sound
 from camgeo.synthesis.part.shapes import EXACT
 from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from camgeo.recipe.machining import Compensation
@@ -46,7 +47,7 @@ class Compensated:
     checks: tuple[Check, ...]
 
 
-class NothingLeftError(ValueError):
+class NothingLeftError(KinError, ValueError):
     """An opening that is no wider than what is taken from it."""
 
 

@@ -40,6 +40,7 @@ from typing import TYPE_CHECKING, Self
 from camgeo.common import system
 from camgeo.common.system import locked, patient, unlock
 from camgeo.common.terminal import escaped
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -51,7 +52,7 @@ _JOURNAL = ".journal.json"  # files of a set do not begin with a dot
 _OLD = ".old"
 
 
-class SurroundingsError(Exception):
+class SurroundingsError(KinError):
     """What is needed around a run is missing or refuses: the disk, a permission, a lock; `path` is where."""
 
     def __init__(self, message: str, path: Path) -> None:

@@ -8,7 +8,7 @@ one: its keys, how they are read and published, what they are checked for and wh
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, overload
 
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.assembly import MECHANISM, MechanismAsked
@@ -27,12 +27,14 @@ from camgeo.recipe.sweep import SWEEP, build_sweep, check_sweep
 
 if TYPE_CHECKING:
     import collections.abc
+    from os import PathLike
     from pathlib import Path
 
     from camgeo.cams.family import Cam
     from camgeo.recipe.export import Export
     from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.part import Part
+    from camgeo.recipe.schema.change import Value
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Mark
     from camgeo.recipe.sweep import Sweep
@@ -80,6 +82,34 @@ class Recipe:
     limits: tuple[Limit, ...] = ()
     marks: collections.abc.Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
+
+    @overload
+    def replace(self, path: str, value: Value, /) -> Recipe: ...
+
+    @overload
+    def replace(self, path: collections.abc.Mapping[str, Value], /) -> Recipe: ...
+
+    def replace(self, path: str | collections.abc.Mapping[str, Value], value: Value = None, /) -> Recipe:
+        """Give the recipe with another value at a path such as `cam.base_radius`, or with several, by a mapping.
+
+        Values are in the recipe's units, as its text has them; where a path has none yet, the field is added. All else
+        in the text stays, comments included. Raises RecipeErrors for a path that leads nowhere, and where the new
+        recipe has faults.
+        """
+        from camgeo.recipe.loading import load_text
+        from camgeo.recipe.schema.change import changed
+        from camgeo.recipe.schema.yaml_source import read_source
+
+        text = self.text
+        for at, new in ({path: value} if isinstance(path, str) else path).items():
+            text = changed(read_source(text.encode("utf-8", "surrogatepass"), str(self.path)), at, new)
+        return load_text(text, self.path)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the recipe's text to a file, in place of what is there; raises OSError as the file system does."""
+        from pathlib import Path
+
+        Path(path).write_text(self.text, encoding="utf-8", newline="")
 
     def locate(self, path: str) -> tuple[int, int]:
         """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""

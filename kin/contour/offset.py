@@ -12,6 +12,7 @@ import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, left
 from kin.contour.contour import Contour
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
@@ -21,7 +22,7 @@ SETTLED = 1e-13  # of the size: a meeting is found to this
 SMOOTH = 1e-3  # times `fine`: what a joint's corner may move a parallel by before it counts as one
 
 
-class TightError(ValueError):
+class TightError(KinError, ValueError):
     """A piece that has no parallel at the distance, with its number and a place on it."""
 
     def __init__(self, message: str, piece: int, place: tuple[float, float]) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 from kin.numeric.angles import TURN
 from kin.numeric.chebyshev import AT_START, DEGREE, NODES, evaluated, fitted
 from kin.numeric.distinct import distinct
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,7 +53,7 @@ class Motion(Protocol):
         ...
 
 
-class DriveError(ValueError):
+class DriveError(KinError, ValueError):
     """A motion that no series follows; `at` is the shaft angle, radians."""
 
     def __init__(self, message: str, at: float) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from kin.numeric.chebyshev import together, value
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -34,7 +35,7 @@ CALL = 100  # places that a look costs besides those it takes
 _STRIDE = 40  # places that a stride of a flight costs
 
 
-class SpentError(Exception):
+class SpentError(KinError):
     """More places would be looked at than may be."""
 
 

@@ -24,6 +24,7 @@ import numpy as np
 
 from kin.dynamics.oscillator import Free
 from kin.numeric.chebyshev import AT_START, DEGREE, DERIVATIVE, INTEGRAL, degrees, evaluated, value
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,7 +45,7 @@ _SAMPLES = 33  # of a stretch, at least
 _SILENT = 1e-11  # a free motion below this share of all else is not sampled for
 
 
-class StiffnessError(ValueError):
+class StiffnessError(KinError, ValueError):
     """More parts than can be held: the damping is so strong that one rate of decay lies far below the other."""
 
 

@@ -25,6 +25,7 @@ from kin.dynamics.oscillator import Oscillator
 from kin.dynamics.peaks import Figure, Peaks
 from kin.dynamics.response import Forcing, Response, response
 from kin.numeric.angles import TURN
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,7 +38,7 @@ _LEAST_DETUNING = 1e-9  # below, the amplitude at resonance is a matter of round
 MOST_DAMPING = 10.0  # times critical: beyond, the damper is the drive and the mass hardly counts
 
 
-class DynamicsError(ValueError):
+class DynamicsError(KinError, ValueError):
     """What keeps a train from having the figure that is asked for."""
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from kin.numeric.angles import degrees
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
@@ -94,7 +95,7 @@ class Judged(NamedTuple):
     reach: Extremes | None = None
 
 
-class ContactError(ValueError):
+class ContactError(KinError, ValueError):
     """The follower finds no contact; `at` is the shaft angle in radians where it was looked for."""
 
     def __init__(self, message: str, at: float) -> None:

@@ -16,6 +16,7 @@ from kin.contour.intersections import crossings
 from kin.judge.check import Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import ROUNDING, DwellAsked, Intent, Limits, bore_check, judge_contour, volume_check
 from kin.numeric.angles import TURN
+from kin.numeric.errors import KinError
 from kin.read.errors import ReadError
 from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
 
@@ -71,7 +72,7 @@ class Verdict:
         return all(check.ok for check in self.checks)
 
 
-class UnitsError(ValueError):
+class UnitsError(KinError, ValueError):
     """A unit was given for a file that states another one itself."""
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Affine, Constant, Series, Stretch
 from kin.numeric.elementary import Jet, cos, sin
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,7 +29,7 @@ _END_TOLERANCE = 1e-12  # of a polynomial law at u = 0 and 1
 _ANGLE_TOLERANCE = 1e-9  # rad: of the sum of a programme's segments, and the least segment
 
 
-class IntentError(ValueError):
+class IntentError(KinError, ValueError):
     """An intended motion that no cam can have, with the reason and the figure.
 
     `field` is the path of what is at fault below the recipe's `cam`; `at_deg` the shaft angle, if there is one.

@@ -17,6 +17,7 @@ import numpy as np
 
 from kin.numeric.arrays import Array
 from kin.numeric.elementary import Jet, sqrt
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,7 +34,7 @@ _CLOSE = 2.0**-15
 _STILL = 1e-30
 
 
-class BindingError(ValueError):
+class BindingError(KinError, ValueError):
     """A loop that cannot be closed, or one in a limit position asked for its derivatives.
 
     `message` says by how much; `indices` (k,) are the points, out of the n asked for, at which it is so.

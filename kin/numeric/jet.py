@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from kin.numeric import interval
+from kin.numeric.errors import KinError
 from kin.numeric.interval import Ball
 from kin.numeric.taylor import (
     ball_product,
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-class DomainError(ArithmeticError):
+class DomainError(KinError, ArithmeticError):
     """A jet left the domain of an operation or the finite numbers.
 
     `operation` says which, in words; `indices` (k,) are the points, out of the n of the jet, at which it did.

@@ -20,6 +20,7 @@ import numpy as np
 
 from kin.numeric.bernstein import halves, restrict, rising_root, values
 from kin.numeric.distinct import distinct
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -50,7 +51,7 @@ END_MARGIN = 1e-9
 SAME = 1e-6
 
 
-class RoughError(ArithmeticError):
+class RoughError(KinError, ArithmeticError):
     """A function that no polynomials follow to the resolution asked for; `at` is one of the places."""
 
     def __init__(self, at: float, resolution: float) -> None:

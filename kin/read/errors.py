@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kin.numeric.errors import KinError
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -25,7 +27,7 @@ REASONS = {
 }
 
 
-class ReadError(ValueError):
+class ReadError(KinError, ValueError):
     """A file from which no contour can be read.
 
     reason      a short code, a key of REASONS

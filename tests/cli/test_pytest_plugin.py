@@ -74,7 +74,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     runs: list[str] = []
     check = pipeline.check
 
-    def counting(recipe: Any) -> pipeline.Outcome:
+    def counting(recipe: Any, **_: Any) -> pipeline.Outcome:
         runs.append(recipe.name)
         return check(recipe)
 
@@ -86,7 +86,7 @@ def spoil(monkeypatch: pytest.MonkeyPatch, change: Callable[[list[dict[str, Any]
     """Have the report's checks changed."""
     check = pipeline.check
 
-    def spoilt(recipe: Any) -> pipeline.Outcome:
+    def spoilt(recipe: Any, **_: Any) -> pipeline.Outcome:
         report = check(recipe).report
         report["checks"] = change(report["checks"])
         return pipeline.Outcome(report, all(c["ok"] for c in report["checks"]), None)
@@ -360,7 +360,7 @@ def test_an_error_of_the_program_is_met_once_and_told_with_its_own_traceback(
 ) -> None:
     calls: list[None] = []
 
-    def broken(_: object) -> None:
+    def broken(_: object, **__: Any) -> None:
         calls.append(None)
         raise ArithmeticError("no such luck")
 
@@ -373,7 +373,7 @@ def test_an_error_of_the_program_is_met_once_and_told_with_its_own_traceback(
 
 
 def test_a_disk_that_refuses_is_no_traceback(project: Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(_: object) -> None:
+    def full(_: object, **__: Any) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(pipeline, "check", full)

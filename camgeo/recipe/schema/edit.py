@@ -41,10 +41,10 @@ def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float
         if shared := [other for other, node in found if node is scalar and other != path]:
             raise ValueError(f"an alias shares the number at {path} with {shared[0]}")
         changes.append((scalar, spelled(value)))
-    starts = _line_starts(source.text)
+    starts = line_starts(source.text)
     text = source.text
     for scalar, number in sorted(changes, key=lambda change: change[0].mark, reverse=True):
-        first, behind = _index(starts, scalar.mark), _index(starts, scalar.end)
+        first, behind = index_of(starts, scalar.mark), index_of(starts, scalar.end)
         text = text[:first] + _like(text[first:behind], number) + text[behind:]
     return text
 
@@ -82,11 +82,13 @@ def _source(recipe: str | Source) -> Source:
     return recipe if isinstance(recipe, Source) else read_source(recipe.encode("utf-8", "surrogatepass"), _NAME)
 
 
-def _line_starts(text: str) -> list[int]:
+def line_starts(text: str) -> list[int]:
+    """Indices in a text at which its lines begin."""
     return [0, *(found.end() for found in _LINE_END.finditer(text))]
 
 
-def _index(starts: list[int], mark: Mark) -> int:
+def index_of(starts: list[int], mark: Mark) -> int:
+    """Index in a text of a line and a column, from where its lines begin."""
     return starts[mark[0] - 1] + mark[1] - 1
 
 
@@ -99,20 +101,20 @@ def _like(old: str, number: str) -> str:
 
 def _without_entry(source: Source, root: Mapping, index: int) -> str:
     """Cut an entry out of braces, with the comma that sets it off."""
-    starts = _line_starts(source.text)
+    starts = line_starts(source.text)
     if index + 1 < len(root.entries):
         first, behind = root.entries[index][0].mark, root.entries[index + 1][0].mark
     elif index:
         first, behind = root.entries[index - 1][1].end, root.entries[index][1].end
     else:
         first, behind = root.entries[index][0].mark, root.entries[index][1].end
-    return source.text[: _index(starts, first)] + source.text[_index(starts, behind) :]
+    return source.text[: index_of(starts, first)] + source.text[index_of(starts, behind) :]
 
 
 def _without_lines(source: Source, root: Mapping, index: int) -> str:
     """Cut the lines of an entry, and the indented comments behind it."""
     key, value = root.entries[index]
-    starts = [*_line_starts(source.text), len(source.text)]
+    starts = [*line_starts(source.text), len(source.text)]
     first, indent = key.mark
     line, column = value.mark if is_empty(value) else value.end
     behind = line - (column == 1)  # the number of the last line; a block of text ends where the next line begins

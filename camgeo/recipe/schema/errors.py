@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import escaped
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -41,7 +42,7 @@ class RecipeError:
         return f"{place}:{field} {self.problem}{given}{remedy}"
 
 
-class RecipeErrors(Exception):  # noqa: N818 - it carries several errors
+class RecipeErrors(KinError):  # noqa: N818 - it carries several errors
     """All faults of a recipe, by line; `str()` gives one line each."""
 
     errors: tuple[RecipeError, ...]
@@ -54,6 +55,10 @@ class RecipeErrors(Exception):  # noqa: N818 - it carries several errors
     def __str__(self) -> str:
         """Write the faults one a line."""
         return "\n".join(map(str, self.errors))
+
+
+class DeprecatedKeyWarning(FutureWarning):
+    """A recipe has a former name of a key or of a figure, which a coming version no longer reads."""
 
 
 def shown(text: str) -> str:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from camgeo.common import workers
 from camgeo.sweep.search.job import result
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
@@ -30,7 +31,7 @@ _PATIENCE = 10.0  # seconds for a scheduler to answer
 _WORKERLESS = 6  # times as long for its first worker to come
 
 
-class EngineError(Exception):
+class EngineError(KinError):
     """The chunks cannot be computed for want of something around the run; what has landed stays."""
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 import camgeo
 from camgeo.sweep.search.store import encode
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +24,7 @@ REVISION = 2  # raised with every change of what a figure comes to, as the versi
 Compute = Callable[[Any, "NDArray[np.float64]"], Mapping[str, "NDArray[np.float64]"]]
 
 
-class VersionsError(Exception):
+class VersionsError(KinError):
     """A worker would compute something else: its versions, or its reading of the recipe, are not those of the sweep."""
 
 

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.common.system import patient
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,7 +35,7 @@ _CHUNK = re.compile(r"chunk-[0-9]{7}\.bin")
 _UNFINISHED = re.compile(r"\.chunk-[0-9]{7}\.[0-9]+\.part")
 
 
-class ChunkError(ValueError):
+class ChunkError(KinError, ValueError):
     """Bytes that are not the result of the chunk they are taken for."""
 
 

@@ -1,0 +1,78 @@
+"""A check and a figure as the library hands them out: in the recipe's units, and able to show themselves."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+from camgeo.report.bound import sign, words
+from camgeo.report.document import in_units
+from kin.judge import check as judge
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.report.figures import Measured
+
+
+@dataclass(frozen=True)
+class Check(judge.Check):
+    """A figure held against its limit, both in `unit`: a length in the recipe's own, an angle in degrees.
+
+    `value` is None where there was nothing to measure, which `detail` explains; such a check does not hold. `at_deg` is
+    the shaft angle of the worst place, None where there is no such place; `file` the name of the file that it is about.
+    """
+
+    @staticmethod
+    def of(recipe: Recipe, check: judge.Check) -> Check:
+        """Give a check of the judge's, which is in mm, in the recipe's units."""
+        value, unit = in_units(recipe, check.value, check.unit)
+        limit, _ = in_units(recipe, check.limit, check.unit)
+        return Check(check.name, check.ok, value, limit, unit, check.at_deg, check.sense, check.file, check.detail)
+
+    @property
+    def bound(self) -> str:
+        """The limit with its side, such as `<= 0.001`; empty where there is none."""
+        return "" if self.limit is None else f"{sign(self._entry())} {self.limit:.6g}"
+
+    def _entry(self) -> dict[str, Any]:
+        """What a report says of the check."""
+        return {key: value for key, value in asdict(self).items() if key != "file" or value is not None}
+
+    def __str__(self) -> str:
+        """Write the check on one line."""
+        text = f"{self.name} of {self.file}" if self.file else self.name
+        text += ": ok" if self.ok else ": FAILED"
+        if self.value is not None:
+            text += f", {self.value:.6g} {self.unit}".rstrip()
+        if self.limit is not None:
+            text += f", {words(self._entry())} {self.limit:.6g}"
+        if self.at_deg is not None:
+            text += f", at {self.at_deg:.2f} deg"
+        return f"{text}: {self.detail}" if self.detail else text
+
+    def _repr_html_(self) -> str:
+        return f'<p style="color:{"inherit" if self.ok else "#b00020"}">{escape(str(self))}</p>'
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of a design in `unit`, and the shaft angle of its place; None where there is none, as `detail` tells."""
+
+    value: float | None
+    unit: str
+    at_deg: float | None = None
+    detail: str = ""
+
+    @staticmethod
+    def of(recipe: Recipe, measured: Measured) -> Figure:
+        """Give a figure in the recipe's units."""
+        value, unit = in_units(recipe, measured.value, measured.unit)
+        return Figure(value, unit, measured.at_deg, measured.detail)
+
+    def __str__(self) -> str:
+        """Write the figure with its unit, and its place."""
+        if self.value is None:
+            return f"none: {self.detail}" if self.detail else "none"
+        place = "" if self.at_deg is None else f" at {self.at_deg:.2f} deg"
+        return f"{self.value:.6g} {self.unit}".rstrip() + place

@@ -1,0 +1,184 @@
+"""A cam designed and not made: its motion, its contour, its figures, and the checks that need no file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal, overload
+
+import numpy as np
+
+from camgeo.api import notebook
+from camgeo.api.check import Check, Figure
+from camgeo.api.edges import FORMS, Edges, Form
+from camgeo.api.errors import CallError
+from camgeo.api.log import staged, tell_checks
+from camgeo.common.clock import Clock
+from camgeo.synthesis.design import Design as Exact
+from camgeo.synthesis.design import designed
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike
+
+    from camgeo.curve.curve import Curve
+    from camgeo.recipe.recipe import Recipe
+    from kin.numeric.arrays import Array
+
+MOST_DERIVATIVE = 6  # of the motion by the shaft angle; more means nothing in print
+
+
+def design(recipe: Recipe) -> Design:
+    """Design the cam of a recipe: no file is made, and no contour fitted.
+
+    Raises RecipeErrors where there is no such motion or curve. A check that fails raises nothing: see `Design.ok`.
+    """
+    found = Design(recipe, designed(recipe, Clock(staged(recipe))))
+    tell_checks(recipe.name, found.checks)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """The exact cam of a recipe.
+
+    What it is made of is in mm and radians, whatever the recipe's unit is: `motion`, `contour`, `edges`. What a recipe
+    can limit is in the recipe's own units, each with its unit beside it: `checks`, `figures`.
+    """
+
+    recipe: Recipe
+    exact: Exact = field(repr=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Leave out of a pickle what can be measured again."""
+        return {"recipe": self.recipe, "exact": self.exact}
+
+    # --- verdict ------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """The checks that need no file: curvature, undercut, walls, and the recipe's limits of figures."""
+        found = self.exact.checks
+        if self.recipe.limits:
+            from camgeo.report.limits import limit_checks
+
+            found = (*found, *limit_checks(self.recipe, self.exact, found, (), None))
+        return tuple(Check.of(self.recipe, check) for check in found)
+
+    @property
+    def ok(self) -> bool:
+        """Whether all these checks hold."""
+        return all(check.ok for check in self.checks)
+
+    @cached_property
+    def figures(self) -> Mapping[str, Figure]:
+        """The figures of the design by name, such as `radius-of-curvature`; those that recipes limit."""
+        from camgeo.recipe.figures import FIGURES, there
+        from camgeo.report.figures import of_design
+
+        given = set(self.recipe.marks)
+        kind = self.recipe.cam.kind
+        names = [name for name, one in FIGURES.items() if one.of == "design" and there(one.needs, kind, given)]
+        found = of_design(self.exact, self.exact.checks, names)
+        return MappingProxyType({name: Figure.of(self.recipe, one) for name, one in found.items()})
+
+    # --- motion -------------------------------------------------------------------------------------------------------
+
+    @property
+    def unit(self) -> Literal["mm", "rad"]:
+        """Unit of the motion: a lift or a stroke is in mm, a swing in radians."""
+        driven = self.exact.driven
+        unit = self.exact.position.unit if driven is None else driven.mechanism.unit
+        return "rad" if unit == "deg" else "mm"
+
+    @overload
+    def motion(self, theta: float, *, derivative: int = 0) -> float: ...
+
+    @overload
+    def motion(self, theta: ArrayLike, *, derivative: int = 0) -> Array: ...
+
+    def motion(self, theta: ArrayLike, *, derivative: int = 0) -> float | Array:
+        """Position of the follower at shaft angles theta, rad, any real numbers, or a derivative by the shaft angle.
+
+        `theta` may have any shape, which the answer has too; a number gives a number. The position is in `unit`, as the
+        motion table has it: a lift from its datum, a swing of the arm; with a linkage the output of its last link.
+        Derivatives are by radian of shaft angle, up to the sixth; where one jumps it is the limit from above. Raises
+        CallError for another order, angles that are not finite, and a linkage that does not turn.
+        """
+        angle = np.asarray(theta, dtype=np.float64)
+        if not np.isfinite(angle).all():
+            raise CallError("shaft angles are finite numbers, in radians")
+        if isinstance(derivative, bool) or derivative not in range(MOST_DERIVATIVE + 1):
+            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {derivative!r}")
+        row = self._motion(angle.ravel(), derivative).reshape(angle.shape)
+        return float(row) if row.ndim == 0 else row
+
+    def _motion(self, angle: Array, order: int) -> Array:
+        exact = self.exact
+        if exact.driven is not None:
+            if not exact.driven.turns:
+                raise CallError(f"{self.recipe.name}: the linkage does not turn right round, so it has no motion")
+            mechanism = exact.driven.mechanism
+            found = mechanism.at(mechanism.relative(angle), order)
+            return np.asarray(found.over_shaft(found.output)[order])
+        swing: Array = exact.position.rows(angle, order)[order]
+        return swing
+
+    # --- contour ------------------------------------------------------------------------------------------------------
+
+    def contour(self, n: int = 720) -> Array:
+        """Give n points of the exact contour, (n, 2) in mm: counter-clockwise about the shaft at (0, 0), as drawn.
+
+        They stand at equal steps of the curve's own parameter, the first not repeated at the end. Raises CallError
+        where a check forbids to make the contour, and for fewer than 3 points.
+        """
+        if isinstance(n, bool) or n < 3:
+            raise CallError(f"a contour takes 3 points at least, not {n!r}")
+        runs = self._made().runs
+        ends = np.cumsum([run.high - run.low for run in runs])
+        along = ends[-1] * np.arange(n) / n
+        which = np.searchsorted(ends, along, side="right")
+        low = np.array([run.low for run in runs])
+        before = np.concatenate([[0.0], ends[:-1]])
+        points = self._made().sample(low[which] + along - before[which]).point
+        if self.recipe.rotation == "ccw":  # the mirror image, and again counter-clockwise from the same first point
+            points = np.roll(points[::-1], 1, axis=0) * np.array([1.0, -1.0])
+        return points
+
+    def edges(self, tolerance: float, form: Form = "arcs") -> Edges:
+        """Fit the contour within a tolerance, mm, by arcs and lines, one spline or the lines of a polyline.
+
+        These are the edges of the files that camgeo writes, in plain numbers and with the bound that was proved of
+        them; as drawn, like `contour`. Raises ToleranceError where the tolerance cannot be held, CallError where a
+        check forbids to make the contour, and for a form or a tolerance that is none.
+        """
+        from camgeo.output.job import Job
+
+        if form not in FORMS:
+            raise CallError(f"a form is one of {', '.join(FORMS)}, not {form!r}")
+        if not 0.0 < tolerance < float("inf"):
+            raise CallError(f"a tolerance is a length above 0, in mm, not {tolerance!r}")
+        self._made()
+        return Edges.of(Job.of(self.recipe, self.exact).outline(form, tolerance))
+
+    def _made(self) -> Curve:
+        if self.exact.contour is None:
+            failed = next((f": {check}" for check in self.checks if not check.ok), "")
+            raise CallError(f"{self.recipe.name}: no contour is made{failed}")
+        return self.exact.contour
+
+    # --- to look at ---------------------------------------------------------------------------------------------------
+
+    def __str__(self) -> str:
+        """Write the verdict on one line, and each check that fails on one more."""
+        failed = [f"\n  {check}" for check in self.checks if not check.ok]
+        return f"{self.recipe.name}: {'FAILED' if failed else 'ok'}  {self.exact.follower.name}{''.join(failed)}"
+
+    def _repr_svg_(self) -> str:
+        return notebook.drawing(self.recipe, self.exact)
+
+    def _repr_html_(self) -> str:
+        rows = [(name, str(figure)) for name, figure in self.figures.items()]
+        return notebook.shown(self._repr_svg_(), self.recipe.name, self.checks, notebook.table(("figure", ""), rows))

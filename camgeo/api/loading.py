@@ -1,0 +1,31 @@
+"""Recipes from wherever they come: a file, a text, a mapping."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.loading import load as load_file
+from camgeo.recipe.loading import load_text
+from camgeo.recipe.schema.change import written
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.schema.change import Value
+
+NAME = "recipe"  # of what has no file
+
+
+def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
+    """Read a recipe from a file, from YAML text or from a mapping of the same keys.
+
+    A `str` with a line break in it is a text, any other the path of a file. A recipe that is no file and gives no
+    `name` is called recipe. Raises RecipeErrors, which tells every fault with line, column and remedy.
+    """
+    if isinstance(source, Mapping):
+        return load_text(written(source, NAME), NAME)
+    if isinstance(source, str) and ("\n" in source or "\r" in source):
+        return load_text(source, NAME)
+    return load_file(source)

@@ -1,0 +1,63 @@
+"""How designs and reports show themselves in a notebook: a drawing, the verdict, tables. Plain HTML, no script."""
+
+from __future__ import annotations
+
+import base64
+from html import escape
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from camgeo.api.check import Check
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design as Exact
+
+WIDTH = 360  # px of a drawing
+FAULT = "#b00020"
+
+
+def drawing(recipe: Recipe, exact: Exact) -> str:
+    """Draw the exact cam with its follower at shaft angle 0 as one SVG."""
+    from camgeo.report.page import svg
+    from camgeo.report.page.content import content
+    from camgeo.report.page.page import asset
+
+    return svg.still(content(recipe, exact, ()).scene, 0, asset("drawing.css"), recipe.name)
+
+
+def shown(picture: str, title: str, checks: Sequence[Check], *more: str) -> str:
+    """Put together a drawing, the verdict and tables.
+
+    The drawing is an image of its own, as its style would else reach the rest of the notebook.
+    """
+    data = base64.b64encode(picture.encode("utf-8")).decode("ascii")
+    failed = sum(not check.ok for check in checks)
+    told = f"{failed} of {len(checks)} checks FAILED" if failed else f"all {len(checks)} checks hold"
+    head = f'<strong style="color:{FAULT if failed else "inherit"}">{escape(title)}: {told}</strong>'
+    image = f'<img width="{WIDTH}" alt="{escape(title)}" src="data:image/svg+xml;base64,{data}">'
+    rows = [_row(check) for check in checks]
+    return f"<div>{head}<br>{image}{table(('check', '', 'value', 'limit', 'at', 'file'), rows)}{''.join(more)}</div>"
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Write a table."""
+    cells = "".join(f"<th>{escape(name)}</th>" for name in head)
+    body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
+    return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def line(text: str) -> str:
+    """Write a line of text."""
+    return f"<p>{escape(text)}</p>"
+
+
+def _row(check: Check) -> tuple[str, ...]:
+    return (
+        check.name,
+        "ok" if check.ok else "FAILED",
+        "" if check.value is None else f"{check.value:.6g} {check.unit}".rstrip(),
+        check.bound,
+        "" if check.at_deg is None else f"{check.at_deg:.2f}°",
+        check.file or "",
+    )

@@ -1,0 +1,184 @@
+"""What came of a cam's files: a verdict, checks, files, remarks; report.json as an object with types."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from camgeo.api.check import Check
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from camgeo.api.check import Figure
+    from camgeo.api.design import Design
+    from camgeo.recipe.recipe import Recipe
+
+JSON: TypeAlias = "bool | int | float | str | list[JSON] | dict[str, JSON] | None"
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A figure past what is usual, `rule`, which no check holds it against: `sentence` says it in words."""
+
+    name: str
+    value: float | None
+    rule: float | None
+    unit: str
+    at_deg: float | None
+    sentence: str
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A follower's motion error over one turn, measured less intended, in `unit`: its greatest value and its mean."""
+
+    max: float | None
+    rms: float | None
+    unit: str
+    at_deg: float | None
+    dwell_flatness: float | None
+
+
+@dataclass(frozen=True)
+class File:
+    """One file of a report, lengths in the recipe's unit; None where a figure does not apply to its kind.
+
+    `tolerance` is what was asked, `geometry_error` what was proved of the fit, `measured_error` what was measured in
+    the file as it lies there. `path` leads to it, where it was kept.
+    """
+
+    name: str
+    path: Path | None
+    kind: str | None
+    pieces: int | None
+    tolerance: float | None
+    geometry_error: float | None
+    measured_error: float | None
+    motion: Motion | None
+
+
+@dataclass(frozen=True, eq=False)
+class Report(Mapping[str, JSON]):
+    """The report on a recipe and its files; as a mapping it is what report.json holds: `dict(report)`, `report["ok"]`.
+
+    Values are in the recipe's units. `path` is the folder of the files, `<name>.rejected` where a check failed; None
+    where files were judged and none kept.
+    """
+
+    recipe: Recipe
+    _document: dict[str, Any] = field(repr=False)
+    path: Path | None = None
+    _paths: tuple[Path, ...] = field(default=(), repr=False)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Leave out of a pickle what can be made again."""
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+    @property
+    def ok(self) -> bool:
+        """Whether every check holds."""
+        return bool(self._document["ok"])
+
+    @cached_property
+    def checks(self) -> tuple[Check, ...]:
+        """Every check, of the design and of the files."""
+        return tuple(Check(**_known(Check, check)) for check in self._document["checks"])
+
+    @cached_property
+    def remarks(self) -> tuple[Remark, ...]:
+        """Figures beyond a rule of thumb, which is no check."""
+        return tuple(Remark(**_known(Remark, remark)) for remark in self._document["remarks"])
+
+    @cached_property
+    def files(self) -> tuple[File, ...]:
+        """The files that were judged, in the recipe's order or that of the call; without those left as they were."""
+        entries = [entry for entry in self._document["files"] if not entry.get("stale")]
+        return tuple(self._file(entry, i) for i, entry in enumerate(entries))
+
+    def _file(self, entry: dict[str, Any], index: int) -> File:
+        name = entry["path"]
+        path = self._paths[index] if self._paths else None if self.path is None else self.path / name
+        motion = entry.get("motion")
+        names = ("kind", "pieces", "tolerance", "geometry_error", "measured_error")
+        told = None if motion is None else Motion(*(motion[name] for name in Motion.__dataclass_fields__))
+        return File(name, path, **{name: entry.get(name) for name in names}, motion=told)
+
+    @cached_property
+    def design(self) -> Design:
+        """The design, made anew from the recipe."""
+        from camgeo.api.design import design
+
+        return design(self.recipe)
+
+    @property
+    def figures(self) -> Mapping[str, Figure]:
+        """The figures of the design by name, such as `radius-of-curvature`."""
+        return self.design.figures
+
+    def explain(self, check: Check) -> str:
+        """Tell of a check that fails over several lines: figure, limit, place, the recipe's field, what would do."""
+        from camgeo.report.failure import failure
+
+        index = self.checks.index(check)
+        return failure(self._document["checks"][index], self._document, self.recipe)
+
+    def to_json(self) -> str:
+        """Write the report as report.json has it."""
+        from camgeo.report.document import encoded
+
+        return encoded(self._document)
+
+    def table(self) -> str:
+        """Every check and file as aligned text, as `camgeo export -v` prints it."""
+        from camgeo.report.document import table
+
+        return table(self._document)
+
+    # --- as a mapping -------------------------------------------------------------------------------------------------
+
+    def __getitem__(self, key: str) -> JSON:
+        value: JSON = copy.deepcopy(self._document[key])
+        return value
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._document)
+
+    def __len__(self) -> int:
+        return len(self._document)
+
+    # --- to look at ---------------------------------------------------------------------------------------------------
+
+    def __str__(self) -> str:
+        """Write the verdict's line, and each check that fails on one more."""
+        from camgeo.report.document import summary
+
+        return summary(self._document)
+
+    def _repr_svg_(self) -> str:
+        return self.design._repr_svg_()
+
+    def _repr_html_(self) -> str:
+        from camgeo.api import notebook
+
+        told = [f"remark: {remark.sentence}" for remark in self.remarks]
+        rows = [
+            (
+                file.name,
+                "" if file.pieces is None else str(file.pieces),
+                *("" if v is None else f"{v:.3g}" for v in (file.tolerance, file.geometry_error, file.measured_error)),
+            )
+            for file in self.files
+        ]
+        head = ("file", "pieces", "tolerance", "proved", "measured")
+        more = [notebook.table(head, rows)] if rows else []
+        return notebook.shown(self._repr_svg_(), self.recipe.name, self.checks, *more, *map(notebook.line, told))
+
+
+def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
+    """Leave out what an entry of the report tells beyond the fields of its class."""
+    return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}

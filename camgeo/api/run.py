@@ -1,0 +1,106 @@
+"""From a recipe to files and a verdict: made and kept, made and only judged, or judged alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from camgeo.api.errors import CallError
+from camgeo.api.log import LOG, staged, tell_checks
+from camgeo.api.report import Report
+from camgeo.common.terminal import escaped
+from camgeo.common.units import UNIT_MM
+from camgeo.output import pipeline
+from camgeo.recipe.export import KINDS
+from camgeo.recipe.schema.fields import MOST
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from os import PathLike
+
+    from camgeo.common.units import Units
+    from camgeo.recipe.recipe import Recipe
+
+
+def export(
+    recipe: Recipe,
+    out: str | PathLike[str],
+    *,
+    only: Sequence[str] = (),
+    progress: Callable[[str], None] | None = None,
+) -> Report:
+    """Write a recipe's files into the folder `out`/<name>, read them back and judge them.
+
+    Nothing is there but whole sets: files in which a check fails go to `out`/<name>.rejected. `only` names kinds of
+    files, such as "dxf"; others stay as they are. `progress` hears of each stage as it begins. Raises RecipeErrors
+    where there is no such cam or a tolerance cannot be held, SurroundingsError where the disk or a package is not what
+    it should be, CallError for a kind of which the recipe lists no file. A check that fails raises nothing: see
+    `Report.ok`.
+    """
+    only = (only,) if isinstance(only, str) else tuple(only)
+    listed = {request.kind for request in recipe.export.files}
+    faults = [_unlisted(kind) for kind in only if kind not in listed]
+    if faults and not listed.intersection(only):
+        raise CallError(*faults)
+    outcome = pipeline.export(recipe, Path(out), only=only, told=staged(recipe, progress))
+    return _told(Report(recipe, outcome.report, outcome.folder))
+
+
+def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Report:
+    """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
+    return _told(Report(recipe, pipeline.check(recipe, told=staged(recipe, progress)).report))
+
+
+def verify(
+    recipe: Recipe,
+    file: str | PathLike[str],
+    *files: str | PathLike[str],
+    tolerance: float | None = None,
+    units: Units | None = None,
+) -> Report:
+    """Judge drawings, solids and milling programs of any origin by a recipe's motion.
+
+    They are held to `tolerance`, in the recipe's unit; without one to that of the recipe's file of the same name, or of
+    its export. `units` is that of files that state none. Raises RecipeErrors where there is no such cam, CallError for
+    what is no file of a known kind, UnitsError where a file states another unit than `units`. A file that cannot be
+    read raises nothing: that is a check that fails.
+    """
+    from kin.read.files import SUFFIXES
+
+    paths = [Path(name) for name in (file, *files)]
+    found = [path for path in paths if path.is_file()]
+    faults = [f"{escaped(str(path))}: {_no_file(path)}" for path in paths if path not in found]
+    known = ", ".join(SUFFIXES)
+    faults += [f"{escaped(str(path))}: none of {known}" for path in found if path.suffix.lower() not in SUFFIXES]
+    if tolerance is not None and not 0.0 < tolerance <= MOST:
+        faults.append(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {tolerance!r}")
+    if units is not None and units not in UNIT_MM:
+        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {units!r}")
+    if faults:
+        raise CallError(*faults)
+    within = None if tolerance is None else tolerance * recipe.mm
+    report = pipeline.judged(recipe, paths, tolerance=within, units=None if units is None else UNIT_MM[units])
+    return _told(Report(recipe, report, None, tuple(paths)))
+
+
+def _told(report: Report) -> Report:
+    """Tell the log of a report."""
+    name = report.recipe.name
+    for file in report.files:
+        if report.path is not None:
+            LOG.info("%s: wrote %s", name, file.path)
+    tell_checks(name, report.checks)
+    LOG.info("%s: %s", name, "ok" if report.ok else "FAILED")
+    return report
+
+
+def _unlisted(kind: str) -> str:
+    if kind not in KINDS:
+        return f"a kind of file is one of {', '.join(KINDS)}, not {kind!r}"
+    return f"export.files lists no {kind}"
+
+
+def _no_file(path: Path) -> str:
+    if path.is_dir():
+        return "a folder; name the files in it"
+    return "not a regular file" if path.exists() else "there is no such file"

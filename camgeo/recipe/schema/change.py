@@ -1,0 +1,212 @@
+"""Recipes from a program: plain values written as YAML, or put into the text of a recipe, which keeps its comments."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping as AnyMapping
+from collections.abc import Sequence as AnySequence
+from typing import TYPE_CHECKING, TypeAlias, TypeGuard
+
+from camgeo.recipe.schema.edit import index_of, line_starts, spelled
+from camgeo.recipe.schema.errors import RecipeError, RecipeErrors, shown
+from camgeo.recipe.schema.yaml_source import (
+    MAX_DEPTH,
+    Mapping,
+    Sequence,
+    entries,
+    is_empty,
+    join,
+    read_source,
+    scalars,
+)
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.yaml_source import Node, Source
+
+Value: TypeAlias = "str | float | bool | AnySequence[Value] | AnyMapping[str, Value] | None"
+"""What may stand in a recipe: a text, a number, a truth value, nothing, and lists and mappings of those."""
+
+_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_.-]*")  # texts that YAML and people read as they stand
+_WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n", "nan", "inf"})
+_STEP = re.compile(r"\.?(?:([A-Za-z0-9_-]+)|'([^'\\]*)')|\[([0-9]+)\]")
+
+
+def written(values: AnyMapping[str, Value], file: str) -> str:
+    """Write a recipe's values as YAML, a key a line; raises RecipeErrors, which name `file`, for what none may hold."""
+    return "".join(f"{line}\n" for line in _block(values, "", file, 0))
+
+
+def changed(source: Source, path: str, value: Value) -> str:
+    """Put a value in the place of another in a recipe's text, or add it where its path has none yet.
+
+    All else stays as it is, comments included; what a list or a mapping held goes with its comments. Raises
+    RecipeErrors for a path that leads nowhere, a value that no recipe may hold, and a place that aliases share.
+    """
+    steps = _steps(source, path)
+    node, at = source.root, ""
+    for i, step in enumerate(steps):
+        found = _entry(node, step)
+        if found is None:
+            return _checked(source, path, _added(source, node, at, steps[i:], value))
+        node, at = found, join(at, step)
+    own = {id(scalar) for _, scalar in scalars(node)}
+    if any(id(scalar) in own for there, scalar in scalars(source.root) if not _is_below(there, path)):
+        raise _refused(source, path, "an alias shares this place with others", "write the value out where it stands")
+    text = _flow(value, path, source.file, 0)
+    first, behind = _span(source, node.mark, node.end)
+    old = source.text[first:behind]
+    if not old:  # `key:` and nothing behind it
+        text = text if source.text[first - 1 : first].isspace() else f" {text}"
+    return _checked(source, path, source.text[:first] + text + old[len(old.rstrip()) :] + source.text[behind:])
+
+
+def _steps(source: Source, path: str) -> list[str | int]:
+    steps: list[str | int] = []
+    at = 0
+    while found := _STEP.match(path, at):
+        steps.append(int(found[3]) if found[3] else found[1] or found[2])
+        at = found.end()
+    if at < len(path) or not steps or path.startswith("."):
+        raise _refused(source, path, "not the path of a field", "write it like cam.base_radius or cam.motion[1].over")
+    return steps
+
+
+def _entry(node: Node, step: str | int) -> Node | None:
+    if isinstance(step, int):
+        return node.items[step] if isinstance(node, Sequence) and step < len(node.items) else None
+    return entries(node).get(step) if isinstance(node, Mapping) else None
+
+
+def _added(source: Source, node: Node, at: str, steps: list[str | int], value: Value) -> str:
+    """Add an entry to the mapping at a path; the mappings between come to be with it."""
+    whole = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).removeprefix(".")
+    path = f"{at}{'' if whole.startswith('[') or not at else '.'}{whole}"
+    for step in reversed(steps[1:]):
+        if isinstance(step, int):
+            raise _refused(source, path, "there is no such entry", "give the whole list by its own path")
+        value = {step: value}
+    name = steps[0]
+    if isinstance(name, int) or not (isinstance(node, Mapping) or is_empty(node)):
+        held = "entry" if isinstance(name, int) else "field"
+        raise _refused(source, path, f"there is no such {held}", "give a value to a field or an entry that is there")
+    text = f"{name}: {_flow(value, path, source.file, 0)}"
+    if not isinstance(node, Mapping):
+        return changed(source, at, {name: value})
+    if node.flow:
+        end = _index(source, node.entries[-1][1].end) if node.entries else _index(source, node.end) - 1
+        return f"{source.text[:end]}{', ' if node.entries else ''}{text}{source.text[end:]}"
+    key, last = node.entries[-1]
+    line, column = last.mark if is_empty(last) else last.end
+    behind = line - (column == 1)  # the number of the last line; a block of text ends where the next line begins
+    while behind > key.mark[0] and not source.lines[behind - 1].strip():
+        behind -= 1
+    starts = [*line_starts(source.text), len(source.text)]
+    cut = starts[behind]
+    before = source.text[:cut]
+    newline = "\r\n" if "\r\n" in source.text else "\n"
+    before += "" if before.endswith(("\n", "\r")) else newline
+    return f"{before}{' ' * (node.entries[0][0].mark[1] - 1)}{text}{newline}{source.text[cut:]}"
+
+
+def _checked(source: Source, path: str, text: str) -> str:
+    """Give back the new text, if it says what the old one did but for the value at a path."""
+    try:
+        new = read_source(text.encode("utf-8", "surrogatepass"), source.file).root
+    except RecipeErrors as errors:
+        raise _refused(source, path, "the value cannot be put there", "write it into the text by hand") from errors
+    if _others(source.root, path) != _others(new, path):
+        raise _refused(source, path, "the value cannot be put there", "write it into the text by hand")
+    return text
+
+
+def _is_below(path: str, top: str) -> bool:
+    return path == top or path.startswith((f"{top}.", f"{top}["))
+
+
+def _others(root: Node, path: str) -> dict[str, str]:
+    """Give the texts at all other paths; nothing, which a value may have replaced, is none."""
+    return {at: scalar.text for at, scalar in scalars(root) if not (_is_below(at, path) or is_empty(scalar))}
+
+
+def _index(source: Source, mark: tuple[int, int]) -> int:
+    return index_of(line_starts(source.text), mark)
+
+
+def _span(source: Source, mark: tuple[int, int], end: tuple[int, int]) -> tuple[int, int]:
+    return _index(source, mark), max(_index(source, mark), _index(source, end))
+
+
+def _refused(source: Source, path: str, problem: str, remedy: str) -> RecipeErrors:
+    return RecipeErrors([RecipeError(source.file, 0, 0, path, problem, None, remedy)])
+
+
+# --- values as YAML ---------------------------------------------------------------------------------------------------
+
+
+def _block(values: AnyMapping[str, Value], path: str, file: str, depth: int) -> list[str]:
+    """Lines of a mapping; lists of lists or of mappings take a line an entry."""
+    lines = []
+    indent = "  " * depth
+    for key, value in values.items():
+        at = join(path, _key(key, path, file))
+        name = _scalar(key, at, file)
+        if isinstance(value, AnyMapping) and value:
+            lines += [f"{indent}{name}:", *_block(value, at, file, _deeper(depth, at, file))]
+        elif _is_list(value) and any(isinstance(item, AnyMapping) or _is_list(item) for item in value):
+            items = (_flow(item, join(at, i), file, depth + 1) for i, item in enumerate(value))
+            lines += [f"{indent}{name}:", *(f"{indent}  - {item}" for item in items)]
+        else:
+            lines.append(f"{indent}{name}: {_flow(value, at, file, depth)}")
+    return lines
+
+
+def _flow(value: object, path: str, file: str, depth: int) -> str:
+    """Write any value on one line."""
+    depth = _deeper(depth, path, file)
+    if isinstance(value, AnyMapping):
+        pairs = (
+            f"{_scalar(_key(k, path, file), path, file)}: {_flow(v, join(path, k), file, depth)}"
+            for k, v in value.items()
+        )
+        return f"{{{', '.join(pairs)}}}"
+    if _is_list(value):
+        return f"[{', '.join(_flow(item, join(path, i), file, depth) for i, item in enumerate(value))}]"
+    return _scalar(value, path, file)
+
+
+def _is_list(value: object) -> TypeGuard[AnySequence[Value]]:
+    return isinstance(value, AnySequence) and not isinstance(value, str | bytes | bytearray)
+
+
+def _deeper(depth: int, path: str, file: str) -> int:
+    if depth > MAX_DEPTH:
+        raise RecipeErrors([RecipeError(file, 0, 0, path[:60], f"nested more than {MAX_DEPTH} deep")])
+    return depth + 1
+
+
+def _key(key: object, path: str, file: str) -> str:
+    if not isinstance(key, str):
+        raise RecipeErrors([RecipeError(file, 0, 0, path, "a key is a text", shown(str(key)))])
+    return key
+
+
+def _scalar(value: object, path: str, file: str) -> str:
+    item = getattr(value, "item", None)  # of numpy's numbers
+    value = item() if callable(item) and getattr(value, "ndim", None) == 0 else value
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float) and math.isfinite(value):
+        return spelled(value)
+    if isinstance(value, str):
+        return (
+            value if _PLAIN.fullmatch(value) and value.lower() not in _WORDS else json.dumps(value, ensure_ascii=False)
+        )
+    told = shown(str(value))
+    what = "a number is finite" if isinstance(value, float) else "neither a text, a number, a list nor a mapping"
+    raise RecipeErrors([RecipeError(file, 0, 0, path, what, told)])
