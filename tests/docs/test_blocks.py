@@ -18,6 +18,7 @@ from typing import NamedTuple
 import pytest
 from support.cases import few
 
+from camgeo.checks.declared import CHECKS
 from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe import read
@@ -126,7 +127,7 @@ def spoken():
 
 
 def complaint(words, capsys):
-    """What the parser says against a command; of a bare name, such as `camgeo sweep`, whether there is such a command."""
+    """What the parser says against a command; a bare name, such as `camgeo sweep`, is to be a command."""
     try:
         parsed([*words, "--help"] if len(words) == 1 else words)
     except SystemExit as left:
@@ -269,3 +270,15 @@ def test_the_plan_of_the_house_names_what_is_there():
     plan = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
     rooms = [path.name for package in ("kin", "camgeo") for path in (ROOT / package).iterdir() if path.is_dir()]
     assert [room for room in rooms if room != "__pycache__" and f"**{room}**" not in plan] == []
+
+
+def test_the_report_page_names_every_check():
+    text = (ROOT / "docs" / "report.md").read_text(encoding="utf-8")
+    assert [name for name in CHECKS if f"`{name}`" not in text] == []
+
+
+def test_the_glossary_has_each_term_once_in_order():
+    rows = re.findall(r"^\| (.*?) \|", (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8"), re.MULTILINE)[2:]
+    assert len(rows) >= 60
+    assert rows == sorted(rows, key=str.lower)
+    assert len(set(rows)) == len(rows)
