@@ -287,3 +287,13 @@ def test_the_glossary_has_each_term_once_in_order():
     assert len(rows) >= 60
     assert rows == sorted(rows, key=str.lower)
     assert len(set(rows)) == len(rows)
+
+
+def test_every_table_has_as_many_cells_in_each_row():
+    uneven = []
+    for page in PAGES:
+        text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        for table in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE):
+            counts = {len(re.findall(r"(?<!\\)\|", row)) for row in table.splitlines()}
+            uneven += [f"{page.name}: {table.splitlines()[0]}"] if len(counts) > 1 else []
+    assert uneven == []
