@@ -222,6 +222,23 @@ def test_python_runs(page, workshop, monkeypatch):
     assert names
 
 
+def called():
+    """Commands of camgeo of each page's shell blocks."""
+    found = {}
+    for block in (b for b in blocks() if b.language == "sh"):
+        mine = [words[1:] for words in commands(block.text) if Path(words[0]).name == "camgeo"]
+        found.setdefault(block.page, []).extend(mine)
+    slow = {"sweep": (pytest.mark.slow,)}  # it draws, which takes seconds to begin with
+    return [pytest.param(lines, id=page, marks=slow.get(lines[-1][0], ())) for page, lines in found.items() if lines]
+
+
+@pytest.mark.parametrize("lines", called())
+def test_commands_of_shell_blocks_run(lines, workshop, monkeypatch, capsys):
+    monkeypatch.chdir(workshop)
+    for words in lines:
+        assert main(words) == 0, (words, capsys.readouterr().err)
+
+
 def test_settings_are_read():
     for block in blocks():
         if block.language == "toml":
