@@ -65,8 +65,11 @@ class Row:
 
     def line(self):
         if isinstance(self.reached, str):
-            return f"| {self.case} | {self.asked} | refused: {self.reached} | - | {self.why} |"
-        return f"| {self.case} | {self.asked} | {self.reached:.1e} | {self.most:.0e} | {self.why} |"
+            figures = (f"refused: {self.reached}", "-")
+        else:
+            figures = (f"{self.reached:.1e}", f"{self.most:.0e}")
+        told = [cell.replace("|", "\\|") for cell in (self.case, self.asked, *figures, self.why)]
+        return f"| {' | '.join(told)} |"
 
 
 class TookTooLongError(Exception):
@@ -231,7 +234,7 @@ def shown(topic):
 
 def cells(line):
     """Cells of a line of a table."""
-    return [cell.strip() for cell in line.removeprefix("|").removesuffix("|").split(" | ")]
+    return [cell.strip().replace("\\|", "|") for cell in line.removeprefix("|").removesuffix("|").split(" | ")]
 
 
 def main():
