@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, cast
 
+import numpy as np
+
 from camgeo.cams.family import (
     Cam,
     Circle,
@@ -12,9 +14,7 @@ from camgeo.cams.family import (
     Follower,
     GrownError,
     Intent,
-    Oscillating,
     Profile,
-    Roller,
     Undercut,
 )
 from camgeo.cams.pairs import PairCam, Route, build_route, check, pair_table
@@ -25,9 +25,12 @@ from camgeo.curve.parallel import Parallel
 from camgeo.recipe.schema.fields import length
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.recipe.schema.reader import Values
     from kin.follower.follower import Follower as Judged
     from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -64,9 +67,24 @@ class DoubleRollerCam(PairCam):
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """Two rollers on one arm, its pivot as far from the shaft as from them."""
-        touches = (Roller(self.roller_radius), Roller(self.roller_radius))
         checks = ("closing-equation", "transmission", "pressure-angle")
-        return Follower("double roller", Oscillating(self.arm, self.arm), touches, checks)
+        return Follower("double roller", checks, closure="form-closure")
+
+    def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:
+        """Between the normal and the way of a roller's arm; each of both rollers runs round the whole pitch curve."""
+        law = cast("Transmission", intent)
+
+        def angle(t: Array) -> Array:
+            at = profile.base.sample(t)
+            phi = law.at(t, 0)[0][0]
+            arm = at.point - law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
+            arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
+            normal = at.normal
+            across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
+            found: Array = np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across)
+            return found
+
+        return angle
 
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """A double roller."""

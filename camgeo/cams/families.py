@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.cams import constant_breadth, double_roller, flat_pair, support
+from camgeo.cams import constant_breadth, constant_diameter, double_roller, flat_pair, support
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Family
@@ -14,6 +14,7 @@ FAMILIES: dict[str, Family] = {
     for module in (
         support,
         constant_breadth,
+        constant_diameter,
         double_roller,
         flat_pair,
     )

@@ -16,13 +16,15 @@ if TYPE_CHECKING:
 
     from camgeo.cams.position import Position
     from camgeo.curve.curve import Curve
+    from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.schema.fields import Table
     from camgeo.recipe.schema.reader import Reader, Values
     from kin.follower.follower import Follower as Judged
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
+    from kin.numeric.arrays import Array
 
-Intent: TypeAlias = "Lift | Transmission"
+Intent: TypeAlias = "Lift | Transmission | Displacement"
 Undercut: TypeAlias = Literal["refuse", "trim"]
 Harmonics: TypeAlias = tuple[tuple[int, float], ...]  # (harmonic, coefficient), rising
 Unit: TypeAlias = Literal["mm", "deg"]
@@ -51,52 +53,17 @@ class Profile:
 
 
 @dataclass(frozen=True)
-class Translating:
-    """A guide along a line through the shaft."""
-
-
-@dataclass(frozen=True)
-class Oscillating:
-    """An arm about a pivot: the distance of the pivot from the shaft, and from the pivot to what touches, mm."""
-
-    pivot: float
-    arm: float
-
-
-@dataclass(frozen=True)
-class Carried:
-    """A frame that a linkage carries."""
-
-
-@dataclass(frozen=True)
-class Roller:
-    """A roller of some radius, mm."""
-
-    radius: float
-
-
-@dataclass(frozen=True)
-class Flat:
-    """A flat face."""
-
-
-Guide: TypeAlias = Translating | Oscillating | Carried
-Touch: TypeAlias = Roller | Flat
-
-
-@dataclass(frozen=True)
 class Follower:
-    """A guide, and what touches the disc.
+    """What follows the disc: the name in reports, the checks of its intended motion in their order.
 
-    `name` is the one of reports; `checks` are those of its intended motion, in their order; `breadth` is how far two
-    opposite faces are apart, mm, None for other followers.
+    `breadth` is how far two opposite faces are apart, mm, None for other followers. `closure` is the name of the check
+    of files on what is left between the cam and a follower that is held from both sides, empty for other followers.
     """
 
     name: str
-    guide: Guide
-    touches: tuple[Touch, ...]
     checks: tuple[str, ...]
     breadth: float | None = None
+    closure: str = ""
 
 
 class Circle(NamedTuple):
@@ -160,6 +127,13 @@ class Cam(ABC):
     @abstractmethod
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:
         """What kin judges files by: the follower with its law; `breadth` is a yoke's, `face` that of a pair."""
+
+    def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
+        """Angle between the contact's normal and the follower's way, rad, over parameters of the contour (n,).
+
+        Above 0 where the cam drives a rise; a flat face at right angles to its way has none.
+        """
+        return lambda t: 0.0 * t
 
     # --- advice -------------------------------------------------------------------------------------------------------
 

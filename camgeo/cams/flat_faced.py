@@ -7,15 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 
-from camgeo.cams.family import (
-    Cam,
-    Carried,
-    Flat,
-    Follower,
-    Intent,
-    Profile,
-    Translating,
-)
+from camgeo.cams.family import Cam, Follower, Intent, Profile
 from camgeo.cams.position import LiftPosition, Position
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
@@ -36,7 +28,8 @@ class FlatFacedCam(Cam):
 
     def position(self, intent: Intent) -> Position:
         """The lift."""
-        return LiftPosition(cast("Lift", intent))
+        lift = cast("Lift", intent)
+        return LiftPosition(lift, lift.datum)
 
     def profile(self, intent: Intent) -> Profile:
         """The envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
@@ -53,9 +46,8 @@ class FlatFacedCam(Cam):
         mean, deviation, _ = breadth_of(cast("Lift", intent))
         yoke = self.always_in_a_yoke or is_constant(mean, deviation)
         name = "square frame" if framed else "yoke" if yoke else "flat face"
-        faces = (Flat(),) * (4 if framed else 2 if yoke else 1)
         checks = ("constant-breadth", "face-length") if yoke else ("face-length",)
-        return Follower(name, Carried() if framed else Translating(), faces, checks, mean if yoke else None)
+        return Follower(name, checks, *((mean, "constant-breadth") if yoke else ()))
 
     always_in_a_yoke: ClassVar[bool] = False
     """Whether the motion is given for two faces, so that a breadth that varies is a fault."""

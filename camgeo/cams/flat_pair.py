@@ -9,10 +9,8 @@ from camgeo.cams.family import (
     Cam,
     Circle,
     Family,
-    Flat,
     Follower,
     Intent,
-    Oscillating,
     Profile,
     Undercut,
     Unit,
@@ -56,12 +54,7 @@ class FlatPairCam(PairCam):
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """Two faces whose lines pass through their pivot."""
-        return Follower(
-            "flat pair",
-            Oscillating(2.0 * self.arm, 2.0 * self.arm),
-            (Flat(), Flat()),
-            ("closing-equation", "transmission"),
-        )
+        return Follower("flat pair", ("closing-equation", "transmission"), closure="form-closure")
 
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """A pair, its faces so far beside the lines through the pivot."""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.fields import Schema
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
+    from kin.law.sources.motion import Motion
     from kin.law.sources.programme import Step
 
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law.programme)
@@ -254,9 +255,7 @@ def check_filled(segments: list[Values], path: str, angle: float, wanted: str, r
         reader.fault_at(path, "the segments do not fill their angle", value, remedy)
 
 
-def programme_of(
-    segments: Sequence[MotionSegment], total: float, field: str, around: int | None = None
-) -> kin.law.programme.Programme:
+def programme_of(segments: Sequence[MotionSegment], total: float, field: str, around: int | None = None) -> Motion:
     """Join segments to a motion over an angle (rad); raises kin's IntentError with the field of what does not fit."""
     from kin.law.sources.programme import programme
 

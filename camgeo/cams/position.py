@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
 
 from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
-    from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
@@ -37,7 +36,7 @@ class Position(Protocol):
         """Factor from `rows` to what tables and plots show: lengths in units of `mm` mm, or degrees."""
         ...
 
-    def rows(self, shaft: Array, order: int, side: int = 1) -> Array:
+    def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Position and its derivatives by the shaft angle, (order + 1, n); at a break those of a side."""
         ...
 
@@ -65,11 +64,20 @@ class Position(Protocol):
         ...
 
 
+class Law(Protocol):
+    """A motion over the shaft angle."""
+
+    def derivatives(self, theta: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
+        """Position and its derivatives at theta (n,), (order + 1, n)."""
+        ...
+
+
 @dataclass(frozen=True)
 class LiftPosition:
-    """Along a line, by a lift, whose parameter is the shaft angle."""
+    """Along a line, by a law whose parameter is the shaft angle; `datum` is the law's value at lift 0, mm."""
 
-    law: Lift
+    law: Law
+    datum: float = 0.0
     title: ClassVar[str] = "lift"
     unit: ClassVar[str] = "mm"
 
@@ -81,10 +89,10 @@ class LiftPosition:
         """Lengths in units of `mm` mm."""
         return 1.0 / mm
 
-    def rows(self, shaft: Array, order: int, side: int = 1) -> Array:
+    def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Lift from its datum, mm, and its derivatives."""
         found = np.array(self.law.derivatives(shaft, order, side))
-        found[0] -= self.law.datum
+        found[0] -= self.datum
         return found
 
     def turn(self, shaft: Array, order: int) -> Array:
@@ -92,7 +100,7 @@ class LiftPosition:
         return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
 
     def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
-        """Of one face; a second one, opposite, is not tabled."""
+        """Of the first contact; a second one, opposite, is not tabled."""
         return {"": relative}
 
     def shaft_deg(self, parameter: float) -> float:
@@ -106,6 +114,27 @@ class LiftPosition:
     def by_parameter(self, parameter: Array, order: int) -> Array:
         """Lift, mm."""
         return self.law.derivatives(parameter, order)
+
+
+@dataclass(frozen=True)
+class ArmPosition(LiftPosition):
+    """About a pivot, by a law whose parameter is the shaft angle, rad; `arm` is what it works at, mm."""
+
+    arm: float = 1.0
+    title: ClassVar[str] = "swing"
+    unit: ClassVar[str] = "deg"
+
+    def column(self, units: str) -> str:  # noqa: ARG002
+        """Name of its column."""
+        return "follower_deg"
+
+    def shown(self, mm: float) -> float:  # noqa: ARG002
+        """Degrees."""
+        return math.degrees(1.0)
+
+    def stroke(self, parameter: Array) -> tuple[float, float]:
+        """Swing in rad, and the arm in mm."""
+        return super().stroke(parameter)[0], self.arm
 
 
 @dataclass(frozen=True)
@@ -125,7 +154,7 @@ class SwingPosition:
         """Degrees."""
         return math.degrees(1.0)
 
-    def rows(self, shaft: Array, order: int, side: int = 1) -> Array:
+    def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Swing, rad, and its derivatives."""
         return self.share * self.law.psi_of_shaft(shaft, order, side)
 

@@ -21,6 +21,7 @@ from camgeo.recipe.figures import TRANSMISSION as STEEPEST
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from camgeo.cams.family import Follower
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.figures import Figure
     from camgeo.recipe.recipe import Recipe
@@ -32,13 +33,13 @@ LIMIT = "limit:"  # before the name of the figure that a recipe limits
 
 @dataclass(frozen=True)
 class Scene:
-    """What decides which checks are made: the recipe, and whether two parallel faces hold the cam.
+    """What decides which checks are made: the recipe, and the follower that its motion calls for.
 
     Of a run further whether its contour is trimmed, and whether its linkage turns right round.
     """
 
     recipe: Recipe
-    yoke: bool
+    follower: Follower
     trimmed: bool = False
     turns: bool = True
 
@@ -46,6 +47,11 @@ class Scene:
     def roller(self) -> bool:
         """Whether rollers follow."""
         return self.recipe.cam.touch_radius > 0.0
+
+    @property
+    def yoke(self) -> bool:
+        """Whether two parallel faces hold the cam."""
+        return self.follower.breadth is not None
 
     @property
     def swings(self) -> bool:
@@ -98,6 +104,11 @@ class Declared:
 
 def _always(_: Scene) -> bool:
     return True
+
+
+def _named(name: str) -> Exact:
+    """Whether the follower names a check of its intended motion."""
+    return lambda scene: name in scene.follower.checks
 
 
 def _parts(scene: Scene) -> bool:
@@ -178,8 +189,8 @@ def _in_a_yoke(scene: Scene, file: FileRequest) -> bool:
     return scene.yoke and _contour(scene, file)
 
 
-def _swung(scene: Scene, file: FileRequest) -> bool:
-    return scene.swings and _contour(scene, file)
+def _form_closed(scene: Scene, file: FileRequest) -> bool:
+    return scene.follower.closure == "form-closure" and _contour(scene, file)
 
 
 def _driven(scene: Scene, file: FileRequest) -> bool:
@@ -254,21 +265,20 @@ UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), _always)
 UNDERCUT_GLOBAL = Declared(
     "undercut-global", ("mm",), lambda scene: scene.roller, why_not=_convex, field="cam.roller_radius"
 )
-CLOSING = Declared("closing-equation", ("mm",), lambda scene: scene.swings, why_not=_no_swing)
-TRANSMISSION = Declared(STEEPEST, ("",), lambda scene: scene.swings, why_not=_no_swing, remedy=remedies.smaller_swing)
-PRESSURE = Declared(
-    PRESSURE_ANGLE, ("deg",), lambda scene: scene.roller, why_not=_no_roller, remedy=remedies.smaller_swing
-)
+CLOSING = Declared("closing-equation", ("mm",), _named("closing-equation"), why_not=_no_swing)
+TRANSMISSION = Declared(STEEPEST, ("",), _named(STEEPEST), why_not=_no_swing, remedy=remedies.smaller_swing)
+PRESSURE = Declared(PRESSURE_ANGLE, ("deg",), _named(PRESSURE_ANGLE), why_not=_no_roller, remedy=remedies.smaller_swing)
 BREADTH = Declared(
     "constant-breadth",
     ("mm",),
-    lambda scene: scene.yoke,
+    _named("constant-breadth"),
     _in_a_yoke,
     why_not=_one_face,
     play=True,
     in_frame=True,
 )
-FACE = Declared(TRAVEL, ("mm",), lambda scene: not scene.swings, why_not=_no_plate)
+DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
+FACE = Declared(TRAVEL, ("mm",), _named(TRAVEL), why_not=_no_plate)
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
 DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")
@@ -321,7 +331,7 @@ MOTION = Declared(
     in_frame=True,
 )
 BREADTH_MAX = Declared("breadth-max", ("mm",), of_file=_in_a_yoke, play=True, in_frame=True)
-FORM_CLOSURE = Declared("form-closure", ("mm", "deg"), of_file=_swung, play=True)
+FORM_CLOSURE = Declared("form-closure", ("mm", "deg"), of_file=_form_closed, play=True)
 OUTPUT = Declared(
     "linkage-error",
     ("mm", "deg"),

@@ -21,20 +21,23 @@ import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
 from camgeo.curve.rates import OfLaw, bounds_of, cut, series_of, steady_rates
+from kin.law.formula.expression import Expression
+from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError, first_harmonic
 from kin.law.segment import Affine, Constant
 from kin.numeric import elementary
+from kin.numeric.distinct import distinct
 from kin.numeric.elementary import Jet
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side
     from camgeo.curve.rates import Series
-    from kin.law.piecewise import Piecewise
     from kin.law.segment import Stretch
     from kin.law.sources.motion import Motion
     from kin.numeric.arrays import Array, Mask
 
 TURN = 2.0 * math.pi
+_LOOKS = 1024  # angles at which a formula's rounding is asked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +75,30 @@ class Displacement:
         """For each stretch whether it is a dwell."""
         return np.array([isinstance(f, Constant) for f in self.functions])
 
+    def law(self, offset: float = 0.0, scale: float = 1.0) -> Piecewise:
+        """Give offset + scale S over a whole turn, as one motion."""
+        over = self.over
+        knots = [over.knots[:1], *(over.knots[1:] + i * TURN / self.repeats for i in range(self.repeats))]
+        functions = [
+            _moved(f, offset, scale, i * TURN / self.repeats) for i in range(self.repeats) for f in over.functions
+        ]
+        return Piecewise(np.concatenate(knots), tuple(functions), TURN, over.smooth_seam and self.repeats == 1)
+
+    def scaled(self, scale: float) -> Displacement:
+        """The same motion, so much larger."""
+        functions = tuple(_moved(f, 0.0, scale, 0.0) for f in self.over.functions)
+        over = Piecewise(self.over.knots, functions, self.over.period, self.over.smooth_seam)
+        low, high = self.range
+        return Displacement(over, self.repeats, (scale * low, scale * high))
+
+    @cached_property
+    def rounding(self) -> float:
+        """By how much S or S' may be off through the rounding of a recipe's own formula; 0 where there is none."""
+        if not any(isinstance(_bare(f), Expression) for f in self.over.functions):
+            return 0.0
+        theta = distinct(np.concatenate([np.arange(_LOOKS) * (TURN / self.repeats / _LOOKS), self.over.breaks]))
+        return float(self.over.enclosure(theta, theta, 1)[1].max())
+
     @property
     def eccentric(self) -> Mask:
         """For each stretch whether S + S'' is constant: a dwell, or the harmonic law over a half turn."""
@@ -86,6 +113,16 @@ class Displacement:
     def derivatives(self, theta: Array, order: int, side: Side = 1) -> Array:
         """Give S and its derivatives at theta (n,), (order + 1, n)."""
         return self.over.derivatives(theta, order, side)
+
+
+def _bare(function: Stretch) -> Stretch:
+    return _bare(function.function) if isinstance(function, Affine) else function
+
+
+def _moved(function: Stretch, offset: float, scale: float, start: float) -> Stretch:
+    if isinstance(function, Constant):
+        return Constant(offset + scale * function.value)
+    return Affine.of(function, offset=offset, scale=scale, start=start)
 
 
 class Guide(Protocol):

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from camgeo.common.clock import Clock
     from camgeo.curve.curve import Curve
     from camgeo.fit.pieces import Outline
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
 
 
 @dataclass
@@ -36,11 +34,10 @@ class Outlines:
         return self.made[form, tolerance]
 
 
-def formula_rounding(intent: Lift | Transmission, contour: Curve) -> float:
+def formula_rounding(unsure: float, contour: Curve) -> float:
     """By how much a recipe's own formula may have moved the contour in rounding, mm; 0 if by no more than usual."""
     from camgeo.fit.nodes import rounding
 
-    unsure = intent.rounding
     return unsure if unsure > rounding(contour.size) else 0.0
 
 

@@ -68,7 +68,7 @@ def _harmonics(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design
 def scene_of(recipe: Recipe, design: Design) -> Scene:
     """What of a run decides which checks are made."""
     turns = design.driven is None or design.driven.turns
-    return Scene(recipe, design.yoke_breadth is not None, design.trimmed, turns)
+    return Scene(recipe, design.follower, design.trimmed, turns)
 
 
 def _of_linkage(recipe: Recipe, design: Design) -> list[Skipped]:

@@ -35,7 +35,7 @@ def limit_checks(
 
     `checks` are all that were made, `dynamics` the report's section. A figure that cannot be had fails, and tells why.
     """
-    scene = Scene(recipe, design.yoke_breadth is not None)
+    scene = Scene(recipe, design.follower)
     measured = of_design(design, checks, [limit.figure for limit in recipe.limits])
     found: list[Check] = []
     for limit in recipe.limits:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import PRESSURE, Scene
+from camgeo.checks.declared import PRESSURE
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.report.document import Remark
 from kin.numeric.angles import degrees
@@ -44,7 +44,7 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
     if any(limit.figure == PRESSURE.name and limit.at_most is not None for limit in recipe.limits):
         return None
     made = next((check for check in design.checks if check.name == PRESSURE.name), None)
-    kind = "oscillating" if Scene(recipe, yoke=False).swings else "translating"
+    kind = "oscillating" if recipe.cam.unit == "deg" else "translating"
     rule = PRESSURE_RULE[kind]
     if made is None or made.value is None or made.value <= rule or not made.ok:
         return None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from camgeo.cams.flat_faced import SAME_BREADTH, breadth_of, spread
-from camgeo.checks.declared import BREADTH, CLOSING, FACE, PRESSURE, TRANSMISSION
+from camgeo.checks.declared import BREADTH, CLOSING, DIAMETER, FACE, PRESSURE, TRANSMISSION
 from kin.judge.check import Check
 from kin.law.feasibility import steepest
 from kin.numeric.angles import degrees
@@ -16,7 +16,7 @@ from kin.numeric.angles import degrees
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.cams.family import Intent, Profile
+    from camgeo.cams.family import Cam, Intent, Profile
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -25,19 +25,19 @@ ZOOMS, ZOOM = 5, 32  # about the worst of these: so often, into so many parts
 EXACT = 1e-9  # of the arm: to this the closing equation must hold
 
 
-def motion_checks(intent: Intent, profile: Profile, names: tuple[str, ...]) -> list[Check]:
+def motion_checks(cam: Cam, intent: Intent, profile: Profile, names: tuple[str, ...]) -> list[Check]:
     """Those of the intended motion's checks that a follower names, in that order."""
-    return [MADE[name](intent, profile) for name in names]
+    return [MADE[name](cam, intent, profile) for name in names]
 
 
-def _constant_breadth(intent: Intent, _: Profile) -> Check:
+def _constant_breadth(_: Cam, intent: Intent, __: Profile) -> Check:
     """Constancy of the breadth, for a yoke (AS eq. 4)."""
     mean, deviation, at = breadth_of(cast("Lift", intent))
     limit = SAME_BREADTH * abs(mean)
     return Check(BREADTH.name, deviation <= limit, deviation, limit, "mm", degrees(at))
 
 
-def _face_length(intent: Intent, _: Profile) -> Check:
+def _face_length(_: Cam, intent: Intent, __: Profile) -> Check:
     """How far the contact travels along a face."""
     lift = cast("Lift", intent)
     t = spread(lift.breaks, 2.0 * math.pi)
@@ -46,7 +46,7 @@ def _face_length(intent: Intent, _: Profile) -> Check:
     return Check(FACE.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 
 
-def _closing_equation(intent: Intent, _: Profile) -> Check:
+def _closing_equation(_: Cam, intent: Intent, __: Profile) -> Check:
     """That the second arm's end runs on the same curve (W 4.6, 7.1).
 
     Both arms' ends are held against each other at the same polar angle, t = phi - (psi + alpha)/2 of the first and
@@ -63,32 +63,32 @@ def _closing_equation(intent: Intent, _: Profile) -> Check:
     return Check(CLOSING.name, bool(gap[worst] <= limit), float(gap[worst]), limit, "mm", at)
 
 
-def _transmission(intent: Intent, _: Profile) -> Check:
+def _transmission(_: Cam, intent: Intent, __: Profile) -> Check:
     """How near the cam is to turning back: psi' of the shaft angle stays below 1."""
     law = cast("Transmission", intent)
     at, value = steepest(law)
     return Check(TRANSMISSION.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))
 
 
-def _pressure_angle(intent: Intent, profile: Profile) -> Check:
-    """Greatest angle between the contact normal and the direction in which a roller's arm lets it move, degrees.
+def _pressure_angle(cam: Cam, intent: Intent, profile: Profile) -> Check:
+    """Greatest angle between the contact normal and the direction in which the follower moves, degrees.
 
-    The same at both rollers, each of which runs once round the whole pitch curve. At 90 degrees the cam cannot drive.
+    At 90 degrees the cam cannot drive.
     """
-    law = cast("Transmission", intent)
+    angle = cam.pressure_angle(intent, profile)
+    value, at = _greatest(lambda t: np.degrees(np.abs(angle(t))), spread(intent.breaks, 2.0 * math.pi))
+    return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", cam.position(intent).shaft_deg(at))
 
-    def angle(t: Array) -> Array:
-        at = profile.base.sample(t)
-        phi = law.at(t, 0)[0][0]
-        arm = at.point - law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
-        arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
-        normal = at.normal
-        across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
-        found: Array = np.degrees(np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across))
-        return found
 
-    value, at = _greatest(angle, spread(law.breaks, 2.0 * math.pi))
-    return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(float(law.at(at, 0)[0][0, 0])))
+def _constant_diameter(_: Cam, intent: Intent, profile: Profile) -> Check:
+    """Constancy of the pitch curve's diameters through the shaft, for two opposite rollers."""
+    t = spread(np.mod(intent.breaks, math.pi), math.pi)
+    near, far = (np.hypot(*profile.base.sample(t + by).point.T) for by in (0.0, math.pi))
+    diameter = near + far
+    mean = 0.5 * float(diameter.max() + diameter.min())
+    off = np.abs(diameter - mean)
+    worst, limit = int(np.argmax(off)), SAME_BREADTH * mean
+    return Check(DIAMETER.name, bool(off[worst] <= limit), float(off[worst]), limit, "mm", degrees(float(t[worst])))
 
 
 def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
@@ -108,8 +108,9 @@ def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
     return value, at
 
 
-MADE: dict[str, Callable[[Intent, Profile], Check]] = {
+MADE: dict[str, Callable[[Cam, Intent, Profile], Check]] = {
     BREADTH.name: _constant_breadth,
+    DIAMETER.name: _constant_diameter,
     FACE.name: _face_length,
     CLOSING.name: _closing_equation,
     TRANSMISSION.name: _transmission,

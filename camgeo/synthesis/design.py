@@ -80,7 +80,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         from camgeo.synthesis.checks import motion_checks
 
         follower = cam.follower(intent, framed=recipe.linkage is not None)
-        more = motion_checks(intent, profile, follower.checks)
+        more = motion_checks(cam, intent, profile, follower.checks)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage

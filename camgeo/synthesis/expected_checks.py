@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from camgeo.checks.declared import EVERY, Scene
 
 if TYPE_CHECKING:
+    from camgeo.cams.family import Follower
     from camgeo.recipe.recipe import Recipe
 
 
@@ -28,7 +29,7 @@ class Foreseen(NamedTuple):
 
 def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
-    scene, files = Scene(recipe, _in_a_yoke(recipe)), recipe.export.files
+    scene, files = Scene(recipe, _follower(recipe)), recipe.export.files
     found = [Foreseen(one.name) for one in EVERY.values() if one.exact is not None and one.exact(scene)]
     # of a file, what its contour is in itself comes before what is left between it and the follower
     in_turn = sorted(EVERY.values(), key=lambda one: one.play or one.exact is not None)
@@ -39,7 +40,6 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     return tuple(found)
 
 
-def _in_a_yoke(recipe: Recipe) -> bool:
-    """Whether two parallel faces hold the cam; the motion is built, so that one that cannot be is reported first."""
-    framed = recipe.linkage is not None
-    return recipe.cam.follower(recipe.cam.intent(), framed=framed).breadth is not None
+def _follower(recipe: Recipe) -> Follower:
+    """The follower; the motion is built, so that one that cannot be is reported first."""
+    return recipe.cam.follower(recipe.cam.intent(), framed=recipe.linkage is not None)

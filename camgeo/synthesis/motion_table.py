@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from camgeo.cams.family import Intent
     from camgeo.recipe.recipe import Recipe
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
 ORDER = 3
 
 
-def motion_table(recipe: Recipe, intent: Lift | Transmission) -> tuple[tuple[str, ...], Array]:
+def motion_table(recipe: Recipe, intent: Intent) -> tuple[tuple[str, ...], Array]:
     """Column names, and rows (angles + 1, 5): shaft angle, position and its derivatives by radian of shaft.
 
     A plate's lift is in the recipe's unit, the distance from the shaft less its datum; a follower that swings is in

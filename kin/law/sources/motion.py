@@ -200,3 +200,19 @@ def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | N
         kept.append(function)
         at.append(float(end))
     return Motion(Piecewise(np.array(at), tuple(kept)), around)
+
+
+def opposed(half: Motion) -> Motion:
+    """Go on from a motion S over half a turn as S(total) - S(t - total), over the whole turn (SW eq. 4).
+
+    Raises IntentError where the velocities do not meet, S'(total) = -S'(0).
+    """
+    half.demand_joined("motion", "mm")
+    end, knots = float(half.at_end(0)[0]), half.motion.knots.tolist()
+    functions = list(half.motion.functions)
+    for function in half.motion.functions:
+        if isinstance(function, Constant):
+            functions.append(Constant(end - function.value))
+        else:
+            functions.append(Affine.of(function, offset=end, scale=-1.0, start=half.total))
+    return joined([*knots, *(knot + half.total for knot in knots[1:])], functions)

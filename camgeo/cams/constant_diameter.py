@@ -1,0 +1,108 @@
+"""Cams whose pitch curve has constant diameters through the shaft: a frame with two opposite rollers holds them.
+
+From the motion over one half turn (Shu and Wu 2012, reference 11): r(t) + r(t + 180) = 2 Rp + S(180).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, cast
+
+import numpy as np
+
+from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Intent, Undercut
+from camgeo.cams.guided import GuidedCam
+from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
+from camgeo.recipe.schema.fields import Kind, Table, length
+
+if TYPE_CHECKING:
+    from camgeo.curve.moving_frame import Displacement, Translating
+    from camgeo.recipe.schema.reader import Reader, Values
+    from kin.follower.follower import Follower as Judged
+
+_OTHER_HALF = "two opposite rollers hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
+
+
+@dataclass(frozen=True)
+class ConstantDiameterCam(GuidedCam):
+    """A cam between two opposite rollers of one frame, from the motion over one half turn."""
+
+    kind: ClassVar[str] = "constant-diameter"
+    base_radius: float
+    roller_radius: float
+    motion: tuple[MotionSegment, ...]
+    undercut: Undercut
+
+    @property
+    def touch_radius(self) -> float:
+        """Radius of both rollers, mm."""
+        return self.roller_radius
+
+    @property
+    def guide(self) -> Translating:
+        """Through the shaft."""
+        from camgeo.curve.moving_frame import Translating
+
+        return Translating(self.base_radius + self.roller_radius)
+
+    def intent(self) -> Intent:
+        """The displacement of the first roller over a whole turn."""
+        from camgeo.curve.moving_frame import Displacement
+        from kin.law.sources.motion import opposed
+
+        half = programme_of(self.motion, math.pi, "motion", around=-1)
+        return Displacement.of(opposed(half))
+
+    def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
+        """A frame with two rollers."""
+        return Follower("roller yoke", ("constant-diameter", "pressure-angle"), closure="form-closure")
+
+    def apart(self, intent: Intent) -> float:
+        """Distance of the rollers' centres, mm."""
+        s = cast("Displacement", intent).derivatives(np.array([0.0, math.pi]), 0)[0]
+        return 2.0 * (self.base_radius + self.roller_radius) + float(s.sum())
+
+    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
+        """A frame with two rollers."""
+        from kin.follower import follower
+
+        law = cast("Displacement", intent).law(self.guide.prime)
+        return follower.RollerYoke(self.roller_radius, law, self.apart(intent))
+
+    def grown(self, out: float, scale: float) -> Cam:
+        """Smaller rollers on the same pitch curve."""
+        if not self.roller_radius > out:
+            raise GrownError("the roller's radius", self.roller_radius)
+        base, radius = scale * (self.base_radius + out), scale * (self.roller_radius - out)
+        return replace(self, base_radius=base, roller_radius=radius)
+
+
+TABLE = Table(
+    (
+        length("base_radius", "radius of the base circle", required=True),
+        length("roller_radius", "radius of both rollers", required=True),
+        replace(
+            motion_field(
+                "motion", Kind.LENGTH, "motion over one half turn, 180 degrees; the other half follows from it"
+            ),
+            required=True,
+        ),
+        UNDERCUT,
+    ),
+)
+
+
+def check(cam: Values, reader: Reader) -> None:
+    """Note segments that do not fill the half turn."""
+    if "motion" in cam:
+        check_filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader, why=_OTHER_HALF)
+
+
+def build(cam: Values, mm: float) -> Cam:
+    """Make the cam of values in which there is no fault."""
+    motion = build_motion(cam["motion"], mm)
+    return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], motion, cam.get("undercut", "refuse"))
+
+
+FAMILY = Family(ConstantDiameterCam, TABLE, build, check, frozenset({"roller"}))

@@ -1,0 +1,85 @@
+"""What cams for a roller, a knife edge or a curved shoe on a guide have in common: one moving frame draws them all.
+
+The pitch curve is the path of the roller's centre round the standing cam (`camgeo.curve.moving_frame`), the contour
+its parallel by the roller's radius.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, ClassVar, cast
+
+from camgeo.cams.family import Cam, Circle, Profile
+from camgeo.cams.position import ArmPosition, LiftPosition, Position
+from camgeo.common.rounding import downward
+from camgeo.curve.curve import Curve
+from camgeo.curve.parallel import Parallel
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.cams.family import Intent
+    from camgeo.curve.moving_frame import CentreShape, Displacement, Oscillating, Translating
+    from kin.numeric.arrays import Array
+
+LARGER_BASE = "a larger base radius, a smaller stroke, or the same over a wider angle"
+
+
+class GuidedCam(Cam):
+    """A cam whose follower's centre is led along a line or about a pivot."""
+
+    less_steep: ClassVar[str] = LARGER_BASE
+    roller_field: ClassVar[str] = "roller radius"
+    """What its radius is called in a recipe."""
+    base_radius: float
+
+    @property
+    @abstractmethod
+    def guide(self) -> Translating | Oscillating:
+        """How the centre is led; raises IntentError where the guide does not reach the prime circle."""
+
+    @property
+    def side(self) -> int:
+        """On which side of the pitch curve the metal lies: 1 inside, -1 outside, as of a ring."""
+        return 1
+
+    def position(self, intent: Intent) -> Position:
+        """The displacement."""
+        law = cast("Displacement", intent)
+        return LiftPosition(law) if self.unit == "mm" else ArmPosition(law, arm=cast("Oscillating", self.guide).length)
+
+    def profile(self, intent: Intent) -> Profile:
+        """The centre's path, and the contour within it by the radius (around it, of a ring)."""
+        from camgeo.curve.moving_frame import CentreShape, Displacement
+
+        if not isinstance(intent, Displacement):
+            raise TypeError("a follower on a guide takes a displacement over the shaft angle")
+        pitch = CentreShape(intent, self.guide)
+        whole, radius = Curve.whole(pitch), self.side * self.touch_radius
+        return Profile(whole, Curve.whole(Parallel(pitch, radius)) if radius else whole, radius)
+
+    def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
+        """Between the contact's normal and the way of the centre."""
+        return cast("CentreShape", profile.base.shape).pressure_angle
+
+    def free_of_undercut(self, free_at: float, mm: float) -> str:
+        """A smaller roller."""
+        if not free_at / mm > 0.0:
+            return f"no {self.roller_field} is proved to be free of it"
+        return f"a {self.roller_field} below {downward(free_at / mm)} would be free of it"
+
+    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
+        """A smaller roller."""
+        return f"a {self.roller_field} below {downward(value)} {unit}" if value > 0.0 else ""
+
+    def circles(self) -> tuple[Circle, ...]:
+        """The base circle, and the prime circle."""
+        circles = [Circle("base circle", self.base_radius)]
+        if self.touch_radius:
+            circles.append(Circle("prime circle", self.guide.prime))
+        return tuple(circles)
+
+    def grown_intent(self, intent: Intent, out: float, scale: float) -> Intent:  # noqa: ARG002
+        """The same pitch curve; a lift is scaled with the drawing, a swing is not."""
+        law = cast("Displacement", intent)
+        return law.scaled(scale) if self.unit == "mm" else law
