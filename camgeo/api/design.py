@@ -79,8 +79,8 @@ class Design:
         from camgeo.report.figures import of_design
 
         given = set(self.recipe.marks)
-        kind = self.recipe.cam.kind
-        names = [name for name, one in FIGURES.items() if one.of == "design" and there(one.needs, kind, given)]
+        offers = self.recipe.cam.offers
+        names = [name for name, one in FIGURES.items() if one.of == "design" and there(one.needs, offers, given)]
         found = of_design(self.exact, self.exact.checks, names)
         return MappingProxyType({name: Figure.of(self.recipe, one) for name, one in found.items()})
 

@@ -29,6 +29,7 @@ class ConstantBreadthCam(FlatFacedCam):
     """A cam between two parallel faces, from the motion over one half turn (Shu and Wu)."""
 
     kind: ClassVar[str] = "constant-breadth"
+    offers: ClassVar[frozenset[str]] = frozenset({"face", "plate"})
     always_in_a_yoke: ClassVar[bool] = True
     base_radius: float
     motion: tuple[MotionSegment, ...]
@@ -79,4 +80,4 @@ def build(cam: Values, mm: float) -> Cam:
     return ConstantBreadthCam(cam["base_radius"], build_motion(cam["motion"], mm), cam.get("undercut", "refuse"))
 
 
-FAMILY = Family(ConstantBreadthCam, TABLE, build, check, frozenset({"plate"}))
+FAMILY = Family(ConstantBreadthCam, TABLE, build, check)

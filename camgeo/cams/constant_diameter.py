@@ -29,6 +29,7 @@ class ConstantDiameterCam(GuidedCam):
     """A cam between two opposite rollers of one frame, from the motion over one half turn."""
 
     kind: ClassVar[str] = "constant-diameter"
+    offers: ClassVar[frozenset[str]] = frozenset({"roller"})
     base_radius: float
     roller_radius: float
     motion: tuple[MotionSegment, ...]
@@ -105,4 +106,4 @@ def build(cam: Values, mm: float) -> Cam:
     return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], motion, cam.get("undercut", "refuse"))
 
 
-FAMILY = Family(ConstantDiameterCam, TABLE, build, check, frozenset({"roller"}))
+FAMILY = Family(ConstantDiameterCam, TABLE, build, check)

@@ -38,6 +38,7 @@ class DoubleRollerCam(PairCam):
     """A single disk that works two rollers on one arm (Wunderlich); pi/alpha = lam/mu in lowest terms, mu odd."""
 
     kind: ClassVar[str] = "double-roller"
+    offers: ClassVar[frozenset[str]] = frozenset({"roller", "swings"})
     swing_of: ClassVar[Literal["arm", "pair"]] = "arm"
     lam: int
     mu: int
@@ -132,4 +133,4 @@ def build(cam: Values, mm: float) -> Cam:
     )
 
 
-FAMILY = Family(DoubleRollerCam, TABLE, build, check, frozenset({"roller", "swings"}))
+FAMILY = Family(DoubleRollerCam, TABLE, build, check)

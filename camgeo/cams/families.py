@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.cams import constant_breadth, constant_diameter, double_roller, flat_pair, support
+from camgeo.cams import constant_breadth, constant_diameter, disc, double_roller, flat_pair, support
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Family
@@ -15,6 +15,7 @@ FAMILIES: dict[str, Family] = {
         support,
         constant_breadth,
         constant_diameter,
+        disc,
         double_roller,
         flat_pair,
     )

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.schema.fields import Table
     from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.recipe.schema.yaml_source import Node
     from kin.follower.follower import Follower as Judged
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
@@ -96,6 +97,8 @@ class Cam(ABC):
     """Of the backlash of a follower that is held from both sides."""
     gain: ClassVar[float | None] = 1.0
     """By how much at most the follower is off per mm of the contour's error, None where that depends on the place."""
+    offers: ClassVar[frozenset[str]] = frozenset()
+    """What figures may be taken of it: roller, swings (two on one arm), face, plate (that a linkage can carry)."""
     undercut: Undercut
 
     less_steep: ClassVar[str] = SMALLER_SWING
@@ -134,6 +137,10 @@ class Cam(ABC):
         Above 0 where the cam drives a rise; a flat face at right angles to its way has none.
         """
         return lambda t: 0.0 * t
+
+    def contact_place(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:
+        """Where a flat face is touched, mm along it, over parameters of the contour (n,)."""
+        raise NotImplementedError
 
     # --- advice -------------------------------------------------------------------------------------------------------
 
@@ -208,14 +215,18 @@ class Family:
     """How a family stands in a recipe.
 
     `table` has its keys; `check` notes the faults between them, `build` makes the cam of values without fault and the
-    unit of length in mm. `needs` are what figures may be taken of: roller, swings, plate.
+    unit of length in mm. `variant` looks, where that decides, at the cam as written for the class that it will be of.
     """
 
     cam: type[Cam]
     table: Table
     build: Callable[[Values, float], Cam]
     check: Callable[[Values, Reader], None]
-    needs: frozenset[str]
+    variant: Callable[[Node], type[Cam]] | None = None
+
+    def of(self, node: Node | None) -> type[Cam]:
+        """Give the class of a cam as written, which says its units and what figures may be taken of it."""
+        return self.variant(node) if self.variant and node is not None else self.cam
 
     @property
     def kind(self) -> str:

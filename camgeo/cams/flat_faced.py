@@ -14,6 +14,8 @@ from camgeo.curve.curve import Curve
 from kin.numeric.distinct import distinct
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kin.follower.follower import Follower as Judged
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
@@ -48,6 +50,11 @@ class FlatFacedCam(Cam):
         name = "square frame" if framed else "yoke" if yoke else "flat face"
         checks = ("constant-breadth", "face-length") if yoke else ("face-length",)
         return Follower(name, checks, *((mean, "constant-breadth") if yoke else ()))
+
+    def contact_place(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
+        """From the line through the shaft, along the face: p'."""
+        lift = cast("Lift", intent)
+        return lambda t: lift.derivatives(t, 1)[1]
 
     always_in_a_yoke: ClassVar[bool] = False
     """Whether the motion is given for two faces, so that a breadth that varies is a fault."""

@@ -30,6 +30,7 @@ class FlatPairCam(PairCam):
     """A single disk that works a rigid pair of flat faces, its pivot at 2 arm from the shaft (Wunderlich, 5)."""
 
     kind: ClassVar[str] = "flat-pair"
+    offers: ClassVar[frozenset[str]] = frozenset({"swings"})
     play_unit: ClassVar[Unit] = "deg"
     swing_of: ClassVar[Literal["arm", "pair"]] = "pair"
     lam: int
@@ -92,4 +93,4 @@ def build(cam: Values, mm: float) -> Cam:
     return FlatPairCam(lam, mu, cam["arm"], build_route(cam, mm), cam.get("undercut", "refuse"))
 
 
-FAMILY = Family(FlatPairCam, TABLE, build, check, frozenset({"swings"}))
+FAMILY = Family(FlatPairCam, TABLE, build, check)

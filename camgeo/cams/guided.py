@@ -39,7 +39,7 @@ class GuidedCam(Cam):
         """How the centre is led; raises IntentError where the guide does not reach the prime circle."""
 
     @property
-    def side(self) -> int:
+    def metal(self) -> int:
         """On which side of the pitch curve the metal lies: 1 inside, -1 outside, as of a ring."""
         return 1
 
@@ -55,7 +55,7 @@ class GuidedCam(Cam):
         if not isinstance(intent, Displacement):
             raise TypeError("a follower on a guide takes a displacement over the shaft angle")
         pitch = CentreShape(intent, self.guide)
-        whole, radius = Curve.whole(pitch), self.side * self.touch_radius
+        whole, radius = Curve.whole(pitch), self.metal * self.touch_radius
         return Profile(whole, Curve.whole(Parallel(pitch, radius)) if radius else whole, radius)
 
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002

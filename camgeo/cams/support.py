@@ -73,6 +73,7 @@ class SupportCam(FlatFacedCam):
     """A cam given by its support function; `pivot` is the shaft in the axes of that function, mm."""
 
     kind: ClassVar[str] = "support"
+    offers: ClassVar[frozenset[str]] = frozenset({"face", "plate"})
     less_steep: ClassVar[str] = ""  # a support function has no stroke of its own
     shape: Shape
     pivot: tuple[float, float]
@@ -246,4 +247,4 @@ def _shape(cam: Values, mm: float) -> Shape:
     return FormulaShape(cam["p"], mm)
 
 
-FAMILY = Family(SupportCam, TABLE, build, check, frozenset({"plate"}))
+FAMILY = Family(SupportCam, TABLE, build, check)

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.cams.families import FAMILIES
 from camgeo.recipe.schema.errors import suggestion
 from camgeo.recipe.schema.fields import MOST, Field, Form, Kind, Table, either
 from camgeo.recipe.schema.json_schema import table_schema
@@ -27,15 +26,18 @@ class Limit:
     at_most: float | None = None
 
 
-Needs = Literal["", "linkage", "dwell", "follower", "roller", "swings", "plate", "wall", "all", "preload", "play"]
+Needs = Literal[
+    "", "linkage", "dwell", "follower", "roller", "swings", "face", "plate", "wall", "all", "preload", "play"
+]
 
 
 NEEDS: dict[Needs, str] = {
     "linkage": "a linkage",
     "dwell": "dwell.band",
     "follower": "a follower without a linkage",
-    "roller": "a cam of kind double-roller",
+    "roller": "a cam for rollers",
     "swings": "a cam of kind double-roller or flat-pair",
+    "face": "a cam for a flat face that is pushed along its normal",
     "plate": "a cam of kind support or constant-breadth",
     "wall": "a part with openings or a hub",
     "all": "a file with `parts: all`",
@@ -101,7 +103,7 @@ FIGURES: dict[str, Figure] = {
         "follower",
     ),
     TRANSMISSION: Figure("greatest swing of the arm per turn of the shaft", Kind.NUMBER, "least", "swings"),
-    FACE_LENGTH: Figure("length of the face along which the contact travels", Kind.LENGTH, "least", "plate"),
+    FACE_LENGTH: Figure("length of the face along which the contact travels", Kind.LENGTH, "least", "face"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
     "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
@@ -144,8 +146,8 @@ def bounds(figure: Figure) -> Table:
 ALL = "parts: all"
 
 
-def there(needs: Needs, cam_kind: str, given: frozenset[str] | set[str]) -> bool:
-    """Tell whether a recipe has what a figure needs, by its kind of cam and the paths of the fields given.
+def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]) -> bool:
+    """Tell whether a recipe has what a figure needs, by what its cam offers and the paths of the fields given.
 
     `ALL` is given where a file shows every body.
     """
@@ -154,8 +156,8 @@ def there(needs: Needs, cam_kind: str, given: frozenset[str] | set[str]) -> bool
             return (needs if needs in {"linkage", "dwell"} else f"dynamics.{needs}") in given
         case "follower":
             return "linkage" not in given
-        case "roller" | "swings" | "plate":
-            return cam_kind in FAMILIES and needs in FAMILIES[cam_kind].needs
+        case "roller" | "swings" | "face" | "plate":
+            return needs in offers
         case "wall":
             return any(f"part.{name}" in given for name in _OPENINGS)
         case "all":
@@ -220,7 +222,7 @@ def of_recipe(reader: Reader) -> tuple[str, ...]:
     given = set(reader.marks)
     if any(path.endswith(".parts") and scalar.text == "all" for path, scalar in scalars(reader.source.root)):
         given.add(ALL)
-    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, reader.kinds["cam"], given))
+    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, reader.offers, given))
 
 
 def check_limits(limits: list[Values], reader: Reader) -> None:

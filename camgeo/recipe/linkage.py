@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
-from camgeo.cams.families import FAMILIES
 from camgeo.recipe.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, length
 from camgeo.recipe.schema.json_schema import one_of_schema
 from camgeo.recipe.schema.yaml_source import join
@@ -332,8 +331,7 @@ def check_linkage(values: Values, reader: Reader) -> None:
             if path in reader.marks:
                 reader.fault_at(path, "needs a linkage", None, "give a linkage, or leave it out")
         return
-    family = FAMILIES.get(reader.kinds["cam"])
-    if family is not None and "plate" not in family.needs:
+    if reader.kinds["cam"] and "plate" not in reader.offers:
         remedy = "a frame around a cam of kind support or constant-breadth drives it"
         reader.fault_at("linkage", f"cannot stand beside a cam of kind {reader.kinds['cam']}", None, remedy)
     for part, harmonics in values.get("cam", {}).get("fourier", {}).items():

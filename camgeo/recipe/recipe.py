@@ -211,8 +211,10 @@ def read_values(reader: Reader) -> Values:
     if isinstance(dyads, Sequence) and dyads.items:
         last = kind_of(dyads.items[-1], DYADS)
     if (family := FAMILIES.get(reader.kinds["cam"])) is not None:
-        own = ((Kind.ERROR, family.cam.unit), (Kind.PLAY, family.cam.play_unit))
+        cam = family.of(top["cam"])
+        own = ((Kind.STROKE, cam.unit), (Kind.ERROR, cam.unit), (Kind.PLAY, cam.play_unit))
         reader.angular |= {kind for kind, unit in own if unit == "deg"}
+        reader.offers = cam.offers
     if last not in SLIDING:
         reader.angular |= {Kind.OUTPUT}
     if (Kind.OUTPUT if reader.kinds["linkage"] else Kind.ERROR) in reader.angular:

@@ -166,7 +166,7 @@ def _recipe(chosen: _Starter) -> Table:
     fields = (replace(item, table=kinds.get(item.name, item.table)) for item in RECIPE.fields)
     if linkage:
         return Table(tuple(fields))
-    unfit = {"dwell", "output_error", *(() if "plate" in FAMILIES[chosen.kind].needs else ("linkage",))}
+    unfit = {"dwell", "output_error", *(() if "plate" in FAMILIES[chosen.kind].cam.offers else ("linkage",))}
     return Table(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
 
 

@@ -192,7 +192,7 @@ def _figures(sweep: Values, reader: Reader) -> None:
         asked.append(("sweep.rank", sweep["rank"]))
     for path, name in asked:
         needs = FIGURES[name].needs
-        if not there(needs, reader.kinds["cam"], set(reader.marks)):
+        if not there(needs, reader.offers, set(reader.marks)):
             remedy = f"give {NEEDS[needs]}, or take another figure"
             reader.fault_at(path, f"{name} needs {NEEDS[needs]}", None, remedy)
 

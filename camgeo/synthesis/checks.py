@@ -37,12 +37,12 @@ def _constant_breadth(_: Cam, intent: Intent, __: Profile) -> Check:
     return Check(BREADTH.name, deviation <= limit, deviation, limit, "mm", degrees(at))
 
 
-def _face_length(_: Cam, intent: Intent, __: Profile) -> Check:
+def _face_length(cam: Cam, intent: Intent, profile: Profile) -> Check:
     """How far the contact travels along a face."""
-    lift = cast("Lift", intent)
-    t = spread(lift.breaks, 2.0 * math.pi)
-    low = _greatest(lambda u: -lift.derivatives(u, 1)[1], t)  # continuous too
-    high = _greatest(lambda u: lift.derivatives(u, 1)[1], t)
+    place = cam.contact_place(intent, profile)
+    t = spread(intent.breaks, 2.0 * math.pi)
+    low = _greatest(lambda u: -place(u), t)  # continuous too
+    high = _greatest(place, t)
     return Check(FACE.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 
 

@@ -52,6 +52,7 @@ class Kind(Enum):
     ANGLE = "an angle"
     NUMBER = "a number"
     INTEGER = "a whole number"
+    STROKE = "a stroke"  # a length, or an angle where the follower swings
     ERROR = "a motion error"  # a length, or an angle where the follower swings
     OUTPUT = "a change of the output"  # of a linkage: an angle, or a length where its last link slides
     MOTION = "a motion"  # of the output, or without a linkage of the follower

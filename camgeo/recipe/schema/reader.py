@@ -20,7 +20,7 @@ Values: TypeAlias = dict[str, Any]
 # How each kind of field is read; a reader of a kind gives None for what is faulty, and has noted the fault.
 Readers: TypeAlias = "collections.abc.Mapping[Kind, Callable[[Reader, Field, Node, str], Any]]"
 
-_LENGTHS = (Kind.LENGTH, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.PLAY)  # unless it is an angle
+_LENGTHS = (Kind.LENGTH, Kind.STROKE, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.PLAY)  # unless it is an angle
 
 
 class Reader:
@@ -28,7 +28,7 @@ class Reader:
 
     `root` is the table of the whole recipe. `errors`; `marks` of every field given and `numbers`, the fields of every
     number given, by path. Further what decides how other fields read, which whoever reads the recipe finds first: its
-    unit, the `kinds` of its mappings with kinds, and the kinds of field that hold an angle.
+    unit, the `kinds` of its mappings with kinds, the kinds of field that hold an angle, what figures its cam offers.
     """
 
     def __init__(self, source: Source, readers: Readers, root: Table) -> None:
@@ -42,6 +42,7 @@ class Reader:
         self.mm = 1.0
         self.kinds: dict[str, str] = {}
         self.angular = {Kind.ANGLE}
+        self.offers: frozenset[str] = frozenset()
 
     # --- faults ------------------------------------------------------------------------------------------------------
 

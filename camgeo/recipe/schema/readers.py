@@ -26,6 +26,7 @@ READERS: Readers = {
     Kind.ANGLE: read_numeric,
     Kind.NUMBER: read_numeric,
     Kind.INTEGER: read_numeric,
+    Kind.STROKE: read_numeric,
     Kind.ERROR: read_numeric,
     Kind.OUTPUT: read_numeric,
     Kind.TRUTH: read_truth,

@@ -79,7 +79,7 @@ def compute(recipe: Recipe, values: Array) -> dict[str, Array]:
 def asked_of(recipe: Recipe) -> tuple[str, ...]:
     """Names of the figures that a recipe's designs have."""
     given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
-    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.kind, given))
+    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.offers, given))
 
 
 def evaluate(
