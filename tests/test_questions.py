@@ -58,11 +58,31 @@ FAMILIES = {
     ),
     "cams": Family(
         classes=frozenset(
-            ["SupportCam", "ConstantBreadthCam", "DoubleRollerCam", "FlatPairCam", "FlatFacedCam", "PairCam"]
+            [
+                "SupportCam",
+                "ConstantBreadthCam",
+                "DoubleRollerCam",
+                "FlatPairCam",
+                "FlatFacedCam",
+                "PairCam",
+                "ConstantDiameterCam",
+                "GuidedCam",
+                "FacedCam",
+                "DiscCam",
+                "RoundCam",
+                "TranslatingRoundCam",
+                "OscillatingRoundCam",
+                "TranslatingFaceCam",
+                "OscillatingFaceCam",
+            ]
         ),
-        kinds=frozenset(["support", "constant-breadth", "double-roller", "flat-pair"]),
+        kinds=frozenset(["support", "constant-breadth", "constant-diameter", "disc", "double-roller", "flat-pair"]),
         nouns=frozenset(["cam"]),
-        exempt={"camgeo/recipe/starter.py": 1, "camgeo/cams/flat_faced.py": 1},  # a check has the name of a kind
+        exempt={
+            "camgeo/recipe/starter.py": 1,
+            "camgeo/cams/flat_faced.py": 2,
+            "camgeo/cams/constant_diameter.py": 1,
+        },  # a check has the name of a kind
     ),
     "followers in camgeo": Family(
         classes=frozenset(["Translating", "Oscillating", "Carried"]),

@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 CAMS: dict[str, Table] = {kind: family.table for kind, family in FAMILIES.items()}
 MADE = (
-    "made are cams for a flat face (support), for a yoke of two parallel faces (constant-breadth, support), for two "
-    "rollers on one oscillating arm (double-roller) and for two faces on one (flat-pair); cams for a single roller, a "
-    "knife edge or a curved shoe, cylindrical cams and grooves are not made"
+    "made are cams for one roller, knife edge, curved shoe or flat face on a stem or an arm (disc), for a yoke of two "
+    "parallel faces (constant-breadth, support) or two opposite rollers (constant-diameter), for two rollers on one "
+    "oscillating arm (double-roller) and for two faces on one (flat-pair); grooves, conjugate and cylindrical cams are "
+    "not made"
 )
 """Which followers there are cams for, in the error of a kind that is none."""
 

@@ -26,9 +26,7 @@ class Limit:
     at_most: float | None = None
 
 
-Needs = Literal[
-    "", "linkage", "dwell", "follower", "roller", "swings", "face", "plate", "wall", "all", "preload", "play"
-]
+Needs = Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "play"]
 
 
 NEEDS: dict[Needs, str] = {
@@ -38,7 +36,6 @@ NEEDS: dict[Needs, str] = {
     "roller": "a cam for rollers",
     "swings": "a cam of kind double-roller or flat-pair",
     "face": "a cam for a flat face that is pushed along its normal",
-    "plate": "a cam of kind support or constant-breadth",
     "wall": "a part with openings or a hub",
     "all": "a file with `parts: all`",
     "preload": "dynamics.preload",
@@ -156,7 +153,7 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return (needs if needs in {"linkage", "dwell"} else f"dynamics.{needs}") in given
         case "follower":
             return "linkage" not in given
-        case "roller" | "swings" | "face" | "plate":
+        case "roller" | "swings" | "face":
             return needs in offers
         case "wall":
             return any(f"part.{name}" in given for name in _OPENINGS)

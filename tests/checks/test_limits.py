@@ -242,7 +242,7 @@ def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
 
 
 def test_a_figure_that_a_recipe_has_not() -> None:
-    missing = {"linkage": FLAT, "dwell": FLAT, "follower": LINKED, "roller": FLAT, "swings": FLAT, "plate": ROLLER}
+    missing = {"linkage": FLAT, "dwell": FLAT, "follower": LINKED, "roller": FLAT, "swings": FLAT, "face": ROLLER}
     missing |= {"wall": ROLLER, "all": FLAT, "preload": FLAT, "play": FLAT}
     for name, figure in FIGURES.items():
         if figure.needs:

@@ -303,11 +303,13 @@ def test_undercut_in_very_many_places_is_told_as_a_number(p: str, words: str) ->
     assert words in said(support(f"p: {p}, undercut: trim"))
 
 
-@pytest.mark.parametrize("word", ["disc", "roller", "translating-roller", "plate", "flat", "groove"])
+@pytest.mark.parametrize("word", ["roller", "translating-roller", "plate", "flat", "groove"])
 def test_a_kind_of_cam_that_is_none_tells_which_are_made(word: str) -> None:
     told = said(f"cam: {{kind: {word}}}\n")
-    assert all(f"({kind}" in told for kind in ("support", "constant-breadth", "double-roller", "flat-pair"))
-    assert told.endswith("cylindrical cams and grooves are not made")
+    assert all(
+        f"({kind}" in told for kind in ("disc", "constant-breadth", "constant-diameter", "double-roller", "flat-pair")
+    )
+    assert told.endswith("grooves, conjugate and cylindrical cams are not made")
     assert said("cam: {kind: suport}\n").endswith("did you mean support?")
 
 

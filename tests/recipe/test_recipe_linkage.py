@@ -176,7 +176,9 @@ PLACE = "give a list of two lengths [x, y] in mm"
         ),
         (
             "{kind: four-bar, ground: 80, coupler: 70, rocker: 90, offset: 3}",
-            ["2:64: linkage.offset: unknown key; it belongs under linkage of kind slider-crank or a dyad of kind rpr"],
+            [
+                "2:64: linkage.offset: unknown key; it belongs under follower of kind roller, follower of kind knife-edge, follower of kind shoe, follower of kind flat, linkage of kind slider-crank or a dyad of kind rpr"
+            ],
         ),
         (
             "{kind: inverted-slider-crank, ground: 80, coupler: 70, rocker: -1}",

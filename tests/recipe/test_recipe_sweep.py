@@ -14,7 +14,7 @@ from camgeo.recipe.schema.fields import MOST_AXES, MOST_VALUES, field_at
 from camgeo.recipe.schema.yaml_source import join
 from camgeo.recipe.sweep import FIGURES, Axis, Sweep
 
-HERE = {"", "linkage", "dwell", "plate"}  # what a recipe with a linkage and a dwell has
+HERE = {"", "linkage", "dwell", "face"}  # what a recipe with a linkage and a dwell has
 
 BASE = """\
 cam: {kind: support, fourier: {mean: 25, cos: {3: 1.5}}, pivot: [10, 4]}
