@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import signal
 
+import mpmath
 import pytest
 from hypothesis import settings
 from support.cases import FULL
@@ -21,9 +22,16 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 QUICK = "not slow"
+DIGITS = 50  # of mpmath
 settings.register_profile("quick", derandomize=True, deadline=None, max_examples=FULL // 4)
 settings.register_profile("repeat", derandomize=True, deadline=None, max_examples=FULL)
 settings.register_profile("explore", deadline=None, max_examples=FULL)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup() -> None:
+    """Mpmath works in as many digits in every test, whatever was imported or run before."""
+    mpmath.mp.dps = DIGITS
 
 
 def pytest_configure(config: pytest.Config) -> None:

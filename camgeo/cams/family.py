@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.recipe.schema.fields import Field, Kind
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -83,7 +84,7 @@ class Margin(NamedTuple):
     of: str
 
 
-class GrownError(ValueError):
+class GrownError(KinError, ValueError):
     """A follower of which nothing would be left."""
 
 

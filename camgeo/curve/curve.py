@@ -231,8 +231,14 @@ class Curve:
 
     @cached_property
     def size(self) -> float:
-        """How far the curve reaches from the shaft, as far as the ends of its cells show."""
-        point = self.sample(np.append(self.cells.low, self.cells.high[-1])).point
+        """How far the curve reaches from the shaft, as far as the ends of its cells show.
+
+        Where there are hardly any, as of a circle, their middles are looked at too: the ends may be the shaft itself.
+        """
+        t = np.append(self.cells.low, self.cells.high[-1])
+        if len(t) <= 3:
+            t = np.append(t, 0.5 * (self.cells.low + self.cells.high))
+        point = self.sample(t).point
         return float(np.hypot(point[:, 0], point[:, 1]).max())
 
     @cached_property

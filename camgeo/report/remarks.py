@@ -139,7 +139,7 @@ def _is_whole(value: float) -> bool:
 def _thickness(recipe: Recipe, design: Design) -> Remark | None:
     """A disc that is a bar or a foil: a slip of the unit, mostly."""
     thickness, size = recipe.part.thickness, design.profile.curve.size
-    if thickness is None or THINNEST * size <= thickness <= THICKEST * size:
+    if thickness is None or not size or THINNEST * size <= thickness <= THICKEST * size:
         return None
     thick = thickness > size
     rule = (THICKEST if thick else THINNEST) * size

@@ -96,7 +96,7 @@ def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: p
     path.write_text(ROLLER + "part: {thickness: 200}\nverify: {angles: 120}\nexport: {files: [dxf, html]}\n")
     assert main(["export", str(path), "--out", str(tmp_path / "out"), "-v"]) == 0
     out = capsys.readouterr().out
-    line, *rest = out.splitlines()
+    *rest, line = out.splitlines()
     assert line.startswith("roller: ok")
     assert "; remark: the pressure angle reaches 62.55 deg; up to 45 is the rule for rollers, oscillating" in line
     assert "; remark: part.thickness, 200 mm, is " in line

@@ -48,7 +48,6 @@ def test_one_harmonic_has_its_least_radius_at_the_crest(mean, share, k):
 @pytest.mark.parametrize("k", range(3))
 def test_several_harmonics_agree_with_mpmath(k):
     cos, sin = [({3: 2.0, 7: 0.05}, {5: 0.1}), ({2: 1.0}, {3: 1.0, 11: 0.02}), ({5: 0.3, 6: 0.3, 7: 0.3}, {})][k]
-    mpmath.mp.dps = 40
 
     def radius(t, order=0):
         turn = mpmath.pi / 2 * order

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
     from camgeo.curve.curve import Shape
 
-mp.mp.dps = 40
 RISE = (0.3, 1.1, 1.9)  # rad: inside the rise of 120 degrees of each oracle
 
 

@@ -27,7 +27,6 @@ def wave(a):
 
 
 def exact(a, start, end):
-    mpmath.mp.dps = 50
     a, start, end = (mpmath.mpf(float(x)) for x in (a, start, end))
 
     def point(t):

@@ -115,7 +115,6 @@ def test_a_sound_curve_is_returned_as_it_is():
 @pytest.mark.parametrize("a", [15.9, 15.0, 10.0, 4.0, 2.1])
 def test_three_corners_in_closed_form(a):
     # p = a + 2 cos 3t: the corners lie on the axes of symmetry, where p sin t + p' cos t = 0
-    mpmath.mp.dps = 30
     corner = mpmath.findroot(
         lambda t: ((a + 2 * mpmath.cos(3 * t)) * mpmath.sin(t) - 6 * mpmath.sin(3 * t) * mpmath.cos(t)) / t**3,
         (mpmath.acos(mpmath.mpf(a) / 16) / 3, mpmath.mpf(1.05)),
@@ -281,9 +280,7 @@ def test_what_cannot_be_trimmed_is_refused(curve, message):
     assert caught.value.parameter is not None
 
 
-def test_only_inner_parallels_and_convex_faces():
-    with pytest.raises(ValueError, match=r"^a roller's contour lies inside its pitch curve, not 3 mm outside$"):
-        trimmed(roller(STAR, -3.0))
+def test_only_convex_faces():
     with pytest.raises(ValueError, match="a flat face cannot touch the hollow near parameter"):
         trimmed(Curve.whole(STAR))
 

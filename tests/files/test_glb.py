@@ -9,13 +9,12 @@ from support.heavy import trimesh
 from support.parts import recipe_of
 
 from camgeo.cli.main import main
-from camgeo.files.glb import Actor, write_glb
+from camgeo.files.glb import PERIOD, Actor, write_glb
 from camgeo.files.mesh import Mesh
 from camgeo.output.job import Job
 from camgeo.output.view import make_view
 from camgeo.recipe.export import FileRequest
 from camgeo.synthesis.design import designed
-from kin.numeric.angles import TURN
 
 TETRAHEDRON = Mesh(
     np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 30.0]]),
@@ -89,7 +88,7 @@ def test_motion_is_that_of_the_pose(scene):
         sampler = animation["samplers"][channel["sampler"]]
         assert sampler["interpolation"] == "LINEAR"
         times = arrays[sampler["input"]][:, 0]
-        assert times == pytest.approx(np.linspace(0.0, TURN, STEPS + 1))
+        assert times == pytest.approx(np.linspace(0.0, PERIOD, STEPS + 1))
         found[channel["target"]["path"]] = arrays[sampler["output"]].astype(float)
     x, y, z = 1000.0 * found["translation"].T
     assert np.allclose(x, MOVING[:, 0], atol=1e-5)

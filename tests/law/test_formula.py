@@ -18,7 +18,6 @@ from kin.law.formula.expression import Expression
 from kin.law.formula.formula import Formula, FormulaDomainError, FormulaError
 from kin.numeric.elementary import BallJet, DomainError, Jet
 
-mpmath.mp.dps = 50
 TURN = 2 * math.pi
 FUNCTIONS = "sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, exp, log, sqrt, cbrt, hypot, abs, sign, min, max"
 CAM_2A = "25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)"

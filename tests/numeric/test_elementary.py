@@ -38,7 +38,6 @@ from kin.numeric.elementary import (
 )
 from kin.numeric.interval import Ball
 
-mpmath.mp.dps = 50
 ORDER = 8
 
 

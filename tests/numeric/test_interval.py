@@ -14,8 +14,6 @@ from support.cases import examples
 from kin.numeric import interval
 from kin.numeric.interval import Ball
 
-mpmath.mp.dps = 40
-
 moderate = st.floats(-50, 50)
 anything = st.floats(allow_nan=False, allow_infinity=False)
 widths = st.sampled_from([0.0, 1e-15, 1e-9, 1e-3, 0.3, 4.0])

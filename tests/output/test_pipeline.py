@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 from unittest import mock
@@ -58,8 +59,12 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
         ["report.json", *(file["path"] for file in report["files"])]
     )
     assert {"radius-of-curvature", "undercut-local", "contour", "motion", "wall"} <= set(names(report))
-    made = [(check["name"], check.get("file")) for check in report["checks"]]
-    assert sorted(map(str, made)) == sorted(str((item.name, item.file)) for item in foreseen(recipe))
+    made = Counter((check["name"], check.get("file")) for check in report["checks"])
+    told = Counter((item.name, item.file) for item in foreseen(recipe))
+    if any(request.parts == "all" for request in recipe.export.files):  # how many bodies there are is not foreseen
+        assert not told - made
+    else:
+        assert told == made
     for file in report["files"]:
         data = (folder / file["path"]).read_bytes()
         assert file["bytes"] == len(data)

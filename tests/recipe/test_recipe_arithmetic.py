@@ -9,12 +9,13 @@ import pytest
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.recipe.loading import load_text
+from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.recipe.schema.json_schema import json_schema
 from camgeo.recipe.schema.scalars import Complaint, read_number, read_whole
 
-RECIPE = (
+TEXT = (
     "cam: {{kind: constant-breadth, base_radius: {0}, "
     "motion: [{{rise: 20, over: 120, law: cycloidal}}, {{dwell: 60}}]}}\n"
 )
@@ -63,7 +64,7 @@ def test_a_whole_number() -> None:
 )
 def test_what_is_refused_and_where(text: str, said: str) -> None:
     with pytest.raises(RecipeErrors) as caught:
-        load_text(RECIPE.format(text), "arithmetic.yaml")
+        load_text(TEXT.format(text), "arithmetic.yaml")
     assert str(caught.value).startswith(f"arithmetic.yaml:1:44: cam.base_radius: {said}")
 
 
@@ -95,7 +96,7 @@ def test_wherever_a_number_is_expected() -> None:
 
 
 def test_a_sweep_varies_it() -> None:
-    text = RECIPE.format("80/2")
+    text = TEXT.format("80/2")
     cam = load_text(with_values(text, {"cam.base_radius": 41.0}), "swept.yaml").cam
     assert isinstance(cam, ConstantBreadthCam)
     assert cam.base_radius == 41.0

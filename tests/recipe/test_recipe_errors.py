@@ -20,7 +20,7 @@ KEYS = (
     "and manufacture"
 )
 PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark and wall"
-BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10}"
+BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10} in mm"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 LENGTH = "give a length above 0 in mm"
 FORMATS = "give dxf, svg, stl, 3mf, step, glb, csv, html or gcode"

@@ -4,9 +4,11 @@ The response from rest to a force e^(mu t) is the divided difference of exp(t x)
 roots are moved apart by 1e-25, which changes nothing that a double could show.
 """
 
-from mpmath import cos, exp, mp, mpc, mpf, pi, sin, sqrt
+from mpmath import MPContext
 
+mp = MPContext()  # its digits are nobody else's
 mp.dps = 60
+mpf, mpc, pi, sqrt, exp, cos, sin = mp.mpf, mp.mpc, mp.pi, mp.sqrt, mp.exp, mp.cos, mp.sin
 APART = mpf(10) ** -25
 
 

@@ -28,9 +28,9 @@ RUN = """\
 import sys
 from support.sweepers import MEANS
 from camgeo.cli.main import main
-from camgeo.sweep.search import command
+from camgeo.cli import sweep
 if __name__ == "__main__":
-    command._means = lambda: MEANS
+    sweep._means = lambda: MEANS
     sys.exit(main(sys.argv[1:]))
 """
 

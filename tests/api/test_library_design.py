@@ -120,7 +120,11 @@ def test_polyline_and_spline() -> None:
 
 def test_figures_and_checks_are_in_the_recipe_s_unit() -> None:
     mm = camgeo.load(ROOT / "recipes" / "shu-wu.yaml").replace("limits", {"radius-of-curvature": {"at_least": 30}})
-    numbers = {"cam.base_radius": 40 / 25.4, "cam.motion[0].rise": 20 / 25.4, "part": {"bore": 20 / 25.4}}
+    numbers = {
+        "cam.base_radius": 40 / 25.4,
+        "cam.motion[0].rise": 20 / 25.4,
+        "part": {"thickness": 8 / 25.4, "bore": 20 / 25.4},
+    }
     inch = mm.replace({"units": "inch", **numbers, "limits": {"radius-of-curvature": {"at_least": 30 / 25.4}}})
     a, b = camgeo.design(mm), camgeo.design(inch)
     for name, unit in (("radius-of-curvature", "mm"), ("peak-velocity", "mm/rad"), ("size", "mm")):
