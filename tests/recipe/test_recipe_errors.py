@@ -237,7 +237,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         ),
         (
             FLAT_PAIR,
-            "1:43: cam.roller_radius: unknown key; it belongs under cam of kind constant-diameter or cam of kind double-roller",
+            "1:43: cam.roller_radius: unknown key; it belongs under cam of kind constant-diameter or double-roller",
         ),
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, damping: 300, play: 0.1}\n",
@@ -260,7 +260,8 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         ("cam: 5", "1:6: cam: not a mapping, given 5; give a mapping with the kind of cam and its fields"),
         (
             "cam: {p: 9}",
-            "1:6: cam.kind: missing; give support, constant-breadth, constant-diameter, disc, double-roller or flat-pair: the kind of cam",
+            "1:6: cam.kind: missing; give support, constant-breadth, constant-diameter, disc, double-roller or flat-pair: "
+            "the kind of cam",
         ),
         ("cam: {kind: suport, p: 9}", "1:13: cam.kind: not one of the choices, given 'suport'; did you mean support?"),
         (

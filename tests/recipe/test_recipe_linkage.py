@@ -177,7 +177,8 @@ PLACE = "give a list of two lengths [x, y] in mm"
         (
             "{kind: four-bar, ground: 80, coupler: 70, rocker: 90, offset: 3}",
             [
-                "2:64: linkage.offset: unknown key; it belongs under follower of kind roller, follower of kind knife-edge, follower of kind shoe, follower of kind flat, linkage of kind slider-crank or a dyad of kind rpr"
+                "2:64: linkage.offset: unknown key; it belongs under follower of kind roller, knife-edge, shoe or flat, "
+                "linkage of kind slider-crank or a dyad of kind rpr"
             ],
         ),
         (

@@ -229,7 +229,11 @@ def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
     if name in root.keys:
         return "it belongs at the top level"
     places = [item.name for item in root.fields if item.table and name in item.table.keys]
-    places += [f"{group} {kind}" for group, kind, table in _grouped(root) if name in table.keys]
+    of_group: dict[str, list[str]] = {}
+    for group, kind, table in _grouped(root):
+        if name in table.keys:
+            of_group.setdefault(group, []).append(kind)
+    places += [f"{group} {either(tuple(kinds))}" for group, kinds in of_group.items()]
     if places:
         return f"it belongs under {either(tuple(places))}"
     return f"the keys here are {either(known, 'and')}" if known else "there are no keys here"
