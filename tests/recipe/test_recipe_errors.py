@@ -71,8 +71,8 @@ tolerance: 4
         ),
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
         (
-            "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, the file dxf, the file svg, "
-            "the file stl, the file 3mf, the file step, the file glb or the file gcode"
+            "cams/a.yaml:13:1: tolerance: unknown key; it belongs under export, "
+            "or under the file dxf, svg, stl, 3mf, step, glb or gcode"
         ),
     ]
 
@@ -260,8 +260,10 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         ("cam: 5", "1:6: cam: not a mapping, given 5; give a mapping with the kind of cam and its fields"),
         (
             "cam: {p: 9}",
-            "1:6: cam.kind: missing; give support, constant-breadth, constant-diameter, disc, double-roller or flat-pair: "
-            "the kind of cam",
+            (
+                "1:6: cam.kind: missing; give support, constant-breadth, constant-diameter, disc, double-roller or "
+                "flat-pair: the kind of cam"
+            ),
         ),
         ("cam: {kind: suport, p: 9}", "1:13: cam.kind: not one of the choices, given 'suport'; did you mean support?"),
         (

@@ -177,17 +177,16 @@ PLACE = "give a list of two lengths [x, y] in mm"
         (
             "{kind: four-bar, ground: 80, coupler: 70, rocker: 90, offset: 3}",
             [
-                "2:64: linkage.offset: unknown key; it belongs under follower of kind roller, knife-edge, shoe or flat, "
-                "linkage of kind slider-crank or a dyad of kind rpr"
+                (
+                    "2:64: linkage.offset: unknown key; it belongs under follower of kind roller, knife-edge, shoe or "
+                    "flat, or under linkage of kind slider-crank, or under a dyad of kind rpr"
+                )
             ],
         ),
         (
             "{kind: inverted-slider-crank, ground: 80, coupler: 70, rocker: -1}",
             [
-                (
-                    "2:52: linkage.coupler: unknown key; "
-                    "it belongs under linkage of kind four-bar or linkage of kind slider-crank"
-                ),
+                ("2:52: linkage.coupler: unknown key; it belongs under linkage of kind four-bar or slider-crank"),
                 "2:73: linkage.rocker: below 0, given -1; give a length of at least 0 in mm",
             ],
         ),
@@ -261,8 +260,7 @@ DYADS = "give a list of dyads such as [{kind: rrr, point: [80, 0], ground: [140,
                 ),
                 (
                     "29: linkage.dyads[0].assembly: unknown key; it belongs under linkage of kind four-bar, "
-                    "linkage of kind inverted-slider-crank, linkage of kind slider-crank, a dyad of kind rrr "
-                    "or a dyad of kind rrp"
+                    "inverted-slider-crank or slider-crank, or under a dyad of kind rrr or rrp"
                 ),
             ],
         ),

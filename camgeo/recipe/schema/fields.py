@@ -228,14 +228,15 @@ def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
     """Say where a key belongs that stands in the wrong place, or else which keys there are."""
     if name in root.keys:
         return "it belongs at the top level"
-    places = [item.name for item in root.fields if item.table and name in item.table.keys]
+    plain = tuple(item.name for item in root.fields if item.table and name in item.table.keys)
+    places = [either(plain)] if plain else []
     of_group: dict[str, list[str]] = {}
     for group, kind, table in _grouped(root):
         if name in table.keys:
             of_group.setdefault(group, []).append(kind)
     places += [f"{group} {either(tuple(kinds))}" for group, kinds in of_group.items()]
     if places:
-        return f"it belongs under {either(tuple(places))}"
+        return f"it belongs under {', or under '.join(places)}"
     return f"the keys here are {either(known, 'and')}" if known else "there are no keys here"
 
 
