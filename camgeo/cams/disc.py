@@ -11,12 +11,16 @@ from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Inte
 from camgeo.cams.guided import GuidedCam
 from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
 from camgeo.cams.position import ArmPosition, LiftPosition, Position
+from camgeo.cams.sizing import SIZING, Sizing, demand_kept, size_arm, size_face, size_stem
 from camgeo.recipe.schema.fields import Field, Form, Kind, Table, coordinate, length
 from camgeo.recipe.schema.json_schema import one_of_schema
 from camgeo.recipe.schema.reader import kind_of
-from camgeo.recipe.schema.yaml_source import Mapping, entries
+from camgeo.recipe.schema.yaml_source import Mapping as Written
+from camgeo.recipe.schema.yaml_source import entries
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from camgeo.curve.disc import Face
     from camgeo.curve.moving_frame import Displacement, Oscillating, Translating
     from camgeo.recipe.schema.reader import Reader, Values
@@ -38,6 +42,7 @@ class DiscCam(Cam):
     motion: tuple[MotionSegment, ...]
     undercut: Undercut
     touch: str
+    sizing: Sizing | None = None
 
     checks: ClassVar[tuple[str, ...]] = ("pressure-angle",)
 
@@ -48,6 +53,22 @@ class DiscCam(Cam):
         motion = programme_of(self.motion, 2.0 * math.pi, "motion", around=1)
         motion.demand_joined("motion", "mm" if self.unit == "mm" else "rad")
         return Displacement.of(motion.from_lowest())
+
+    def found(self, mm: float) -> str:
+        """What sizing found, in words; empty where a base radius was given."""
+        return "" if self.sizing is None else f"the base radius found is {self.base_radius / mm:.9g}{self._found(mm)}"
+
+    def _found(self, mm: float) -> str:  # noqa: ARG002
+        return ""
+
+    def sized(self, asked: Sizing, given: Mapping[str, float]) -> DiscCam:  # noqa: ARG002
+        """The cam of the least size that keeps what is asked; `given` are the follower's keys in the recipe.
+
+        Raises IntentError where there is none.
+        """
+        from kin.law.programme import IntentError
+
+        raise IntentError("the size of a cam for a flat face on an arm is not found", "sizing")
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """One contact, which a spring or gravity holds on the cam."""
@@ -122,6 +143,13 @@ class TranslatingRoundCam(RoundCam):
 
         return Translating.on(self.prime, self.offset)
 
+    def sized(self, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
+        """The least cam that keeps what is asked."""
+        return size_stem(self, asked, given)
+
+    def _found(self, mm: float) -> str:
+        return f", with offset {self.offset / mm:.9g}"
+
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """One roller on a stem."""
         from kin.follower import follower, guide
@@ -146,6 +174,13 @@ class OscillatingRoundCam(_Arm, RoundCam):
         from camgeo.curve.moving_frame import Oscillating
 
         return Oscillating.on(self.prime, self.pivot, self.length, self.sense)
+
+    def sized(self, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
+        """The least cam that keeps what is asked."""
+        return size_arm(self, asked, given)
+
+    def _found(self, mm: float) -> str:
+        return f", with pivot {self.pivot / mm:.9g}"
 
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """One roller on an arm."""
@@ -179,6 +214,10 @@ class TranslatingFaceCam(DiscCam, FacedCam):
         from camgeo.curve.disc import StraightFace
 
         return StraightFace(motion, self.base_radius, self.tilt, self.offset)
+
+    def sized(self, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
+        """The least cam that keeps what is asked."""
+        return size_face(self, asked, given)
 
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:
         """A face on a stem."""
@@ -226,7 +265,7 @@ _SIDE = Field(
     default="trailing",
     choices=("trailing", "leading"),
 )
-_PIVOT = length("pivot", "distance of the arm's pivot from the shaft", required=True)
+_PIVOT = length("pivot", "distance of the arm's pivot from the shaft")
 _ROUND_ARM = Field(
     "arm",
     Kind.TABLE,
@@ -284,9 +323,8 @@ FOLLOWER = Form(
 
 TABLE = Table(
     (
-        length(
-            "base_radius", "radius of the cam's own circle at displacement 0, or of a ring's opening", required=True
-        ),
+        length("base_radius", "radius of the cam's own circle at displacement 0, or of a ring's opening"),
+        SIZING,
         Field("follower", Kind.OWN, "what follows the cam, on a stem or an arm", required=True, form=FOLLOWER),
         Field(
             "track",
@@ -298,33 +336,68 @@ TABLE = Table(
         replace(motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees"), required=True),
         UNDERCUT,
     ),
-    later=("conjugate", "groove", "sizing"),
+    alternatives=(("base_radius", ()), ("sizing", ())),
+    later=("conjugate", "groove"),
 )
 
 
 def variant(node: Node) -> type[Cam]:
     """Give the class of a cam as written, by its follower."""
-    follower = entries(node).get("follower") if isinstance(node, Mapping) else None
-    arm = isinstance(follower, Mapping) and "arm" in entries(follower)
+    follower = entries(node).get("follower") if isinstance(node, Written) else None
+    arm = isinstance(follower, Written) and "arm" in entries(follower)
     if kind_of(follower, FOLLOWERS) == "flat":
         return OscillatingFaceCam if arm else TranslatingFaceCam
     return OscillatingRoundCam if arm else TranslatingRoundCam
 
 
 def check(cam: Values, reader: Reader) -> None:
-    """Note segments that do not fill the turn, and keys that do not go with an arm or a flat face."""
+    """Note segments that do not fill the turn, and keys that do not go with an arm or a flat face; find a size."""
     if "motion" in cam:
         check_filled(cam["motion"], "cam.motion", 2.0 * math.pi, "one turn, 360 degrees", reader, why=_WHY)
     follower = cam.get("follower", {})
+    arm = follower.get("arm")
     for key in ("offset", "tilt", "width"):
-        if "arm" in follower and key in follower:
+        if arm is not None and key in follower:
             reader.fault_at(f"cam.follower.{key}", "belongs to a stem, not to an arm", None, "leave it out")
     if cam.get("track") == "internal" and follower.get("kind") in {"knife-edge", "shoe", "flat"}:
         reader.fault_at("cam.track", "a ring is followed by a roller", "internal", "give a roller, or leave track out")
+    if arm is not None and "pivot" not in arm and "sizing" not in cam and "cam.follower.arm.pivot" not in reader.marks:
+        wanted = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
+        reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)
+    if "sizing" in cam and not reader.errors:
+        _size(cam, reader)
 
 
-def build(cam: Values, mm: float) -> Cam:
+def _size(cam: Values, reader: Reader) -> None:
+    """Find the least size and put it among the values."""
+    from kin.law.programme import IntentError
+
+    asked, follower = Sizing.of(cam["sizing"]), cam["follower"]
+    if asked == Sizing():
+        reader.fault_at("cam.sizing", "no limit is given", None, "give pressure-angle, radius-of-curvature or both")
+        return
+    start = build({**cam, "base_radius": 1.0, "follower": _placed(follower)}, reader.mm)
+    try:
+        found = start.sized(asked, {**follower, **follower.get("arm", {})})
+        demand_kept(found, asked)
+    except IntentError as error:
+        path = f"cam.{error.field}"
+        reader.fault_at(path if path in reader.marks else "cam.sizing", error.message, None, "give base_radius instead")
+        return
+    cam["sized"] = replace(found, sizing=asked)
+
+
+def _placed(follower: Values) -> Values:
+    """The follower with some pivot, where it has an arm and none is given."""
+    arm = follower.get("arm")
+    return follower if arm is None else {**follower, "arm": {"pivot": arm.get("length", 1.0), **arm}}
+
+
+def build(cam: Values, mm: float) -> DiscCam:
     """Make the cam of values in which there is no fault."""
+    if "sized" in cam:
+        sized: DiscCam = cam["sized"]
+        return sized
     follower: Values = dict(cam["follower"])
     kind, arm = follower.pop("kind"), follower.pop("arm", None)
     stroke = mm if arm is None else math.pi / 180

@@ -153,6 +153,10 @@ class Cam(ABC):
     def rounder(self, value: float, limit: float, unit: str) -> str:
         """Say what would raise the least radius of curvature from a value to a limit, in the recipe's unit."""
 
+    def found(self, mm: float) -> str:  # noqa: ARG002
+        """What was found in place of a size that the recipe leaves open, in words; `mm` is the recipe's unit."""
+        return ""
+
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
         """Say how the follower comes to swing less; `mm` is the recipe's unit."""
         return "a smaller swing"

@@ -29,6 +29,7 @@ _SAME = 1e-6
 def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
     """Make every remark that there is to make on a recipe and its design."""
     found = [
+        _size_found(recipe),
         _pressure(recipe, design),
         *_motion(recipe, design),
         *_output(recipe, design),
@@ -39,9 +40,17 @@ def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
     return tuple(remark for remark in found if remark is not None)
 
 
+def _size_found(recipe: Recipe) -> Remark | None:
+    """What `sizing` found."""
+    said = recipe.cam.found(recipe.mm)
+    return Remark("sizing", None, None, "", said) if said else None
+
+
 def _pressure(recipe: Recipe, design: Design) -> Remark | None:
     """Past the rule of thumb, unless the recipe has a limit of its own."""
-    if any(limit.figure == PRESSURE.name and limit.at_most is not None for limit in recipe.limits):
+    if "cam.sizing.pressure-angle" in recipe.marks or any(
+        limit.figure == PRESSURE.name and limit.at_most is not None for limit in recipe.limits
+    ):
         return None
     made = next((check for check in design.checks if check.name == PRESSURE.name), None)
     kind = "oscillating" if recipe.cam.unit == "deg" else "translating"

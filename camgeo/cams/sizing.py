@@ -1,0 +1,162 @@
+"""A size in place of a base radius: the least that keeps given pressure angles and a radius of curvature.
+
+What is found is held against the exact figures before it is used (`camgeo.curve.sizing` finds it).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+from camgeo.recipe.schema.fields import Field, Kind, length, mapping
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from camgeo.cams.disc import DiscCam, OscillatingRoundCam, RoundCam, TranslatingFaceCam, TranslatingRoundCam
+    from camgeo.cams.family import Intent
+    from camgeo.curve.curve import Shape
+    from camgeo.curve.moving_frame import Displacement
+    from camgeo.recipe.schema.reader import Values
+
+SLACK = 1e-9  # degrees, and of a radius: within this a limit is kept
+
+SIZING = mapping(
+    "sizing",
+    "limits in place of a base radius: the least cam that keeps them is made",
+    mapping(
+        "pressure-angle",
+        "greatest pressure angle; offset or pivot are found with it where they are not given",
+        Field("at_most", Kind.ANGLE, "on the rise", required=True, above=0, at_most=89),
+        Field("on_return", Kind.ANGLE, "on the return", default="at_most", above=0, at_most=89),
+    ),
+    mapping(
+        "radius-of-curvature",
+        "least radius of curvature of the cam's convex stretches",
+        length("at_least", "least radius", required=True),
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Sizing:
+    """Greatest pressure angles on the rise and the return, rad, and least convex radius of the metal, mm; or None."""
+
+    angles: tuple[float, float] | None = None
+    radius: float | None = None
+
+    @staticmethod
+    def of(values: Values) -> Sizing:
+        """Take the values of a recipe."""
+        angle, radius = values.get("pressure-angle"), values.get("radius-of-curvature")
+        angles = None if angle is None else (angle["at_most"], angle.get("on_return", angle["at_most"]))
+        return Sizing(angles, None if radius is None else radius["at_least"])
+
+
+def size_stem(cam: TranslatingRoundCam, asked: Sizing, given: Mapping[str, float]) -> TranslatingRoundCam:
+    """Size a cam for a roller, shoe or knife edge on a stem: base radius and, unless given, offset."""
+    from camgeo.curve import moving_frame
+    from camgeo.curve.sizing import least_stem
+
+    motion, offset, prime = _motion(cam), given.get("offset", 0.0), 0.0
+    if asked.angles is not None:
+        stem = least_stem(motion, *asked.angles, given.get("offset"))
+        prime, offset = stem.prime, stem.offset
+
+    def shape(size: float) -> Shape:
+        return moving_frame.CentreShape(motion, moving_frame.Translating.on(size, offset))
+
+    return replace(cam, offset=offset, base_radius=_base(cam, _rounder(cam, asked, prime, abs(offset), shape)))
+
+
+def size_arm(cam: OscillatingRoundCam, asked: Sizing, given: Mapping[str, float]) -> OscillatingRoundCam:
+    """Size a cam for a roller, shoe or knife edge on an arm of given length: base radius and pivot."""
+    from camgeo.curve import moving_frame
+    from camgeo.curve.sizing import least_arm
+    from kin.law.programme import IntentError
+
+    motion, pivot, prime = _motion(cam), given.get("pivot"), 0.0
+    if asked.angles is not None:
+        if pivot is not None:
+            raise IntentError("the pivot is found with the pressure angle; leave `pivot` out", "sizing.pressure-angle")
+        arm = least_arm(motion, cam.length, cam.sense, *asked.angles)
+        prime, pivot = arm.prime, arm.pivot
+    elif pivot is None:
+        raise IntentError("without a pressure angle the pivot must be given", "sizing")
+    place, low = pivot, abs(pivot - cam.length)
+
+    def shape(size: float) -> Shape:
+        return moving_frame.CentreShape(motion, moving_frame.Oscillating.on(size, place, cam.length, cam.sense))
+
+    prime = _rounder(cam, asked, prime, low, shape)
+    return replace(cam, pivot=place, base_radius=_base(cam, prime))
+
+
+def size_face(cam: TranslatingFaceCam, asked: Sizing, given: Mapping[str, float]) -> TranslatingFaceCam:  # noqa: ARG001
+    """Size a cam for a flat face on a stem: its pressure angle is its tilt."""
+    from camgeo.curve.disc import StraightFace
+    from camgeo.curve.sizing import least_face
+    from kin.law.programme import IntentError
+
+    if asked.angles is not None:
+        raise IntentError("the pressure angle of a flat face is its tilt, whatever the size", "sizing.pressure-angle")
+    face = StraightFace(_motion(cam), 1.0, cam.tilt, cam.offset)
+    base = least_face(face, cast("float", asked.radius))
+    if not base > 0.0:
+        raise IntentError("any base radius keeps this radius of curvature; give one", "sizing.radius-of-curvature")
+    return replace(cam, base_radius=base)
+
+
+def demand_kept(cam: DiscCam, asked: Sizing) -> None:
+    """Raise IntentError where a size that was found does not keep what was asked, by the exact figures."""
+    from camgeo.curve.curvature import least_radius
+    from camgeo.curve.extremes import greatest, least
+    from camgeo.curve.moving_frame import CentreShape
+    from camgeo.curve.rates import stretches
+    from kin.law.programme import IntentError
+
+    profile = cam.profile(cam.intent())
+    shape = profile.base.shape
+    if asked.angles is not None and isinstance(shape, CentreShape):
+        over = stretches(shape.law)
+        up, down = greatest(shape.slope, over).value, -least(shape.slope, over).value
+        for name, reached, limit in zip(("rise", "return"), (up, down), asked.angles, strict=True):
+            angle, most = math.degrees(math.atan(reached)), math.degrees(limit)
+            if angle > most + SLACK:
+                raise IntentError(
+                    f"the least size for the radius of curvature has a pressure angle of {angle:.6g} degrees on the "
+                    f"{name}, more than {most:.6g}; give a base radius, or a smaller radius of curvature",
+                    "sizing",
+                )
+    if asked.radius is not None:
+        found = least_radius(profile.base)[0] - cam.touch_radius
+        if found < asked.radius * (1.0 - SLACK):
+            raise IntentError(f"the size found has a radius of curvature of {found:.9g} mm", "sizing")
+
+
+def _motion(cam: DiscCam) -> Displacement:
+    intent: Intent = cam.intent()
+    return cast("Displacement", intent)
+
+
+def _rounder(cam: RoundCam, asked: Sizing, prime: float, low: float, shape: object) -> float:
+    """Prime radius from `prime` on, and above `low`, at which the radius of curvature is kept too."""
+    from camgeo.curve.sizing import least_prime
+
+    if asked.radius is None:
+        return prime
+    start = max(prime, low * (1.0 + 1e-9), cam.touch_radius)
+    return least_prime(shape, asked.radius + cam.touch_radius, start)  # type: ignore[arg-type]
+
+
+def _base(cam: RoundCam, prime: float) -> float:
+    from kin.law.programme import IntentError
+
+    base = prime - cam.metal * cam.touch_radius
+    if not base > 0.0:
+        raise IntentError(
+            f"the least prime circle, {prime:.6g} mm, lies within the roller; give a smaller roller or a base radius",
+            "sizing",
+        )
+    return base
