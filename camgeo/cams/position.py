@@ -36,6 +36,10 @@ class Position(Protocol):
         """Factor from `rows` to what tables and plots show: lengths in units of `mm` mm, or degrees."""
         ...
 
+    def converted(self, value: Array, mm: float) -> Array:
+        """Positions (n,) in units of `mm` mm, or in degrees; `shown` may differ from it by a last digit."""
+        ...
+
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Position and its derivatives by the shaft angle, (order + 1, n); at a break those of a side."""
         ...
@@ -89,6 +93,10 @@ class LiftPosition:
         """Lengths in units of `mm` mm."""
         return 1.0 / mm
 
+    def converted(self, value: Array, mm: float) -> Array:
+        """Lengths in units of `mm` mm."""
+        return value / mm
+
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Lift from its datum, mm, and its derivatives."""
         found = np.array(self.law.derivatives(shaft, order, side))
@@ -132,6 +140,10 @@ class ArmPosition(LiftPosition):
         """Degrees."""
         return math.degrees(1.0)
 
+    def converted(self, value: Array, mm: float) -> Array:  # noqa: ARG002
+        """Degrees."""
+        return np.degrees(value)
+
     def stroke(self, parameter: Array) -> tuple[float, float]:
         """Swing in rad, and the arm in mm."""
         return super().stroke(parameter)[0], self.arm
@@ -153,6 +165,10 @@ class SwingPosition:
     def shown(self, mm: float) -> float:  # noqa: ARG002
         """Degrees."""
         return math.degrees(1.0)
+
+    def converted(self, value: Array, mm: float) -> Array:  # noqa: ARG002
+        """Degrees."""
+        return np.degrees(value)
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Swing, rad, and its derivatives."""
