@@ -81,6 +81,11 @@ class Contact:
         position: Array = self.sense * (own - self.datum + self.apart)
         return position
 
+    def own(self, position: Array) -> Array:
+        """The contact's own position from the follower's."""
+        own: Array = self.zero + self.sense * position
+        return own
+
 
 @dataclass(frozen=True)
 class Closure:
