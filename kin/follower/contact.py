@@ -71,8 +71,9 @@ def extent(pieces: Arcs) -> float:
 def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
     """Find where the roller's centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
 
-    From within it comes if the guide counts inwards. `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,) in mm and the index of the piece (n,):
-    nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle that can meet.
+    From within if the guide counts inwards. `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,)
+    in mm and the index of the piece (n,): nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and
+    angle that can meet.
     """
     slack = guide.slack(extent(obstacle))
     pieces, owner = shortened(obstacle, guide)

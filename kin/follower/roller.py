@@ -139,7 +139,7 @@ class Roller(_OfLaw):
     it from travelling outwards.
     """
 
-    guide: Guide
+    guide: Arm | Translating
     radius: float
     law: Piecewise
     internal: bool = False

@@ -5,16 +5,17 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from support.discs import CONTOURS, DEGREE, M01, M02, M03, M05, M06, M07, M08, TURN
 
 from camgeo.curve.curve import Curve
 from camgeo.curve.moving_frame import Oscillating
 from camgeo.fit.arcs import fit_arcs
 from kin.contour.contour import Contour
-from kin.follower.follower import Roller
+from kin.follower.follower import FlatFace, Roller, SwingingFace, TiltedFace
 from kin.follower.guide import LEADING, TRAILING, Arm, Translating
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Affine, Constant
+from kin.law.support_function import Lift
+from support.discs import CONTOURS, DEGREE, M01, M02, M03, M05, M06, M07, M08
 
 
 def raised(over, by):
@@ -26,9 +27,19 @@ def on_stem(motion, prime, offset, radius, **other):
     return Roller(Translating(offset), radius, raised(motion.over, np.sqrt(prime**2 - offset**2)), **other)
 
 
-def on_arm(motion, prime, pivot, length, side, radius, **other):
-    rest = Oscillating.on(prime, pivot, length, side).rest
-    return Roller(Arm(length, pivot, TRAILING if side > 0 else LEADING), radius, raised(motion.over, rest), **other)
+def on_arm(motion, arm, radius, **other):
+    guide = Arm(arm.length, arm.pivot, TRAILING if arm.side > 0 else LEADING)
+    return Roller(guide, radius, raised(motion.over, arm.rest), **other)
+
+
+def on_face(motion, base, tilt=None):
+    lift = Lift(raised(motion.over, base / np.cos(tilt or 0.0)))
+    return FlatFace(lift) if tilt is None else TiltedFace(lift, tilt)
+
+
+def on_swinging_face(motion, base, pivot, offset, side):
+    law = raised(motion.over, np.arcsin((base + offset) / pivot))
+    return SwingingFace(pivot, offset, law, TRAILING if side > 0 else LEADING)
 
 
 FOLLOWERS = {
@@ -37,9 +48,13 @@ FOLLOWERS = {
     "roller, offset against": on_stem(M02, 45.0, -10.0, 9.0),
     "knife edge": on_stem(M05, 30.0, 0.0, 0.0),
     "shoe": on_stem(M06, 85.0, 0.0, 60.0),
-    "trailing arm": on_arm(M07, 42.0, 80.0, 65.0, 1, 8.0),
-    "leading arm": on_arm(M07, 42.0, 80.0, 65.0, -1, 8.0),
+    "trailing arm": on_arm(M07, Oscillating.on(42.0, 80.0, 65.0, 1), 8.0),
+    "leading arm": on_arm(M07, Oscillating.on(42.0, 80.0, 65.0, -1), 8.0),
     "ring": on_stem(M01, 50.0, 0.0, 10.0, internal=True),
+    "flat": on_face(M03, 30.0),
+    "flat, tilted": on_face(M03, 32.0, 8 * DEGREE),
+    "trailing face": on_swinging_face(M08, 36.0, 90.0, 10.0, 1),
+    "leading face": on_swinging_face(M08, 36.0, 90.0, 10.0, -1),
 }
 
 
