@@ -72,8 +72,8 @@ def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indi
     """Find where the roller's centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
 
     From within if the guide counts inwards. `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,)
-    in mm and the index of the piece (n,): nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and
-    angle that can meet.
+    in mm and the index of the piece (n,): nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of
+    piece and angle that can meet.
     """
     slack = guide.slack(extent(obstacle))
     pieces, owner = shortened(obstacle, guide)
