@@ -218,6 +218,10 @@ class SwingingFace(Follower):
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest swing, degrees, that a shift of the contour by `tolerance` gives the face."""
+        phi = grid(self.law.breaks)
+        psi = self.intended(phi)
+        if (psi >= 0.5 * np.pi).any():
+            raise ContactError("the intended contact reaches the pivot", float(phi[int(np.argmax(psi))]))
         return float(np.degrees(self.face.leeway(self.support, tolerance, grid(self.support.breaks)).max()))
 
 

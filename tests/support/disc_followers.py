@@ -78,3 +78,9 @@ def chain(name, tolerance=1e-5):
 def contour(name, tolerance=1e-5):
     made = chain(name, tolerance)
     return Contour.from_bulges(made.points, made.bulges)
+
+
+def fitted(curve, tolerance):
+    """Contour of a shape or of a curve made of one, of arcs."""
+    made = fit_arcs(curve if isinstance(curve, Curve) else Curve.whole(curve), tolerance)
+    return Contour.from_bulges(made.points, made.bulges)
