@@ -110,6 +110,10 @@ class Arcs:
             np.concatenate([self.length, other.length]),
         )
 
+    def reversed(self) -> Arcs:
+        """Return the pieces in reverse order, each run backwards: of a closed chain what lay left lies right."""
+        return Arcs(self.ends, -self.end_tangents, -self.curvature, self.length).take(np.arange(len(self))[::-1])
+
     def turns(self) -> Array:
         """Turn of the tangent at the start of each piece of a chain, counter-clockwise, in [-pi, pi] (n,)."""
         before = np.roll(self.end_tangents, 1, axis=0)

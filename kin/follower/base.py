@@ -1,7 +1,7 @@
 """What every follower answers: contacts on guides, the motion it is meant to make, and what its play is judged by.
 
 A follower is its contacts, each on a guide, and its motion. What depends on the pair of guide and touch is a file of
-formulas: a flat face on a line of travel `kin.follower.flat`, on an arm `kin.follower.flat_pair`, a roller on either
+formulas: a flat face on a line of travel `kin.follower.flat`, on an arm `kin.follower.faces_on_arm`, a roller on either
 `kin.follower.roller`. All others ask a follower by the names below, and never of what kind it is.
 """
 
@@ -80,6 +80,11 @@ class Contact:
         """Position of the follower from the contact's own."""
         position: Array = self.sense * (own - self.datum + self.apart)
         return position
+
+    def own(self, position: Array) -> Array:
+        """The contact's own position from the follower's."""
+        own: Array = self.zero + self.sense * position
+        return own
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,8 @@ from exactly one shaft angle, for an arm
     phi = t + acos((r^2 + L^2 - l^2)/(2 r L))   roller A, which trails the pivot;   minus for roller B, which leads it
 
 (L from shaft to pivot, l arm). So each piece covers an interval of shaft angles, found by sorting, and each pair of
-piece and angle is one intersection in closed form. The first contact from outside is that of largest r.
+piece and angle is one intersection in closed form. The first contact from outside is that of largest r; in the opening
+of a ring, from within, that of least r, and the guide counts its position inwards, away from the metal as ever.
 """
 
 from __future__ import annotations
@@ -31,7 +32,12 @@ PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask fo
 
 
 def dilated(chain: Arcs, radius: float) -> Arcs:
-    """Return the pieces, in no order, that bound what a disc's centre cannot enter, from a closed chain."""
+    """Return the pieces, in no order, that bound what a disc's centre cannot enter, from a closed chain.
+
+    Its metal lies to the left. A disc of radius 0, the point of a knife edge, is bounded by the chain itself.
+    """
+    if radius == 0.0:
+        return chain
     growth = 1.0 + chain.curvature * radius
     fits = growth > 0.0
     moved = chain.start + radius * right(chain.tangent)
@@ -65,8 +71,9 @@ def extent(pieces: Arcs) -> float:
 def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
     """Find where the roller's centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
 
-    `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,) in mm and the index of the piece (n,):
-    nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of piece and angle that can meet.
+    From within if the guide counts inwards. `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,)
+    in mm and the index of the piece (n,): nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of
+    piece and angle that can meet.
     """
     slack = guide.slack(extent(obstacle))
     pieces, owner = shortened(obstacle, guide)
@@ -90,14 +97,14 @@ def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indi
         piece = np.repeat(chosen, count[chosen])
         number = np.arange(len(piece)) - np.repeat(np.cumsum(count[chosen]) - count[chosen], count[chosen])
         index = (first[piece] + number) % len(angle)
-        r = meet(pieces.take(piece), guide, angle[index], slack)
-        np.maximum.at(best, index, r)
-        won = (r == best[index]) & (r > 0.0)
+        height = meet(pieces.take(piece), guide, angle[index], slack)
+        np.maximum.at(best, index, height)
+        won = (height == best[index]) & np.isfinite(height) & (height != 0.0)
         met[index[won]] = piece[won]
         begin = end
     radius, piece_met = np.full(len(angle), np.nan), np.full(len(angle), -1)
     touched = met >= 0
-    radius[order[touched]] = best[touched]
+    radius[order[touched]] = guide.away * best[touched]
     piece_met[order[touched]] = owner[met[touched]]
     return radius, piece_met
 
@@ -125,7 +132,10 @@ def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
 
 
 def meet(pieces: Arcs, guide: Guide, phi: Array, slack: float) -> Array:
-    """Greatest distance from the shaft at which the centre meets each short piece at its angle (n,), else -inf."""
+    """Greatest distance from the shaft at which the centre meets each short piece at its angle (n,), else -inf.
+
+    Less the least distance for a guide that counts inwards.
+    """
     chord_turn = 0.5 * pieces.curvature * pieces.length
     chord = pieces.length * np.sinc(chord_turn / np.pi)
     along = np.cos(chord_turn)[:, None] * pieces.tangent + np.sin(chord_turn)[:, None] * left(pieces.tangent)
@@ -137,6 +147,6 @@ def meet(pieces: Arcs, guide: Guide, phi: Array, slack: float) -> Array:
         with np.errstate(invalid="ignore"):
             on_piece = (s >= -slack) & (s <= chord + slack) & (np.abs(cross(along, found)) <= sagitta)
             on_side = guide.on_side(phi, point, slack)
-        r = np.hypot(point[:, 0], point[:, 1])
-        best = np.where(on_piece & on_side & (r > best), r, best)
+        height = guide.away * np.hypot(point[:, 0], point[:, 1])
+        best = np.where(on_piece & on_side & (height > best), height, best)
     return best

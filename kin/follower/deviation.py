@@ -79,7 +79,8 @@ def deviation(chain: Arcs, envelope: Envelope) -> Deviation:
 
     at_start = _along(feet, pieces.tangent, pieces.curvature)
     at_end = _along(end_feet, end_tangents, pieces.curvature)
-    found = extremes(zero, pieces.length, at_start, at_end, inside, resolution=resolution(pieces.start))
+    fine = resolution(np.append(pieces.start, [[envelope.extent, 0.0]], axis=0))
+    found = extremes(zero, pieces.length, at_start, at_end, inside, resolution=fine)
     bare, bare_at = _bare(chain, envelope, max(found.greatest, -found.least))
     advance = np.mod(end_feet.parameter - feet.parameter + np.pi, 2.0 * np.pi) - np.pi
     return Deviation(

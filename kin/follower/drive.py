@@ -19,7 +19,7 @@ from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
-    from kin.follower.flat_pair import FlatPair
+    from kin.follower.faces_on_arm import ArmFace
     from kin.follower.guide import Guide
     from kin.follower.support import Bearing
     from kin.numeric.arrays import Array, Indices
@@ -50,11 +50,13 @@ class Drive(Protocol):
 class OfFace:
     """Distance at which a flat face rests on a contour, its normal `turned` ahead of the shaft angle.
 
-    Between two breaks it is that of one corner or one circle: q = R + C.u(theta), q'' = R - q.
+    Between two breaks it is that of one corner or one circle: q = R + C.u(theta), q'' = R - q. Along a line of travel
+    on which it stands askew it is q over `share`, the cosine.
     """
 
     bearing: Bearing
     turned: float = 0.0
+    share: float = 1.0
 
     @property
     def breaks(self) -> Array:
@@ -69,22 +71,22 @@ class OfFace:
     def rows(self, phi: Array) -> Array:
         """See `Drive`."""
         theta = phi + self.turned
-        rows: Array = METRE * self.bearing.derivatives(theta, self.bearing.find(theta))
+        rows: Array = METRE / self.share * self.bearing.derivatives(theta, self.bearing.find(theta))
         return rows
 
 
 @dataclass(frozen=True, eq=False)
-class OfPair:
-    """Swing of a flat pair, away from the cam, with the face of one side resting on a contour."""
+class OfArmFace:
+    """Swing of a flat face on an arm, away from the cam, as it rests on a contour; `datum`, radians, where it is 0."""
 
-    pair: FlatPair
+    face: ArmFace
     bearing: Bearing
-    side: int
+    datum: float
 
     @cached_property
     def breaks(self) -> Array:
         """Where the contact passes from piece to piece."""
-        return np.mod(self.pair.starts(self.bearing, self.side), TURN)
+        return np.mod(self.face.starts(self.bearing), TURN)
 
     @property
     def corners(self) -> Array:
@@ -93,10 +95,10 @@ class OfPair:
 
     def rows(self, phi: Array) -> Array:
         """See `Drive`."""
-        rows = -self.pair.touch(self.bearing, phi, self.side)
-        rows[0] += phi - 0.5 * self.side * self.pair.transmission.alpha
-        rows[1] += 1.0
-        away: Array = -self.side * rows
+        rows = self.face.touch(self.bearing, phi)
+        rows[0] += self.face.side * self.datum - phi
+        rows[1] -= 1.0
+        away: Array = self.face.side * rows
         return away
 
 

@@ -22,6 +22,8 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from kin.law.piecewise import Piecewise
+    from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array, Indices
 
@@ -42,6 +44,10 @@ class Envelope(Protocol):
     def radii(self) -> tuple[Array, Array]:
         """Parameters (m,) closely round the turn, and radii of curvature there (m,), mm, negative where hollow."""
 
+    @property
+    def extent(self) -> float:
+        """Greatest of the lengths, mm, that an excess is the difference of: to its last places it is known."""
+
     def area_and_perimeter(self) -> tuple[float, float]:
         """Enclosed area and length of a regular contour, mm^2 and mm."""
 
@@ -60,29 +66,67 @@ class SupportLaw(Protocol):
         """Return p, mm, and its derivatives by theta (n,), (order + 1, n); at a break from the right, or left (-1)."""
 
 
+class PolarPitch(Protocol):
+    """A face's distance over its normal's direction, both over a parameter; `Transmission` has one."""
+
+    @property
+    def breaks(self) -> Array:
+        """Parameters in [0, 2 pi) where the second derivative may jump."""
+
+    def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
+        """Distance r, mm, and direction t, rising, with derivatives: (order + 1, n) each."""
+
+
+@dataclass(frozen=True, eq=False)
+class FacePitch:
+    """Line through the pivot of an arm along its face, whose angle to the line from pivot to shaft is `law`, radians.
+
+    r = C sin psi, t = phi + side (psi - pi/2); `side` is 1 where the face trails the pivot.
+    """
+
+    law: Piecewise
+    pivot: float
+    side: int
+
+    @property
+    def breaks(self) -> Array:
+        """Shaft angles of the law's breaks."""
+        return self.law.breaks
+
+    def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
+        """Give r and t over the shaft angle; see `PolarPitch`. The order is at most 2."""
+        psi, rate, bend = self.law.derivatives(tau, 2, side)
+        sine, cosine = np.sin(psi), np.cos(psi)
+        r = self.pivot * np.stack([sine, cosine * rate, cosine * bend - sine * rate**2])
+        t = self.side * np.stack([psi - 0.5 * np.pi, rate, bend])
+        t[0] += tau
+        t[1] += 1.0
+        return r[: order + 1], t[: order + 1]
+
+
 @dataclass(frozen=True, eq=False)
 class PairSupport:
-    """W's polar pitch curve r(t) read as the support function of the cam of a flat pair (W section 5)."""
+    """A polar pitch curve r(t) read as a support function: W's as that of the cam of a flat pair (W section 5)."""
 
-    transmission: Transmission
+    polar: PolarPitch
 
     @cached_property
     def breaks(self) -> Array:
         """Angles in [0, 2 pi) where the second derivative may jump, rising."""
-        return np.sort(np.mod(self.transmission.pitch(self.transmission.breaks, 0)[1][0], TURN))
+        return np.sort(np.mod(self.polar.pitch(self.polar.breaks, 0)[1][0], TURN))
 
     @cached_property
     def _parameter(self) -> Callable[[Array], tuple[Array, Array]]:
-        polar = self.transmission.pitch(grid(self.transmission.breaks, 64), 0)[1][0]
-        if np.allclose(polar, grid(self.transmission.breaks, 64), rtol=0.0, atol=1e-13):  # tau is t itself
+        polar = self.polar.pitch(grid(self.polar.breaks, 64), 0)[1][0]
+        if np.allclose(polar, grid(self.polar.breaks, 64), rtol=0.0, atol=1e-13):  # tau is t itself
             return lambda theta: (theta, np.zeros_like(theta))
-        return Inverse(lambda tau: self.transmission.pitch(tau, 2)[1], self.transmission.breaks)
+        return Inverse(lambda tau: self.polar.pitch(tau, 2)[1], self.polar.breaks)
 
     def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
         """Return r, mm, and its derivatives by t, (order + 1, n), order at most 2."""
         tau, step = self._parameter(np.asarray(theta, dtype=float))
         tau = np.where(np.abs(step) < 1e-14, tau, tau + step)  # a break stays a break
-        r, t = self.transmission.pitch(tau, 2, side)
+        r, t = self.polar.pitch(tau, 2, side)
         slope = r[1] / t[1]
         return np.stack([r[0], slope, (r[2] - slope * t[2]) / t[1] ** 2])[: order + 1]
 
@@ -103,6 +147,32 @@ class Outset:
         """Return p and the distance, and the derivatives of p, (order + 1, n)."""
         found = self.support.derivatives(theta, order, side).copy()
         found[0] += self.distance
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Tilted:
+    """Support function of a cam whose face stands askew: its normal `tilt` ahead of the line of travel, radians.
+
+    `along` is the face's distance from the shaft along that line, over the shaft angle: p(t) = cos(tilt) along(t-tilt).
+    """
+
+    along: Lift
+    tilt: float
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Angles in [0, 2 pi) where the second derivative may jump, rising."""
+        return np.sort(np.mod(self.along.breaks + self.tilt, TURN))
+
+    @property
+    def rounding(self) -> float:
+        """As of the lift."""
+        return self.along.rounding
+
+    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
+        """Return p and its derivatives by t, (order + 1, n)."""
+        found: Array = np.cos(self.tilt) * self.along.derivatives(theta - self.tilt, order, side)
         return found
 
 
@@ -134,6 +204,11 @@ class FlatEnvelope:
         """Angles theta (m,) closely round the turn, and rho (m,), mm."""
         theta, rho, _ = self._table
         return theta, rho
+
+    @property
+    def extent(self) -> float:
+        """Greatest distance of the face."""
+        return float(np.abs(self._table[2]).max())
 
     @cached_property
     def regular(self) -> bool:
@@ -226,7 +301,10 @@ class TransmissionPitch:
 
 @dataclass(frozen=True, eq=False)
 class RollerEnvelope:
-    """The contour at the roller's `radius`, mm, inside a counter-clockwise pitch curve, over that curve's parameter."""
+    """The contour at the roller's `radius`, mm, inside a counter-clockwise pitch curve, over that curve's parameter.
+
+    A radius below 0 is that of a roller in a ring, whose opening lies as far outside the pitch curve.
+    """
 
     pitch: Pitch
     radius: float
@@ -251,6 +329,11 @@ class RollerEnvelope:
         """Parameters (m,) closely round the turn, and radii of curvature (m,), mm, negative where hollow."""
         tau, _, radius = self._table
         return tau, radius
+
+    @property
+    def extent(self) -> float:
+        """Greatest coordinate of the pitch curve."""
+        return float(np.abs(self._table[1]).max())
 
     @cached_property
     def _direction(self) -> Array:

@@ -1,4 +1,4 @@
-"""Flat faces on a line of travel along their own normal: a single face, and a yoke of two.
+"""Flat faces on a line of travel: along their own normal a single face and a yoke of two, and one that stands askew.
 
 What a face feels of a contour is its support function q and nothing else. The errors below are extremes over all shaft
 angles, found stretch by stretch between the breaks of the contour's support function and those of the intent.
@@ -14,7 +14,7 @@ import numpy as np
 
 from kin.follower.base import Closure, Contact, Follower, Rests
 from kin.follower.drive import OfFace
-from kin.follower.envelope import FlatEnvelope
+from kin.follower.envelope import FlatEnvelope, Tilted
 from kin.follower.guide import Translating
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
 from kin.follower.rests import dwells
@@ -49,33 +49,87 @@ class FlatFace(Follower):
         """Dwells of the lift."""
         return tuple(dwells(self.lift))
 
+    @property
+    def support(self) -> Lift | Tilted:
+        """Support function of the exact contour."""
+        return self.lift
+
+    @property
+    def ahead(self) -> float:
+        """Angle by which the face's normal stands ahead of the line of travel, radians."""
+        return 0.0
+
+    @property
+    def _share(self) -> float:
+        """Distance of the face from the shaft for one along the line of travel."""
+        return float(np.cos(self.ahead))
+
     @cached_property
     def envelope(self) -> FlatEnvelope:
-        """The exact contour; its parameter is the shaft angle."""
-        return FlatEnvelope(self.lift)
+        """The exact contour; its parameter is the direction of the face's normal, `ahead` of the shaft angle."""
+        return FlatEnvelope(self.support)
+
+    def shaft_angle(self, parameter: Array) -> Array:
+        """Shaft angle at which the envelope's point of that parameter is touched (n,)."""
+        return parameter - self.ahead
 
     def contact(self, contour: Contour, theta: Array) -> Array:
-        """Distance of the face (of a yoke face 1) from the shaft, mm: (n,), or (2, n) with either face resting."""
-        found = np.stack([one.position(contour.support(theta + one.turned).q) for one in self.contacts])
+        """Position of the face (of a yoke face 1), mm: (n,), or (2, n) with either face resting."""
+        own = [contour.support(theta + one.turned).q / self._share for one in self.contacts]
+        found = np.stack([one.position(q) for one, q in zip(self.contacts, own, strict=True)])
         return found if len(found) > 1 else found[0]
 
     def drives(self, contour: Contour) -> list[OfFace]:
-        """Distance of each face from the shaft as it rests on the contour."""
+        """Position of each face as it rests on the contour."""
         bearing = bearing_of(contour)
-        return [OfFace(bearing, one.turned) for one in self.contacts]
+        return [OfFace(bearing, one.turned, self._share) for one in self.contacts]
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error, and of a yoke the play of the contour in the frame; extremes over the whole turn."""
         bearing = bearing_of(contour)
-        reach = error_extremes(bearing, self.lift)
-        return Judged(_face_error(bearing, self.lift, theta, reach), self._play(bearing), reach)
+        reach = error_extremes(bearing, self.support)
+        return Judged(self._error(bearing, theta, reach), self._play(bearing), reach)
+
+    def _error(self, bearing: Bearing, theta: Array, reach: Extremes) -> MotionError:
+        (worst, at), share, ahead = reach.worst, self._share, self.ahead
+        angle = with_steps(theta)
+        position = bearing.derivatives(angle + ahead, bearing.find(angle + ahead))[0] / share
+        ranges = [lift_range(bearing, begin + ahead, end + ahead) / share for begin, end in self.rests]
+        errors = position - self.intended(angle)
+        return motion_error((worst / share, at - ahead), errors, max(ranges, default=None), "mm")
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
-        return tolerance
+        return tolerance / self._share
 
     def _play(self, bearing: Bearing) -> Play | None:  # noqa: ARG002 - a single face has none
         return None
+
+
+@dataclass(frozen=True, eq=False)
+class TiltedFace(FlatFace):
+    """A flat face that stands askew on its line of travel, its normal `tilt` ahead of it, radians.
+
+    Its position is its distance from the shaft along the line of travel, mm: p over the tilt's cosine. Where beside the
+    shaft that line runs moves the place of contact on the face, not the face.
+    """
+
+    tilt: float
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The face."""
+        return (Contact(Translating(), turned=self.tilt),)
+
+    @cached_property
+    def support(self) -> Tilted:
+        """Support function of the exact contour."""
+        return Tilted(self.lift, self.tilt)
+
+    @property
+    def ahead(self) -> float:
+        """The tilt."""
+        return self.tilt
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,14 +175,7 @@ class Yoke(FlatFace):
         )
 
 
-def _face_error(bearing: Bearing, lift: Lift, theta: Array, reach: Extremes) -> MotionError:
-    angle = with_steps(theta)
-    errors = bearing.derivatives(angle, bearing.find(angle))[0] - lift.derivatives(angle, 0)[0]
-    ranges = [lift_range(bearing, begin, end) for begin, end in dwells(lift)]
-    return motion_error(reach.worst, errors, max(ranges, default=None), "mm")
-
-
-def error_extremes(bearing: Bearing, law: Lift) -> Extremes:
+def error_extremes(bearing: Bearing, law: Lift | Tilted) -> Extremes:
     """Extremes of q - p over the turn."""
     nodes = bearing.nodes(0.0, TURN, law.breaks)
     stretch, at_low, at_high = bearing.between(nodes)

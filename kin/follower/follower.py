@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from kin.follower.base import Closure, Contact, Follower
-from kin.follower.flat import FlatFace, Yoke
-from kin.follower.flat_pair import FlatPair
+from kin.follower.faces_on_arm import FlatPair, SwingingFace
+from kin.follower.flat import FlatFace, TiltedFace, Yoke
 from kin.follower.motion_error import ContactError, Judged, MotionError, Play
 from kin.follower.roller import DoubleRoller, Roller, RollerYoke
 
@@ -21,5 +21,7 @@ __all__ = [
     "Play",
     "Roller",
     "RollerYoke",
+    "SwingingFace",
+    "TiltedFace",
     "Yoke",
 ]

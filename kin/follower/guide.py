@@ -6,7 +6,8 @@ Along a curve of arc length s, with u = r^2, a = P.T and c = P x T of its point 
 
     position' = 2 a/S,    phi' = (c + 2 a m/S)/u
 
-where S^2 is a polynomial in u and m is linear in u: all that a guide has to tell of its derivatives. An arm of length
+where S^2 is a polynomial in u and m is linear in u: all that a guide has to tell of its derivatives (position' is less
+that where the guide counts inwards). An arm of length
 L, its pivot at C: S^2 = 4 C^2 L^2 - (C^2 + L^2 - u)^2, 2 m = side (u + L^2 - C^2); a line of travel displaced by e:
 S^2 = 4 (u - e^2), m = e.
 """
@@ -41,6 +42,10 @@ class Guide(Protocol):
     @property
     def unit(self) -> Unit:
         """Unit of the position: mm, or deg for radians."""
+
+    @property
+    def away(self) -> Side:
+        """1 if the position grows outwards, -1 if it grows inwards, towards the shaft."""
 
     @property
     def si(self) -> float:
@@ -110,12 +115,14 @@ class Guide(Protocol):
 class Arm:
     """A roller's arm: `length` l, `pivot` its distance L from the shaft, mm; `side` on which the roller lies.
 
-    The position is the arm's lean, the angle at the pivot between shaft and roller centre, radians.
+    The position is the arm's lean, the angle at the pivot between shaft and roller centre, radians; less it where
+    `away` from the cam is inwards, in a ring.
     """
 
     length: float
     pivot: float
     side: Side = TRAILING
+    away: Side = 1
 
     @property
     def unit(self) -> Unit:
@@ -183,28 +190,33 @@ class Arm:
         above = (r - (self.pivot - self.length)) * (r + (self.pivot - self.length))
         below = ((self.pivot + self.length) - r) * ((self.pivot + self.length) + r)
         angle: Array = 2.0 * np.arctan2(np.sqrt(np.maximum(above, 0.0)), np.sqrt(np.maximum(below, 0.0)))
-        return angle
+        return self.away * angle
 
     def centre(self, phi: Array, position: Array) -> Array:
-        """Roller centre (n, 2) at shaft angles phi and leans (n,)."""
-        return self.pivot * unit(phi) - self.length * unit(phi - self.side * position)
+        """Roller centre (n, 2) at shaft angles phi and positions (n,)."""
+        return self.pivot * unit(phi) - self.length * unit(phi - self._turn * position)
 
     def path(self, phi: Array, position: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives, (n, 2) each, from the rows (3, n) of phi and of the lean."""
-        pivot, arm = polar_rows(phi, self.pivot), polar_rows(phi - self.side * position, -self.length)
+        """Centre and two derivatives, (n, 2) each, from the rows (3, n) of phi and of the position."""
+        pivot, arm = polar_rows(phi, self.pivot), polar_rows(phi - self._turn * position, -self.length)
         first, second, third = (p + a for p, a in zip(pivot, arm, strict=True))
         return first, second, third
 
     def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
-        """First and second derivative (n, 2) of the centre by its lean."""
-        arm = -self.length * unit(phi - self.side * position)
-        return -self.side * left(arm), -arm
+        """First and second derivative (n, 2) of the centre by its position."""
+        arm = -self.length * unit(phi - self._turn * position)
+        return -self._turn * left(arm), -arm
+
+    @property
+    def _turn(self) -> int:
+        """Sense, clockwise, in which the arm turns as its position grows."""
+        return self.side * self.away
 
     def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
-        """Two derivatives of the lean by phi (n,), where the roller's centre (n, 2) runs on pieces of that shape.
+        """Two derivatives of the position by phi (n,), where the roller's centre (n, 2) runs on pieces of that shape.
 
         With X on a piece of curvature k and tangent t, X' = w t and X'' = w' t + w^2 k left(t), and the arm's length
-        stays: w and w' follow from (X - P)^2 = l^2, and the lean's derivatives from those of X - P.
+        stays: w and w' follow from (X - P)^2 = l^2, and the position's derivatives from those of X - P.
         """
         pivot = self.pivot * unit(phi)
         pivot_rate, pivot_bend = left(pivot), -pivot
@@ -215,7 +227,7 @@ class Arm:
         hollow = (w**2 * curvature)[:, None] * left(tangent) - pivot_bend
         bend = hollow - ((dot(d, hollow) + dot(rate, rate)) / along)[:, None] * tangent
         square = self.length**2
-        return self.side * (1.0 - cross(d, rate) / square), -self.side * cross(d, bend) / square
+        return self._turn * (1.0 - cross(d, rate) / square), -self._turn * cross(d, bend) / square
 
     def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
         """Both places (2, n, 2), seen from the starts of pieces, where the arm's circle meets theirs.
@@ -265,10 +277,12 @@ class Arm:
 class Translating:
     """A line of travel at the shaft angle, displaced by `offset` e, mm, towards its left.
 
-    The position is the centre's distance along it from the foot of the shaft, mm, positive outwards.
+    The position is the centre's distance along it from the foot of the shaft, mm, positive outwards; less it where
+    `away` from the cam is inwards, in a ring.
     """
 
     offset: float = 0.0
+    away: Side = 1
 
     @property
     def unit(self) -> Unit:
@@ -306,7 +320,7 @@ class Translating:
 
     def lead(self, r: Array) -> Array:
         """Polar angle of the centre less the shaft angle, at its distance r (n,)."""
-        lead: Array = np.arctan2(self.offset, self.position(r))
+        lead: Array = np.arctan2(self.offset, self.away * self.position(r))
         return lead
 
     def lead_slope(self, least: Array, most: Array) -> Array:  # noqa: ARG002 - steepest where it is nearest
@@ -319,24 +333,24 @@ class Translating:
     def position(self, r: Array) -> Array:
         """Distance along the line of travel, from the centre's distance r (n,) from the shaft."""
         along: Array = np.sqrt(np.maximum((r - self.offset) * (r + self.offset), 0.0))
-        return along
+        return self.away * along
 
     def centre(self, phi: Array, position: Array) -> Array:
         """Roller centre (n, 2) at shaft angles phi and positions (n,)."""
         u = unit(phi)
-        return position[:, None] * u + self.offset * left(u)
+        return self.away * position[:, None] * u + self.offset * left(u)
 
     def path(self, phi: Array, position: Array) -> tuple[Array, Array, Array]:
         """Centre and two derivatives, (n, 2) each, from the rows (3, n) of phi and of the position."""
         u, du, ddu = polar_rows(phi, 1.0)
-        p, dp, ddp = (row[:, None] for row in position)
+        p, dp, ddp = (self.away * row[:, None] for row in position)
         first, second = p * u + self.offset * left(u), dp * u + p * du + self.offset * left(du)
         return first, second, ddp * u + 2.0 * dp * du + p * ddu + self.offset * left(ddu)
 
     def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
         """First and second derivative (n, 2) of the centre by its position."""
         u = unit(phi)
-        return u + 0.0 * position[:, None], np.zeros_like(u)
+        return self.away * u + 0.0 * position[:, None], np.zeros_like(u)
 
     def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
         """Two derivatives of the position by phi (n,), where the centre (n, 2) runs on pieces of that shape.
@@ -350,7 +364,7 @@ class Translating:
         first = -dot(turning, across) / reach
         along = dot(first[:, None] * d + turning, tangent)
         bend = 2.0 * first[:, None] * left(d) - centre
-        return first, (along**2 * curvature - dot(bend, across)) / reach
+        return self.away * first, self.away * (along**2 * curvature - dot(bend, across)) / reach
 
     def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
         """Both places (2, n, 2), seen from the starts of pieces, where the line of travel meets their circles.

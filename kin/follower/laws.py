@@ -13,7 +13,7 @@ from kin.numeric.angles import TURN
 from kin.numeric.jet import Jet
 
 if TYPE_CHECKING:
-    from kin.follower.guide import Guide
+    from kin.follower.base import Contact
     from kin.law.piecewise import Piecewise
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -23,9 +23,9 @@ NEAR = 1e-7  # rad; a step of third order is good to rounding
 
 @dataclass(frozen=True, eq=False)
 class GuidedPitch:
-    """Pitch curve of a guided roller whose position is a law over the shaft angle."""
+    """Pitch curve of a guided roller, one contact of a follower whose position is a law over the shaft angle."""
 
-    guide: Guide
+    contact: Contact
     law: Piecewise
 
     @property
@@ -36,7 +36,9 @@ class GuidedPitch:
     def points(self, tau: Array) -> tuple[Array, Array, Array]:
         """Centre and two derivatives by the shaft angle, each (n, 2)."""
         phi = np.stack([tau, np.ones_like(tau), np.zeros_like(tau)])
-        return self.guide.path(phi, self.law.derivatives(tau, 2))
+        own = self.contact.sense * self.law.derivatives(tau, 2)
+        own[0] += self.contact.zero
+        return self.contact.guide.path(phi, own)
 
 
 @dataclass(frozen=True, eq=False)

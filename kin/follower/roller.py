@@ -9,7 +9,7 @@ So is the play between two rollers, without the closer look.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -52,6 +52,7 @@ class _Rollers(Follower):
     """What one roller and two have in common; each of the contacts has a roller of the same radius."""
 
     radius: float
+    internal: bool = False  # the metal lies outside the contour
 
     def contact(self, contour: Contour, phi: Array) -> Array:
         """Position, mm or radians: (n,), or (2, n) with either roller held. ContactError where nothing is met."""
@@ -64,7 +65,8 @@ class _Rollers(Follower):
         return [OfRoller(obstacle, one.guide, one.turned) for one in self.contacts]
 
     def _obstacle(self, contour: Contour, *spline: float) -> Arcs:
-        return dilated(contour.as_arcs(*spline)[0], self.radius)
+        chain = contour.as_arcs(*spline)[0]
+        return dilated(chain.reversed() if self.internal else chain, self.radius)
 
     def _positions(self, obstacle: Arcs, phi: Array) -> Array:
         return np.stack([one.position(held_position(obstacle, one.guide, phi + one.turned)) for one in self.contacts])
@@ -88,7 +90,7 @@ class _OfLaw(_Rollers):
     @cached_property
     def envelope(self) -> RollerEnvelope:
         """The exact contour; its parameter is the shaft angle."""
-        return RollerEnvelope(GuidedPitch(self.contacts[0].guide, self.law), self.radius)
+        return RollerEnvelope(GuidedPitch(self.contacts[0], self.law), -self.radius if self.internal else self.radius)
 
     @cached_property
     def _by_law(self) -> ByLaw:
@@ -99,10 +101,10 @@ class _OfLaw(_Rollers):
 
         ContactError where nothing is met.
         """
-        obstacle, guide = self._obstacle(contour), self.contacts[0].guide
-        steps = with_steps(phi)
-        held = held_on(obstacle, guide, steps)
-        errors = (held.position[: len(steps)] - self.intended(steps))[None]
+        obstacle, first = self._obstacle(contour), self.contacts[0]
+        guide, steps = first.guide, with_steps(phi)
+        held = held_on(obstacle, guide, steps, first.zero, first.sense)
+        errors = (first.position(held.position[: len(steps)]) - self.intended(steps))[None]
         worst, remainder = settled([held], self._by_law, errors, few=len(obstacle) <= MOST_PIECES)
         dwells = [float(np.ptp(held_position(obstacle, guide, angle))) for angle in dwell_angles(self.rests, phi)]
         motion = motion_error(worst, errors[0], max(dwells, default=None), self.unit, remainder=remainder)
@@ -122,7 +124,8 @@ class _OfLaw(_Rollers):
 
     def _leeway(self, tolerance: float, tau: Array) -> Array:
         """How far the roller may move at shaft angles tau (n,) before it leaves the pitch curve by `tolerance`."""
-        along = self.contacts[0].guide.along(tau, self.intended(tau))
+        first = self.contacts[0]
+        along = first.guide.along(tau, first.own(self.intended(tau)))
         return leeway(self.envelope.pitch.points(tau), *along, tolerance)[0]
 
 
@@ -131,17 +134,20 @@ class Roller(_OfLaw):
     """A roller of `radius`, mm, on a guide that stands at the shaft angle in the cam's frame.
 
     Its position, of which `law` is the intended one over the shaft angle, grows as the roller is lifted: the angle at
-    an arm's pivot between shaft and roller, radians, or the distance travelled from the shaft's foot, mm.
+    an arm's pivot between shaft and roller, radians, or the distance travelled from the shaft's foot, mm. A radius of 0
+    is the point of a knife edge, a large one a curved shoe. `internal`: it runs in the opening of a ring, which stops
+    it from travelling outwards.
     """
 
-    guide: Guide
+    guide: Arm | Translating
     radius: float
     law: Piecewise
+    internal: bool = False
 
-    @property
+    @cached_property
     def contacts(self) -> tuple[Contact, ...]:
-        """The roller."""
-        return (Contact(self.guide),)
+        """The roller; in a ring its own position grows inwards, away from the metal."""
+        return (Contact(replace(self.guide, away=-1), -1),) if self.internal else (Contact(self.guide),)
 
 
 @dataclass(frozen=True, eq=False)

@@ -220,8 +220,9 @@ class Held:
 
     def _meet(self, piece: Indices, phi: Array) -> Array:
         """Position with the centre on pieces (n,) at shaft angles phi (n,), -inf where it does not come there."""
-        r = meet(self.pieces.take(piece), self.guide, phi, self.slack)
-        return np.where(np.isfinite(r), self.guide.position(np.maximum(r, 0.0)), -np.inf)
+        height = meet(self.pieces.take(piece), self.guide, phi, self.slack)
+        met = np.isfinite(height)
+        return np.where(met, self.guide.position(np.where(met, self.guide.away * height, 0.0)), -np.inf)
 
     def _place(self, piece: Indices, phi: Array, position: Array) -> Array:
         """Arc length on pieces (n,) of the centre at shaft angles phi and positions (n,)."""
@@ -411,7 +412,8 @@ class _State:
             phi_1 = (c + m * q) / u
             phi_2 = (k * a + m_slope * q + m * q_1 - 2.0 * a * phi_1) / u
         phi = np.nan_to_num(np.arctan2(point[:, 1], point[:, 0]) - guide.lead(r))
-        return _State(guide, k, r, a, c, b, phi, (guide.position(r), q, q_1), (phi_1, phi_2))
+        away = guide.away
+        return _State(guide, k, r, a, c, b, phi, (guide.position(r), away * q, away * q_1), (phi_1, phi_2))
 
     def error(self, meant: Array) -> Array:
         """Error and two derivatives by s, (3, n), from the intended position's rows (3, n) by the shaft angle."""

@@ -52,6 +52,7 @@ class Intent:
     mirrored    the file is drawn mirrored about the x axis (the shaft turns counter-clockwise)
     mm          mm in one drawing unit of a DXF or SVG file or a program (solids are always in mm)
     bore        diameter, mm; None for no hole at all
+    outer       diameter of a ring, mm, whose follower runs in the opening; None for a cam that it runs round
     thickness   of a solid, mm, z from 0; None where only contours are judged
     trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
     mechanism   that the yoke's frame drives as a coupler; None for a plain follower
@@ -73,6 +74,7 @@ class Intent:
     layers: tuple[Layer, ...] = ()
     cross_holes: tuple[CrossHole, ...] = ()
     milling: Milling | None = None
+    outer: float | None = None
 
     @property
     def featured(self) -> bool:
@@ -313,13 +315,17 @@ def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float) -
     if len(holes) != 1:
         detail = f"{len(holes)} holes, where one of diameter {bore:.9g} mm is meant to be"
         return failed("bore", detail, unit="mm", limit=tolerance)
-    hole = holes[0]
-    least, most = _distance_range(hole)
-    across, box = 2.0 * float(np.sqrt(abs(hole.area) / np.pi)), hole.box
-    worst = max(most - 0.5 * bore, 0.5 * bore - least, 0.5 * abs(across - bore))
+    return round_check("bore", holes[0], bore, tolerance)
+
+
+def round_check(name: str, contour: Contour, diameter: float, tolerance: float) -> Check:
+    """Check that a contour is a circle of that diameter, mm, about the shaft."""
+    least, most = _distance_range(contour)
+    across, box = 2.0 * float(np.sqrt(abs(contour.area) / np.pi)), contour.box
+    worst = max(most - 0.5 * diameter, 0.5 * diameter - least, 0.5 * abs(across - diameter))
     place = f"({0.5 * (box.x_min + box.x_max):.6g}, {0.5 * (box.y_min + box.y_max):.6g})"
     detail = f"diameter {across:.9g} mm about {place}"
-    return at_most("bore", worst, tolerance, "mm", detail=detail, slack=ROUNDING * bore)
+    return at_most(name, worst, tolerance, "mm", detail=detail, slack=ROUNDING * diameter)
 
 
 def _distance_range(contour: Contour) -> tuple[float, float]:
@@ -342,14 +348,16 @@ def _distance_range(contour: Contour) -> tuple[float, float]:
 
 
 def exact_area(contour: Contour, intent: Intent) -> tuple[float, float, str]:
-    """Area and perimeter, mm^2 and mm, and whose they are: the intent's, or the file's contour's.
+    """Area and length of the edges, mm^2 and mm, and whose they are: the intent's, or the file's contour's.
 
-    The contour's are those of a trimmed cam, for which there is no closed form.
+    The contour's are those of a trimmed cam, for which there is no closed form. A ring has two edges.
     """
     envelope = intent.follower.envelope
-    if envelope.regular:
-        return (*envelope.area_and_perimeter(), "intent")
-    return contour.area, contour.length, "contour"
+    regular = envelope.regular
+    area, length = envelope.area_and_perimeter() if regular else (contour.area, contour.length)
+    if intent.outer is not None:
+        area, length = 0.25 * np.pi * intent.outer**2 - area, np.pi * intent.outer + length
+    return area, length, "intent" if regular else "contour"
 
 
 def volume_check(volume: float, height: float, contour: Contour, intent: Intent, tolerance: float) -> Check:

@@ -15,6 +15,7 @@ import numpy as np
 from kin.contour.intersections import crossings
 from kin.judge.check import Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import ROUNDING, DwellAsked, Intent, Limits, bore_check, judge_contour, volume_check
+from kin.judge.ring import Faced, faced
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
 from kin.read.errors import ReadError
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from kin.follower.motion_error import MotionError, Play
     from kin.read.drawing.drawing import Drawing
     from kin.read.files import AnySolid, Kind
+    from kin.read.mesh.stl import Section
 
 __all__ = ["DwellAsked", "Intent", "Limits", "UnitsError", "Verdict", "verify"]
 
@@ -129,10 +131,12 @@ def _of_drawing(path: Path, intent: Intent, limits: Limits, units: float | None)
     drawing = read_drawing(path, engraved=any(hole.depth is not None for hole in intent.holes))
     _demand_same(drawing.units_mm, units, path)
     scale = (intent.mm if units is None else units) if drawing.units_mm is None else 1.0
-    contour, *holes = (_placed(c, scale, intent.mirrored) for c in (drawing.contour, *drawing.holes))
-    checks = [_units_check(drawing.units_mm, units, intent, contour), _closed_check(drawing, contour)]
+    outline, *holes = (_placed(c, scale, intent.mirrored) for c in (drawing.contour, *drawing.holes))
+    found = faced(outline, holes, intent.outer, limits.tolerance, path)
+    checks = [_units_check(drawing.units_mm, units, intent, found.contour), _closed_check(drawing, found.contour)]
     engraved = [_placed(c, scale, intent.mirrored) for c in drawing.engraved]
-    return _Read([*checks, *_opening_checks(holes, engraved, intent, limits)], contour, drawing.pieces)
+    checks += [*found.checks, *_opening_checks(found.holes, engraved, intent, limits)]
+    return _Read(checks, found.contour, drawing.pieces if intent.outer is None else len(found.contour))
 
 
 def _of_program(path: Path, intent: Intent, limits: Limits, units: float | None) -> _Read:
@@ -142,6 +146,8 @@ def _of_program(path: Path, intent: Intent, limits: Limits, units: float | None)
 
     if intent.milling is None:
         raise ReadError("unsupported", "how the part is milled is not given", path)
+    if intent.outer is not None:
+        raise ReadError("unsupported", "a program that mills a ring is not judged", path)
     program = read_gcode(path)
     _demand_same(program.units_mm, units, path)
     done = milled(program, intent.milling, limits.tolerance)
@@ -150,7 +156,9 @@ def _of_program(path: Path, intent: Intent, limits: Limits, units: float | None)
     return _Read([*checks, *done.checks, *_opening_checks(holes, [], intent, limits)], contour, done.pieces)
 
 
-def _opening_checks(holes: list[Contour], engraved: list[Contour], intent: Intent, limits: Limits) -> list[Check]:
+def _opening_checks(
+    holes: Sequence[Contour], engraved: Sequence[Contour], intent: Intent, limits: Limits
+) -> list[Check]:
     """Check what is drawn or milled inside the contour."""
     if intent.featured:
         from kin.judge.part_checks import drawn_checks  # a plain part does without
@@ -158,10 +166,6 @@ def _opening_checks(holes: list[Contour], engraved: list[Contour], intent: Inten
         return drawn_checks(holes, engraved, intent, limits.tolerance)
     bore = bore_check(holes, intent.bore, limits.tolerance)
     return [bore] if bore else []
-
-
-def _all_placed(contours: Sequence[Contour], intent: Intent) -> tuple[Contour, ...]:
-    return tuple(_placed(contour, 1.0, intent.mirrored) for contour in contours)
 
 
 def _placed(contour: Contour, scale: float, mirrored: bool) -> Contour:
@@ -211,24 +215,28 @@ def _of_solid(path: Path, intent: Intent, limits: Limits, units: float | None) -
 
         solid = read_solid(path, levels(intent), units)
         _demand_same(solid.units_mm, units, path)
-        sections = [
-            Section(one.height, _placed(one.contour, 1.0, intent.mirrored), _all_placed(one.holes, intent))
-            for one in solid.sections
-        ]
-        contour = sections[0].contour
-        checks = [_watertight_check(solid, contour), *solid_checks(solid, sections, intent, limits.tolerance)]
-        return _Read(checks, contour, solid.pieces, solid.uneven)
+        at = [_faced_section(one, intent, limits.tolerance, path) for one in solid.sections]
+        sections = [Section(one.height, f.contour, f.holes) for one, f in zip(solid.sections, at, strict=True)]
+        checks = [_watertight_check(solid, at[0].contour), *(less_sure(one, solid.uneven) for one in at[0].checks)]
+        checks += solid_checks(solid, sections, intent, limits.tolerance)
+        pieces = solid.pieces if intent.outer is None else len(at[0].contour)
+        return _Read(checks, at[0].contour, pieces, solid.uneven)
     solid = read_solid(path, (), units)
     _demand_same(solid.units_mm, units, path)
-    contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (solid.contour, *solid.holes))
-    checks = [_watertight_check(solid, contour)]
+    contour, holes, ring = _faced_section(solid, intent, limits.tolerance, path)
+    checks = [_watertight_check(solid, contour), *(less_sure(one, solid.uneven) for one in ring)]
     bore = bore_check(holes, intent.bore, limits.tolerance)
     if bore:
         checks.append(less_sure(bore, solid.uneven))
     if intent.thickness is not None:
         checks.append(_thickness_check(solid, intent.thickness, limits.tolerance))
         checks.append(volume_check(solid.volume, solid.thickness, contour, intent, limits.tolerance))
-    return _Read(checks, contour, solid.pieces, solid.uneven)
+    return _Read(checks, contour, solid.pieces if intent.outer is None else len(contour), solid.uneven)
+
+
+def _faced_section(section: AnySolid | Section, intent: Intent, tolerance: float, path: Path) -> Faced:
+    outline, *holes = (_placed(c, 1.0, intent.mirrored) for c in (section.contour, *section.holes))
+    return faced(outline, holes, intent.outer, tolerance, path)
 
 
 def _watertight_check(solid: AnySolid, contour: Contour) -> Check:

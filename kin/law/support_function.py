@@ -120,7 +120,7 @@ class Lift:
         ends = self.breaks if len(self.breaks) else self.law.knots[:1]
         index, _ = self.law.locate(ends, 1)
         functions = [self.law.functions[i] for i in index]
-        return np.array([f.radius if isinstance(f, Circle) else math.nan for f in functions])
+        return np.array([_radius(f) for f in functions])
 
     @property
     def steady(self) -> NDArray[np.bool_]:
@@ -168,6 +168,12 @@ class Lift:
         """The lift less its first harmonic, as far as that is known."""
         law = self.law
         return Piecewise(law.knots, tuple(_less_first(f) for f in law.functions), law.period, law.smooth_seam)
+
+
+def _radius(function: Stretch) -> float:
+    if isinstance(function, Circle):
+        return function.radius
+    return function.value if isinstance(function, Constant) else math.nan
 
 
 def _bare(function: Stretch) -> Stretch:

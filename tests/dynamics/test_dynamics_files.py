@@ -11,7 +11,7 @@ from kin.dynamics.drive import drives
 from kin.dynamics.excitation import intended_faces, measured_faces
 from kin.dynamics.train import Train, steady
 from kin.follower.contact import dilated
-from kin.follower.drive import OfFace, OfPair, OfRoller
+from kin.follower.drive import OfFace, OfRoller
 from kin.follower.follower import DoubleRoller, FlatFace, FlatPair, Roller, RollerYoke, Yoke
 from kin.follower.guide import LEADING, TRAILING, Arm, Translating
 from kin.follower.support import bearing_of
@@ -67,9 +67,8 @@ def test_derivatives_of_every_motion():
     r, slope = support.derivatives(t, 1)
     points = np.stack([r * np.cos(t) - slope * np.sin(t), r * np.sin(t) + slope * np.cos(t)], axis=-1)
     contour = Contour.from_vertices(points)
-    bearing = pair.held(contour)
-    for side in (1, -1):
-        consistent(OfPair(pair, bearing, side), step=1e-5)
+    for drive in pair.drives(contour):
+        consistent(drive, step=1e-5)
     eccentric = circle_about(3.0, 2.0, 20.0)
     for side in (TRAILING, LEADING):
         consistent(OfRoller(dilated(eccentric.as_arcs()[0], 5.0), Arm(40.0, 50.0, side)))

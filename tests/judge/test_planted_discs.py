@@ -1,0 +1,148 @@
+"""Spoilt files of disc cams, each with one fault, judged against every follower: contact and contour must tell.
+
+The sound files are fits of curves that know nothing of the judge. A ring is drawn as its opening in a circle.
+"""
+
+import numpy as np
+import pytest
+from support.camfiles import arcs_through, solid_triangles, write_dxf, write_stl
+from support.disc_followers import (
+    FOLLOWERS,
+    TRAILING,
+    chain,
+    on_arm,
+    on_face,
+    on_stem,
+    on_swinging_face,
+)
+from support.discs import DEGREE, M01, M02, M03, M07, M08, TURN
+
+from camgeo.curve.moving_frame import Oscillating
+from kin.follower.follower import Roller
+from kin.judge.verify import Intent, Limits, verify
+
+OUTER = 200.0
+LIMITS = Limits(tolerance=1e-4)
+DENSE = TURN / 8000 * np.arange(8000)
+
+
+def intent(follower, **other):
+    ring = isinstance(follower, Roller) and follower.internal
+    return Intent(follower, outer=OUTER if ring else None, **other)
+
+
+def drawn(path, points, bulges, follower):
+    ring = isinstance(follower, Roller) and follower.internal
+    return write_dxf(path, points, bulges, bores=[(0.0, 0.0, 0.5 * OUTER)] if ring else ())
+
+
+def failures(path, asked):
+    return {check.name for check in verify(path, asked, 180, LIMITS).checks if not check.ok}
+
+
+def rotated(points, degrees):
+    c, s = np.cos(degrees * DEGREE), np.sin(degrees * DEGREE)
+    return points @ np.array([[c, s], [-s, c]])
+
+
+@pytest.mark.parametrize("name", FOLLOWERS)
+def test_a_sound_file_passes(tmp_path, name):
+    made, follower = chain(name), FOLLOWERS[name]
+    verdict = verify(drawn(tmp_path / "cam.dxf", made.points, made.bulges, follower), intent(follower), 180, LIMITS)
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
+    assert verdict.motion.extremes == "true"
+    assert verdict.motion.bound <= follower.motion_limit(1e-5)
+    assert verdict.pieces == made.count
+
+
+@pytest.mark.parametrize("name", FOLLOWERS)
+def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
+    made, follower = chain(name), FOLLOWERS[name]
+    mirrored = made.points[::-1] * np.array([1.0, -1.0])
+    spoilt = [(rotated(made.points, 0.02), made.bulges)]
+    if name != "knife edge":  # its lift is the same either way
+        spoilt.append((mirrored, np.roll(made.bulges[::-1], -1)))
+    for points, bulges in spoilt:
+        caught = failures(drawn(tmp_path / "cam.dxf", points, bulges, follower), intent(follower))
+        assert caught >= {"contour", "motion"}
+
+
+@pytest.mark.parametrize("depth", [1e-3, -1e-3])
+@pytest.mark.parametrize("name", FOLLOWERS)
+def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
+    """The pitch curve is right, the contour lies a micrometre beside it: the wrong radius was taken."""
+    follower = FOLLOWERS[name]
+    points, bulges = arcs_through(follower.envelope.inset(depth).points(DENSE))
+    sound = arcs_through(follower.envelope.points(DENSE))
+    path = tmp_path / "cam.dxf"
+    assert failures(drawn(path, *sound, follower), intent(follower)) == set()
+    assert failures(drawn(path, points, bulges, follower), intent(follower)) >= {"contour", "motion"}
+
+
+MISTAKEN = {
+    "offset on the other side": ("roller, offset", on_stem(M02, 45.0, -10.0, 9.0)),
+    "offset on the other side, against": ("roller, offset against", on_stem(M02, 45.0, 10.0, 9.0)),
+    "in line for offset": ("roller, offset", on_stem(M02, 45.0, 0.0, 9.0)),
+    "leading for trailing": ("leading arm", on_arm(M07, Oscillating.on(42.0, 80.0, 65.0, 1), 8.0)),
+    "trailing for leading": ("trailing arm", on_arm(M07, Oscillating.on(42.0, 80.0, 65.0, -1), 8.0)),
+    "tilted the other way": ("flat, tilted", on_face(M03, 32.0, -8 * DEGREE)),
+    "straight for tilted": ("flat, tilted", on_face(M03, 32.0)),
+    "leading face for trailing": ("leading face", on_swinging_face(M08, 36.0, 90.0, 10.0, 1)),
+    "trailing face for leading": ("trailing face", on_swinging_face(M08, 36.0, 90.0, 10.0, -1)),
+    "face beyond its pivot": ("trailing face", on_swinging_face(M08, 36.0, 90.0, -10.0, 1)),
+    "external for a ring": ("roller", on_stem(M01, 50.0, 0.0, 10.0, internal=True)),
+    "a ring for external": ("ring", on_stem(M01, 50.0, 0.0, 10.0)),
+    "knife edge for a shoe": ("shoe", on_stem(M01, 25.0, 0.0, 0.0)),
+}
+
+
+@pytest.mark.parametrize("fault", MISTAKEN)
+def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
+    name, meant = MISTAKEN[fault]
+    made = chain(name)
+    assert failures(drawn(tmp_path / "cam.dxf", made.points, made.bulges, meant), intent(meant)) >= {
+        "contour",
+        "motion",
+    }
+
+
+# --- rings ------------------------------------------------------------------------------------------------------------
+
+
+def ring_mesh(path, wide=OUTER, count=4000):
+    t = TURN / count * np.arange(count)
+    outer = 0.5 * wide * np.stack([np.cos(t), np.sin(t)], axis=-1)
+    return write_stl(path, solid_triangles(outer, FOLLOWERS["ring"].envelope.points(t), 0.0, 8.0))
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_ring_as_a_mesh(tmp_path, mirrored):
+    asked = intent(FOLLOWERS["ring"], thickness=8.0, mirrored=mirrored)
+    verdict = verify(ring_mesh(tmp_path / "ring.stl"), asked, 90, Limits(1e-3))
+    failed = {check.name for check in verdict.checks if not check.ok}
+    assert failed == ({"contour", "motion"} if mirrored else set())
+    assert {check.name for check in verdict.checks} == {
+        *("watertight", "outer", "thickness", "volume", "contour", "motion")
+    }
+
+
+def test_a_ring_of_another_size_or_without_an_opening(tmp_path):
+    asked = intent(FOLLOWERS["ring"], thickness=8.0)
+    verdict = verify(ring_mesh(tmp_path / "ring.stl", OUTER + 0.02), asked, 90, Limits(1e-3))
+    assert {check.name for check in verdict.checks if not check.ok} == {"outer", "volume"}
+    made = chain("ring")
+    path = write_dxf(tmp_path / "opening.dxf", made.points, made.bulges, bores=())
+    (only,) = verify(path, asked, 90, LIMITS).checks
+    assert "no opening about the shaft" in only.detail
+    beside = write_dxf(tmp_path / "hole.dxf", made.points, made.bulges, bores=[(0, 0, 100.0), (85.0, 0.0, 3.0)])
+    assert failures(beside, intent(FOLLOWERS["ring"])) == {"bore"}
+
+
+def test_the_side_of_an_arm_is_not_lost_in_the_ring(tmp_path):
+    """A trailing arm in a ring, and its own opening of arcs through points of the exact contour."""
+    trailing, leading = (on_arm(M07, Oscillating.on(42.0, 80.0, 65.0, side), 8.0, internal=True) for side in (1, -1))
+    assert trailing.guide.side == TRAILING
+    points, bulges = arcs_through(trailing.envelope.points(DENSE))
+    path = drawn(tmp_path / "ring.dxf", points, bulges, trailing)
+    assert failures(path, intent(trailing)) == set()
+    assert failures(path, intent(leading)) >= {"contour", "motion"}
