@@ -16,7 +16,7 @@ from camgeo.cams.family import (
     Margin,
     Unit,
 )
-from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
+from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.recipe.schema.fields import Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class DeltaRoute:
 class LawRoute:
     """The follower's swing over delta = pi/lambda of shaft angle; of a flat pair the swing is psi/2."""
 
-    motion: tuple[MotionSegment, ...]
+    motion: MotionAsked
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class PairCam(Cam):
         if isinstance(route, DeltaRoute):
             return transmission.from_delta(self.lam, self.mu, self.arm, dict(route.cos), dict(route.sin))
         if isinstance(route, LawRoute):
-            motion = programme_of(route.motion, math.pi / self.lam, "law")
+            motion = route.motion.motion(math.pi / self.lam, "law", None)
             return transmission.from_law(self.lam, self.mu, self.arm, motion, self.swing_of)
         if isinstance(route, ArcRoute):
             return transmission.from_arc(self.lam, self.mu, self.arm, route.radius, route.side)
@@ -186,7 +186,7 @@ def build_route(cam: Values, mm: float) -> Route:
     if "delta" in cam:
         return DeltaRoute(**{"cos": (), "sin": (), **cam["delta"]})
     if "law" in cam:
-        return LawRoute(build_motion(cam["law"], math.pi / 180))
+        return LawRoute(cam["law"])
     if "arc" in cam:
         return ArcRoute(**{"side": "convex", **cam["arc"]})
     return RosetteRoute(cam["rosette"]["leaf"], mm)

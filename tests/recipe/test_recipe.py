@@ -19,8 +19,9 @@ from support.places import SHIPPED
 from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.flat_pair import FlatPairCam
-from camgeo.cams.motion import MotionSegment, SccaLaw
+from camgeo.cams.motion import SegmentsAsked
 from camgeo.cams.pairs import ArcRoute, DeltaRoute, LawRoute, RosetteRoute
+from camgeo.cams.segments import MotionSegment, SccaLaw
 from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, ReuleauxShape, SupportCam
 from camgeo.recipe import Recipe, RecipeErrors, load, read
 from camgeo.recipe.export import Export, FileRequest
@@ -138,7 +139,9 @@ def test_the_default_tolerance_is_a_micrometre_in_inches_too() -> None:
             "{kind: constant-breadth, base_radius: 2, motion: [{rise: 1, over: 120, law: cycloidal}, {dwell: 60}]}",
             ConstantBreadthCam(
                 2 * MM,
-                (MotionSegment("rise", 120 * DEG, 1 * MM, "cycloidal"), MotionSegment("dwell", 60 * DEG)),
+                SegmentsAsked(
+                    (MotionSegment("rise", 120 * DEG, 1 * MM, "cycloidal"), MotionSegment("dwell", 60 * DEG))
+                ),
                 "refuse",
             ),
         ),
@@ -164,9 +167,11 @@ def test_the_default_tolerance_is_a_micrometre_in_inches_too() -> None:
                 1,
                 MM,
                 LawRoute(
-                    (
-                        MotionSegment("rise", 45 * DEG, 4 * DEG, (0.0, 0.0, 3.0, -2.0)),
-                        MotionSegment("return", 45 * DEG, 4 * DEG, "harmonic"),
+                    SegmentsAsked(
+                        (
+                            MotionSegment("rise", 45 * DEG, 4 * DEG, (0.0, 0.0, 3.0, -2.0)),
+                            MotionSegment("return", 45 * DEG, 4 * DEG, "harmonic"),
+                        )
                     )
                 ),
                 "trim",
