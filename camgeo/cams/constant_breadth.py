@@ -20,6 +20,8 @@ from camgeo.recipe.schema.fields import Kind, Table, length
 
 if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
+    from kin.law.joints import Joint
+    from kin.law.sources.motion import Motion
 
 _OTHER_HALF = "two parallel faces hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
 
@@ -38,7 +40,14 @@ class ConstantBreadthCam(FlatFacedCam):
         """The lift of the first face over a whole turn (SW eqs. 2 to 4)."""
         from kin.law.support_function import lift_constant_breadth
 
-        return lift_constant_breadth(self.base_radius, self.motion.motion(math.pi, "motion", -1))
+        return lift_constant_breadth(self.base_radius, self._half_turn())
+
+    def _half_turn(self) -> Motion:
+        return self.motion.motion(math.pi, "motion", -1)
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
+        """Those of the half turn; the other half has them too, turned round."""
+        return self._half_turn().joints
 
     @property
     def size_field(self) -> tuple[str, float]:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.fields import Table
     from camgeo.recipe.schema.reader import Reader, Values
     from kin.follower.follower import Follower as Judged
+    from kin.law.joints import Joint
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
 
@@ -160,6 +161,10 @@ class Cam(ABC):
     @abstractmethod
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:
         """What kin judges files by: the follower with its law; `breadth` is a yoke's, `face` that of a pair."""
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
+        """Where derivatives of the motion that a recipe gives jump; displacements in mm or rad."""
+        return ()
 
     # --- advice -------------------------------------------------------------------------------------------------------
 

@@ -21,6 +21,7 @@ from camgeo.recipe.schema.fields import Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
+    from kin.law.joints import Joint
     from kin.law.transmission import Transmission
 
 LOOKS = 1440  # parameters of a law at which its margins are looked at
@@ -88,6 +89,13 @@ class PairCam(Cam):
 
         leaf = Formula(route.text, ("x",))
         return transmission.from_rosette(self.lam, self.mu, self.arm, leaf, route.scale)
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:
+        """Those of the swing over 360/lambda degrees, where the recipe gives it."""
+        if not isinstance(self.route, LawRoute):
+            return ()
+        share = 0.5 if self.swing_of == "pair" else 1.0
+        return tuple(joint.scaled(share) for joint in cast("Transmission", intent).joints)
 
     def less_swing(self, mm: float) -> str:
         """An arc about the shaft, its radius the mean distance R = 2 l cos(alpha/2), has no swing at all."""

@@ -198,7 +198,7 @@ def test_units_count_wherever_they_stand() -> None:
 def test_a_sum_of_fractions_fills_the_angle_of_the_law() -> None:
     body = "law: [{rise: 1, over: 90/7, law: cycloidal}, {return: 1, over: 90/7, law: cycloidal}]"
     route = cam(f"{{kind: flat-pair, ratio: 7/3, arm: 30, {body}}}")
-    assert sum(segment.over for segment in route.route.motion) == pytest.approx(math.pi / 7, abs=1e-15)
+    assert sum(segment.over for segment in route.route.motion.segments) == pytest.approx(math.pi / 7, abs=1e-15)
 
 
 # --- YAML's ways ------------------------------------------------------------------------------------------------------
@@ -253,7 +253,7 @@ def test_aliases_stand_for_what_they_name() -> None:
         "part: {thickness: *r}\n"
     )
     assert recipe.part.thickness == 40
-    assert recipe.cam.motion[0] == recipe.cam.motion[1]
+    assert recipe.cam.motion.segments[0] == recipe.cam.motion.segments[1]
 
 
 @pytest.mark.parametrize(("ends", "mark"), [("\n", b""), ("\r\n", b""), ("\r", b""), ("\n", b"\xef\xbb\xbf")])
