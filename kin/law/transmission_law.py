@@ -22,7 +22,7 @@ import numpy as np
 
 from kin.law.joints import ORDERS, Joint, joints_of
 from kin.law.piecewise import Piecewise, Places, Side
-from kin.law.routes import DeltaDistance, FromDelta, FromLeaf
+from kin.law.routes import DeltaDistance, FromDelta, FromExpression, FromLeaf
 from kin.law.segment import Affine, Constant, Series
 from kin.numeric.elementary import Ball, BallJet, Jet, cos
 from kin.numeric.newton import zeros
@@ -179,7 +179,7 @@ class Transmission:
         As `Lift.rounding`, at `_LOOKS` parameters of the law's period.
         """
         bare = [f.function if isinstance(f, Affine) else f for f in self.psi.functions]
-        if not any(isinstance(f, FromLeaf) for f in bare):
+        if not any(isinstance(f, FromLeaf | FromExpression) for f in bare):
             return 0.0
         tau = self.psi.knots[0] + np.arange(_LOOKS) * (2 * self.delta / _LOOKS)
         (_, phi), (_, psi) = self.enclosure(tau, tau, 0)
