@@ -63,8 +63,8 @@ def from_curve(lam: int, mu: int, arm: float, formula: Formula, scale: float = 1
         mean = 2 * arm * math.cos(alpha / 2) / scale
         raise IntentError(
             f"psi must end at {-math.degrees(first):.9g} degrees, where the arc's image begins, as it is "
-            f"{math.degrees(first):.9g} at t = 0; it ends at {math.degrees(last):.9g}; an arc from r = {mean:.9g} to the "
-            "same does",
+            f"{math.degrees(first):.9g} at t = 0; it ends at {math.degrees(last):.9g}; an arc from r = {mean:.9g} to "
+            "the same does",
             field,
         )
     return _polar((lam, mu, arm), found, places, field)
