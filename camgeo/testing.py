@@ -256,7 +256,7 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     recipe = _loaded(recipe)
     recipe = replace(recipe, cam=recipe.cam.refusing())
     design = designed(recipe)
-    report = document(recipe, Findings(design.checks, (), (), (), design.follower.name))
+    report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.joints))
     names = {CURVATURE.name, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
     checks = [check for check in report["checks"] if check["name"] in names]
     _all_hold(checks, report, recipe, recipe.name)

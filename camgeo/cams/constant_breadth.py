@@ -15,11 +15,13 @@ from camgeo.cams.family import (
     Undercut,
 )
 from camgeo.cams.flat_faced import FlatFacedCam
-from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
+from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.recipe.schema.fields import Kind, Table, length
 
 if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
+    from kin.law.joints import Joint
+    from kin.law.sources.motion import Motion
 
 _OTHER_HALF = "two parallel faces hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
 
@@ -32,14 +34,21 @@ class ConstantBreadthCam(FlatFacedCam):
     offers: ClassVar[frozenset[str]] = frozenset({"face", "plate"})
     always_in_a_yoke: ClassVar[bool] = True
     base_radius: float
-    motion: tuple[MotionSegment, ...]
+    motion: MotionAsked
     undercut: Undercut
 
     def intent(self) -> Intent:
         """The lift of the first face over a whole turn (SW eqs. 2 to 4)."""
         from kin.law.support_function import lift_constant_breadth
 
-        return lift_constant_breadth(self.base_radius, programme_of(self.motion, math.pi, "motion", around=-1))
+        return lift_constant_breadth(self.base_radius, self._half_turn())
+
+    def _half_turn(self) -> Motion:
+        return self.motion.motion(math.pi, "motion", -1)
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
+        """Those of the half turn; the other half has them too, turned round."""
+        return self._half_turn().joints
 
     @property
     def size_field(self) -> tuple[str, float]:
@@ -58,10 +67,10 @@ class ConstantBreadthCam(FlatFacedCam):
 TABLE = Table(
     (
         length("base_radius", "radius of the base circle", required=True),
-        replace(
-            motion_field(
-                "motion", Kind.LENGTH, "motion over one half turn, 180 degrees; the other half follows from it"
-            ),
+        motion_field(
+            "motion",
+            Kind.LENGTH,
+            "motion over one half turn, 180 degrees; the other half follows from it",
             required=True,
         ),
         UNDERCUT,
@@ -75,9 +84,9 @@ def check(cam: Values, reader: Reader) -> None:
         check_filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader, why=_OTHER_HALF)
 
 
-def build(cam: Values, mm: float) -> Cam:
+def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     """Make the cam of values in which there is no fault."""
-    return ConstantBreadthCam(cam["base_radius"], build_motion(cam["motion"], mm), cam.get("undercut", "refuse"))
+    return ConstantBreadthCam(cam["base_radius"], cam["motion"], cam.get("undercut", "refuse"))
 
 
 FAMILY = Family(ConstantBreadthCam, TABLE, build, check)

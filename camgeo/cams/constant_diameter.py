@@ -13,13 +13,15 @@ import numpy as np
 
 from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Intent, Undercut
 from camgeo.cams.guided import GuidedCam
-from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
+from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.recipe.schema.fields import Kind, Table, length
 
 if TYPE_CHECKING:
     from camgeo.curve.moving_frame import Displacement, Translating
     from camgeo.recipe.schema.reader import Reader, Values
     from kin.follower.follower import Follower as Judged
+    from kin.law.joints import Joint
+    from kin.law.sources.motion import Motion
 
 _OTHER_HALF = "two opposite rollers hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
 
@@ -32,7 +34,7 @@ class ConstantDiameterCam(GuidedCam):
     offers: ClassVar[frozenset[str]] = frozenset({"roller"})
     base_radius: float
     roller_radius: float
-    motion: tuple[MotionSegment, ...]
+    motion: MotionAsked
     undercut: Undercut
 
     @property
@@ -52,8 +54,14 @@ class ConstantDiameterCam(GuidedCam):
         from camgeo.curve.moving_frame import Displacement
         from kin.law.sources.motion import opposed
 
-        half = programme_of(self.motion, math.pi, "motion", around=-1)
-        return Displacement.of(opposed(half))
+        return Displacement.of(opposed(self._half_turn()))
+
+    def _half_turn(self) -> Motion:
+        return self.motion.motion(math.pi, "motion", -1)
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
+        """Those of the half turn; the other half has them too, turned round."""
+        return self._half_turn().joints
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """A frame with two rollers."""
@@ -83,10 +91,10 @@ TABLE = Table(
     (
         length("base_radius", "radius of the base circle", required=True),
         length("roller_radius", "radius of both rollers", required=True),
-        replace(
-            motion_field(
-                "motion", Kind.LENGTH, "motion over one half turn, 180 degrees; the other half follows from it"
-            ),
+        motion_field(
+            "motion",
+            Kind.LENGTH,
+            "motion over one half turn, 180 degrees; the other half follows from it",
             required=True,
         ),
         UNDERCUT,
@@ -100,10 +108,10 @@ def check(cam: Values, reader: Reader) -> None:
         check_filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader, why=_OTHER_HALF)
 
 
-def build(cam: Values, mm: float) -> Cam:
+def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     """Make the cam of values in which there is no fault."""
-    motion = build_motion(cam["motion"], mm)
-    return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], motion, cam.get("undercut", "refuse"))
+    undercut = cam.get("undercut", "refuse")
+    return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut)
 
 
 FAMILY = Family(ConstantDiameterCam, TABLE, build, check)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
 from camgeo.cams.faced import FacedCam
 from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Intent, Undercut, Unit
 from camgeo.cams.guided import GuidedCam
-from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
+from camgeo.cams.motion import MotionAsked, check_whole_turn, motion_field
 from camgeo.cams.position import ArmPosition, LiftPosition, Position
 from camgeo.cams.sizing import SIZING, Sizing, demand_kept, size_arm, size_face, size_stem
 from camgeo.recipe.schema.fields import Field, Form, Kind, Table, coordinate, length
@@ -26,10 +26,11 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
     from kin.follower.follower import Follower as Judged
+    from kin.law.joints import Joint
+    from kin.law.sources.motion import Motion
 
 Side: TypeAlias = Literal["trailing", "leading"]
 Track: TypeAlias = Literal["external", "internal"]
-_WHY = "the follower is back where it began after one turn"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +40,7 @@ class DiscCam(Cam):
     kind: ClassVar[str] = "disc"
     guided: ClassVar[str] = "translating"
     base_radius: float
-    motion: tuple[MotionSegment, ...]
+    motion: MotionAsked
     undercut: Undercut
     touch: str
     sizing: Sizing | None = None
@@ -50,9 +51,14 @@ class DiscCam(Cam):
         """The displacement over a whole turn, 0 where it is lowest."""
         from camgeo.curve.moving_frame import Displacement
 
-        motion = programme_of(self.motion, 2.0 * math.pi, "motion", around=1)
-        motion.demand_joined("motion", "mm" if self.unit == "mm" else "rad")
-        return Displacement.of(motion.from_lowest())
+        return Displacement.of(self._turn().demand_joined("motion", "mm" if self.unit == "mm" else "rad"))
+
+    def _turn(self) -> Motion:
+        return self.motion.motion(2.0 * math.pi, "motion", 1)
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
+        """Those of the turn, or of the part of it that repeats."""
+        return self._turn().joints
 
     def found(self, mm: float) -> str:
         """What sizing found, in words; empty where a base radius was given."""
@@ -155,7 +161,7 @@ class TranslatingRoundCam(RoundCam):
         from kin.follower import follower, guide
 
         law = cast("Displacement", intent).law(self.guide.foot)
-        return follower.Roller(guide.Translating(self.offset), self.radius, law)
+        return follower.Roller(guide.Translating(self.offset), self.radius, law, self.metal < 0)
 
     def grown(self, out: float, scale: float) -> Cam:
         """A smaller roller on the same pitch curve."""
@@ -188,7 +194,7 @@ class OscillatingRoundCam(_Arm, RoundCam):
 
         law = cast("Displacement", intent).law(self.guide.rest)
         side = guide.TRAILING if self.sense > 0 else guide.LEADING
-        return follower.Roller(guide.Arm(self.length, self.pivot, side), self.radius, law)
+        return follower.Roller(guide.Arm(self.length, self.pivot, side), self.radius, law, self.metal < 0)
 
     def grown(self, out: float, scale: float) -> Cam:
         """A smaller roller on the same pitch curve."""
@@ -219,9 +225,13 @@ class TranslatingFaceCam(DiscCam, FacedCam):
         """The least cam that keeps what is asked."""
         return size_face(self, asked, given)
 
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:
+    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """A face on a stem."""
-        raise NotImplementedError
+        from kin.follower import follower
+        from kin.law.support_function import Lift
+
+        lift = Lift(cast("Displacement", intent).law(self.base_radius / math.cos(self.tilt)))
+        return follower.TiltedFace(lift, self.tilt) if self.tilt else follower.FlatFace(lift)
 
     def grown(self, out: float, scale: float) -> Cam:
         """A larger base circle."""
@@ -246,9 +256,14 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
 
         return SwingingFace.on(motion, self.base_radius, self.pivot, self.nearer, self.sense)
 
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:
+    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """A face on an arm."""
-        raise NotImplementedError
+        from kin.follower import follower, guide
+
+        motion = cast("Displacement", intent)
+        rest = math.asin((self.base_radius + self.nearer) / self.pivot)
+        side = guide.TRAILING if self.sense > 0 else guide.LEADING
+        return follower.SwingingFace(self.pivot, self.nearer, motion.law(rest), side)
 
     def grown(self, out: float, scale: float) -> Cam:
         """The same swing of a face that stands farther out on its arm."""
@@ -333,7 +348,7 @@ TABLE = Table(
             default="external",
             choices=("external", "internal"),
         ),
-        replace(motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees"), required=True),
+        motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees", whole_turn=True, required=True),
         UNDERCUT,
     ),
     alternatives=(("base_radius", ()), ("sizing", ())),
@@ -353,7 +368,7 @@ def variant(node: Node) -> type[Cam]:
 def check(cam: Values, reader: Reader) -> None:
     """Note segments that do not fill the turn, and keys that do not go with an arm or a flat face; find a size."""
     if "motion" in cam:
-        check_filled(cam["motion"], "cam.motion", 2.0 * math.pi, "one turn, 360 degrees", reader, why=_WHY)
+        check_whole_turn(cam["motion"], "cam.motion", reader)
     follower = cam.get("follower", {})
     arm = follower.get("arm")
     for key in ("offset", "tilt", "width"):
@@ -393,17 +408,16 @@ def _placed(follower: Values) -> Values:
     return follower if arm is None else {**follower, "arm": {"pivot": arm.get("length", 1.0), **arm}}
 
 
-def build(cam: Values, mm: float) -> DiscCam:
+def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
     """Make the cam of values in which there is no fault."""
     if "sized" in cam:
         sized: DiscCam = cam["sized"]
         return sized
     follower: Values = dict(cam["follower"])
     kind, arm = follower.pop("kind"), follower.pop("arm", None)
-    stroke = mm if arm is None else math.pi / 180
     common: Values = {
         "base_radius": cam["base_radius"],
-        "motion": build_motion(cam["motion"], stroke),
+        "motion": cam["motion"],
         "undercut": cam.get("undercut", "refuse"),
         "touch": {"flat": "flat face", "knife-edge": "knife edge"}.get(kind, kind),
     }

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
     from kin.follower.follower import Follower as Judged
+    from kin.law.joints import Joint
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -142,6 +143,10 @@ class Cam(ABC):
     def contact_place(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:
         """Where a flat face is touched, mm along it, over parameters of the contour (n,)."""
         raise NotImplementedError
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
+        """Where derivatives of the motion that a recipe gives jump; displacements in mm or rad."""
+        return ()
 
     # --- advice -------------------------------------------------------------------------------------------------------
 

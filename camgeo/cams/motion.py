@@ -1,263 +1,334 @@
-"""Motion programmes of a recipe: segments with their laws."""
+"""The motion of a recipe: segments, a formula, a table, points or a lobe; one grammar for every kind of cam.
+
+A kind says over which angle its motion runs and how the end is followed by the beginning (`around` of kin's `Motion`):
+over a whole turn (1) the least displacement is 0, over a part of one S begins at 0.
+"""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from functools import cache, lru_cache, partial
+from typing import TYPE_CHECKING
 
-from camgeo.recipe.schema.errors import shown, suggestion
-from camgeo.recipe.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, either, mapping
-from camgeo.recipe.schema.json_schema import table_schema
-from camgeo.recipe.schema.yaml_source import Scalar, join
+from camgeo.cams.lift_table import FILE, Rows, Unit, read_rows
+from camgeo.cams.segments import read_segments, segment_table, segments_schema
+from camgeo.recipe.schema.fields import MOST, Field, Form, Kind, Table, mapping
+from camgeo.recipe.schema.json_schema import number_schema, table_schema
+from camgeo.recipe.schema.yaml_source import Mapping, Sequence, described, join
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import kin.law.programme
+    from camgeo.cams.segments import MotionSegment
     from camgeo.recipe.schema.fields import Schema
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
     from kin.law.sources.motion import Motion
-    from kin.law.sources.programme import Step
 
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law.programme)
+_ZERO = 1e-11  # of the greatest displacement: a beginning below this is rounding
+MOST_POINTS = 1000
+MOST_REPEATS = 100
+LEAST_READING = 1e-6  # of the greatest displacement, where a recipe gives none: a table may show every digit
 
 
-@dataclass(frozen=True)
-class SccaLaw:
-    """A member of the SCCA family: shares of sine and constant acceleration, and of constant velocity."""
+class MotionAsked(ABC):
+    """A motion as a recipe gives it; compares, hashes and travels between processes. Lengths in mm, angles in rad."""
 
-    sine: float = 0.0
-    constant: float = 0.0
-    velocity: float = 0.0
+    def motion(self, total: float, field: str, around: int | None) -> Motion:
+        """Make the motion over `total` rad, or with `around` 1 over an equal part of it that repeats.
 
-
-MATCH = "match"  # the law that takes its neighbours' velocity and acceleration
-
-
-@dataclass(frozen=True)
-class MotionSegment:
-    """One segment of a motion programme.
-
-    `over` in rad; `stroke` in mm for a plate, in rad for a follower that swings: of a rise, a return and a rise_fall
-    their height, of `to` the displacement at the end, 0 for a dwell. `law` is a name, the coefficients c0, c1, ... of
-    a polynomial in u, or shares. `formula` is a displacement in u, its values times `scale`. `at_end` holds v and a at
-    the end of a matched segment, per rad.
-    """
-
-    kind: Literal["rise", "return", "to", "rise_fall", "displacement", "dwell"]
-    over: float
-    stroke: float = 0.0
-    law: str | tuple[float, ...] | SccaLaw | None = None
-    split: float | None = None
-    at_end: tuple[float, float] | None = None
-    formula: str = ""
-    scale: float = 1.0
-
-    def step(self, field: str = "motion") -> Step:
-        """Give the segment with its law looked up, as `kin.law.sources.programme` takes it.
-
-        Raises kin's IntentError where a split or an end does not go with the law, with its field.
+        Raises kin's IntentError with the field of what does not fit. How its parts join is told by its `joints`.
         """
+        found = self._made(total, field, around)
+        return found.from_lowest() if around == 1 else found
+
+    @property
+    def covered(self) -> float | None:
+        """Angle in rad that segments fill, None of a source that fills any."""
+        return None
+
+    @property
+    def repeats(self) -> int:
+        """How often it stands in its angle."""
+        return 1
+
+    @abstractmethod
+    def _made(self, total: float, field: str, around: int | None) -> Motion: ...
+
+
+@dataclass(frozen=True)
+class SegmentsAsked(MotionAsked):
+    """Segments one after another, `repeat` times over."""
+
+    segments: tuple[MotionSegment, ...]
+    repeat: int = 1
+
+    @property
+    def repeats(self) -> int:
+        """As often as the recipe says."""
+        return self.repeat
+
+    @property
+    def covered(self) -> float | None:
+        """Angle of all the segments, once."""
+        return math.fsum(segment.over for segment in self.segments)
+
+    def _made(self, total: float, field: str, around: int | None) -> Motion:
+        from kin.law.sources.programme import programme
+
+        field = field if self.repeat == 1 else f"{field}.segments"
+        steps = [segment.step(f"{field}[{i}]") for i, segment in enumerate(self.segments)]
+        return programme(steps, total / self.repeat, around=around, field=field)
+
+
+@dataclass(frozen=True)
+class FormulaAsked(MotionAsked):
+    """A formula in t, the angle in rad; its values times `scale`."""
+
+    text: str
+    scale: float
+
+    def _made(self, total: float, field: str, around: int | None) -> Motion:
         from kin.law.formula.formula import Formula
-        from kin.law.programme import IntentError
-        from kin.law.sources.laws import split
-        from kin.law.sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State
+        from kin.law.sources.whole_turn import from_formula
 
-        if self.kind == "dwell":
-            return Dwell(self.over)
-        if self.kind == "rise_fall":
-            return RiseAndFall(self.over, self.stroke)
-        if self.kind == "displacement":
-            return Given(self.over, Formula(self.formula, ("u",)), self.scale)
-        by = {"rise": self.stroke, "return": -self.stroke}.get(self.kind)
-        to = self.stroke if self.kind == "to" else None
-        if self.law == MATCH:
-            if self.split is not None:
-                raise IntentError("a matched segment takes no split", f"{field}.split")
-            state = None if self.at_end is None else State(*self.at_end)
-            return Move(self.over, Matched(at_end=state), by, to)
-        if self.at_end is not None:
-            raise IntentError("only a matched segment takes a state at its end", f"{field}.at_end")
-        law = self._law(field)
-        return Move(self.over, law if self.split is None else split(law, self.split, field), by, to)
-
-    def _law(self, field: str) -> kin.law.programme.Law:
-        from kin.law.programme import polynomial_law
-        from kin.law.sources.laws import named, scca
-
-        if isinstance(self.law, str):
-            return named(self.law)
-        if isinstance(self.law, SccaLaw):
-            return scca(self.law.sine, self.law.constant, self.law.velocity, f"{field}.law.scca")
-        return polynomial_law(self.law or (), f"{field}.law")
+        field = f"{field}.formula"
+        found = from_formula(Formula(self.text), total, scale=self.scale, around=around, field=field)
+        if around != 1:
+            _demand_zero(float(found.at_start(0)[0]), max(map(abs, found.range)) * _ZERO, self.scale, field)
+        return found
 
 
-_LAW = Table(
-    (
-        Field("polynomial", Kind.NUMBERS, "coefficients c0, c1, ... of u, from 0 to 1 as u does"),
-        mapping(
-            "scca",
-            "sine, constant and cosine acceleration by their shares, and constant velocity",
-            Field("sine", Kind.NUMBER, "share of sine in the accelerating half", default="0", at_least=0, at_most=1),
-            Field("constant", Kind.NUMBER, "share of constant acceleration", default="0", at_least=0, at_most=1),
-            Field(
-                "velocity", Kind.NUMBER, "share of the segment at constant velocity", default="0", at_least=0, at_most=1
-            ),
-        ),
-    ),
-    alternatives=(("polynomial", ()), ("scca", ())),
-)
+@dataclass(frozen=True)
+class TableAsked(MotionAsked):
+    """Rows of a table, smoothed within a reading error; `scale` mm or rad are one of the recipe's units."""
+
+    file: str
+    rows: Rows
+    reading: float
+    scale: float
+
+    def _made(self, total: float, field: str, around: int | None) -> Motion:
+        return _smoothed(self, total, field, around)
 
 
-def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple[float, ...] | SccaLaw | None:
-    """Read the name of a motion law, the coefficients of a polynomial, or the shares of a member of the SCCA family."""
-    from kin.law.programme import IntentError, polynomial_law
-    from kin.law.sources.laws import NAMES, scca
+@lru_cache(maxsize=8)
+def _smoothed(asked: TableAsked, total: float, field: str, around: int | None) -> Motion:
+    from kin.law.programme import IntentError
+    from kin.law.sources.table import TableError, from_table
 
-    names = (*NAMES, MATCH)
-    if isinstance(node, Scalar):
-        if node.text in names:
-            return node.text
-        remedy = suggestion(node.text, names) or f"give {either(names)}, {{polynomial: [...]}} or {{scca: {{...}}}}"
-        reader.fault(node.mark, path, "no such motion law", shown(node.text), remedy)
-        return None
-    values = reader.mapping(field, node, path) or {}
-    if "scca" in values:
-        shares = SccaLaw(**values["scca"])
-        try:
-            scca(shares.sine, shares.constant, shares.velocity)
-        except IntentError as error:
-            remedy = "let `sine` and `constant` together be at most 1, and `velocity` below 1"
-            reader.fault(node.mark, join(path, "scca"), error.message, None, remedy)
-            return None
-        return shares
-    coefficients: tuple[float, ...] | None = values.get("polynomial")
-    if coefficients is None:
-        return None
+    field, samples = f"{field}.table", asked.rows.samples()
+    if around != 1 and len(samples.s):
+        first = f"{asked.file}, line {samples.lines[0]}: "
+        _demand_zero(float(samples.s[0]), asked.reading, asked.scale, field, first)
     try:
-        polynomial_law(coefficients)
-    except IntentError as error:
-        reader.fault(node.mark, path, error.message, None, "let c0 be 0 and the sum of all coefficients 1")
-        return None
-    return coefficients
+        return from_table(samples, asked.reading, total, around=around, field=field).motion
+    except TableError as error:
+        raise IntentError(f"{asked.file}, {error.message}", field, error.at_deg) from error
 
 
-def read_segments(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
-    """Read a motion programme, or None where a segment is faulty."""
-    found = len(reader.errors)
-    items = reader.items(field, node, path, MOST_SEGMENTS)
-    segment = Field("", Kind.TABLE, "", table=field.table)
-    values = [reader.field(segment, item, join(path, i)) for i, item in enumerate(items)]
-    return values if len(reader.errors) == found else None
+@dataclass(frozen=True)
+class PointsAsked(MotionAsked):
+    """Points (angle, displacement), rising; neighbours of one displacement have a dwell between them."""
+
+    points: tuple[tuple[float, float], ...]
+    scale: float
+
+    def _made(self, total: float, field: str, around: int | None) -> Motion:
+        from kin.law.sources.points import from_points
+        from kin.law.sources.programme import Dwell, programme
+
+        field = f"{field}.points"
+        if around != 1:
+            _demand_zero(self.points[0][1], 0.0, self.scale, f"{field}[0]")
+        if len({s for _, s in self.points}) == 1:
+            return programme([Dwell(total)], total, around=around, field=field)
+        points, dwells = self._ends_of_dwells(total, around)
+        theta, s = zip(*points, strict=True)
+        return from_points(theta, s, total, dwells=dwells, around=around, field=field)
+
+    def _ends_of_dwells(
+        self, total: float, around: int | None
+    ) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+        """Points but those inside a dwell, and the dwells from point to point."""
+        points = list(self.points)
+        closed = around == 1 and points[-1][0] - points[0][0] > total - _ANGLE
+        if closed and points[-1][1] == points[0][1]:
+            points.pop()
+        n = len(points)
+        same = [points[i][1] == points[(i + 1) % n][1] and (i + 1 < n or around == 1) for i in range(n)]
+        kept = [point for i, point in enumerate(points) if not (same[i] and same[i - 1])]
+        later = [*kept[1:], (kept[0][0] + total, kept[0][1])][: len(kept) if around == 1 else -1]
+        dwells = [(a, b) for (a, s), (b, other) in zip(kept, later, strict=False) if s == other]
+        return kept, dwells
 
 
-def _law_schema(field: Field) -> Schema:
-    from kin.law.sources.laws import NAMES
+@dataclass(frozen=True)
+class LobeAsked(MotionAsked):
+    """The lobe polynomial 2-p-q-r-s: its lift, half its event, and the powers."""
 
-    return {"anyOf": [{"enum": [*NAMES, MATCH]}, table_schema(field.inner)]}
+    lift: float
+    half: float
+    powers: tuple[float, ...]
 
+    def _made(self, total: float, field: str, around: int | None) -> Motion:
+        from kin.law.sources.lobe import lobe
 
-def _segments_schema(field: Field) -> Schema:
-    return {"type": "array", "items": table_schema(field.inner), "minItems": 1, "maxItems": MOST_SEGMENTS}
-
-
-LAW = Form("a motion law", "a motion law", read_law, _law_schema)
-SEGMENTS = Form(
-    "a list of motion segments",
-    "a list of segments such as [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]",
-    read_segments,
-    _segments_schema,
-)
+        return lobe(self.lift, self.half, self.powers, total, around=around, field=f"{field}.lobe")
 
 
-def motion_field(name: str, stroke: Kind, about: str) -> Field:
-    """Make the field of a motion programme whose strokes are lengths or angles."""
-    most = MOST if stroke is Kind.LENGTH else 180
-    strokes = [Field(key, stroke, f"stroke of the {key}", above=0, at_most=most) for key in ("rise", "return")]
-    angle = Field("over", Kind.ANGLE, "shaft angle of the segment", above=0, at_most=180)
-    segment = Table(
-        (
-            *strokes,
-            Field("to", stroke, "displacement at the end of the segment", at_least=-most, at_most=most),
-            Field("rise_fall", stroke, "height of a rise and fall by 64 u³ (1 - u)³", above=0, at_most=most),
-            Field(
-                "displacement",
-                Kind.FORMULA,
-                "displacement from the segment's start, u from 0 to 1 over the segment",
-                variable="u",
-                unit=stroke,
-            ),
-            replace(angle, name="dwell", about="shaft angle of a rest"),
-            angle,
-            Field(
-                "law",
-                Kind.OWN,
-                "motion law by name, match, {polynomial: [c0, c1, ...]} or {scca: ...}",
-                table=_LAW,
-                form=LAW,
-            ),
-            Field(
-                "split",
-                Kind.NUMBER,
-                "share of the segment that accelerates",
-                default="0.5",
-                at_least=0.01,
-                at_most=0.99,
-            ),
-            mapping(
-                "at_end",
-                "state at the end of a segment with law match",
-                Field("v", stroke, "velocity there, per radian", default="0", at_least=-MOST, at_most=MOST),
-                Field("a", stroke, "acceleration there, per radian²", default="0", at_least=-MOST, at_most=MOST),
-            ),
-        ),
-        alternatives=(
-            *((key, ("over", "law")) for key in ("rise", "return", "to")),
-            ("rise_fall", ("over",)),
-            ("displacement", ("over",)),
-            ("dwell", ()),
-        ),
-        later=("table",),
+def _demand_zero(value: float, within: float, scale: float, field: str, where: str = "") -> None:
+    from kin.law.programme import IntentError
+
+    if abs(value) > within:
+        less = f"{abs(value) / scale:.9g} {'less' if value > 0 else 'more'}"
+        raise IntentError(
+            f"{where}the motion begins at {value / scale:.9g}; S(0) must be 0: make every displacement {less}", field
+        )
+
+
+# --- in a recipe ------------------------------------------------------------------------------------------------------
+
+
+def motion_field(name: str, stroke: Kind, about: str, *, whole_turn: bool = False, required: bool = False) -> Field:
+    """Make the field of a motion whose strokes are lengths or angles; one over a `whole_turn` may repeat itself."""
+    sources = _sources(stroke, whole_turn=whole_turn)
+    form = Form(
+        "a list of motion segments",
+        "a list of segments such as [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]",
+        partial(_read, stroke),
+        lambda field: {"anyOf": [segments_schema(field), table_schema(sources)]},
+        instead=sources,
     )
-    return Field(name, Kind.OWN, about, table=segment, form=SEGMENTS)
+    return Field(name, Kind.OWN, about, required, table=_segment(stroke, whole_turn=whole_turn), form=form)
 
 
-def build_motion(segments: list[Values], scale: float) -> tuple[MotionSegment, ...]:
-    """Make the programme of values in which there is no fault."""
-    return tuple(_segment(segment, scale) for segment in segments)
+@cache
+def _segment(stroke: Kind, *, whole_turn: bool) -> Table:
+    return segment_table(stroke, 360 if whole_turn else 180)
 
 
-def _segment(segment: Values, scale: float) -> MotionSegment:
-    if "dwell" in segment:
-        return MotionSegment("dwell", segment["dwell"])
-    if "displacement" in segment:
-        return MotionSegment("displacement", segment["over"], formula=segment["displacement"], scale=scale)
-    kinds: tuple[Literal["rise", "return", "to", "rise_fall"], ...] = ("rise", "return", "to", "rise_fall")
-    kind = next(kind for kind in kinds if kind in segment)
-    end = segment.get("at_end")
-    state = None if end is None else (end.get("v", 0.0), end.get("a", 0.0))
-    return MotionSegment(kind, segment["over"], segment[kind], segment.get("law"), segment.get("split"), state)
+@cache
+def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
+    """The keys of a motion that is no list of segments."""
+    most = MOST if stroke is Kind.LENGTH else 180
+    units = Field(
+        "units", Kind.CHOICE, "unit of the table's displacements", default="the recipe's", choices=("mm", "inch")
+    )
+    points = Form("a list of points", "a list of points [angle, displacement]", partial(_read_points, stroke), _points)
+    fields = (
+        Field("formula", Kind.FORMULA, "displacement at t, the motion's angle in radians", unit=stroke),
+        Field("table", Kind.OWN, "file with a row for each angle, its path as seen from the recipe", form=FILE),
+        Field("angle", Kind.CHOICE, "whose angle the table has", default="cam", choices=("cam", "crank")),
+        *((units,) if stroke is Kind.LENGTH else ()),
+        Field(
+            "reading",
+            stroke,
+            "greatest distance of the motion from a row of the table",
+            default="the unit of the table's last digit",
+            above=0,
+            at_most=most,
+        ),
+        Field("points", Kind.OWN, "points for a spline to go through, with a dwell between equal ones", form=points),
+        mapping(
+            "lobe",
+            "the lobe polynomial of valve trains",
+            Field("lift", stroke, "greatest displacement", required=True, above=0, at_most=most),
+            Field("half", Kind.ANGLE, "angle from the foot to the nose", required=True, above=0, at_most=180),
+            Field("powers", Kind.NUMBERS, "2 and four more powers, such as [2, 8, 14, 20, 26]", required=True),
+        ),
+    )
+    alternatives = tuple((key, ()) for key in ("formula", "table", "points", "lobe"))
+    if not whole_turn:
+        return Table(fields, alternatives)
+    repeat = Field("repeat", Kind.INTEGER, "how often the segments fill a turn", at_least=1, at_most=MOST_REPEATS)
+    form = Form("a list of motion segments", "a list of segments", partial(_read_list, stroke), segments_schema)
+    inner = _segment(stroke, whole_turn=True)
+    segments = Field("segments", Kind.OWN, "the segments of 360/repeat degrees", table=inner, form=form)
+    return Table((repeat, segments, *fields), (("segments", ("repeat",)), *alternatives))
 
 
-def check_filled(segments: list[Values], path: str, angle: float, wanted: str, reader: Reader, *, why: str) -> None:
-    """Note segments that do not fill their angle (rad), and what stands without a law; `why` they must."""
-    for i, segment in enumerate(segments):
-        for key in ("split", "at_end"):
-            if key in segment and "law" not in segment:
-                reader.fault_at(f"{path}[{i}].{key}", "cannot stand without a law", None, "leave it out")
-    covered = math.fsum(segment["dwell"] if "dwell" in segment else segment["over"] for segment in segments)
-    if abs(covered - angle) > _ANGLE:
-        value = f"{math.degrees(covered):.10g} degrees"
-        more = why if covered > angle else "an angle may be a fraction such as 180/7"
-        remedy = f"let them cover {wanted}; {more}"
-        reader.fault_at(path, "the segments do not fill their angle", value, remedy)
+def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> MotionAsked | None:
+    """Read a motion: a list of segments, or a mapping with another source."""
+    if not isinstance(node, Mapping):
+        return _read_list(stroke, reader, field, node, path)
+    if field.form is None or field.form.instead is None:
+        raise AssertionError(field.name)
+    found = len(reader.errors)
+    values = reader.table(field.form.instead, node, path)
+    for key in ("angle", "units", "reading"):
+        if key in values and f"{path}.table" not in reader.marks:
+            reader.fault_at(f"{path}.{key}", "cannot stand without a table", None, "leave it out")
+    if len(reader.errors) > found:
+        return None
+    scale = reader.scale(stroke)
+    if "segments" in values:
+        once: SegmentsAsked = values["segments"]
+        return replace(once, repeat=values["repeat"])
+    if "formula" in values:
+        return FormulaAsked(values["formula"], scale)
+    if "points" in values:
+        return PointsAsked(values["points"], scale)
+    if "lobe" in values:
+        return LobeAsked(**values["lobe"])
+    return _table(stroke, reader, values, join(path, "table"))
 
 
-def programme_of(segments: Sequence[MotionSegment], total: float, field: str, around: int | None = None) -> Motion:
-    """Join segments to a motion over an angle (rad); raises kin's IntentError with the field of what does not fit."""
-    from kin.law.sources.programme import programme
+def _read_list(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> SegmentsAsked | None:
+    segments = read_segments(reader, field, node, path, stroke)
+    return SegmentsAsked(segments) if segments else None
 
-    steps = [segment.step(f"{field}[{i}]") for i, segment in enumerate(segments)]
-    return programme(steps, total, around=around, field=field)
+
+def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAsked | None:
+    """Read the rows of a table now, so that the recipe needs no file any more."""
+    unit: Unit = values.get("units", reader.units) if stroke is Kind.LENGTH else "degrees"
+    found = read_rows(reader, values["table"], path, angles=values.get("angle", "cam"), unit=unit)
+    if found is None:
+        return None
+    rows, place = found
+    largest = max(map(abs, rows.s), default=0.0)
+    reading = values.get("reading", max(place, LEAST_READING * largest))
+    return TableAsked(values["table"], rows, reading, reader.scale(stroke))
+
+
+def _read_points(
+    stroke: Kind, reader: Reader, field: Field, node: Node, path: str
+) -> tuple[tuple[float, float], ...] | None:
+    """Read a list of angles and displacements."""
+    angle = Field("", Kind.ANGLE, "", at_least=0, at_most=360)
+    value = Field("", stroke, "", at_least=-MOST, at_most=MOST)
+    found = []
+    for i, item in enumerate(reader.items(field, node, path, MOST_POINTS)):
+        below = join(path, i)
+        if not isinstance(item, Sequence) or len(item.items) != 2:
+            reader.fault(item.mark, below, "not a point", described(item), "give a list [angle, displacement]")
+            continue
+        found.append(
+            tuple(
+                reader.field(part, n, join(below, k))
+                for k, (part, n) in enumerate(zip((angle, value), item.items, strict=True))
+            )
+        )
+    return tuple(found) if found and not any(None in point for point in found) else None
+
+
+def _points(_: Field) -> Schema:
+    point = {"type": "array", "items": number_schema(), "minItems": 2, "maxItems": 2}
+    return {"type": "array", "items": point, "minItems": 1, "maxItems": MOST_POINTS}
+
+
+def check_filled(asked: MotionAsked, path: str, angle: float, wanted: str, reader: Reader, *, why: str) -> None:
+    """Note segments that do not fill their angle (rad); `why` they must."""
+    if asked.covered is None or abs(asked.covered - angle) <= _ANGLE:
+        return
+    value = f"{math.degrees(asked.covered):.10g} degrees"
+    more = why if asked.covered > angle else "an angle may be a fraction such as 180/7"
+    reader.fault_at(path, "the segments do not fill their angle", value, f"let them cover {wanted}; {more}")
+
+
+def check_whole_turn(asked: MotionAsked, path: str, reader: Reader) -> None:
+    """Note segments that do not fill a turn, or their part of one."""
+    repeat = asked.repeats
+    part = "the whole turn, 360 degrees" if repeat == 1 else f"360/{repeat} degrees"
+    check_filled(asked, path, 2.0 * math.pi / repeat, part, reader, why="the next turn begins there")

@@ -16,11 +16,12 @@ from camgeo.cams.family import (
     Margin,
     Unit,
 )
-from camgeo.cams.motion import MotionSegment, build_motion, check_filled, motion_field, programme_of
+from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.recipe.schema.fields import Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
+    from kin.law.joints import Joint
     from kin.law.transmission import Transmission
 
 LOOKS = 1440  # parameters of a law at which its margins are looked at
@@ -36,10 +37,18 @@ class DeltaRoute:
 
 
 @dataclass(frozen=True)
+class DeltaFormulaRoute:
+    """D(t) as text in t, the polar angle in rad; `scale` times its value is in mm^2."""
+
+    text: str
+    scale: float
+
+
+@dataclass(frozen=True)
 class LawRoute:
     """The follower's swing over delta = pi/lambda of shaft angle; of a flat pair the swing is psi/2."""
 
-    motion: tuple[MotionSegment, ...]
+    motion: MotionAsked
 
 
 @dataclass(frozen=True)
@@ -51,6 +60,14 @@ class ArcRoute:
 
 
 @dataclass(frozen=True)
+class CurveRoute:
+    """Any first arc of the pitch curve: r as text in t, the polar angle in rad; `scale` times its value is in mm."""
+
+    text: str
+    scale: float
+
+
+@dataclass(frozen=True)
 class RosetteRoute:
     """One leaf of the path of the third arm's tip: |OQ| as text in x, 0 to 1; `scale` times its value is in mm."""
 
@@ -58,7 +75,7 @@ class RosetteRoute:
     scale: float
 
 
-Route: TypeAlias = DeltaRoute | LawRoute | ArcRoute | RosetteRoute
+Route: TypeAlias = DeltaRoute | DeltaFormulaRoute | LawRoute | ArcRoute | CurveRoute | RosetteRoute
 
 
 class PairCam(Cam):
@@ -80,14 +97,26 @@ class PairCam(Cam):
         if isinstance(route, DeltaRoute):
             return transmission.from_delta(self.lam, self.mu, self.arm, dict(route.cos), dict(route.sin))
         if isinstance(route, LawRoute):
-            motion = programme_of(route.motion, math.pi / self.lam, "law")
+            motion = route.motion.motion(math.pi / self.lam, "law", None)
             return transmission.from_law(self.lam, self.mu, self.arm, motion, self.swing_of)
         if isinstance(route, ArcRoute):
             return transmission.from_arc(self.lam, self.mu, self.arm, route.radius, route.side)
+        from kin.law import polar_formula
         from kin.law.formula.formula import Formula
 
+        if isinstance(route, DeltaFormulaRoute):
+            return polar_formula.from_delta_formula(self.lam, self.mu, self.arm, Formula(route.text), route.scale)
+        if isinstance(route, CurveRoute):
+            return polar_formula.from_curve(self.lam, self.mu, self.arm, Formula(route.text), route.scale)
         leaf = Formula(route.text, ("x",))
         return transmission.from_rosette(self.lam, self.mu, self.arm, leaf, route.scale)
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:
+        """Those of the swing over 360/lambda degrees, where the recipe gives it, or D or an arc by a formula."""
+        if not isinstance(self.route, LawRoute | DeltaFormulaRoute | CurveRoute):
+            return ()
+        share = 0.5 if self.swing_of == "pair" else 1.0
+        return tuple(joint.scaled(share) for joint in cast("Transmission", intent).joints)
 
     def less_swing(self, mm: float) -> str:
         """An arc about the shaft, its radius the mean distance R = 2 l cos(alpha/2), has no swing at all."""
@@ -127,14 +156,22 @@ _DELTA = mapping(
     "D(t), the sum of cos[j]*cos(j*lambda*t) + sin[j]*sin(j*lambda*t), j odd",
     Field("cos", Kind.HARMONICS, "coefficients of the cosines", default="none", unit=Kind.AREA, odd=True),
     Field("sin", Kind.HARMONICS, "coefficients of the sines", default="none", unit=Kind.AREA, odd=True),
+    Field("formula", Kind.FORMULA, "or D itself, with D(t + 180°/lambda) = -D(t)", default="none", unit=Kind.AREA),
 )
 
 
-_ARC = mapping(
+_ARC = Field(
     "arc",
-    "first arc of the pitch curve, symmetric about its bisector",
-    length("radius", "radius of the arc", required=True),
-    Field("side", Kind.CHOICE, "how the arc bulges", default="convex", choices=("convex", "concave")),
+    Kind.TABLE,
+    "first arc of the pitch curve",
+    table=Table(
+        (
+            length("radius", "radius of a circular arc, symmetric about its bisector"),
+            Field("side", Kind.CHOICE, "how that bulges", default="convex", choices=("convex", "concave")),
+            Field("formula", Kind.FORMULA, "distance from the shaft at the polar angle t, from 0 to 180°/lambda"),
+        ),
+        alternatives=(("radius", ()), ("formula", ())),
+    ),
 )
 
 
@@ -167,8 +204,12 @@ def pair_table(law: str, roller: tuple[Field, ...]) -> Table:
 
 
 def check(cam: Values, reader: Reader) -> None:
-    """Note harmonics that make no motion, and segments that do not fill their angle."""
+    """Note harmonics that make no motion, what a formula leaves no room for, and segments that leave an angle."""
     _harmonics(cam, reader)
+    for path in ("delta.cos", "delta.sin", "arc.side"):
+        route = path.partition(".")[0]
+        if f"cam.{path}" in reader.marks and f"cam.{route}.formula" in reader.marks:
+            reader.fault_at(f"cam.{path}", "cannot stand beside formula", None, "leave one of them out")
     if "law" in cam and "ratio" in cam:
         lam, _ = cam["ratio"]
         check_filled(cam["law"], "cam.law", math.pi / lam, f"180/{lam} degrees", reader, why=_OTHER_PARTS)
@@ -177,16 +218,20 @@ def check(cam: Values, reader: Reader) -> None:
 def _harmonics(cam: Values, reader: Reader) -> None:
     delta = cam.get("delta")
     faulty = any(error.path.startswith("cam.delta") for error in reader.errors)
-    if delta is not None and not faulty and not (delta.get("cos") or delta.get("sin")):
+    if delta is not None and not faulty and not any(map(delta.get, ("cos", "sin", "formula"))):
         reader.fault_at("cam.delta", "no harmonics, so no motion", None, "give some, such as {cos: {1: 625}}")
 
 
 def build_route(cam: Values, mm: float) -> Route:
     """Make the route of values in which there is no fault."""
+    if "formula" in cam.get("delta", ()):
+        return DeltaFormulaRoute(cam["delta"]["formula"], mm * mm)
+    if "formula" in cam.get("arc", ()):
+        return CurveRoute(cam["arc"]["formula"], mm)
     if "delta" in cam:
         return DeltaRoute(**{"cos": (), "sin": (), **cam["delta"]})
     if "law" in cam:
-        return LawRoute(build_motion(cam["law"], math.pi / 180))
+        return LawRoute(cam["law"])
     if "arc" in cam:
         return ArcRoute(**{"side": "convex", **cam["arc"]})
     return RosetteRoute(cam["rosette"]["leaf"], mm)

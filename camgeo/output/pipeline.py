@@ -212,4 +212,5 @@ def _findings(
         linkage=linkage,
         dynamics=None if train is None else train.section,
         remarks=remarks,
+        joints=design.joints,
     )

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.recipe import RECIPE, build, read_values
 from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
+from camgeo.recipe.schema.file_bytes import bytes_of
 from camgeo.recipe.schema.reader import Reader
 from camgeo.recipe.schema.readers import READERS
 from camgeo.recipe.schema.scalars import NAME_RULE, Complaint, read_name
@@ -22,17 +22,9 @@ if TYPE_CHECKING:
 def load(path: str | PathLike[str]) -> Recipe:
     """Read a recipe from a file; raises RecipeErrors with all its faults, also where there is no such file."""
     try:
-        mode = Path(path).stat().st_mode
-        if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):  # its reader may wait for ever
-            raise _whole(path, "a pipe or a device, not a file; save the recipe as a file")
-        with Path(path).open("rb") as stream:
-            data = stream.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise _whole(path, "there is no such file") from None
-    except OSError as error:
-        raise _whole(path, f"cannot be read: {error.strerror or error}") from None
-    except ValueError:  # a null character
-        raise _whole(path, "not the name of a file") from None
+        data = bytes_of(path, MAX_BYTES, "recipe")
+    except Complaint as complaint:
+        raise RecipeErrors([RecipeError(str(path), 0, 0, "", complaint.problem, None, complaint.remedy)]) from None
     return read(data, path)
 
 
@@ -56,7 +48,3 @@ def read(data: bytes, path: str | PathLike[str]) -> Recipe:
 def load_text(text: str, path: str | PathLike[str]) -> Recipe:
     """Read a recipe from a text, as `read` does from bytes. Raises RecipeErrors."""
     return read(text.encode("utf-8", "surrogatepass"), path)
-
-
-def _whole(path: str | PathLike[str], problem: str) -> RecipeErrors:
-    return RecipeErrors([RecipeError(str(path), 0, 0, "", problem)])

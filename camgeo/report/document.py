@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
+    from kin.law.joints import Joint
 
 ROUNDING = 1e-11  # mm, in or degrees: what sums of doubles of some hundred leave, and no machine makes
 DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part"})  # stages of the exact cam
@@ -77,6 +78,7 @@ class Findings:
     linkage: dict[str, Any] | None = None
     dynamics: dict[str, Any] | None = None
     remarks: tuple[Remark, ...] = ()
+    joints: tuple[Joint, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -99,6 +101,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "tolerance": recipe.export.tolerance / recipe.mm,
         "checks": [_check(recipe, check) for check in found.checks],
         "remarks": [_remark(recipe, remark) for remark in found.remarks],
+        "joints": [entry for joint in found.joints for entry in _jumps(recipe, joint)],
         "files": [_file(recipe, file) for file in found.files] + [{"path": name, "stale": True} for name in found.kept],
         **linkage,
         **dynamics,
@@ -119,6 +122,12 @@ def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | No
     if power is None:
         return value, unit
     return (None if value is None else value / recipe.mm**power), name + unit[2:]
+
+
+def of_displacements(recipe: Recipe) -> tuple[float, str]:
+    """Factor and unit in which the follower's displacements are told: the recipe's, or degrees."""
+    swings = recipe.cam.unit == "deg"
+    return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
 
 
 def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
@@ -151,6 +160,17 @@ def _remark(recipe: Recipe, remark: Remark) -> dict[str, Any]:
         "at_deg": remark.at_deg,
         "sentence": remark.sentence,
     }
+
+
+def _jumps(recipe: Recipe, joint: Joint) -> list[dict[str, Any]]:
+    """What jumps at a joint of the motion: an entry for each derivative."""
+    scale, unit = of_displacements(recipe)
+    per = ("", "/rad", "/rad^2", "/rad^3")
+    at_deg = math.degrees(joint.at)
+    return [
+        {"at_deg": at_deg, "derivative": k, "before": a, "after": b, "unit": unit + per[k]}
+        for k, a, b in joint.scaled(scale).jumps
+    ]
 
 
 def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:

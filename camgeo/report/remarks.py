@@ -9,7 +9,8 @@ import numpy as np
 
 from camgeo.checks.declared import PRESSURE
 from camgeo.recipe.export import NO_CONTOUR
-from camgeo.report.document import Remark
+from camgeo.report.document import Remark, of_displacements
+from kin.law.joints import Joint
 from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
         _size_found(recipe),
         _pressure(recipe, design),
         *_motion(recipe, design),
+        _acceleration(recipe, design.joints),
         *_output(recipe, design),
         _shaft(recipe, design),
         _keyway(recipe),
@@ -81,6 +83,23 @@ def _stroke(design: Design) -> tuple[float, float]:
     """Stroke in mm, or swing in rad and the arm in mm at which it is worked: 1 for a stroke."""
     t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
     return design.position.stroke(np.sort(np.concatenate([t, design.intent.breaks])))
+
+
+def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:
+    """Where the acceleration jumps, the follower is struck; that the jerk jumps is in the report alone."""
+    found = [(abs(b - a), joint) for joint in joints for k, a, b in joint.jumps if k == 2]
+    if not found:
+        return None
+    value, worst = max(found, key=lambda one: one[0])
+    scale, unit = of_displacements(recipe)
+    told = Joint(worst.at, tuple(jump for jump in worst.jumps if jump[0] == 2)).scaled(scale).said(unit)
+    if len(found) > 1:
+        told += f", and at {len(found) - 1} other joint{'s' if len(found) > 2 else ''} by no more"
+    if unit == "deg":
+        value *= scale
+    return Remark(
+        "acceleration-jump", value, 0.0, f"{'deg' if unit == 'deg' else 'mm'}/rad^2", told, math.degrees(worst.at)
+    )
 
 
 def _share(recipe: Recipe, name: str, asked: tuple[str, float], length: float) -> Remark | None:

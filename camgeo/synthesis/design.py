@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.part.body import Body
     from kin.judge.verify import Intent as Judged
     from kin.judge.verify import Limits
+    from kin.law.joints import Joint
     from kin.law.support_function import Lift
 
 
@@ -38,7 +39,7 @@ class Design:
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
     `driven` is the linkage, None without one; `body` the part where it has more than a round bore. `face` is how far
-    the faces of a pair stand beside the lines through its pivot, mm.
+    the faces of a pair stand beside the lines through its pivot, mm. `joints` are those of the motion.
     """
 
     intent: Intent
@@ -51,6 +52,7 @@ class Design:
     driven: Driven | None = None
     body: Body | None = None
     face: float = 0.0
+    joints: tuple[Joint, ...] = ()
 
     @property
     def yoke_breadth(self) -> float | None:
@@ -99,7 +101,18 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         if not all(check.ok for check in found):
             contour = body = None  # without its least walls there is no part to draw
     trimmed = contour is not None and not contour.closed
-    return Design(intent, profile, contour, (*checks, *more), cam.position(intent), follower, trimmed, driven, body)
+    return Design(
+        intent,
+        profile,
+        contour,
+        (*checks, *more),
+        cam.position(intent),
+        follower,
+        trimmed,
+        driven,
+        body,
+        joints=cam.joints(intent),
+    )
 
 
 def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check], Curve | None]:

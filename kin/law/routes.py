@@ -154,3 +154,18 @@ class FromLeaf:
         """Give psi over the polar angle t; `scale` is the leaf's unit over 2 l."""
         distance: Series = self.leaf.on((t - self.start) / self.delta)
         return asin(distance * self.scale) * 2.0
+
+
+@dataclass(frozen=True)
+class FromExpression:
+    """Psi from a formula over the polar angle t: of D/l^2 (W 5.10) or, where `is_distance`, of r/2l (W 4.10)."""
+
+    formula: Expression
+    scale: float
+    alpha: float
+    is_distance: bool
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give psi over the polar angle t; `scale` is the formula's unit over l^2 or 2 l."""
+        value: Series = self.formula.on(t) * self.scale
+        return acos(value) * 2.0 - self.alpha if self.is_distance else -asin(value)

@@ -1,4 +1,4 @@
-"""Transmission laws by every route: from D, a programme, an arc of the pitch curve, or a leaf of the rosette.
+"""Transmission laws by every route: from D, a programme, a first arc of the pitch curve, or a leaf of the rosette.
 
 Each builder gives a `Transmission` (`kin.law.transmission_law`) that a cam can have, or raises IntentError.
 """
@@ -24,13 +24,20 @@ if TYPE_CHECKING:
 
     from kin.law.formula.formula import Formula
 
-__all__ = ["IntentError", "Transmission", "from_arc", "from_delta", "from_law", "from_rosette"]
+__all__ = [
+    "IntentError",
+    "Transmission",
+    "from_arc",
+    "from_delta",
+    "from_law",
+    "from_rosette",
+]
 
 
 _ABOVE = 1 + 1e-9  # of a least radius: a figure told with nine digits is not below it
 
 
-def _over_period(
+def over_period(
     delta: float, knots: Sequence[float], functions: Sequence[Stretch], lean: tuple[float, float]
 ) -> tuple[Piecewise, tuple[float, ...]]:
     """Complete psi over 2 delta, with w for each stretch, from delta; rests at psi = 0 run on over the joints."""
@@ -108,7 +115,7 @@ def from_law(
     if abs(end) > JOIN:
         raise IntentError(f"psi must come back to 0 at the end of the law; it is {math.degrees(end):.9g} deg", "law")
     functions = [_scaled(f, scale) for f in programme.motion.functions]
-    psi, lean = _over_period(delta, programme.motion.knots.tolist(), functions, (0.0, 1.0))
+    psi, lean = over_period(delta, programme.motion.knots.tolist(), functions, (0.0, 1.0))
     return checked(Transmission(lam, mu, arm, psi, lean, 0.0), programme.motion.knots.tolist(), functions, "law")
 
 
@@ -151,7 +158,7 @@ def from_arc(
         where = f"the middle of the arc is {top:.9g} mm from the shaft"
         raise IntentError(f"{where}; it must lie between 0 and 2 l = {2 * arm:.9g} mm", "arc.radius")
     arc = FromArc(arm, alpha, delta, centre, radius, power, side == "convex")
-    psi, lean = _over_period(delta, [0.0, delta], [arc], (0.5, 0.5))
+    psi, lean = over_period(delta, [0.0, delta], [arc], (0.5, 0.5))
     place = (centre * math.cos(delta / 2), centre * math.sin(delta / 2), radius if side == "convex" else -radius)
     return checked(Transmission(lam, mu, arm, psi, lean, alpha / 2, place), [0.0, delta], [arc], "arc")
 
@@ -197,7 +204,7 @@ def from_rosette(lam: int, mu: int, arm: float, leaf: Formula, scale: float = 1.
         raise IntentError(error.message, field) from error
     knots = [start + float(x) * delta for x in places]
     functions = [_leaf_stretch(FromLeaf(piece, scale / (2 * arm), start, delta)) for piece in pieces]
-    psi, lean = _over_period(delta, knots, functions, (0.5, 0.5))
+    psi, lean = over_period(delta, knots, functions, (0.5, 0.5))
     return checked(Transmission(lam, mu, arm, psi, lean, alpha / 2), knots, functions, field)
 
 

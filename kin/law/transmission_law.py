@@ -20,8 +20,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.law.joints import ORDERS, Joint, joints_of
 from kin.law.piecewise import Piecewise, Places, Side
-from kin.law.routes import DeltaDistance, FromDelta, FromLeaf
+from kin.law.routes import DeltaDistance, FromDelta, FromExpression, FromLeaf
 from kin.law.segment import Affine, Constant, Series
 from kin.numeric.elementary import Ball, BallJet, Jet, cos
 from kin.numeric.newton import zeros
@@ -178,7 +179,7 @@ class Transmission:
         As `Lift.rounding`, at `_LOOKS` parameters of the law's period.
         """
         bare = [f.function if isinstance(f, Affine) else f for f in self.psi.functions]
-        if not any(isinstance(f, FromLeaf) for f in bare):
+        if not any(isinstance(f, FromLeaf | FromExpression) for f in bare):
             return 0.0
         tau = self.psi.knots[0] + np.arange(_LOOKS) * (2 * self.delta / _LOOKS)
         (_, phi), (_, psi) = self.enclosure(tau, tau, 0)
@@ -186,7 +187,10 @@ class Transmission:
 
     def psi_of_shaft(self, phi: float | Array, order: int, side: int = 1) -> Array:
         """Give psi and its derivatives by phi at shaft angles phi (n,), (order + 1, n); at a break by side."""
-        tau = self.parameter(phi, side)
+        return self._by_shaft(self.parameter(phi, side), order, side)
+
+    def _by_shaft(self, tau: Array, order: int, side: int) -> Array:
+        """Give psi and its derivatives by phi at parameters tau (n,)."""
         shaft, psi = self.jets(Jet.variable(tau, order), side)
         out = np.empty((order + 1, len(tau)))
         out[0] = psi.c[0]
@@ -194,6 +198,19 @@ class Transmission:
             psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1 - k])
             out[k] = psi.c[0]
         return out
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Shaft angles of the law's period at which psi or its derivatives by phi jump, with what jumps."""
+        tau = self.psi.breaks
+        if not len(tau):
+            return ()
+        after, before = (self._by_shaft(tau, ORDERS, side) for side in (1, -1))
+        looks = self._by_shaft(self.psi.knots[0] + np.arange(_LOOKS) * (2 * self.delta / _LOOKS), ORDERS, 1)
+        size = np.abs(np.concatenate([after, before, looks], axis=1)).max(axis=1)
+        at = np.mod(self.at(tau, 0)[0][0], 2 * self.delta)
+        order = np.argsort(at)
+        return joints_of(((float(at[i]), before[:, i], after[:, i]) for i in order), size)
 
     def parameter(self, phi: float | Array, side: int = 1) -> Array:
         """Solve phi(tau) = phi for tau, (n,)."""

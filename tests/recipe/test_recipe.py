@@ -19,8 +19,9 @@ from support.places import SHIPPED
 from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.flat_pair import FlatPairCam
-from camgeo.cams.motion import MotionSegment, SccaLaw
+from camgeo.cams.motion import SegmentsAsked
 from camgeo.cams.pairs import ArcRoute, DeltaRoute, LawRoute, RosetteRoute
+from camgeo.cams.segments import MotionSegment, SccaLaw
 from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, ReuleauxShape, SupportCam
 from camgeo.recipe import Recipe, RecipeErrors, load, read
 from camgeo.recipe.export import Export, FileRequest
@@ -138,7 +139,9 @@ def test_the_default_tolerance_is_a_micrometre_in_inches_too() -> None:
             "{kind: constant-breadth, base_radius: 2, motion: [{rise: 1, over: 120, law: cycloidal}, {dwell: 60}]}",
             ConstantBreadthCam(
                 2 * MM,
-                (MotionSegment("rise", 120 * DEG, 1 * MM, "cycloidal"), MotionSegment("dwell", 60 * DEG)),
+                SegmentsAsked(
+                    (MotionSegment("rise", 120 * DEG, 1 * MM, "cycloidal"), MotionSegment("dwell", 60 * DEG))
+                ),
                 "refuse",
             ),
         ),
@@ -164,9 +167,11 @@ def test_the_default_tolerance_is_a_micrometre_in_inches_too() -> None:
                 1,
                 MM,
                 LawRoute(
-                    (
-                        MotionSegment("rise", 45 * DEG, 4 * DEG, (0.0, 0.0, 3.0, -2.0)),
-                        MotionSegment("return", 45 * DEG, 4 * DEG, "harmonic"),
+                    SegmentsAsked(
+                        (
+                            MotionSegment("rise", 45 * DEG, 4 * DEG, (0.0, 0.0, 3.0, -2.0)),
+                            MotionSegment("return", 45 * DEG, 4 * DEG, "harmonic"),
+                        )
                     )
                 ),
                 "trim",
@@ -193,7 +198,7 @@ def test_units_count_wherever_they_stand() -> None:
 def test_a_sum_of_fractions_fills_the_angle_of_the_law() -> None:
     body = "law: [{rise: 1, over: 90/7, law: cycloidal}, {return: 1, over: 90/7, law: cycloidal}]"
     route = cam(f"{{kind: flat-pair, ratio: 7/3, arm: 30, {body}}}")
-    assert sum(segment.over for segment in route.route.motion) == pytest.approx(math.pi / 7, abs=1e-15)
+    assert sum(segment.over for segment in route.route.motion.segments) == pytest.approx(math.pi / 7, abs=1e-15)
 
 
 # --- YAML's ways ------------------------------------------------------------------------------------------------------
@@ -248,7 +253,7 @@ def test_aliases_stand_for_what_they_name() -> None:
         "part: {thickness: *r}\n"
     )
     assert recipe.part.thickness == 40
-    assert recipe.cam.motion[0] == recipe.cam.motion[1]
+    assert recipe.cam.motion.segments[0] == recipe.cam.motion.segments[1]
 
 
 @pytest.mark.parametrize(("ends", "mark"), [("\n", b""), ("\r\n", b""), ("\r", b""), ("\n", b"\xef\xbb\xbf")])

@@ -642,7 +642,8 @@ cam:
             "c.yaml:10:7: cam.motion[5].over: missing beside displacement; give an angle above 0 up to 180 in degrees: "
             "shaft angle of the segment"
         ),
-        f"c.yaml:11:8: cam.motion[6].table: not available in this version; leave it out; here it has {keys}",
+        f"c.yaml:11:7: cam.motion[6]: needs {kinds}; give exactly one of them",
+        f"c.yaml:11:8: cam.motion[6].table: unknown key; the keys here are {keys}",
         f"c.yaml:12:7: cam.motion[7]: not a mapping, given 7; give a mapping with {keys}",
     ]
 

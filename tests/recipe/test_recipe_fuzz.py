@@ -110,7 +110,8 @@ def test_yaml_signs(text: str) -> None:
 
 
 def _keys(table: Table) -> set[str]:
-    below = {key for field in table.fields if field.table for key in _keys(field.table)}
+    tables = [each for field in table.fields for each in (field.table, field.form and field.form.instead) if each]
+    below = {key for each in tables for key in _keys(each)}
     return {*table.keys, *table.later, *below}
 
 

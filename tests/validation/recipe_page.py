@@ -55,6 +55,9 @@ def below(found, path):
             name = f"{path}.{field.name}" if path else field.name
             yield name, field.table
             yield from below(field.table, name)
+        if field.form is not None and field.form.instead is not None:
+            yield f"{path}.{field.name} as a mapping", field.form.instead
+            yield from below(field.form.instead, f"{path}.{field.name}")
 
 
 def figures():

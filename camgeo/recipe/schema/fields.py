@@ -84,6 +84,7 @@ class Form:
     tables: Mapping[str, Table] | None = None
     group: str = ""
     others: str = ""  # said of a `kind` that is none of them
+    instead: Table | None = None  # of a mapping that may stand in place of a list
 
 
 @dataclass(frozen=True)
@@ -215,8 +216,10 @@ def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
             return None
         field = table.field(name)
         tables = field.form.tables if field.form else None
+        instead = field.form.instead if field.form else None
         if tables is None:
-            table = field.table
+            lists = field.table.fields if field.table else ()
+            table = Table((*lists, *instead.fields)) if instead else field.table
         elif field.name in kinds:
             table = tables.get(kinds[field.name])
         else:

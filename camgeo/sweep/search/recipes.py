@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.recipe.loading import read
+from camgeo.recipe.schema.change import changed
 from camgeo.recipe.schema.edit import with_values, without
 from camgeo.recipe.schema.fields import MOST_TEXT
-from camgeo.recipe.schema.yaml_source import Mapping, read_source
+from camgeo.recipe.schema.yaml_source import Mapping, read_source, scalars
 from camgeo.sweep.search.pictures import Curve
 
 if TYPE_CHECKING:
@@ -51,6 +52,10 @@ def recipe_text(ask: Ask, best: Best) -> str:
     text = with_values(ask.recipe.text, best.values)
     for section in ("sweep", "name", "about"):
         text = without(text, section)
+    for path in [path for path in ask.recipe.marks if path.startswith("cam.") and path.endswith(".table")]:
+        source = read_source(text.encode(), str(ask.recipe.path))  # its recipe stands in another folder
+        file = dict(scalars(source.root))[path].text
+        text = changed(source, path, (ask.recipe.path.parent / file).resolve().as_posix())
     name = f"{ask.recipe.name}-best-{best.place}"
     return _opened(text, {"name": name, "about": _about(ask, best)})
 

@@ -18,12 +18,19 @@ _GREATEST_POWER = 100
 
 
 def lobe(
-    lift: float, half: float, powers: Sequence[int], total: float = 2 * math.pi, *, field: str = "motion.lobe"
+    lift: float,
+    half: float,
+    powers: Sequence[float],
+    total: float = 2 * math.pi,
+    *,
+    around: int | None = 1,
+    field: str = "motion.lobe",
 ) -> Motion:
     """Make S = lift (1 + C2 u**2 + Cp u**p + ... + Cs u**s), u = |theta|/half, the nose at 0, rest beyond `half` rad.
 
-    `powers` are (2, p, q, r, s), rising whole numbers; the coefficients make S to S'''' vanish at u = 1 (R. L. Norton,
-    Cam Design and Manufacturing Handbook, chapter on valve trains). IntentError for what is none.
+    Where the motion does not repeat (`around` as for `Motion`), the nose stands in the middle. `powers` are
+    (2, p, q, r, s), rising whole numbers; the coefficients make S to S'''' vanish at u = 1 (R. L. Norton, Cam Design
+    and Manufacturing Handbook, chapter on valve trains). IntentError for what is none.
     """
     if not (math.isfinite(lift) and lift > 0):
         raise IntentError(f"the lift of a lobe must be above 0, not {lift:.6g}", f"{field}.lift")
@@ -41,6 +48,12 @@ def lobe(
             f"{field}.powers",
         )
     flank, _ = Flank.of([int(k) for k in powers])
+    if around != 1:
+        nose = total / 2
+        up = Affine(flank, scale=lift, start=nose - half, width=half)
+        down = Affine(flank, scale=lift, start=nose + half, width=-half)
+        knots = [0.0, nose - half, nose, nose + half, total]
+        return joined(knots, [Constant(0.0), up, down, Constant(0.0)], around)
     falling = Affine(flank, scale=lift, start=half, width=-half)
     rising_flank = Affine(flank, scale=lift, start=total - half, width=half)
     return joined([0.0, half, total - half, total], [falling, Constant(0.0), rising_flank])

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.law.joints import ORDERS, Joint, joints_of
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError, Programme
 from kin.law.segment import Affine, Constant
@@ -21,10 +22,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-ORDERS = 3  # displacement, velocity, acceleration and jerk are held together at the joints
-_JOIN = 1e-9  # of the greatest value of a derivative: a jump below this is rounding
+_JOIN = 1e-9  # of the greatest derivative: what differs less over the seam is rounding
 _CLOSED = 1e-11  # of the greatest of S, S', S'': a jump of S or S' below this is rounding, as for a lift
-_NAMES = ("S", "S'", "S''", "S'''")
 _LOOKS = 64  # places at which the size of a derivative is looked at, besides the knots
 _SEAM_ORDER = 6  # derivatives that agree where a function runs on over the seam
 
@@ -35,24 +34,6 @@ class Rest(NamedTuple):
     begin: float
     end: float
     level: float
-
-
-@dataclass(frozen=True)
-class Joint:
-    """An angle (rad) at which derivatives jump: for each that does its order, and the limits before and after."""
-
-    at: float
-    jumps: tuple[tuple[int, float, float], ...]
-
-    def said(self, unit: str = "mm") -> str:
-        """Say what jumps, lowest derivative first, by how much, and where."""
-        per = ("", "/rad", "/rad^2", "/rad^3")
-        parts = [f"{_NAMES[k]} jumps from {_figure(a)} to {_figure(b)} {unit}{per[k]}" for k, a, b in self.jumps]
-        return f"{' and '.join(parts)} at {math.degrees(self.at):.6g} degrees"
-
-
-def _figure(value: float) -> str:
-    return f"{value + 0.0:.6g}"
 
 
 @dataclass(frozen=True)
@@ -112,12 +93,7 @@ class Motion(Programme):
                 end[0] = right[0, 0]  # S begins anew at the end's own level
             found.append((0.0, end, right[:, 0]))
         found += [(float(knots[i]), left[:, i - 1], right[:, i]) for i in range(1, len(knots) - 1)]
-        joints = []
-        for at, before, after in found:
-            jumps = np.flatnonzero(np.abs(after - before) > _JOIN * size)
-            if len(jumps):
-                joints.append(Joint(at, tuple((int(k), float(before[k]), float(after[k])) for k in jumps)))
-        return tuple(joints)
+        return joints_of(found, size)
 
     @cached_property
     def _size(self) -> float:

@@ -1,0 +1,29 @@
+"""The bytes of a file that somebody has named: nothing waits on a pipe, and nothing large is read whole."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.schema.scalars import Complaint
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+
+def bytes_of(path: str | PathLike[str], most: int, what: str) -> bytes:
+    """Read a file that is `what`, of a longer one the first `most` + 1 bytes; raises Complaint where it cannot."""
+    try:
+        mode = Path(path).stat().st_mode
+        waits = not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))  # its reader, for ever perhaps
+        if not waits:
+            with Path(path).open("rb") as stream:
+                return stream.read(most + 1)
+    except FileNotFoundError:
+        raise Complaint("there is no such file") from None
+    except OSError as error:
+        raise Complaint(f"cannot be read: {error.strerror or error}") from None
+    except ValueError:  # a null character
+        raise Complaint("not the name of a file") from None
+    raise Complaint("a pipe or a device, not a file", f"save the {what} as a file")

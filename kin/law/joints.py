@@ -1,0 +1,49 @@
+"""Where the parts of a motion meet, and which of its derivatives jump there."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from kin.numeric.arrays import Array
+
+ORDERS = 3  # displacement, velocity, acceleration and jerk are held together at the joints
+_JOIN = 1e-9  # of the greatest value of a derivative: a jump below this is rounding
+_NAMES = ("S", "S'", "S''", "S'''")
+
+
+@dataclass(frozen=True)
+class Joint:
+    """An angle (rad) at which derivatives jump: for each that does its order, and the limits before and after."""
+
+    at: float
+    jumps: tuple[tuple[int, float, float], ...]
+
+    def said(self, unit: str = "mm") -> str:
+        """Say what jumps, lowest derivative first, by how much, and where."""
+        per = ("", "/rad", "/rad^2", "/rad^3")
+        parts = [f"{_NAMES[k]} jumps from {a:.6g} to {b:.6g} {unit}{per[k]}" for k, a, b in self.jumps]
+        return f"{' and '.join(parts)} at {math.degrees(self.at):.6g} degrees"
+
+    def scaled(self, by: float) -> Joint:
+        """The same joint with displacements in another unit."""
+        return Joint(self.at, tuple((k, a * by, b * by) for k, a, b in self.jumps))
+
+
+def joints_of(meetings: Iterable[tuple[float, Array, Array]], size: Array) -> tuple[Joint, ...]:
+    """Give the joints among angles (rad) with the derivatives 0 to `ORDERS` before and after each, (ORDERS + 1,).
+
+    `size` has the greatest value of each derivative.
+    """
+    joints = []
+    for at, before, after in meetings:
+        jumps = np.flatnonzero(np.abs(after - before) > _JOIN * size)
+        if len(jumps):
+            joints.append(Joint(at, tuple((int(k), float(before[k]) + 0.0, float(after[k]) + 0.0) for k in jumps)))
+    return tuple(joints)
