@@ -298,7 +298,7 @@ class CheckItem(pytest.Item):
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
             return
         if self.run.recipe.cam.undercut == "trim" and (
-            wanted.name == MOTION.name or (wanted.name in CHECKS and CHECKS[wanted.name].play)
+            wanted.name == MOTION.name or (wanted.name in CHECKS and CHECKS[wanted.name].backlash)
         ):
             reason = "an undercut is trimmed: what motion is lost is told, and judged against verify.motion_error alone"
             pytest.skip(f"{self.run.shown}: {reason}")

@@ -99,7 +99,7 @@ def shaft_of(part: Part, s: Sizes) -> Shaft:
     Raises BodyError where the bore is too narrow for a shaft.
     """
     bore = part.bore or 0.0
-    radius = 0.5 * bore - s.play
+    radius = 0.5 * bore - s.gap_each_side
     journal, across = radius, radius
     if part.sides:
         drive = polygonal(part.sides, bore - s.clearance, part.bore_at)
@@ -189,11 +189,11 @@ class Drive:
 def bearing(drive: Drive, pads: Sequence[ArcSpline], high: float) -> tuple[Plate, ...]:
     """Return plates of the base about the shaft: pads that all hold the sink, and a boss up to z = `high`."""
     shaft, s = drive.shaft, drive.sizes
-    sink, hole = disc(_sink(drive)), disc(shaft.journal + s.play)
+    sink, hole = disc(_sink(drive)), disc(shaft.journal + s.gap_each_side)
     found = [Plate(pad, (sink,), 0.0, s.sunk) for pad in pads]
     found += [Plate(pad, (hole,), s.sunk, s.plate) for pad in pads]
     if high - s.plate > 0.5 * s.gap:
-        found.append(Plate(disc(shaft.journal + s.play + s.wall), (hole,), s.plate, high))
+        found.append(Plate(disc(shaft.journal + s.gap_each_side + s.wall), (hole,), s.plate, high))
     return tuple(found)
 
 

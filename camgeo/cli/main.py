@@ -186,10 +186,10 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _watch(arguments: argparse.Namespace) -> int:
     """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
+    from camgeo.cli.recipes import load
     from camgeo.cli.watch import watch
     from camgeo.output.output_folder import REJECTED
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.load import load
     from camgeo.recipe.schema.errors import RecipeErrors
 
     if len(arguments.recipes) != 1 or arguments.json:
@@ -221,7 +221,7 @@ def _watch(arguments: argparse.Namespace) -> int:
 
 def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) -> tuple[list[Recipe], int]:
     """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong."""
-    from camgeo.recipe.load import load
+    from camgeo.cli.recipes import load
     from camgeo.recipe.schema.errors import RecipeErrors
 
     recipes: list[Recipe] = []
@@ -290,8 +290,8 @@ def _show(report: dict[str, Any], *, verbose: bool) -> None:
 
 def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
+    from camgeo.cli.recipes import load
     from camgeo.output import pipeline
-    from camgeo.recipe.load import load
     from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.report.document import encoded
     from kin.judge.verify import UnitsError

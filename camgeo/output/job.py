@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.advice import less_swing
+from camgeo.checks.declared import MOTION, RATIO
 from camgeo.common.clock import Clock
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError
@@ -152,9 +153,9 @@ class Job:
 
     def _why_lost(self, check: Check) -> Check:
         """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""
-        if check.name != "motion" or check.value is not None or not isinstance(self.recipe.cam, DoubleRollerCam):
+        if check.name != MOTION.name or check.value is not None or not isinstance(self.recipe.cam, DoubleRollerCam):
             return check
-        slope = next(own.value for own in self.design.checks if own.name == "transmission")
+        slope = next(own.value for own in self.design.checks if own.name == RATIO.name)
         if slope is None or slope < STEEP:
             return check
         less = less_swing(self.recipe.cam, self.recipe.mm)

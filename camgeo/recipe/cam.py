@@ -59,10 +59,10 @@ Shape: TypeAlias = FormulaShape | FourierShape | ReuleauxShape | HypocycloidShap
 
 @dataclass(frozen=True)
 class SupportCam:
-    """A cam given by its support function; `pivot` is the shaft in the axes of that function, mm."""
+    """A cam given by its support function; `shaft` is the camshaft's place in the axes of that function, mm."""
 
     shape: Shape
-    pivot: tuple[float, float]
+    shaft: tuple[float, float]
     undercut: Undercut
 
 
@@ -194,7 +194,13 @@ SUPPORT = Table(
         _FOURIER,
         _REULEAUX,
         _HYPOCYCLOID,
-        Field("pivot", Kind.POINT, "the shaft [x, y] in the axes in which p is written", default="[0, 0]"),
+        Field(
+            "shaft",
+            Kind.POINT,
+            "place [x, y] of the shaft in the axes in which p is written",
+            default="[0, 0]",
+            formerly="pivot",
+        ),
         _UNDERCUT,
     ),
     alternatives=(("p", ()), ("fourier", ()), ("reuleaux", ()), ("hypocycloid", ())),
@@ -339,7 +345,7 @@ def build_cam(cam: Values, mm: float) -> Cam:
     undercut = cam.get("undercut", "refuse")
     match cam["kind"]:
         case "support":
-            return SupportCam(_shape(cam, mm), cam.get("pivot", (0.0, 0.0)), undercut)
+            return SupportCam(_shape(cam, mm), cam.get("shaft", (0.0, 0.0)), undercut)
         case "constant-breadth":
             return ConstantBreadthCam(cam["base_radius"], build_motion(cam["motion"], mm), undercut)
         case "double-roller":

@@ -10,9 +10,9 @@ STRICT: dict[str, float | None] = {
     "wall": 0.0,
     "mobility": 0.0,
     "reversal": 0.0,
-    "play": 0.0,
+    "least-backlash": 0.0,
     "clearance": 0.0,
-    "transmission": 1.0,
+    "velocity-ratio": 1.0,
     "pressure-angle": 90.0,
 }
 """Checks that a figure on its limit does not hold, and the one limit for which that is so (None: any)."""

@@ -25,7 +25,7 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
         ("file", check.get("file", "")),
         ("found", check.get("detail", "")),
         ("would do", remedy(check, report, recipe)),
-        ("recipe", f"{shown or recipe.path}:{line}:{column} {field}"),
+        ("recipe", f"{shown or recipe.path}:{line}:{column} {recipe.written(field)}"),
     ]
     return headline(check) + "".join(f"{INDENT}{name:<9}{text}" for name, text in rows if text)
 

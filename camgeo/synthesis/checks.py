@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import BREADTH, CLOSING, FACE, PRESSURE, TRANSMISSION
+from camgeo.checks.declared import BREADTH, CLOSING, PRESSURE, RATIO, TRAVEL
 from kin.judge.check import Check
 from kin.law.feasibility import steepest
 from kin.numeric.angles import degrees
@@ -61,7 +61,7 @@ def flat_face_checks(lift: Lift, breadth: tuple[float, float, float] | None) -> 
     t = _angles(lift.breaks, 2.0 * math.pi)
     low = _greatest(lambda u: -lift.derivatives(u, 1)[1], t)  # continuous too
     high = _greatest(lambda u: lift.derivatives(u, 1)[1], t)
-    checks.append(Check(FACE.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least"))
+    checks.append(Check(TRAVEL.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least"))
     return checks
 
 
@@ -86,7 +86,7 @@ def transmission_checks(law: Transmission) -> list[Check]:
         degrees(float(phi[0, worst])),
     )
     at, value = steepest(law)
-    return [closing, Check(TRANSMISSION.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))]
+    return [closing, Check(RATIO.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))]
 
 
 def pressure_angle(profile: Profile, law: Transmission) -> Check:

@@ -96,14 +96,14 @@ def _support(cam: SupportCam) -> Lift:
 
     shape = cam.shape
     if isinstance(shape, FormulaShape):
-        return _with_size(_formula(shape, cam.pivot), "p", shape.scale)
+        return _with_size(_formula(shape, cam.shaft), "p", shape.scale)
     if isinstance(shape, FourierShape):
-        found = support_function.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), cam.pivot)
+        found = support_function.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), cam.shaft)
         return _with_size(found, "fourier.mean")
     if isinstance(shape, ReuleauxShape):
-        found = support_function.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, cam.pivot)
+        found = support_function.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, cam.shaft)
         return _with_size(found, "reuleaux.breadth")
-    found = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, cam.pivot)
+    found = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, cam.shaft)
     return _with_size(found, "hypocycloid.breadth")
 
 

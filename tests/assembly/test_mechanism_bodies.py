@@ -39,7 +39,7 @@ FIT = 0.002  # mm
 FLATTENED = 0.0005  # mm by which a shapely polygon of an outline is off, about
 PART = "part: {thickness: 8, bore: 8}\nexport: {files: [{3mf: {parts: all}}]}\n"
 HUBS = "part: {thickness: 8, bore: 8, hub: {diameter: 14, height: 6, side: both}}\n"
-AS_1 = "  p: 4*cos(3*t/2)**2 + 23\n  pivot: [16, 7.5]\n"
+AS_1 = "  p: 4*cos(3*t/2)**2 + 23\n  shaft: [16, 7.5]\n"
 SHAPES = {
     "yoke": f"cam:\n  kind: support\n{AS_1}",
     "flat face": "cam: {kind: support, p: 25 + 3*cos(2*t)}\n",

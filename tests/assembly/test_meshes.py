@@ -134,7 +134,7 @@ def test_crossing_walls_that_go_on_through_storeys_leave_no_slivers(precision):
 
 
 SLANTED = """
-cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [9.65, 0.831]}
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [9.65, 0.831]}
 part: {thickness: 8, bore: {hexagon: 9}}
 linkage:
   kind: four-bar

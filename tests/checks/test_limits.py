@@ -48,12 +48,12 @@ cam:
 TRAIN = "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 600}\n"
 LOOSE = "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, play: 0.05, rpm: 600}\n"
 LINKED = """\
-cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 dwell: {band: 0.1}
 """
 SET = """\
-cam: {kind: support, p: 25 + 1.5*cos(3*t), pivot: [3, 2]}
+cam: {kind: support, p: 25 + 1.5*cos(3*t), shaft: [3, 2]}
 part: {thickness: 8, bore: {hexagon: 10}}
 export: {tolerance: 0.01, files: [{stl: {parts: all}}]}
 verify: {angles: 120}

@@ -76,9 +76,9 @@ DESIGNS: list[tuple[str, str, Follow]] = [
     (support("p: -25", SLIDER), r"add more than (\S+) to p", lambda by: support(f"p: -25 + {1.001 * by}", SLIDER)),
     (support("p: 15*cos(t)"), r"add more than (\S+) to p", lambda by: support(f"p: 15*cos(t) + {1.001 * by}")),
     (
-        support("fourier: {mean: 1e-30}, pivot: [10, 4]"),
+        support("fourier: {mean: 1e-30}, shaft: [10, 4]"),
         r"fourier\.mean: .*; give a larger one",
-        lambda _: support("fourier: {mean: 1}, pivot: [10, 4]"),
+        lambda _: support("fourier: {mean: 1}, shaft: [10, 4]"),
     ),
     (
         support("p: 25 + 5*cos(3*t)"),
@@ -164,9 +164,9 @@ DESIGNS: list[tuple[str, str, Follow]] = [
         for ratio in ("5/3", "7/3", "8/3")
     ),
     (
-        support("p: 25, pivot: [40, 0]", "\npart: {bore: 10}"),
+        support("p: 25, shaft: [40, 0]", "\npart: {bore: 10}"),
         "the shaft lies outside the contour",
-        lambda _: support("p: 25, pivot: [10, 0]", "\npart: {bore: 10}"),
+        lambda _: support("p: 25, shaft: [10, 0]", "\npart: {bore: 10}"),
     ),
 ]
 
@@ -229,7 +229,7 @@ def test_a_limit_that_is_not_allowed_itself_is_told_as_such() -> None:
 
 
 SET = """\
-cam: {kind: support, fourier: {mean: 20, cos: {3: 1}}, pivot: [6, 0]}
+cam: {kind: support, fourier: {mean: 20, cos: {3: 1}}, shaft: [6, 0]}
 part: {thickness: 5, bore: {square: 6}}
 export: {tolerance: 0.02, files: [{stl: {parts: all}}]}
 verify: {angles: 24}

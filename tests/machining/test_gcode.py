@@ -28,7 +28,7 @@ from kin.judge.verify import verify
 from kin.read.errors import ReadError
 from kin.read.gcode import read_gcode
 
-SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}\n"
+SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 DEEP = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 4, delta: {cos: {1: 1500}}}\n"
 SHU_WU = """\

@@ -26,7 +26,7 @@ def exported(folder: Path, recipe: str, *more: str) -> int:
 
 
 def test_shaft_on_the_contour_has_no_base_circle(tmp_path: Path) -> None:
-    assert exported(tmp_path, "cam: {kind: support, p: '25', pivot: [25, 0]}\npart: {thickness: 8}\n" + FILES) == 0
+    assert exported(tmp_path, "cam: {kind: support, p: '25', shaft: [25, 0]}\npart: {thickness: 8}\n" + FILES) == 0
 
 
 @pytest.mark.parametrize("undercut", ["refuse", "trim"])

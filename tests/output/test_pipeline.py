@@ -240,7 +240,7 @@ def test_a_bore_through_the_contour_is_a_failed_check_and_no_file(tmp_path: Path
 
 
 def test_a_shaft_beside_the_contour_is_told_as_that(tmp_path: Path) -> None:
-    text = b"cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [100, 0]}\npart: {bore: 10}\n"
+    text = b"cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [100, 0]}\npart: {bore: 10}\n"
     outcome = pipeline.export(read(text, "beside.yaml"), tmp_path)
     assert failed(outcome.report) == {"wall"}
     assert outcome.report["checks"][-1]["detail"] == "the shaft lies outside the contour"

@@ -12,7 +12,7 @@ from kin.read.files import read_dxf, read_solid
 
 RECIPE = """\
 name: cam
-cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}
+cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}
 part: {thickness: 8, bore: 10}
 export: {tolerance: 0.01, files: [{dxf: {as: arcs, version: R12}}, stl, 3mf, svg]}
 verify: {angles: 36}

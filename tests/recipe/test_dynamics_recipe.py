@@ -209,7 +209,7 @@ def test_the_springs_force_is_given_at_the_lowest_place() -> None:
 def test_a_linkage_is_driven_as_intended() -> None:
     four_bar = """\
 name: linkage
-cam: {kind: support, p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25, pivot: [18, 8.5]}
+cam: {kind: support, p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25, shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 verify: {angles: 120}
 """

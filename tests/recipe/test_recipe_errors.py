@@ -228,7 +228,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         (SUPPORT + "naem: x\n", "2:1: naem: unknown key; did you mean name?"),
         (SUPPORT + "bore: 5\n", "2:1: bore: unknown key; it belongs under part"),
         (SUPPORT + "xyz: 5\n", f"2:1: xyz: unknown key; the keys here are {KEYS}"),
-        (SUPPORT + "cam.pivot: 5\n", f"2:1: 'cam.pivot': unknown key; the keys here are {KEYS}"),
+        (SUPPORT + "cam.shaft: 5\n", f"2:1: 'cam.shaft': unknown key; the keys here are {KEYS}"),
         (SUPPORT + "part: {units: mm}\n", "2:8: part.units: unknown key; it belongs at the top level"),
         (SUPPORT + "part: {x: 1}\n", f"2:8: part.x: unknown key; the keys here are {PART}"),
         (
@@ -507,12 +507,12 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
             ],
         ),
         (
-            "cam: {kind: support, p: 9, pivot: [1]}",
-            ["1:35: cam.pivot: not a point, given a list of 1; give a list of two lengths [x, y] in mm"],
+            "cam: {kind: support, p: 9, shaft: [1]}",
+            ["1:35: cam.shaft: not a point, given a list of 1; give a list of two lengths [x, y] in mm"],
         ),
         (
-            "cam: {kind: support, p: 9, pivot: [1, a]}",
-            ["1:39: cam.pivot[1]: not a number, given 'a'; give a length in mm"],
+            "cam: {kind: support, p: 9, shaft: [1, a]}",
+            ["1:39: cam.shaft[1]: not a number, given 'a'; give a length in mm"],
         ),
         (
             "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 2, 2: 1}}}",

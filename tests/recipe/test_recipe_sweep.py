@@ -17,7 +17,7 @@ from camgeo.recipe.sweep import FIGURES, Axis, Sweep
 HERE = {"", "linkage", "dwell", "plate"}  # what a recipe with a linkage and a dwell has
 
 BASE = """\
-cam: {kind: support, fourier: {mean: 25, cos: {3: 1.5}}, pivot: [10, 4]}
+cam: {kind: support, fourier: {mean: 25, cos: {3: 1.5}}, shaft: [10, 4]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105, dyads: [{kind: rpr, point: [9, 0], ground: [80, 200]}]}
 dwell: {band: 0.1}
 part: {thickness: 8}
@@ -50,7 +50,7 @@ def told(body: str, base: str = BASE) -> list[str]:
 def test_everything_said() -> None:
     body = """\
   vary:
-    cam.pivot[0]: {from: -10, to: 20}
+    cam.shaft[0]: {from: -10, to: 20}
     linkage.rocker: {to: 110, from: 190/2}
     linkage.dyads[0].point[1]: [1, -2.5, 1/4]
   method: sobol
@@ -64,7 +64,7 @@ def test_everything_said() -> None:
 """
     assert sweep(body) == Sweep(
         vary=(
-            Axis("cam.pivot[0]", -10.0, 20.0),
+            Axis("cam.shaft[0]", -10.0, 20.0),
             Axis("linkage.rocker", 95.0, 110.0),
             Axis("linkage.dyads[0].point[1]", values=(1.0, -2.5, 0.25)),
         ),
@@ -117,8 +117,8 @@ def test_values_stay_as_written_and_limits_come_in_the_units_of_figures() -> Non
         for path in ("cam.base_radius", "cam.motion[0].rise", "cam.motion[1].dwell")
     ]
     + [
-        ("{kind: support, fourier: {mean: 25, sin: {3: 1.5, '5': 0}}, pivot: [1, 2]}", path)
-        for path in ("cam.fourier.mean", "cam.fourier.sin.3", "cam.fourier.sin.5", "cam.pivot[1]")
+        ("{kind: support, fourier: {mean: 25, sin: {3: 1.5, '5': 0}}, shaft: [1, 2]}", path)
+        for path in ("cam.fourier.mean", "cam.fourier.sin.3", "cam.fourier.sin.5", "cam.shaft[1]")
     ]
     + [("{kind: support, reuleaux: {sides: 3, breadth: 50, rounding: 5}}", "cam.reuleaux.rounding")],
 )
@@ -156,7 +156,7 @@ FIRST_PATH = "cam.fourier.mean"
 @pytest.mark.parametrize(
     ("axis", "message"),
     [
-        ("cam.pivot: [1]", "no number stands there; give the path of a number in it, such as cam.pivot[0]"),
+        ("cam.shaft: [1]", "no number stands there; give the path of a number in it, such as cam.shaft[0]"),
         ("cam.kind: [1]", f"no number stands there; give the path of a number, such as {FIRST_PATH}"),
         (
             "linkage.dyads[0].offset: [1]",
@@ -164,7 +164,7 @@ FIRST_PATH = "cam.fourier.mean"
         ),
         ("cam.fourier.sin.3: [1]", "the recipe gives it no value; give it a value first, which the sweep replaces"),
         ("cam.hypocycloid.size: [1]", "the recipe gives it no value; give it a value first, which the sweep replaces"),
-        ("cam.pivot[2]: [1]", "no such field, given 'cam.pivot[2]'; did you mean cam.pivot[1]?"),
+        ("cam.shaft[2]: [1]", "no such field, given 'cam.shaft[2]'; did you mean cam.shaft[1]?"),
         (
             "linkage.dyads[1].point[0]: [1]",
             ("no such field, given 'linkage.dyads[1].point[0]'; did you mean linkage.dyads[0].point[0]?"),
@@ -406,7 +406,7 @@ def test_a_sweep_may_stand_before_what_it_varies() -> None:
 @pytest.mark.parametrize(
     ("path", "known"),
     [
-        ("cam.pivot[0]", True),
+        ("cam.shaft[0]", True),
         ("cam.fourier.cos.7", True),
         ("cam.fourier.cos.x", False),
         ("cam.base_radius", False),
@@ -416,8 +416,8 @@ def test_a_sweep_may_stand_before_what_it_varies() -> None:
         ("linkage.dyads[3].colour", False),
         ("export.tolerance", True),
         ("", False),
-        ("cam..pivot", False),
-        ("cam.pivot.x", False),
+        ("cam..shaft", False),
+        ("cam.shaft.x", False),
     ],
 )
 def test_fields_of_the_schema_are_known_by_their_paths(path: str, known: bool) -> None:

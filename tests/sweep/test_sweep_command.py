@@ -62,7 +62,7 @@ def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.Capture
     said = capsys.readouterr().out
     assert " do not turn (binds " in said
     assert " break the limit of margin" in said
-    assert f"  best-1.yaml: cam.pivot[0] 15.8333, linkage.rocker 95\n    {FIRST}\n" in said
+    assert f"  best-1.yaml: cam.shaft[0] 15.8333, linkage.rocker 95\n    {FIRST}\n" in said
 
 
 def test_json_is_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -76,7 +76,7 @@ def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: py
     said = capsys.readouterr().out
     assert said.startswith("four-bar: no design will do, of 825 designs")
     assert "do not turn (binds " in said
-    assert "break the limit of margin; nearest: cam.pivot[0] " in said
+    assert "break the limit of margin; nearest: cam.shaft[0] " in said
     assert re.search(r"linkage\.rocker \S+, with margin \S+ mm where at least 99 is asked; ", said)
     assert said.endswith("four-bar.rejected\n")
 
@@ -89,7 +89,7 @@ def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: py
             "linkage.roker: {from",
             "no such field, given 'linkage.roker'; did you mean linkage.rocker?",
         ),
-        ("cam.pivot[0]", "cam.pivot[2]", "no such field, given 'cam.pivot[2]'"),
+        ("cam.shaft[0]", "cam.shaft[2]", "no such field, given 'cam.shaft[2]'"),
         ("rank: dwell", "rank: dwel", "sweep.rank: "),
         ("margin: {", "margn: {", "sweep.limits.margn: no such figure; did you mean margin?"),
         ("at_least:", "atleast:", "sweep.limits.margin.atleast: "),

@@ -34,12 +34,12 @@ PATHS = {
     SLIDER: ("linkage.coupler", "linkage.offset"),
 }
 OF_LINKAGES = tuple(name for name, figure in FIGURES.items() if figure.needs not in {"follower", "roller", "swings"})
-PIVOT = ("cam.pivot[0]", "cam.pivot[1]")
+PIVOT = ("cam.shaft[0]", "cam.shaft[1]")
 
 
 def recipe(shape=CAM_2A, linkage=FOUR_BAR, *, more="", assembly="open", pivot="[18, 8.5]", band=0.1, units="mm"):
     driven = f"linkage: {{{linkage}, assembly: {assembly}{more}}}\ndwell: {{band: {band}}}\n" if linkage else ""
-    place = f"  pivot: {pivot}\n" if pivot else ""
+    place = f"  shaft: {pivot}\n" if pivot else ""
     kind = "" if shape.startswith("kind") else "  kind: support\n"
     return load_text(f"units: {units}\ncam:\n{kind}  {shape}\n{place}{driven}part: {{thickness: 8}}\n", "a.yaml")
 
@@ -167,7 +167,7 @@ def test_both_engines_give_the_same_bits():
 @pytest.mark.parametrize(
     ("shape", "given"),
     [
-        (FOURIER, {"cam.fourier.cos.3": 0.5, "cam.fourier.sin.5": 0.2, "cam.fourier.mean": 26.0, "cam.pivot[1]": 5.0}),
+        (FOURIER, {"cam.fourier.cos.3": 0.5, "cam.fourier.sin.5": 0.2, "cam.fourier.mean": 26.0, "cam.shaft[1]": 5.0}),
         (FOURIER, {"cam.fourier.cos.1": 1.5}),
         ("hypocycloid: {cusps: 3, size: 2, breadth: 50}", {"cam.hypocycloid.size": 1.5, "cam.hypocycloid.breadth": 44}),
         ("hypocycloid: {cusps: 3, size: 2, breadth: 50}", {"cam.hypocycloid.cusps": 5, "cam.hypocycloid.size": 0.8}),
@@ -290,7 +290,7 @@ def test_a_limit_on_the_dwell_is_told_too():
 
 def test_lengths_are_in_the_units_of_the_recipe_and_figures_in_mm():
     inch = recipe("fourier: {mean: 1, cos: {3: 0.05}}", pivot="[0.5, 0.2]", units="inch", linkage=FOUR_BAR_INCH)
-    given = {"cam.pivot[0]": 0.55, "linkage.ground": 3.0, "cam.fourier.cos.3": 0.06}
+    given = {"cam.shaft[0]": 0.55, "linkage.ground": 3.0, "cam.fourier.cos.3": 0.06}
     found = evaluate(inch, tuple(given), np.array([list(given.values())]), samples=720)
     assert_like(found.figures, exact(recipe_with(inch, tuple(given), list(given.values()))))
     assert found.figures["size"][0] > 25.4
@@ -302,7 +302,7 @@ FOUR_BAR_INCH = "kind: four-bar, ground: 3.2, coupler: 2.8, rocker: 4.2"
 def test_dyads_are_figured_design_by_design():
     rrr = ", dyads: [{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
     one = recipe(more=rrr, band=0.2)
-    paths = ("cam.pivot[0]", "linkage.dyads[0].links[1]")
+    paths = ("cam.shaft[0]", "linkage.dyads[0].links[1]")
     found = evaluate(one, paths, np.array([[18.0, 30.0], [18.0, 2.0], [40.0, 30.0], [17.5, 33.0]]), samples=720)
     assert [REASONS[code] for code in found.reason] == ["", "binds", "shaft-outside", ""]
     for row, values in ((0, (18.0, 30.0)), (3, (17.5, 33.0))):
@@ -311,7 +311,7 @@ def test_dyads_are_figured_design_by_design():
 
 def test_a_recipe_without_a_linkage():
     one = recipe(linkage="")
-    found = evaluate(one, ("cam.pivot[0]",), np.array([[18.0], [0.0]]))
+    found = evaluate(one, ("cam.shaft[0]",), np.array([[18.0], [0.0]]))
     own = {"swing", "peak-velocity", "peak-acceleration", "peak-jerk", "pressure-angle", "face-length"}
     assert set(found.figures) == {"radius-of-curvature", "size", *own}
     assert (found.figures["pressure-angle"] == 0).all()

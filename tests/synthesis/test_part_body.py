@@ -161,7 +161,7 @@ def test_rotation_mirrors_the_part_and_leaves_its_walls():
 
 
 def test_inches_and_millimetres_make_the_same_part():
-    inch = "cam: {kind: support, p: (25 + 2*cos(3*t))/25.4, pivot: [3/254, 2/254]}\n".replace("3/254", "15/127")
+    inch = "cam: {kind: support, p: (25 + 2*cos(3*t))/25.4, shaft: [3/254, 2/254]}\n".replace("3/254", "15/127")
     cam = inch.replace("2/254", "10/127")
     part = "{bore: 60/127, mark: {width: 5/254, length: 20/127}, bolts: {count: 3, circle: 160/127, hole: 20/127}}"
     _, inches = found(recipe_of(part, cam=cam, more="units: inch\n"))

@@ -20,7 +20,7 @@ _NAME = "recipe"  # of a text in errors
 
 
 def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float]) -> str:
-    """Put numbers in the place of others in a recipe's text, by paths such as `cam.pivot[0]`.
+    """Put numbers in the place of others in a recipe's text, by paths such as `cam.shaft[0]`.
 
     A number is written as briefly as reads back exactly. Raises ValueError for a path at which no number stands, for
     one whose number an alias shares with other fields, and for a number that is not finite; RecipeErrors for a text

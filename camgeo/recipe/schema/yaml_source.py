@@ -17,6 +17,7 @@ import yaml
 from camgeo.recipe.schema.errors import RecipeError, RecipeErrors, shown
 
 if TYPE_CHECKING:
+    import collections.abc
     from collections.abc import Iterator
 
 MAX_BYTES = 1_000_000
@@ -136,6 +137,19 @@ def join(path: str, key: str | int) -> str:
         return f"{path}[{key}]"
     name = key if _PLAIN_KEY.fullmatch(key) else shown(key)
     return f"{path}.{name}" if path else name
+
+
+def is_within(path: str, of: str) -> bool:
+    """Tell whether a path is another or lies below it."""
+    return path == of or path.startswith((f"{of}.", f"{of}["))
+
+
+def as_written(path: str, renamed: collections.abc.Mapping[str, str]) -> str:
+    """Put the paths as written in the place of the present ones in `renamed`."""
+    for new, old in renamed.items():
+        if is_within(path, new):
+            return old + path[len(new) :]
+    return path
 
 
 def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:

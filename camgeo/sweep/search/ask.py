@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.recipe.cam import DoubleRollerCam, FlatPairCam, cam_kind
 from camgeo.recipe.export import Export
-from camgeo.recipe.figures import FACE_LENGTH, HOLLOW_RADIUS, PEAKS
+from camgeo.recipe.figures import CONTACT_TRAVEL, HOLLOW_RADIUS, PEAKS
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import RECIPE, Recipe, Verify
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.sweep import Sweep
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
-_DEAR = ("dwell-relative", *PEAKS, "force-angle", FACE_LENGTH, HOLLOW_RADIUS)
+_DEAR = ("dwell-relative", *PEAKS, "force-angle", CONTACT_TRAVEL, HOLLOW_RADIUS)
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 
