@@ -24,7 +24,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Limit:
-    """Bounds of a figure, as figures are reported: angles in degrees, lengths in mm, rates per radian of shaft angle."""
+    """Bounds of a figure, as reported: angles in degrees, lengths in mm, rates per radian of shaft angle."""
 
     figure: str
     at_least: float | None = None
@@ -66,7 +66,7 @@ BACKLASH_LEFT = "least-backlash"
 
 
 FORMER = {VELOCITY_RATIO: "transmission", CONTACT_TRAVEL: "face-length", BACKLASH_LEFT: "play"}
-"""The former names of figures that were renamed: they are read, and written beside the present ones, in this version."""
+"""Former names of renamed figures: in this version they are read, and written beside the present ones."""
 
 
 PRESENT = {former: name for name, former in FORMER.items()}

@@ -119,7 +119,7 @@ dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 600}
     "with play": """\
 cam: {kind: support, p: 30 + 2*cos(3*t)}
 export: {files: [csv]}
-dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, play: 0.05, rpm: 600}
+dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, backlash: 0.05, rpm: 600}
 """,
     "a double roller": """\
 cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 300}}}

@@ -219,7 +219,7 @@ def test_files_of_a_recipe_that_is_changed_as_told_pass(text: str, pattern: str,
 def test_a_smaller_swing_has_a_smaller_pressure_angle() -> None:
     recipes = (load_text(roller(f"delta: {{cos: {{1: {size}}}}}"), "swung.yaml") for size in (400, 200))
     wide, narrow = ({each.name: each.value for each in designed(recipe).checks} for recipe in recipes)
-    assert narrow["transmission"] < 0.75 * wide["transmission"]
+    assert narrow["velocity-ratio"] < 0.75 * wide["velocity-ratio"]
     assert narrow["pressure-angle"] < wide["pressure-angle"]
 
 

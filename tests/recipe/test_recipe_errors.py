@@ -57,7 +57,7 @@ tolerance: 4
         "cams/a.yaml:6:3: cam.arms: unknown key; did you mean arm?",
         "cams/a.yaml:7:18: cam.roller_radius: not above 0, given -8; give a length above 0 in inch",
         "cams/a.yaml:8:17: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199",
-        "cams/a.yaml:9:11: dynamics: needs preload or play; give exactly one of them",
+        "cams/a.yaml:9:11: dynamics: needs preload or backlash; give exactly one of them",
         "cams/a.yaml:10:14: part.bore: not a number, given '10mm'; write the number without its unit",
         f"cams/a.yaml:10:20: part.follower: not available in this version; leave it out; here it has {PART}",
         (
@@ -237,16 +237,16 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         ),
         (FLAT_PAIR, "1:43: cam.roller_radius: unknown key; it belongs under cam of kind double-roller"),
         (
-            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, damping: 300, play: 0.1}\n",
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, damping: 300, backlash: 0.1}\n",
             "2:55: dynamics.damping: 15 times critical; give less than 200",
         ),
         (
-            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, play: 0.1, rate: 2}\n",
-            "2:63: dynamics.rate: a spring's rate beside play; give preload instead of play, or leave it out",
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, backlash: 0.1, rate: 2}\n",
+            "2:67: dynamics.rate: a spring rate beside backlash; give preload in place of backlash, or leave the rate out",
         ),
         (
-            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, play: 0.1}\n",
-            "2:64: dynamics.play: cannot stand beside preload; give exactly one of preload or play",
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, backlash: 0.1}\n",
+            "2:64: dynamics.backlash: cannot stand beside preload; give exactly one of preload or play",
         ),
         (
             SUPPORT + "part: {follower: 1}\n",

@@ -66,7 +66,7 @@ def exact(recipe):
         "shaft-rate": mobility.least_rate,
         "radius-of-curvature": (p[0] + p[2]).min(),
         "size": np.hypot(p[0], p[1]).max(),
-        "face-length": np.ptp(p[1]),
+        "contact-travel": np.ptp(p[1]),
     }
 
 
@@ -232,9 +232,9 @@ def swept(limits):
 @pytest.mark.parametrize(
     ("rank", "limits", "without"),
     [
-        ("dwell", "", {"dwell-relative", "peak-velocity", "peak-acceleration", "force-angle", "face-length"}),
-        ("force-angle", "peak-velocity: {at_least: 0}", {"dwell-relative", "peak-acceleration", "face-length"}),
-        ("dwell-relative", "", {"peak-velocity", "peak-acceleration", "force-angle", "face-length"}),
+        ("dwell", "", {"dwell-relative", "peak-velocity", "peak-acceleration", "force-angle", "contact-travel"}),
+        ("force-angle", "peak-velocity: {at_least: 0}", {"dwell-relative", "peak-acceleration", "contact-travel"}),
+        ("dwell-relative", "", {"peak-velocity", "peak-acceleration", "force-angle", "contact-travel"}),
     ],
 )
 def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank, limits, without):
@@ -312,7 +312,7 @@ def test_dyads_are_figured_design_by_design():
 def test_a_recipe_without_a_linkage():
     one = recipe(linkage="")
     found = evaluate(one, ("cam.shaft[0]",), np.array([[18.0], [0.0]]))
-    own = {"swing", "peak-velocity", "peak-acceleration", "peak-jerk", "pressure-angle", "face-length"}
+    own = {"swing", "peak-velocity", "peak-acceleration", "peak-jerk", "pressure-angle", "contact-travel"}
     assert set(found.figures) == {"radius-of-curvature", "size", *own}
     assert (found.figures["pressure-angle"] == 0).all()
     t = np.linspace(0, 2 * math.pi, 20_001)
@@ -320,7 +320,7 @@ def test_a_recipe_without_a_linkage():
     for row, name in ((1, "peak-velocity"), (2, "peak-acceleration"), (3, "peak-jerk")):
         assert found.figures[name][0] == pytest.approx(np.abs(p[row]).max(), rel=1e-6)
     assert found.figures["swing"][0] == pytest.approx(np.ptp(p[0]), rel=1e-6)
-    assert found.figures["face-length"][0] == pytest.approx(np.ptp(p[1]), rel=1e-5)
+    assert found.figures["contact-travel"][0] == pytest.approx(np.ptp(p[1]), rel=1e-5)
     assert found.figures["radius-of-curvature"] == pytest.approx(7.815923456997, abs=1e-9)
     assert found.figures["size"][0] == pytest.approx(compute_one(recipe(), {})["size"], rel=1e-6)
     roller = recipe(

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from dataclasses import field as made
 from enum import Enum
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 if TYPE_CHECKING:
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.yaml_source import Node
 
 Schema: TypeAlias = dict[str, Any]  # a JSON schema
-
-EMPTY: Mapping[str, str] = MappingProxyType({})
 
 MOST = 2e6  # of lengths as written, two kilometres in mm: a bound against slips, far above any cam
 _SLIPS = (MOST, MOST**2)
@@ -112,7 +110,7 @@ class Field:
     unit: Kind | None = None  # of the coefficients of harmonics
     form: Form | None = None  # of a field of Kind.OWN
     formerly: str = ""
-    former_choices: Mapping[str, str] = EMPTY
+    former_choices: Mapping[str, str] = made(default_factory=dict)
 
     @property
     def noun(self) -> str:
