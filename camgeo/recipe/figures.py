@@ -204,8 +204,9 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
         return None
     given = entries(node)
     limits = []
+    former = dict(field.former_choices)
     for word, key in keys(node).items():
-        name, below = field.former_choices.get(word, word), join(path, word)
+        name, below = former.get(word, word), join(path, word)
         if name != word:
             reader.notice(key.mark, reader.written(below), name)
             if name in given:
@@ -234,7 +235,7 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
 
 def _limits_schema(field: Field) -> Schema:
     limits = {name: {**table_schema(bounds(FIGURES[name])), "minProperties": 1} for name in field.choices}
-    for former, name in field.former_choices.items():
+    for former, name in field.former_choices:
         limits[former] = {**limits[name], "description": f"former name of {name}", "deprecated": True}
     return {"type": "object", "properties": limits, "additionalProperties": False}
 
@@ -253,7 +254,7 @@ LIMITS = Field(
     "figures that must keep within bounds, each a check of its own, such as {pressure-angle: {at_most: 45}}",
     default="none",
     choices=tuple(FIGURES),
-    former_choices=PRESENT,
+    former_choices=tuple(PRESENT.items()),
     form=FORM,
 )
 

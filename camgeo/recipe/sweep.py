@@ -68,7 +68,7 @@ FIGURES = {name: figure for name, figure in EVERY.items() if figure.swept}
 """The figures that a sweep knows."""
 
 
-_FORMER = {former: name for former, name in PRESENT.items() if name in FIGURES}
+_FORMER = tuple((former, name) for former, name in PRESENT.items() if name in FIGURES)
 
 
 RANGE = Table(

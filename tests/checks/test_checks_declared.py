@@ -18,7 +18,7 @@ from camgeo.recipe.load import load, load_text
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "camgeo"
 MAKERS = {"Check", "at_most", "failed", "above_zero"}
-HOMES = {"checks/declared.py", "recipe/table_figures.py"}
+HOMES = {"checks/declared.py", "recipe/figures.py"}
 # names that are no other word of a recipe, a program or a drawing
 OWN = {name for name in CHECKS if "-" in name} | {"mobility", "reversal", "watertight", "readable"}
 

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe.figures import FIGURES
+from camgeo.recipe.figures import FIGURES, PRESENT
 from camgeo.recipe.load import load_text
 from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.errors import RecipeErrors
@@ -236,7 +236,7 @@ def told(text: str, limits: str) -> list[str]:
 def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
     (one,) = told(FLAT, "{weight: {at_most: 1}}")
     line = FLAT.count("\n") + 1
-    assert one.startswith(f"cam.yaml:{line}:10: limits.weight: no such figure; the figures are swing, ")
+    assert one.startswith(f"cam.yaml:{line}:10: limits.weight: unknown figure; the figures are swing, ")
     assert "transmission-angle" not in one
     assert "pressure-angle" in one
     assert told(FLAT, "{presure-angle: {at_most: 1}}")[0].endswith("did you mean pressure-angle?")
@@ -255,7 +255,7 @@ def test_a_figure_that_a_recipe_has_not() -> None:
 
 
 def test_bounds_the_wrong_way_round_and_none() -> None:
-    assert "below at_least, so nothing will do; exchange them" in told(FLAT, "{size: {at_least: 2, at_most: 1}}")[0]
+    assert "below at_least, so nothing is accepted; exchange them" in told(FLAT, "{size: {at_least: 2, at_most: 1}}")[0]
     assert "no bound; give at_least, at_most or both" in told(FLAT, "{size: {}}")[0]
 
 
@@ -327,7 +327,8 @@ def test_what_would_do_does(text: str, name: str, bound: str, said: str, change:
 
 def test_the_schema_knows_every_limit() -> None:
     schema = json_schema(RECIPE)["properties"]["limits"]
-    assert set(schema["properties"]) == set(FIGURES)
+    assert set(schema["properties"]) == {*FIGURES, *PRESENT}
+    assert all(schema["properties"][former]["deprecated"] for former in PRESENT)
     assert schema["additionalProperties"] is False
     for bounds in schema["properties"].values():
         assert set(bounds["properties"]) == {"at_least", "at_most"}
@@ -392,7 +393,15 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
     both = enumerate(zip(cos, sin, strict=True), 1)
     terms = [f"{c / 100}*cos({k}*t) + {s / 100}*sin({k}*t)" for k, (c, s) in both]
     text = f"cam: {{kind: support, p: 30 + {' + '.join(terms)}}}\n".replace("+ -", "- ")
-    names = ["swing", "peak-velocity", "peak-acceleration", "peak-jerk", "contact-travel", "radius-of-curvature", "size"]
+    names = [
+        "swing",
+        "peak-velocity",
+        "peak-acceleration",
+        "peak-jerk",
+        "contact-travel",
+        "radius-of-curvature",
+        "size",
+    ]
     recipe = loaded(text)
     design = designed(recipe)
     t = np.linspace(0, 2 * math.pi, 20_001)

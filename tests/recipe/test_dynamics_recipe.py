@@ -54,7 +54,8 @@ def section(recipe: Recipe) -> dict[str, Any]:
 def test_what_a_recipe_says_of_its_train() -> None:
     assert recipe().dynamics == Dynamics(0.4, 2e5, 600.0, 20.0, 150.0, 0.0, None)
     play = recipe(
-        "units: inch\ndynamics: {mass: 1, stiffness: 1e6, backlash: 0.001, rpm: 60}\n", CAM.replace("rise: 20", "rise: 1")
+        "units: inch\ndynamics: {mass: 1, stiffness: 1e6, backlash: 0.001, rpm: 60}\n",
+        CAM.replace("rise: 20", "rise: 1"),
     )
     assert play.dynamics == Dynamics(1.0, 1e6, 60.0, 0.0, None, 0.0, pytest.approx(0.0254))
     assert recipe("").dynamics is None
@@ -161,7 +162,7 @@ def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None
 
 
 @pytest.mark.parametrize(("play", "faces"), [("0.02", ["lower", "upper"]), ("50", [])])
-def test_which_faces_bear(backlash: str, faces: list[str]) -> None:
+def test_which_faces_bear(play: str, faces: list[str]) -> None:
     report = pipeline.check(recipe(TRAIN.replace("preload: 150", f"backlash: {play}"))).report
     assert report["dynamics"]["runs"][0]["impacts"]["faces"] == faces
     check = next(check for check in report["checks"] if check["name"] == "least-backlash")
@@ -218,7 +219,7 @@ verify: {angles: 120}
     outcome = pipeline.check(asked)
     assert [run["from"] for run in outcome.report["dynamics"]["runs"]] == ["intended"]
     assert outcome.report["dynamics"]["force_unit"] == "N m"
-    with pytest.raises(RecipeErrors, match=r"dynamics\.backlash: play at the cam under a linkage"):
+    with pytest.raises(RecipeErrors, match=r"dynamics\.backlash: backlash at the cam under a linkage"):
         recipe(train.replace("preload: 8", "backlash: 0.1"), four_bar)
 
 

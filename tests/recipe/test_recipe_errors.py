@@ -246,7 +246,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         ),
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, backlash: 0.1}\n",
-            "2:64: dynamics.backlash: cannot stand beside preload; give exactly one of preload or play",
+            "2:68: dynamics.backlash: cannot stand beside preload; give exactly one of preload or backlash",
         ),
         (
             SUPPORT + "part: {follower: 1}\n",

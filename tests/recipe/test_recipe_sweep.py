@@ -310,7 +310,11 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
         ),
         (
             ROCKER,
-            ["1:3: sweep.rank: missing; give " + ", ".join([*FIGURES][:-1]) + " or size: the figure to be best in"],
+            [
+                "1:3: sweep.rank: missing; give "
+                + ", ".join([*FIGURES][:-1])
+                + " or size: figure by which the designs are ranked"
+            ],
         ),
         (ROCKER + "  rank: dwel\n", ["2:9: sweep.rank: not one of the choices, given 'dwel'; did you mean dwell?"]),
         (ROCKER + "  refine: yes\n" + RANK, ["2:11: sweep.refine: not true or false, given 'yes'; give true or false"]),
@@ -326,16 +330,16 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
             + "  limits: {transmision: {at_least: 4}, size: {}, swing: {at_least: 5, at_most: 4}, margin: 3}\n"
             + RANK,
             [
-                "2:12: sweep.limits.transmision: no such figure; did you mean transmission-angle?",
+                "2:12: sweep.limits.transmision: unknown figure; did you mean transmission-angle?",
                 "2:46: sweep.limits.size: no bound; give at_least, at_most or both",
-                "2:80: sweep.limits.swing.at_most: below at_least, so no design will do; exchange them",
+                "2:80: sweep.limits.swing.at_most: below at_least, so no design is accepted; exchange them",
                 "2:92: sweep.limits.margin: not a mapping, given 3; give a mapping with at_least and at_most",
             ],
         ),
         (
             ROCKER + "  limits: {weight: {at_most: 4}, shaft-rate: {at_lest: 0}, size: {at_most: x}}\n" + RANK,
             [
-                "2:12: sweep.limits.weight: no such figure; the figures are "
+                "2:12: sweep.limits.weight: unknown figure; the figures are "
                 + ", ".join([name for name, one in FIGURES.items() if one.needs in HERE][:-1])
                 + " and size",
                 "2:47: sweep.limits.shaft-rate.at_lest: unknown key; did you mean at_least?",

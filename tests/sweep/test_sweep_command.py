@@ -74,10 +74,10 @@ def test_json_is_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(written(tmp_path, margin=99.0)), "--out", str(tmp_path / "out")]) == 1
     said = capsys.readouterr().out
-    assert said.startswith("four-bar: no design will do, of 825 designs")
+    assert said.startswith("four-bar: no design is within the limits, of 825 designs")
     assert "do not turn (binds " in said
     assert "break the limit of margin; nearest: cam.shaft[0] " in said
-    assert re.search(r"linkage\.rocker \S+, with margin \S+ mm where at least 99 is asked; ", said)
+    assert re.search(r"linkage\.rocker \S+, with margin \S+ mm where at least 99 is required; ", said)
     assert said.endswith("four-bar.rejected\n")
 
 
@@ -91,7 +91,7 @@ def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: py
         ),
         ("cam.shaft[0]", "cam.shaft[2]", "no such field, given 'cam.shaft[2]'"),
         ("rank: dwell", "rank: dwel", "sweep.rank: "),
-        ("margin: {", "margn: {", "sweep.limits.margn: no such figure; did you mean margin?"),
+        ("margin: {", "margn: {", "sweep.limits.margn: unknown figure; did you mean margin?"),
         ("at_least:", "atleast:", "sweep.limits.margin.atleast: "),
         ("steps: 25", "step: 25", "step: "),
         ("dwell: {band: 0.1}\n", "", "sweep.rank: dwell needs dwell.band"),

@@ -26,7 +26,6 @@ UNITS = {
     Kind.OUTPUT: "deg; length",
     Kind.MOTION: "deg; length",
     Kind.BACKLASH: "length; deg",
-    Kind.BORE: "length",
 }
 
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from dataclasses import field as made
 from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -91,7 +90,7 @@ class Form:
 class Field:
     """One key of a table. Bounds are in the recipe's own units and degrees, as written.
 
-    `formerly` is the key's former name, `former_choices` are former names of choices with their present ones.
+    `formerly` is the key's former name, `former_choices` are pairs of a former choice and the present one.
     """
 
     name: str
@@ -110,7 +109,7 @@ class Field:
     unit: Kind | None = None  # of the coefficients of harmonics
     form: Form | None = None  # of a field of Kind.OWN
     formerly: str = ""
-    former_choices: Mapping[str, str] = made(default_factory=dict)
+    former_choices: tuple[tuple[str, str], ...] = ()
 
     @property
     def noun(self) -> str:

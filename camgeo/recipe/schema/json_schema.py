@@ -92,7 +92,7 @@ def _kind(field: Field) -> Schema:
             return {"anyOf": [{"type": "integer", "minimum": 2}, {"type": "string", "pattern": _RATIO}]}
         case Kind.CHOICE:
             words: Schema = {"enum": list(field.choices)}
-            former = {"enum": list(field.former_choices), "deprecated": True}
+            former = {"enum": [former for former, _ in field.former_choices], "deprecated": True}
             return {"anyOf": [words, former]} if field.former_choices else words
         case Kind.POINT:
             return {"type": "array", "items": number_schema(), "minItems": 2, "maxItems": 2}

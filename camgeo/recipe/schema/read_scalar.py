@@ -39,8 +39,7 @@ def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | No
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in field.choices:
         return None if scalar is None else scalar.text
-    if scalar.text in field.former_choices:
-        present = field.former_choices[scalar.text]
+    if present := dict(field.former_choices).get(scalar.text):
         reader.notice(node.mark, reader.written(f"{path}: {scalar.text}"), present)
         return present
     remedy = suggestion(scalar.text, field.choices, NEARER if field.others else NEAR)
