@@ -40,8 +40,8 @@ class Reader:
     `root` is the table of the whole recipe. `errors`; `marks` of every field given and `numbers`, the fields of every
     number given, by path; `renamed`, the paths as written of fields given by a former key, by their present paths, and
     `notices` of those. All paths are present ones, but those in errors and notices, which are as written. Further what
-    decides how other fields read, which whoever reads the recipe finds first: its unit, the `kinds` of its mappings with
-    kinds, and the kinds of field that hold an angle.
+    decides how other fields read, which whoever reads the recipe finds first: its unit, the `kinds` of its mappings
+    with kinds, and the kinds of field that hold an angle.
     """
 
     def __init__(self, source: Source, readers: Readers, root: Table) -> None:
