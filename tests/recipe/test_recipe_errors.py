@@ -242,8 +242,10 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         ),
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, backlash: 0.1, rate: 2}\n",
-            "2:67: dynamics.rate: a spring rate beside backlash; give preload in place of backlash, "
-            "or leave the rate out",
+            (
+                "2:67: dynamics.rate: a spring rate beside backlash; give preload in place of backlash, "
+                "or leave the rate out"
+            ),
         ),
         (
             SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, backlash: 0.1}\n",
