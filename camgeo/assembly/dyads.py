@@ -30,8 +30,8 @@ def hang(site: Site, carriers: dict[str, Carrier]) -> None:
         path = f"linkage.dyads[{number}]"
         carrier = {"coupler": carriers.get("coupler"), "output": output, "previous": previous}[dyad.on]
         if carrier is None:
-            message = "hangs on a block or a slide, which has no room for it"
-            raise BodyError(f"{path}.on", message, "hang it on the frame or on a rocker, or leave parts: all out")
+            message = "is attached to a block or a slide, which has no room for it"
+            raise BodyError(f"{path}.on", message, "attach it to the frame or to a rocker, or leave parts: all out")
         mount = Mount(carrier, carrier.reach(dyad.point, site.s, f"{path}.point"))
         if isinstance(dyad, RRR | RRP):
             previous = _rod(site, number, dyad, mount)

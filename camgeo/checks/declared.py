@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
 
 LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
-STANDS = "the mechanism does not turn through a full revolution: it has no motion over the shaft angle"
+STANDS = "the mechanism does not make a full turn: it has no motion over the shaft angle"
 LIMIT = "limit:"  # before the name of the figure that a recipe limits
 
 

@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `sweep`")
     parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
     engine = parser.add_mutually_exclusive_group()
-    engine.add_argument("--jobs", type=jobs, metavar="N", help="processes at once (default: as many as pay)")
+    engine.add_argument("--jobs", type=jobs, metavar="N", help="processes at once (default: as many as are worthwhile)")
     engine.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
     parser.add_argument("--fresh", action="store_true", help="compute again what earlier runs have computed")
     parser.add_argument("-v", "--verbose", action="store_true", help="the best designs and the counts")
@@ -77,7 +77,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
 
     progress = Progress(ask.recipe.name)
     how = How(arguments.jobs, arguments.scheduler)
-    resume = "what was computed is kept, and the same command goes on from there"
+    resume = "what was computed is kept; the same command continues from there"
     try:
         outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, told=_teller(progress))
     except KeyboardInterrupt:

@@ -63,7 +63,8 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
     out, scale = by.out, by.scale
     cam = recipe.cam
     if isinstance(cam, DoubleRollerCam) and not cam.roller_radius > out:
-        what = f"the metal grows by {out / recipe.mm:.6g}, the roller's radius is {cam.roller_radius / recipe.mm:.6g}"
+        radius = cam.roller_radius / recipe.mm
+        what = f"the metal is enlarged by {out / recipe.mm:.6g}, the roller's radius is {radius:.6g}"
         raise recipe.error(field, what, None, "give less")
     body = None
     try:

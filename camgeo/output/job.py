@@ -159,5 +159,5 @@ class Job:
         if slope is None or slope < STEEP:
             return check
         less = less_swing(self.recipe.cam, self.recipe.mm)
-        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would do"
+        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would satisfy it"
         return replace(check, detail=f"{check.detail}: {why}")

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def load(path: str | PathLike[str]) -> Recipe:
     """Read a recipe from a file, and warn of former names in it, which `load_silent` does not.
 
-    Raises RecipeErrors with all its faults, also where there is no such file; warns by DeprecatedKeyWarning.
+    Raises RecipeErrors with all its faults, also where the file does not exist; warns by DeprecatedKeyWarning.
     """
     return announced(load_silent(path))
 
@@ -45,7 +45,7 @@ def load_silent(path: str | PathLike[str]) -> Recipe:
         with Path(path).open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise _whole(path, "there is no such file") from None
+        raise _whole(path, "the file does not exist") from None
     except OSError as error:
         raise _whole(path, f"cannot be read: {error.strerror or error}") from None
     except ValueError:  # a null character

@@ -234,7 +234,7 @@ def _no_number(axis: Values, design: list[str], reader: Reader) -> None:
         reader.fault_at(at, "the recipe gives it no value", None, "give it a value first, which the sweep replaces")
     else:
         reader.fault_at(
-            at, "no such field", shown(axis["path"]), suggestion(path, design) or f"give the path of a number{such}"
+            at, "unknown field", shown(axis["path"]), suggestion(path, design) or f"give the path of a number{such}"
         )
 
 

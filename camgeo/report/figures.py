@@ -110,7 +110,7 @@ def _hollow_radius(design: Design) -> Measured:
         return NO_CONTOUR
     radius, at = least_hollow(design.contour)
     if math.isinf(radius):
-        return Measured(radius, "mm", detail="the contour has no hollow")
+        return Measured(radius, "mm", detail="the contour has no concave part")
     return Measured(radius, "mm", shaft_deg(design.intent, at))
 
 

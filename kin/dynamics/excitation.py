@@ -223,7 +223,7 @@ class OfRoller:
     def _met(self, phi: Array) -> tuple[Array, Indices]:
         r, piece = first_contact(self.obstacle, self.arm, phi)
         if (piece < 0).any():
-            raise ContactError("the roller meets nothing", float(phi[int(np.argmin(piece))]))
+            raise ContactError("the roller does not touch the contour", float(phi[int(np.argmin(piece))]))
         return r, piece
 
     def rows(self, phi: Array) -> Array:
@@ -311,7 +311,7 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
         if play is None:
             return Faces(OfFace(bearing), None)
         if isinstance(follower, FlatFace):
-            raise ValueError("a single face has no play")  # noqa: TRY004 - the play is at fault, not the type
+            raise ValueError("a single face has no backlash")  # noqa: TRY004 - the play is at fault, not the type
         return Faces(OfFace(bearing), Moved(OfFace(bearing, math.pi), -1.0, METRE * follower.breadth + play))
     if isinstance(follower, FlatPair):
         bearing = follower.held(contour)
@@ -320,7 +320,7 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
     obstacle = dilated(contour.as_arcs(SPLINE_ERROR)[0], follower.radius)
     if isinstance(follower, Roller):
         if play is not None:
-            raise ValueError("a single roller has no play")
+            raise ValueError("a single roller has no backlash")
         if not isinstance(follower.guide, Arm):
             raise ValueError("the dynamics know rollers on arms only")  # noqa: TRY004 - the recipe is at fault
         return Faces(OfRoller(obstacle, follower.guide), None)

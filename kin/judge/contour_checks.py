@@ -198,7 +198,7 @@ def _motion_checks(judged: Judged, intent: Intent, limits: Limits, slack: float)
         checks.append(at_most("constant-breadth", worst, limit, "mm", at=at, detail=detail, slack=room))
         checks.append(at_most("breadth-max", tight[0], limit, "mm", at=tight[1], slack=room))
     else:
-        detail = f"play from {play.least:.3g} to {play.most:.3g} {play.unit}"
+        detail = f"backlash from {play.least:.3g} to {play.most:.3g} {play.unit}"
         detail += ", sampled" if play.extremes == "sampled" else ""
         checks.append(at_most("form-closure", worst, limit, play.unit, at=at, detail=detail, slack=room))
     return checks
@@ -286,8 +286,8 @@ def _band_less_sure(asked: DwellAsked, mechanism: Mechanism, off: float) -> floa
 def _output_check(found: LinkageVerdict, limits: Limits, slack: float) -> Check:
     error, across, along = found.error, found.play_across, found.play_along
     detail = (
-        f"{found.centred.max:.3g} {error.unit} with the frame centred; play {across.least:.3g} to {across.most:.3g} mm "
-        f"across, {along.least:.3g} to {along.most:.3g} mm along the frame"
+        f"{found.centred.max:.3g} {error.unit} with the frame centred; "
+        f"backlash {across.least:.3g} to {across.most:.3g} mm across, {along.least:.3g} to {along.most:.3g} mm along the frame"
     )
     limit = found.limit if limits.output is None else limits.output
     if limit is None:
@@ -312,9 +312,9 @@ def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float) -
     if bore is None:
         if not holes:
             return None
-        return failed("bore", f"{len(holes)} hole(s), where none is meant to be", unit="mm", limit=tolerance)
+        return failed("bore", f"{len(holes)} hole(s), where none is expected", unit="mm", limit=tolerance)
     if len(holes) != 1:
-        detail = f"{len(holes)} holes, where one of diameter {bore:.9g} mm is meant to be"
+        detail = f"{len(holes)} holes, where one of diameter {bore:.9g} mm is expected"
         return failed("bore", detail, unit="mm", limit=tolerance)
     hole = holes[0]
     least, most = _distance_range(hole)

@@ -396,7 +396,7 @@ def test_a_pivot_that_stands_through_the_cam_is_caught() -> None:
     planted = replace(assembly, members=(assembly.member("cam"), replace(ground, plates=(*ground.plates, post))))
     (_, check) = collision_checks(planted)
     assert not check.ok
-    assert check.detail.startswith("cam and base meet, near (5")
+    assert check.detail.startswith("cam and base interfere, near (5")
     assert check.value is not None
     assert check.value < -3.9
 

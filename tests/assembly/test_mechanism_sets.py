@@ -97,7 +97,7 @@ def test_a_collision_fails_the_set_and_tells_who_where_and_when(
     path.write_text(f"{FOUR_BAR}mechanism: {{wall: 22, pin: 4, bar: 10}}\n", encoding="utf-8")
     assert main(["export", str(path), "--out", str(tmp_path / "out")]) == 1
     told = "".join(capsys.readouterr())
-    assert "frame and base meet, near (" in told
+    assert "frame and base interfere, near (" in told
     assert "collision" in told
     assert "deg" in told
     assert not (tmp_path / "out" / "wide").exists()
@@ -116,7 +116,7 @@ def test_the_same_recipe_gives_the_same_bytes(tmp_path: Path, yoke: pipeline.Out
 
 def test_without_parts_all_the_mechanism_is_skipped_and_told() -> None:
     outcome = pipeline.check(load_text(YOKE.replace("{stl: {parts: all}}", "csv"), "yoke.yaml"))
-    assert {"what": "mechanism", "why": "no file is asked for with parts: all"} in [
+    assert {"what": "mechanism", "why": "no file is requested with parts: all"} in [
         {"what": entry["what"], "why": entry["why"]} for entry in outcome.report["skipped"]
     ]
 

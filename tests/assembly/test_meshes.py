@@ -161,7 +161,7 @@ def test_corners_that_are_one_once_rounded_leave_nothing_open():
 
 def test_plates_may_overlap_and_fill_each_other_s_holes_in_part():
     """The pin of radius 2 stands free in the hole of radius 4, a piece of its own, unless a plate below holds it."""
-    with pytest.raises(RegionError, match="body: its plates make 2 separate bodies, where one is meant"):
+    with pytest.raises(RegionError, match="body: its plates make 2 separate bodies, where one is expected"):
         body_mesh(body(OVERLAPPING), tolerance=E, precision=DECIMALS)
     held = body([*OVERLAPPING, Plate(BAR, (), -1.0, 0.0)])
     mesh, _ = body_mesh(held, tolerance=E, precision=DECIMALS)

@@ -318,7 +318,7 @@ def test_what_would_do_does(text: str, name: str, bound: str, said: str, change:
     assert change[0] in text
     assert all(one["ok"] for one in held(text.replace(*change), limits))
     # and the other way, which every limit has: the limit itself
-    sense, value = re.findall(rf"limits\.{name}\.(at_\w+) of (\S+) would do", failed[0]["detail"])[0]
+    sense, value = re.findall(rf"limits\.{name}\.(at_\w+) of (\S+) would satisfy it", failed[0]["detail"])[0]
     assert all(one["ok"] for one in held(text, f"{{{name}: {{{sense}: {value}}}}}"))
 
 

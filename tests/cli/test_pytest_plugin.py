@@ -316,7 +316,7 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
             "radius-of-curvature: -1 mm, at least 0 mm, at *",
             "  would do a support function larger by more than 1 mm",
             "undercut-local: * mm, at most 0 mm, at *",
-            "  found    from * deg; * larger by more than 1 would be free of it",
+            "  found    from * deg; * larger by more than 1 would have no undercut",
         ]
     )
     alone = run(project, "cams/small.yaml::motion[small.dxf]")

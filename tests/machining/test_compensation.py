@@ -164,7 +164,11 @@ def test_undercut_that_only_the_compensation_makes():
 @pytest.mark.parametrize(
     ("files", "cam", "message"),
     [
-        ("{dxf: {kerf: 17}}", ROLLER, "export.files[0]: the metal grows by 8.5, the roller's radius is 8; give less"),
+        (
+            "{dxf: {kerf: 17}}",
+            ROLLER,
+            "export.files[0]: the metal is enlarged by 8.5, the roller's radius is 8; give less",
+        ),
         (
             "{dxf: {kerf: 10}}",
             SUPPORT,

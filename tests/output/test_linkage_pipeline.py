@@ -242,7 +242,7 @@ def test_a_limit_of_the_output_error_of_one_s_own(tmp_path: Path) -> None:
             "rocker: 105",
             # the middle of the frame's side goes round this pivot once a turn
             "rocker: 105, dyads: [{kind: rpr, on: coupler, point: [-70, 0], ground: [10, 25]}]",
-            "four-bar.yaml:6:72: linkage.dyads: the point that dyad 1 hangs on goes right round",
+            "four-bar.yaml:6:72: linkage.dyads: the point that dyad 1 is attached to circles",
         ),
     ],
 )

@@ -133,7 +133,7 @@ def test_undercut_is_refused_with_angle_depth_and_remedy(tmp_path: Path) -> None
     assert found["radius-of-curvature"]["value"] == pytest.approx(-6.0, abs=1e-9)
     assert not found["undercut-local"]["ok"]
     assert found["undercut-local"]["value"] > 0.1
-    assert "a p larger by more than 6 would be free of it" in found["undercut-local"]["detail"]
+    assert "a p larger by more than 6 would have no undercut" in found["undercut-local"]["detail"]
     assert not (tmp_path / "sharp").exists()
     rejected = tmp_path / "sharp.rejected"
     assert json.loads((rejected / "report.json").read_text(encoding="utf-8"))["ok"] is False

@@ -69,7 +69,7 @@ def test_a_former_key_reads_as_the_present_one_with_one_notice_each() -> None:
         ),
         (
             SHAFT + TRAIN.replace("backlash", "preload: 3, play"),
-            "2:72: dynamics.play: cannot stand beside preload; give exactly one of preload or backlash",
+            "2:72: dynamics.play: cannot be combined with preload; give exactly one of preload or backlash",
         ),
         (
             SHAFT + TRAIN.replace("backlash", "rate: 3, play"),

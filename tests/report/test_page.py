@@ -395,7 +395,7 @@ def test_a_mechanism_that_binds_has_a_page_that_says_so(tmp_path: Path) -> None:
     assert main(["export", str(path), "--out", str(out)]) == 1
     text = (out / "binds.rejected" / "binds.html").read_text(encoding="utf-8")
     parsed(text)
-    assert "does not turn right round" in text
+    assert "does not make a full turn" in text
     assert re.search(r"It binds from .* to .* of the relative angle", text)
 
 

@@ -87,9 +87,9 @@ def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: py
         (
             "linkage.rocker: {from",
             "linkage.roker: {from",
-            "no such field, given 'linkage.roker'; did you mean linkage.rocker?",
+            "unknown field, given 'linkage.roker'; did you mean linkage.rocker?",
         ),
-        ("cam.shaft[0]", "cam.shaft[2]", "no such field, given 'cam.shaft[2]'"),
+        ("cam.shaft[0]", "cam.shaft[2]", "unknown field, given 'cam.shaft[2]'"),
         ("rank: dwell", "rank: dwel", "sweep.rank: "),
         ("margin: {", "margn: {", "sweep.limits.margn: unknown figure; did you mean margin?"),
         ("at_least:", "atleast:", "sweep.limits.margin.atleast: "),
@@ -146,7 +146,7 @@ def test_a_users_file_in_the_way_exits_3_and_stays(tmp_path: Path, capsys: pytes
     folder.mkdir(parents=True)
     (folder / "sweep.csv").write_text("mine")
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out")]) == 3
-    assert "is in the way, and no report says that it may be replaced" in capsys.readouterr().err
+    assert "is in the way, and no report lists it as replaceable" in capsys.readouterr().err
     assert (folder / "sweep.csv").read_text() == "mine"
     assert not (folder / "sweep.json").exists()
 
@@ -193,9 +193,7 @@ def test_an_interrupted_sweep_exits_130_and_goes_on_later(jobs: str, tmp_path: P
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said == (
-        "camgeo: four-bar: interrupted; what was computed is kept, and the same command goes on from there\n"
-    )
+    assert said == ("camgeo: four-bar: interrupted; what was computed is kept; the same command continues from there\n")
     assert main(["sweep", str(path), "--out", str(out), "--jobs", "1"]) == 0
     run = json.loads((out / "four-bar" / "sweep.json").read_text(encoding="utf-8"))["run"]
     assert run["designs_found"] > 0

@@ -32,12 +32,12 @@ def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float
     changes = []
     for path, value in values.items():
         if path not in places:
-            raise ValueError(f"there is no number at {path}")
+            raise ValueError(f"no number at {path}")
         scalar = places[path]
         try:
             read_number(scalar.text)
         except Complaint as complaint:
-            raise ValueError(f"there is no number at {path}: {complaint.problem}") from None
+            raise ValueError(f"no number at {path}: {complaint.problem}") from None
         if shared := [other for other, node in found if node is scalar and other != path]:
             raise ValueError(f"an alias shares the number at {path} with {shared[0]}")
         changes.append((scalar, spelled(value)))

@@ -117,8 +117,8 @@ class Reader:
                 if key.tag is not None:
                     self.fault(key.mark, below, "a YAML tag", shown(key.tag), "leave it out")
                 if key.text in lines:
-                    remedy = f"it stands in line {lines[key.text]} already"
-                    self.fault(key.mark, below, "a key that stands twice", None, remedy)
+                    remedy = f"it is given in line {lines[key.text]} already"
+                    self.fault(key.mark, below, "a duplicate key", None, remedy)
                     continue
                 lines[key.text] = key.mark[0]
                 self.survey(value, below)
@@ -171,7 +171,7 @@ class Reader:
             if name in known or name in table.former:
                 continue
             if name in table.later:
-                remedy = f"leave it out; here it has {either(known, 'and')}"
+                remedy = f"leave it out; the keys here are {either(known, 'and')}"
                 self.fault(key.mark, below, "not available in this version", None, remedy)
             elif name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
@@ -186,7 +186,7 @@ class Reader:
         if names and not chosen and not any(name in given for name in table.later):
             self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
         for name in chosen[1:]:
-            problem = f"cannot stand beside {self._key(path, chosen[0])}"
+            problem = f"cannot be combined with {self._key(path, chosen[0])}"
             self.fault_at(join(path, name), problem, None, f"give exactly one of {either(tuple(names))}")
         if len(chosen) != 1:
             return
@@ -195,10 +195,12 @@ class Reader:
             if name not in given:
                 field = table.field(name)
                 remedy = f"{self.wanted(field)}: {field.about}"
-                self.fault(node.mark, join(path, name), f"missing beside {self._key(path, chosen[0])}", None, remedy)
+                self.fault(
+                    node.mark, join(path, name), f"missing, needed with {self._key(path, chosen[0])}", None, remedy
+                )
         for name in dict.fromkeys(name for others in companions.values() for name in others):
             if name in given and name not in companions[chosen[0]]:
-                problem = f"cannot stand beside {self._key(path, chosen[0])}"
+                problem = f"cannot be combined with {self._key(path, chosen[0])}"
                 self.fault_at(join(path, name), problem, None, "leave it out")
 
     def _key(self, path: str, name: str) -> str:

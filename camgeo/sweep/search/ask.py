@@ -53,7 +53,7 @@ class Ask:
         """Take the sweep of a recipe; raises RecipeErrors where it has none."""
         sweep = recipe.sweep
         if sweep is None:
-            raise recipe.error("sweep", "this recipe has no sweep", None, "say what to vary: `sweep: {vary: ...}`")
+            raise recipe.error("sweep", "this recipe has no sweep", None, "add what to vary: `sweep: {vary: ...}`")
         axes = tuple(map(_axis, sweep.vary))
         count = sweep.count
         if count is None:
