@@ -157,7 +157,7 @@ def drives(part: Part, clearance: float, off: float) -> None:
             remedy = "give a larger bore"
     if most > 0.0:
         remedy += ", or a mechanism.clearance of at most {most}"
-    message = "the shaft turns in it: {wide} wide, where it would have to pass {room}, which is too wide by {least}"
+    message = "the shaft slips in it: it is {wide} wide, the opening {room}, which must be smaller by {least}"
     raise BodyError(field, message, remedy, wide=wide, room=room, least=least, such=such, most=most)
 
 

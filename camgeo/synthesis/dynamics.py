@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from camgeo.checks.declared import FLOAT, LEAST_BACKLASH
+from camgeo.checks.declared import FLOAT, LEAST_BACKLASH, STANDS
 from kin.judge.check import Check, about, failed
 from kin.numeric.angles import degrees
 
@@ -127,9 +127,7 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn
         swings, found = follower.unit == "deg", rests(follower)
     else:
         if not design.driven.turns:
-            raise recipe.error(
-                "dynamics", "the mechanism does not make a full turn: it has no motion over the shaft angle"
-            )
+            raise recipe.error("dynamics", STANDS)
         swings = design.driven.mechanism.unit == "deg"
         found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
     if asked.backlash is not None and design.yoke_breadth is None and not swings:

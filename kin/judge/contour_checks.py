@@ -287,7 +287,8 @@ def _output_check(found: LinkageVerdict, limits: Limits, slack: float) -> Check:
     error, across, along = found.error, found.play_across, found.play_along
     detail = (
         f"{found.centred.max:.3g} {error.unit} with the frame centred; "
-        f"backlash {across.least:.3g} to {across.most:.3g} mm across, {along.least:.3g} to {along.most:.3g} mm along the frame"
+        f"backlash {across.least:.3g} to {across.most:.3g} mm across, "
+        f"{along.least:.3g} to {along.most:.3g} mm along the frame"
     )
     limit = found.limit if limits.output is None else limits.output
     if limit is None:

@@ -349,7 +349,7 @@ BAD = {
     "a corner too many": (lambda text: re.sub(r'v1="\d+"', 'v1="99999999"', text, count=1), "none of the"),
     "a corner below": (
         lambda text: re.sub(r'v1="\d+"', 'v1="-1"', text, count=1),
-        "v1='-1' is not the number of a vertex",
+        "not the number of a vertex",
     ),
     "no number": (lambda text: re.sub(rf'x="{NUMBER}"', 'x="nan"', text, count=1), "x='nan' is not a number"),
     "a comma": (lambda text: re.sub(rf'x="{NUMBER}"', 'x="1,5"', text, count=1), "x='1,5' is not a number"),
