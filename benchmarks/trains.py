@@ -25,7 +25,7 @@ BEGIN, END = "<!-- trains -->\n", "<!-- end of trains -->\n"
 SMALL = "--small" in sys.argv
 RPM = 300.0
 CAMS = {  # with the mass or moment of inertia of the follower, and the preload
-    "three-lobed support cam": ("{kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}", 0.4, 150.0),
+    "three-lobed support cam": ("{kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}", 0.4, 150.0),
     "constant breadth": (
         "{kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]}",
         0.4,

@@ -44,7 +44,7 @@ class FlatFacedCam(Cam):
         from kin.law.support_function import Lift
 
         if not isinstance(intent, Lift):
-            raise TypeError("a transmission law is no motion of a single flat face")
+            raise TypeError("a motion law of an arm is no motion of a single flat face")
         whole = Curve.whole(SupportShape(intent))
         return Profile(whole, whole, 0.0)
 
@@ -54,7 +54,7 @@ class FlatFacedCam(Cam):
         yoke = self.always_in_a_yoke or is_constant(mean, deviation)
         name = "square frame" if framed else "yoke" if yoke else "flat face"
         faces = (Flat(),) * (4 if framed else 2 if yoke else 1)
-        checks = ("constant-breadth", "face-length") if yoke else ("face-length",)
+        checks = ("constant-breadth", "contact-travel") if yoke else ("contact-travel",)
         return Follower(name, Carried() if framed else Translating(), faces, checks, mean if yoke else None)
 
     always_in_a_yoke: ClassVar[bool] = False
@@ -82,7 +82,7 @@ class FlatFacedCam(Cam):
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A larger cam."""
-        return f"{self.larger(free_at / mm)} would be free of it"
+        return f"{self.larger(free_at / mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
         """A larger cam."""

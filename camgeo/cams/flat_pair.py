@@ -32,7 +32,7 @@ class FlatPairCam(PairCam):
     """A single disk that works a rigid pair of flat faces, its pivot at 2 arm from the shaft (Wunderlich, 5)."""
 
     kind: ClassVar[str] = "flat-pair"
-    play_unit: ClassVar[Unit] = "deg"
+    backlash_unit: ClassVar[Unit] = "deg"
     swing_of: ClassVar[Literal["arm", "pair"]] = "pair"
     lam: int
     mu: int
@@ -60,7 +60,7 @@ class FlatPairCam(PairCam):
             "flat pair",
             Oscillating(2.0 * self.arm, 2.0 * self.arm),
             (Flat(), Flat()),
-            ("closing-equation", "transmission"),
+            ("closing-equation", "velocity-ratio"),
         )
 
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
@@ -71,7 +71,7 @@ class FlatPairCam(PairCam):
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
         """A smaller swing: r + const closes no pair, so there is no base radius to enlarge."""
-        return f"{self.less_swing(mm)} would be free of it"
+        return f"{self.less_swing(mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
         """Nothing that is known to help."""

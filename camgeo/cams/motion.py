@@ -120,7 +120,7 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
         if node.text in names:
             return node.text
         remedy = suggestion(node.text, names) or f"give {either(names)}, {{polynomial: [...]}} or {{scca: {{...}}}}"
-        reader.fault(node.mark, path, "no such motion law", shown(node.text), remedy)
+        reader.fault(node.mark, path, "unknown motion law", shown(node.text), remedy)
         return None
     values = reader.mapping(field, node, path) or {}
     if "scca" in values:
@@ -245,7 +245,7 @@ def check_filled(segments: list[Values], path: str, angle: float, wanted: str, r
     for i, segment in enumerate(segments):
         for key in ("split", "at_end"):
             if key in segment and "law" not in segment:
-                reader.fault_at(f"{path}[{i}].{key}", "cannot stand without a law", None, "leave it out")
+                reader.fault_at(f"{path}[{i}].{key}", "needs a law", None, "leave it out")
     covered = math.fsum(segment["dwell"] if "dwell" in segment else segment["over"] for segment in segments)
     if abs(covered - angle) > _ANGLE:
         value = f"{math.degrees(covered):.10g} degrees"

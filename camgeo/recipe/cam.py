@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 CAMS: dict[str, Table] = {kind: family.table for kind, family in FAMILIES.items()}
 MADE = (
-    "made are cams for a flat face (support), for a yoke of two parallel faces (constant-breadth, support), for two "
+    "cams are made for a flat face (support), for a yoke of two parallel faces (constant-breadth, support), for two "
     "rollers on one oscillating arm (double-roller) and for two faces on one (flat-pair); cams for a single roller, a "
     "knife edge or a curved shoe, cylindrical cams and grooves are not made"
 )

@@ -39,7 +39,7 @@ FIT = 0.002  # mm
 FLATTENED = 0.0005  # mm by which a shapely polygon of an outline is off, about
 PART = "part: {thickness: 8, bore: 8}\nexport: {files: [{3mf: {parts: all}}]}\n"
 HUBS = "part: {thickness: 8, bore: 8, hub: {diameter: 14, height: 6, side: both}}\n"
-AS_1 = "  p: 4*cos(3*t/2)**2 + 23\n  pivot: [16, 7.5]\n"
+AS_1 = "  p: 4*cos(3*t/2)**2 + 23\n  shaft: [16, 7.5]\n"
 SHAPES = {
     "yoke": f"cam:\n  kind: support\n{AS_1}",
     "flat face": "cam: {kind: support, p: 25 + 3*cos(2*t)}\n",
@@ -396,7 +396,7 @@ def test_a_pivot_that_stands_through_the_cam_is_caught() -> None:
     planted = replace(assembly, members=(assembly.member("cam"), replace(ground, plates=(*ground.plates, post))))
     (_, check) = collision_checks(planted)
     assert not check.ok
-    assert check.detail.startswith("cam and base meet, near (5")
+    assert check.detail.startswith("cam and base interfere, near (5")
     assert check.value is not None
     assert check.value < -3.9
 

@@ -190,7 +190,7 @@ def test_a_second_reader_finds_the_contour_on_the_spline(text: str, order: int, 
     source = f"""
     name: cam
     rotation: {rotation}
-    cam: {{kind: support, p: "{text}", pivot: [3, -2]}}
+    cam: {{kind: support, p: "{text}", shaft: [3, -2]}}
     export: {{tolerance: 1.0e-11, files: [{{dxf: {{as: exact}}}}]}}
     verify: {{angles: 360}}
     """

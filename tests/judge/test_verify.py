@@ -309,4 +309,4 @@ def test_a_solid_that_is_too_small_by_a_unit_is_told_as_that(tmp_path, unit, mm)
     yoke = Yoke(lift_from_fourier(9.0, {3: 0.5}, {}), 18.0)
     checks = named(verify(path, Intent(yoke, bore=4.0, thickness=4.0), 90, Limits(1e-3)))
     assert not checks["thickness"].ok
-    assert checks["thickness"].detail.endswith(f"as if drawn in {unit} and told as mm")
+    assert checks["thickness"].detail.endswith(f"as if drawn in {unit} and stated as mm")

@@ -553,8 +553,8 @@ def test_ratios_that_wunderlich_excludes(lam, mu, arm, field, message):
             "rosette.leaf",
             None,
             (
-                "|OQ| must stay below 45.9220119 mm, where an arm would meet the shaft or stretch out; it is 80 mm at "
-                "x = 0.5"
+                "|OQ| must stay below 45.9220119 mm, where an arm would reach the shaft or be fully stretched; it is "
+                "80 mm at x = 0.5"
             ),
         ),
         (

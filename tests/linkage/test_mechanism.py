@@ -522,7 +522,7 @@ def test_a_slotted_rocker():
 
 
 def test_a_rocker_that_would_go_right_round_is_refused():
-    with pytest.raises(IntentError, match="dyad 1 hangs on goes right round") as refused:
+    with pytest.raises(IntentError, match="dyad 1 is attached to circles") as refused:
         mechanism(dyads=(RPR("coupler", (-60.0, 20.0), (-6.0, 40.0), 0.0),))
     assert refused.value.field == "dyads"
 

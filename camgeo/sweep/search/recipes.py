@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.recipe.loading import read
-from camgeo.recipe.schema.edit import with_values, without
+from camgeo.recipe.schema.edit import without
 from camgeo.recipe.schema.fields import MOST_TEXT
 from camgeo.recipe.schema.yaml_source import Mapping, read_source
 from camgeo.sweep.search.pictures import Curve
@@ -48,7 +48,7 @@ def recipe_text(ask: Ask, best: Best) -> str:
 
     Raises RecipeErrors where the sweep cannot be cut out of the text.
     """
-    text = with_values(ask.recipe.text, best.values)
+    text = ask.recipe.text_with(best.values)
     for section in ("sweep", "name", "about"):
         text = without(text, section)
     name = f"{ask.recipe.name}-best-{best.place}"
