@@ -97,8 +97,8 @@ class Recipe:
         """Give the recipe with another value at a path such as `cam.base_radius`, or with several, by a mapping.
 
         Values are in the recipe's units, as its text has them; where a path has none yet, the field is added. All else
-        in the text stays, comments included. Raises RecipeErrors for a path that leads nowhere, and where the new
-        recipe has faults.
+        in the text stays, comments and former keys included. Raises RecipeErrors for a path that leads nowhere, and
+        where the new recipe has faults.
         """
         from camgeo.recipe.loading import load_text
         from camgeo.recipe.schema.change import changed
@@ -106,7 +106,8 @@ class Recipe:
 
         text = self.text
         for at, new in ({path: value} if isinstance(path, str) else path).items():
-            text = changed(read_source(text.encode("utf-8", "surrogatepass"), str(self.path)), at, new)
+            source = read_source(text.encode("utf-8", "surrogatepass"), str(self.path))
+            text = changed(source, self.written(self.present(at)), new)
         return load_text(text, self.path)
 
     def save(self, path: str | PathLike[str]) -> None:

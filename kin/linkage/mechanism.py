@@ -120,7 +120,7 @@ class Mechanism:
 
     `breadth` is that of the frame and the cam, mm; `chain` is all the links. ValueError if the first dyad hangs on a
     previous one. IntentError if the breadth is not above 0 or p(theta) + p(theta + pi) is not the breadth all round
-    (field "p"), or if the shaft is not within the cam (field "pivot"): on its edge is allowed; or if the point a dyad
+    (field "p"), or if the shaft is not within the cam (field "shaft"): on its edge is allowed; or if the point a dyad
     is attached to circles the dyad's ground pivot (field "dyads").
     """
 
@@ -357,7 +357,7 @@ class Mechanism:
             degrees = math.degrees(at) % 360
             raise IntentError(
                 f"the shaft lies outside the cam, by {-least:.6g} mm in the direction of {degrees:.6g} degrees",
-                "pivot",
+                "shaft",
                 degrees,
             )
 

@@ -275,7 +275,7 @@ def test_the_exit_status_and_the_text(tmp_path: Path, capsys: pytest.CaptureFixt
     text = failure(check, report_of(ROLLER), recipe)
     assert "at       134.30" in text
     assert "limits.pressure-angle.at_most" in text
-    assert "would do" in text
+    assert "would satisfy it" in text
 
 
 SLIGHT = ROLLER.replace("625", "20")

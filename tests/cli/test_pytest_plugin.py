@@ -247,7 +247,7 @@ def test_a_failure_tells_figure_limit_place_and_remedy(project: Pytester) -> Non
             r"  limit    at most 0\.001 mm",
             r"  at       \d+\.\d{4} deg of shaft angle",
             r"  file     small\.dxf",
-            r"  would do a tolerance of 0\.001, or verify\.motion_error above 0\.00\d+",
+            r"  remedy   a tolerance of 0\.001, or verify\.motion_error above 0\.00\d+",
             r"  recipe   cams/small\.yaml:3:24 verify\.motion_error",
             r"FAILED cams/small\.yaml::motion\[small\.dxf\] - .*motion of small\.dxf.*",
         ]
@@ -314,7 +314,7 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
     result.stdout.fnmatch_lines(
         [
             "radius-of-curvature: -1 mm, more than 0 mm, at *",
-            "  would do a p larger by more than 1 mm",
+            "  remedy   a p larger by more than 1 mm",
             "undercut-local: * mm, at most 0 mm, at *",
             "  found    from * deg; * larger by more than 1 would have no undercut",
         ]
@@ -446,7 +446,7 @@ def test_with_several_processes(project: Pytester) -> None:
     add(project, "poor", SMALL + "verify: {motion_error: 0.001}\n")
     result = run_two(project)
     result.assert_outcomes(passed=2 * len(ITEMS) - 1, failed=1)
-    result.stdout.fnmatch_lines(["motion of poor.dxf: *", "  would do *"])
+    result.stdout.fnmatch_lines(["motion of poor.dxf: *", "  remedy   *"])
 
 
 @pytest.mark.slow

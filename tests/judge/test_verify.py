@@ -280,7 +280,7 @@ def test_no_contact_is_a_motion_that_fails(tmp_path):
     path = write_dxf(tmp_path / "cam.dxf", circle_points(100) + np.array([200.0, 0.0]), bores=())
     verdict = verify(path, Intent(ROLLERS), 90, Limits(1e-3))
     assert verdict.motion is None
-    assert "meets nothing" in named(verdict)["motion"].detail
+    assert "does not touch the contour" in named(verdict)["motion"].detail
     assert not named(verdict)["contour"].ok
 
 

@@ -518,7 +518,8 @@ def test_ratios_that_wunderlich_excludes(lam, mu, arm, field, message):
             30.0,
             (
                 f"{STEEP.removesuffix('; it reaches')}; with a whole ratio such as 3 a straight first line reaches 1 "
-                "where it begins, and a concave arc of any radius more; a convex arc would do, or a ratio such as 5/3"
+                "where it begins, and a concave arc of any radius more; a convex arc would satisfy it, "
+                "or a ratio such as 5/3"
             ),
         ),
         (

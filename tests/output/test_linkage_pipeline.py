@@ -159,7 +159,7 @@ def test_a_motion_too_sudden_to_be_followed_is_refused(monkeypatch: pytest.Monke
         raise RoughError(1.3, 1e-9)
 
     monkeypatch.setattr(Mechanism, "figures", rough)
-    with pytest.raises(RecipeErrors, match=r"linkage: the motion is too sudden .* of 74\.4845 degrees; keep"):
+    with pytest.raises(RecipeErrors, match=r"linkage: the motion changes too abruptly .* of 74\.4845 degrees; keep"):
         pipeline.export(recipe(), tmp_path)
     assert not list(tmp_path.iterdir())
 

@@ -402,7 +402,7 @@ def test_units_of_r12_by_a_comment(tmp_path: Path, comment: str, mm: float | Non
 def test_units_that_are_none_for_a_cam(tmp_path: Path) -> None:
     document = new(units=InsertUnits.Parsecs)
     document.modelspace().add_circle((0, 0), 1.0)
-    with pytest.raises(ReadError, match=r"\$INSUNITS 20 is no unit"):
+    with pytest.raises(ReadError, match=r"\$INSUNITS 20 is not a unit"):
         read_dxf(saved(document, tmp_path))
     document.header["$INSUNITS"] = 0
     assert read_dxf(saved(document, tmp_path)).units_mm is None

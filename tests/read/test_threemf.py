@@ -364,7 +364,7 @@ BAD = {
         lambda text: text.replace("<model ", '<model requiredextensions="p" xmlns:p="http://p" ', 1),
         "requires extensions, 'p'",
     ),
-    "a place of eleven numbers": (placed("1 0 0 0 1 0 0 0 1 0 0"), "no twelve numbers"),
+    "a place of eleven numbers": (placed("1 0 0 0 1 0 0 0 1 0 0"), "not twelve numbers"),
     "a flat place": (placed("1 0 0 0 1 0 0 0 0 0 0 0"), "is flat"),
     "a place far away": (placed("1 0 0 0 1 0 0 0 1 1e30 0 0"), "out of range"),
     "a component of itself": (

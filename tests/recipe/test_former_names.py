@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import camgeo
 from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe import RecipeErrors, load
@@ -91,6 +92,27 @@ def test_a_former_key_reads_as_the_present_one_with_one_notice_each() -> None:
 def test_errors_name_the_key_that_was_written(text: str, message: str) -> None:
     (one,) = told(text)
     assert one.startswith(f"cam.yaml:{message}")
+
+
+@pytest.mark.parametrize("written", [SHAFT, PIVOT])
+@pytest.mark.parametrize("asked", ["shaft", "pivot"])
+def test_a_value_is_replaced_by_either_key_and_the_key_stays(written: str, asked: str) -> None:
+    recipe = load_text(written, "cam.yaml")
+    assert recipe.replace(f"cam.{asked}", [1, 2]).text == written.replace("[4, 3]", "[1, 2]")
+    assert recipe.replace(f"cam.{asked}[1]", -5).text == written.replace("[4, 3]", "[4, -5]")
+
+
+def test_the_library_warns_from_wherever_a_recipe_comes(tmp_path: Path) -> None:
+    path = tmp_path / "cam.yaml"
+    path.write_text(PIVOT)
+    cam = {"kind": "support", "p": "25 + 2*cos(3*t)", "pivot": [4, 3]}
+    for source in (path, PIVOT, {"cam": cam}):
+        with pytest.warns(DeprecatedKeyWarning, match=r"cam\.pivot: a former name.*write shaft$") as caught:
+            camgeo.load(source)
+        assert [one.filename for one in caught] == [__file__]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        camgeo.load(SHAFT)
 
 
 def test_an_error_of_a_later_stage_names_it_too() -> None:

@@ -150,7 +150,7 @@ def test_checks_stand_with_their_values_failed_ones_first(tmp_path: Path) -> Non
     assert states[0] == "failed"
     head = made.text.partition("</header>")[0]
     assert f"{states.count('failed')} checks of {len(states)} fail" in head
-    assert "No such cam is made" in made.text
+    assert "The cam is not made" in made.text
     parsed(made.text)
 
 

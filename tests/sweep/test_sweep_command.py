@@ -114,7 +114,7 @@ def test_a_recipe_without_a_sweep_exits_2(tmp_path: Path, capsys: pytest.Capture
     path = tmp_path / "plain.yaml"
     path.write_text("cam: {kind: support, p: 20}\n", encoding="utf-8")
     assert main(["sweep", str(path)]) == 2
-    assert "sweep: this recipe has no sweep; say what to vary" in capsys.readouterr().err
+    assert "sweep: this recipe has no sweep; add what to vary" in capsys.readouterr().err
 
 
 def test_a_scheduler_that_does_not_answer_exits_3(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
