@@ -97,10 +97,10 @@ class Draw:
             return self.breadth(), 34 * self.size
         cam: Fields = {"kind": "support"} | self.support(family)
         if linked:
-            cam["pivot"] = [self.mm(16, 18.5), self.mm(7.5, 8.5)]
+            cam["shaft"] = [self.mm(16, 18.5), self.mm(7.5, 8.5)]
             return cam, 5.5 * self.size
         if self.some(0.6):
-            cam["pivot"] = [self.mm(-6, 6), self.mm(-6, 6)]
+            cam["shaft"] = [self.mm(-6, 6), self.mm(-6, 6)]
         return cam, 13 * self.size
 
     def support(self, family: str) -> Fields:
@@ -311,7 +311,7 @@ class Draw:
         given: Fields = {"mass": round(self.rng.uniform(0.2, 0.6) * scale, 6)}
         given |= {"damping": self.rng.choice([0, 20 * scale]), "stiffness": self.rng.choice([2e5, 5e5]) * scale}
         if self.some(0.3):
-            given["play"] = self.fixed(0.05)
+            given["backlash"] = self.fixed(0.05)
         else:
             given |= {"preload": 200 * math.sqrt(scale), "rate": self.rng.choice([0, 1000 * scale])}
         return given | {"rpm": self.rng.choice([60, 200, 400])}

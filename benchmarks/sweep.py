@@ -40,7 +40,7 @@ TEXT = """
 cam:
   kind: support
   {shape}
-  pivot: [18, 8.5]
+  shaft: [18, 8.5]
 linkage: {{kind: four-bar, ground: 80, coupler: 70, rocker: 105}}
 dwell: {{band: 0.1}}
 sweep:
@@ -53,7 +53,7 @@ CAM_2A = load_text(TEXT.format(shape="p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25
 FOURIER = load_text(
     TEXT.format(shape="fourier: {mean: 25, cos: {3: 1, 5: 0.1, 7: 0.1}, sin: {3: 1, 5: 0.1, 7: 0.1}}"), "fourier.yaml"
 )
-PLACES = {"cam.pivot[0]": (12, 20), "cam.pivot[1]": (3, 12), "linkage.ground": (70, 90), "linkage.rocker": (95, 115)}
+PLACES = {"cam.shaft[0]": (12, 20), "cam.shaft[1]": (3, 12), "linkage.ground": (70, 90), "linkage.rocker": (95, 115)}
 HARMONICS = {f"cam.fourier.{kind}.{order}": (-1 / order, 1 / order) for order in (3, 5, 7) for kind in ("cos", "sin")}
 
 

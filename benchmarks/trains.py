@@ -25,7 +25,7 @@ BEGIN, END = "<!-- trains -->\n", "<!-- end of trains -->\n"
 SMALL = "--small" in sys.argv
 RPM = 300.0
 CAMS = {  # with the mass or moment of inertia of the follower, and the preload
-    "three-lobed support cam": ("{kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}", 0.4, 150.0),
+    "three-lobed support cam": ("{kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}", 0.4, 150.0),
     "constant breadth": (
         "{kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]}",
         0.4,
@@ -54,12 +54,12 @@ TRAINS = (
     Train("double roller", "preload", 123.0, 0.03),
     Train("double roller", "preload", 1e4, 1e-3),
     Train("flat pair", "preload", 92.0, 0.3),
-    Train("three-lobed support cam", "play", 1e3, 1e-3),
-    Train("constant breadth", "play", 1e4, 0.1),
-    Train("constant breadth", "play", 1e5, 1e-4),
-    Train("double roller", "play", 123.0, 0.03),
-    Train("flat pair", "play", 92.0, 0.3),
-    Train("flat pair", "play", 1e4, 1e-2),
+    Train("three-lobed support cam", "backlash", 1e3, 1e-3),
+    Train("constant breadth", "backlash", 1e4, 0.1),
+    Train("constant breadth", "backlash", 1e5, 1e-4),
+    Train("double roller", "backlash", 123.0, 0.03),
+    Train("flat pair", "backlash", 92.0, 0.3),
+    Train("flat pair", "backlash", 1e4, 1e-2),
 )
 
 
@@ -68,7 +68,7 @@ def measured(train: Train) -> str:
     cam, mass, preload = CAMS[train.cam]
     frequency = train.ratio * RPM * 2.0 * math.pi / 60.0
     stiffness, damping = mass * frequency**2, 2.0 * train.damping * mass * frequency
-    held = f"preload: {preload}" if train.held == "preload" else "play: 0.05"
+    held = f"preload: {preload}" if train.held == "preload" else "backlash: 0.05"
     text = (
         f"cam: {cam}\npart: {{thickness: 8, bore: 8}}\nexport: {{files: [dxf]}}\ndynamics: {{mass: {mass}, "
         f"damping: {damping!r}, stiffness: {stiffness!r}, {held}, rpm: {RPM}}}\n"

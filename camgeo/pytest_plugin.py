@@ -177,7 +177,9 @@ class Run:
 
         assert self.recipe is not None
         # what the items that follow say, should an exception end this one
-        self.fault = f"{self.shown}: the run broke off with an error of camgeo's own, told by the first item that ran"
+        self.fault = (
+            f"{self.shown}: the run broke off with an error of camgeo's own, reported by the first item that ran"
+        )
         try:
             with unsaid():  # each item tells of its own check
                 report = check(self.recipe) if self.out is None else export(self.recipe, self.out)
@@ -300,9 +302,11 @@ class CheckItem(pytest.Item):
             self._not_judged(headline(cause[0]), str(Foreseen(cause[0]["name"], cause[0].get("file"))))
             return
         if self.run.recipe.cam.undercut == "trim" and (
-            wanted.name == MOTION.name or (wanted.name in CHECKS and CHECKS[wanted.name].play)
+            wanted.name == MOTION.name or (wanted.name in CHECKS and CHECKS[wanted.name].backlash)
         ):
-            reason = "an undercut is trimmed: what motion is lost is told, and judged against verify.motion_error alone"
+            reason = (
+                "an undercut is trimmed: what motion is lost is reported, and judged against verify.motion_error alone"
+            )
             pytest.skip(f"{self.run.shown}: {reason}")
         _fail(f"{wanted} is not among the checks that were made")
 

@@ -54,7 +54,7 @@ MOST_NAMED = 5  # faults named in a message
 UNREAD = frozenset(
     {CLOSED.name, READABLE.name, WATERTIGHT.name}
 )  # one of them alone stands for a file that is no contour
-PLAY = frozenset(one.name for one in CHECKS.values() if one.play)
+BACKLASH = frozenset(one.name for one in CHECKS.values() if one.backlash)
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ def assert_motion(
     name, else `export.tolerance`. `angles` takes the place of `verify.angles`. Returns the motion error.
     """
     __tracebackhide__ = True
-    motion = _judged(recipe, path, {MOTION.name, *PLAY}, limit=limit, tolerance=tolerance, angles=angles)["motion"]
+    motion = _judged(recipe, path, {MOTION.name, *BACKLASH}, limit=limit, tolerance=tolerance, angles=angles)["motion"]
     if motion is None:
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))

@@ -119,7 +119,7 @@ class Design:
         exact = self.exact
         if exact.driven is not None:
             if not exact.driven.turns:
-                raise CallError(f"{self.recipe.name}: the linkage does not turn right round, so it has no motion")
+                raise CallError(f"{self.recipe.name}: the linkage does not make a full turn, so it has no motion")
             mechanism = exact.driven.mechanism
             found = mechanism.at(mechanism.relative(angle), order)
             return np.asarray(found.over_shaft(found.output)[order])

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.loading import load as load_file
-from camgeo.recipe.loading import load_text
+from camgeo.recipe.loading import announced, load_silent, load_text
 from camgeo.recipe.schema.change import written
 
 if TYPE_CHECKING:
@@ -22,10 +21,11 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
     """Read a recipe from a file, from YAML text or from a mapping of the same keys.
 
     A `str` with a line break in it is a text, any other the path of a file. A recipe that is no file and gives no
-    `name` is called recipe. Raises RecipeErrors, which tells every fault with line, column and remedy.
+    `name` is called recipe. Raises RecipeErrors, which tells every fault with line, column and remedy;
+    warns by DeprecatedKeyWarning of each former name.
     """
     if isinstance(source, Mapping):
-        return load_text(written(source, NAME), NAME)
+        return announced(load_text(written(source, NAME), NAME))
     if isinstance(source, str) and ("\n" in source or "\r" in source):
-        return load_text(source, NAME)
-    return load_file(source)
+        return announced(load_text(source, NAME))
+    return announced(load_silent(source))

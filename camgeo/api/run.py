@@ -103,4 +103,4 @@ def _unlisted(kind: str) -> str:
 def _no_file(path: Path) -> str:
     if path.is_dir():
         return "a folder; name the files in it"
-    return "not a regular file" if path.exists() else "there is no such file"
+    return "not a regular file" if path.exists() else "the file does not exist"

@@ -125,7 +125,7 @@ class Site:
         along = x * np.cos(angle) + y * np.sin(angle)
         over = 0.5 * BLOCK * s.bar + s.space
         first, last = float(along.min()) - over, float(along.max()) + over
-        inner = 0.5 * s.bar + s.play
+        inner = 0.5 * s.bar + s.gap_each_side
         outer = inner + s.wall
         for side in (-1.0, 1.0):
             y0, y1 = sorted((side * inner, side * outer))
@@ -153,7 +153,7 @@ def block(s: Sizes) -> ArcSpline:
 def slotted(first: float, last: float, y: float, s: Sizes) -> tuple[ArcSpline, ArcSpline]:
     """Outline of a bar along x, and of its slot for a block whose middle runs from `first` to `last`."""
     over = 0.5 * BLOCK * s.bar + s.space
-    inner = 0.5 * s.bar + s.play
+    inner = 0.5 * s.bar + s.gap_each_side
     slot = box(first - over, y - inner, last + over, y + inner)
     over, outer = over + s.wall, inner + s.wall
     return box(first - over, y - outer, last + over, y + outer), slot

@@ -57,13 +57,13 @@ class PrintBody:
 
     def __post_init__(self) -> None:
         if not NAME.fullmatch(self.name):
-            raise ValueError(f"{self.name!r} is no name for a body: lower-case words joined by hyphens")
+            raise ValueError(f"{self.name!r} is not a name for a body: lower-case words joined by hyphens")
         if not self.plates:
             raise ValueError(f"{self.name}: a body without plates")
         if self.pose.ndim != 2 or self.pose.shape[1] != 3 or not len(self.pose) or not np.isfinite(self.pose).all():
             raise ValueError(f"{self.name}: the pose must be finite, of shape (n + 1, 3) or (1, 3)")
         if not COLOUR.fullmatch(self.colour):
-            raise ValueError(f"{self.name}: {self.colour!r} is no colour such as #9aa5b1")
+            raise ValueError(f"{self.name}: {self.colour!r} is not a colour such as #9aa5b1")
 
     @property
     def low(self) -> float:

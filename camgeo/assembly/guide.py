@@ -22,13 +22,13 @@ def guide_length(s: Sizes) -> float:
 
 def half_width(s: Sizes) -> float:
     """Half the width of a guide with its blocks: each holds a peg."""
-    return 0.5 * s.bar + s.play + s.bar
+    return 0.5 * s.bar + s.gap_each_side + s.bar
 
 
 def guide(name: str, start: float, low: float, high: float, s: Sizes) -> tuple[tuple[Plate, ...], Member]:
     """Return the plates of a guide from x = `start`, and its cap, for a stem between z = `low` and `high`."""
     end, top = start + guide_length(s), high + s.gap
-    inner, outer = 0.5 * s.bar + s.play, half_width(s)
+    inner, outer = 0.5 * s.bar + s.gap_each_side, half_width(s)
     plates, holes = [], []
     if low - s.gap - s.plate > 0.5 * s.gap:
         plates.append(Plate(box(start, -outer, end, outer), (), s.plate, low - s.gap))

@@ -135,7 +135,7 @@ def _checked(pair: Clearance) -> Check:
     if pair.holds:
         detail = f"{pair.a} and {pair.b}"
     elif pair.collides:
-        detail = f"{pair.a} and {pair.b} meet, near ({x:.4g}, {y:.4g}) mm"
+        detail = f"{pair.a} and {pair.b} interfere, near ({x:.4g}, {y:.4g}) mm"
     else:
         detail = f"{pair.a} and {pair.b}: no clearance is proved, {pair.least:.4g} mm was found"
     return Check(COLLISION.name, pair.holds, least, 0.0, "mm", pair.at_deg, "at_least", detail=detail)

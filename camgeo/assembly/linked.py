@@ -71,13 +71,13 @@ def _mount(site: Site, carriers: tuple[Carrier, ...], loop: int) -> Mount:
     for carrier in carriers:
         if carrier.name == name:
             return Mount(carrier, carrier.reach(mechanism.dyads[loop - 1].point, site.s, f"{path}.point"))
-    message = "hangs on a block or a slide, which has no room for it"
-    raise BodyError(f"{path}.on", message, "hang it on the frame or on a rocker, or leave parts: all out")
+    message = "is attached to a block or a slide, which has no room for it"
+    raise BodyError(f"{path}.on", message, "attach it to the frame or to a rocker, or leave parts: all out")
 
 
 def _frame(breadth: float, s: Sizes, low: float, high: float) -> list[Plate]:
     """The square about its middle, each face half the clearance farther out than half the breadth."""
-    inner = 0.5 * breadth + s.play
+    inner = 0.5 * breadth + s.gap_each_side
     outer = inner + s.wall
     return [Plate(box(-outer, -outer, outer, outer), (box(-inner, -inner, inner, inner),), low, high)]
 
@@ -87,16 +87,16 @@ def _support(radius: float, drive: Drive, high: float) -> list[Plate]:
     disk, shaft, s = drive.disk, drive.shaft, drive.sizes
     if high - s.plate < 0.5 * s.gap:
         return []
-    inner = max(disk.hub if disk.bottom < 0.0 else 0.0, shaft.journal + s.play + 0.5 * s.wall) + s.space
+    inner = max(disk.hub if disk.bottom < 0.0 else 0.0, shaft.journal + s.gap_each_side + 0.5 * s.wall) + s.space
     return [Plate(disc(radius), (disc(inner),), s.plate, high)]
 
 
 def _coupler(frame: Carrier, coupler: float, site: Site) -> None:
     """Add the bar from the frame to D, in which its own axes then have their origin."""
     s, half = site.s, 0.5 * site.links.mechanism.breadth
-    start, end = half + s.play + 0.5 * s.bar, half + coupler
+    start, end = half + s.gap_each_side + 0.5 * s.bar, half + coupler
     if end < start:
-        least = s.play + 0.5 * s.bar
+        least = s.gap_each_side + 0.5 * s.bar
         raise BodyError("linkage.coupler", "ends within the frame's side", "give at least {least}", least=least)
     frame.origin = (end, 0.0)
     frame.plates.append(Plate(bar((start, 0.0), frame.origin, s.bar), (), frame.low, frame.high))
@@ -148,7 +148,9 @@ def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> tuple
     plates = [Plate(block(s), () if linkage.rocker else (eye(s),), frame.low, frame.high)]
     site.fits.append(Fit("block in the frame's slot", s.clearance))
     if linkage.rocker == 0.0:
-        over = 0.5 * s.bar + s.play + s.wall  # nothing else holds the frame down: out to the slot's outer edges
+        over = (
+            0.5 * s.bar + s.gap_each_side + s.wall
+        )  # nothing else holds the frame down: out to the slot's outer edges
         site.post("b", (linkage.ground, 0.0), frame.low, frame.high, radius=over)
         site.floor += s.gap + s.clip
         site.fits.append(Fit("block on the pivot B", s.clearance))
@@ -169,7 +171,7 @@ def _slot(site: Site, frame: Carrier, block_place: Place, half: float) -> None:
     x = (found[:, 0] - middle[:, 0]) * c + (found[:, 1] - middle[:, 1]) * n
     side = 1.0 if x.mean() > 0.0 else -1.0
     first, last = float((side * x).min()), float((side * x).max())
-    least = half + s.play + s.wall + s.space + 0.5 * BLOCK * s.bar
+    least = half + s.gap_each_side + s.wall + s.space + 0.5 * BLOCK * s.bar
     if first < least:
         message, remedy = (
             "the block would run into the frame, by {short}",
@@ -177,7 +179,7 @@ def _slot(site: Site, frame: Carrier, block_place: Place, half: float) -> None:
         )
         raise BodyError("linkage.ground", message, remedy, short=least - first)
     outer, slot = slotted(first, last, 0.0, s)
-    tie = box(half + s.play, -0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, 0.5 * s.bar)
+    tie = box(half + s.gap_each_side, -0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, 0.5 * s.bar)
     outer, slot, tie = (moved(outline, 0.0, 0.0, 0.0 if side > 0.0 else 0.5 * TURN) for outline in (outer, slot, tie))
     frame.plates += [Plate(outer, (slot,), frame.low, frame.high), Plate(tie, (), frame.low, frame.high)]
 

@@ -58,7 +58,7 @@ def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tup
         joined = slab if joined is None else joined + slab
     pieces = len(joined.decompose())
     if pieces != 1:
-        raise RegionError(f"{body.name}: its plates make {pieces} separate bodies, where one is meant")
+        raise RegionError(f"{body.name}: its plates make {pieces} separate bodies, where one is expected")
     mesh, merged = meshed(joined, precision)
     precision.within(f"{body.name}: an outline", worst + merged, tolerance)
     return mesh, worst + merged

@@ -91,7 +91,7 @@ def flat_pair(law: Transmission, drive: Drive) -> Assembly:
         c, n = np.cos(direction), np.sin(direction)
         lever = np.hypot(q * c - slope * n - away, q * n + slope * c)  # of the contact about the pivot
         along = side * (half + 0.5 * math.pi)
-        y0, y1 = sorted((-side * s.play, -side * (s.play + s.bar)))
+        y0, y1 = sorted((-side * s.gap_each_side, -side * (s.gap_each_side + s.bar)))
         plates.append(Plate(moved(box(inner, y0, float(lever.max()) + s.bar, y1), 0.0, 0.0, along), (), low, high))
     place, pivot = swinging(law, away, 0.5), (away, 0.0)
     pair = Member("pair", tuple(plates), "pair", place, ARM_COLOUR)

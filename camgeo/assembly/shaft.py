@@ -99,7 +99,7 @@ def shaft_of(part: Part, s: Sizes) -> Shaft:
     Raises BodyError where the bore is too narrow for a shaft.
     """
     bore = part.bore or 0.0
-    radius = 0.5 * bore - s.play
+    radius = 0.5 * bore - s.gap_each_side
     journal, across = radius, radius
     if part.sides:
         drive = polygonal(part.sides, bore - s.clearance, part.bore_at)
@@ -157,9 +157,7 @@ def drives(part: Part, clearance: float, off: float) -> None:
             remedy = "give a larger bore"
     if most > 0.0:
         remedy += ", or a mechanism.clearance of at most {most}"
-    message = (
-        "the shaft slips in it: {wide} wide where it would have to turn through {room}, which has to be {least} less"
-    )
+    message = "the shaft slips in it: it is {wide} wide, the opening {room}, which must be smaller by {least}"
     raise BodyError(field, message, remedy, wide=wide, room=room, least=least, such=such, most=most)
 
 
@@ -189,11 +187,11 @@ class Drive:
 def bearing(drive: Drive, pads: Sequence[ArcSpline], high: float) -> tuple[Plate, ...]:
     """Return plates of the base about the shaft: pads that all hold the sink, and a boss up to z = `high`."""
     shaft, s = drive.shaft, drive.sizes
-    sink, hole = disc(_sink(drive)), disc(shaft.journal + s.play)
+    sink, hole = disc(_sink(drive)), disc(shaft.journal + s.gap_each_side)
     found = [Plate(pad, (sink,), 0.0, s.sunk) for pad in pads]
     found += [Plate(pad, (hole,), s.sunk, s.plate) for pad in pads]
     if high - s.plate > 0.5 * s.gap:
-        found.append(Plate(disc(shaft.journal + s.play + s.wall), (hole,), s.plate, high))
+        found.append(Plate(disc(shaft.journal + s.gap_each_side + s.wall), (hole,), s.plate, high))
     return tuple(found)
 
 

@@ -64,8 +64,8 @@ class Sizes:
         return self.pin + self.clearance
 
     @property
-    def play(self) -> float:
-        """What a body is apart from its neighbour to each side when it stands in the middle: half the clearance."""
+    def gap_each_side(self) -> float:
+        """Half the running clearance: the gap on either side of a body that stands in the middle."""
         return 0.5 * self.clearance
 
     @property

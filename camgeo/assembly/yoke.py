@@ -32,7 +32,7 @@ def yoke(lift: Lift, breadth: float, drive: Drive) -> Assembly:
     high = low + disk.thickness
     p = lift.derivatives(TURN * np.arange(LOOKS) / LOOKS, 0)[0]
     least, most = float(p.min()), float(p.max())
-    right, left = s.play + s.wall, -breadth - s.play - s.wall
+    right, left = s.gap_each_side + s.wall, -breadth - s.gap_each_side - s.wall
     tall = drive.reach + s.space
     run = guide_length(s) + s.space
     # the stems reach through their guides where the yoke is farthest from them
@@ -40,7 +40,7 @@ def yoke(lift: Lift, breadth: float, drive: Drive) -> Assembly:
     ends = first + run - least, last - run - most
     frame = Plate(
         box(left, -tall - s.wall, right, tall + s.wall),
-        (box(-breadth - s.play, -tall, s.play, tall),),
+        (box(-breadth - s.gap_each_side, -tall, s.gap_each_side, tall),),
         low,
         high,
     )

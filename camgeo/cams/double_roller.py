@@ -68,7 +68,7 @@ class DoubleRollerCam(PairCam):
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """Two rollers on one arm, its pivot as far from the shaft as from them."""
-        checks = ("closing-equation", "transmission", "pressure-angle")
+        checks = ("closing-equation", "velocity-ratio", "pressure-angle")
         return Follower("double roller", checks, closure="form-closure")
 
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:
@@ -96,8 +96,8 @@ class DoubleRollerCam(PairCam):
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A smaller roller."""
         if not free_at / mm > 0.0:
-            return "no roller radius is proved to be free of it"
-        return f"a roller radius below {downward(free_at / mm)} would be free of it"
+            return "no roller radius is proved to have no undercut"
+        return f"a roller radius below {downward(free_at / mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
         """A smaller roller."""

@@ -95,7 +95,7 @@ class Cam(ABC):
     kind: ClassVar[str]
     unit: ClassVar[Unit] = "mm"
     """Of the follower's position and of motion errors."""
-    play_unit: ClassVar[Unit] = "mm"
+    backlash_unit: ClassVar[Unit] = "mm"
     """Of the backlash of a follower that is held from both sides."""
     gain: ClassVar[float | None] = 1.0
     """By how much at most the follower is off per mm of the contour's error, None where that depends on the place."""

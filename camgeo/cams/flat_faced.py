@@ -39,7 +39,7 @@ class FlatFacedCam(Cam):
         from kin.law.support_function import Lift
 
         if not isinstance(intent, Lift):
-            raise TypeError("a transmission law is no motion of a single flat face")
+            raise TypeError("a motion law of an arm is no motion of a single flat face")
         whole = Curve.whole(SupportShape(intent))
         return Profile(whole, whole, 0.0)
 
@@ -48,7 +48,7 @@ class FlatFacedCam(Cam):
         mean, deviation, _ = breadth_of(cast("Lift", intent))
         yoke = self.always_in_a_yoke or is_constant(mean, deviation)
         name = "square frame" if framed else "yoke" if yoke else "flat face"
-        checks = ("constant-breadth", "face-length") if yoke else ("face-length",)
+        checks = ("constant-breadth", "contact-travel") if yoke else ("contact-travel",)
         return Follower(name, checks, *((mean, "constant-breadth") if yoke else ()))
 
     def contact_place(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
@@ -81,7 +81,7 @@ class FlatFacedCam(Cam):
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A larger cam."""
-        return f"{self.larger(free_at / mm)} would be free of it"
+        return f"{self.larger(free_at / mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
         """A larger cam."""

@@ -31,7 +31,7 @@ class FlatPairCam(PairCam):
 
     kind: ClassVar[str] = "flat-pair"
     offers: ClassVar[frozenset[str]] = frozenset({"swings"})
-    play_unit: ClassVar[Unit] = "deg"
+    backlash_unit: ClassVar[Unit] = "deg"
     swing_of: ClassVar[Literal["arm", "pair"]] = "pair"
     lam: int
     mu: int
@@ -55,7 +55,7 @@ class FlatPairCam(PairCam):
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """Two faces whose lines pass through their pivot."""
-        return Follower("flat pair", ("closing-equation", "transmission"), closure="form-closure")
+        return Follower("flat pair", ("closing-equation", "velocity-ratio"), closure="form-closure")
 
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """A pair, its faces so far beside the lines through the pivot."""
@@ -65,7 +65,7 @@ class FlatPairCam(PairCam):
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
         """A smaller swing: r + const closes no pair, so there is no base radius to enlarge."""
-        return f"{self.less_swing(mm)} would be free of it"
+        return f"{self.less_swing(mm)} would have no undercut"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
         """Nothing that is known to help."""

@@ -115,7 +115,7 @@ def read_law(reader: Reader, field: Field, node: Node, path: str) -> str | tuple
         if node.text in names:
             return node.text
         remedy = suggestion(node.text, names) or f"give {either(names)}, {{polynomial: [...]}} or {{scca: {{...}}}}"
-        reader.fault(node.mark, path, "no such motion law", shown(node.text), remedy)
+        reader.fault(node.mark, path, "unknown motion law", shown(node.text), remedy)
         return None
     values = reader.mapping(field, node, path) or {}
     if "scca" in values:
@@ -151,7 +151,7 @@ def read_segments(
     for i, value in enumerate(values):
         for key in ("split", "at_end"):
             if key in value and "law" not in value:
-                reader.fault_at(f"{path}[{i}].{key}", "cannot stand without a law", None, "leave it out")
+                reader.fault_at(f"{path}[{i}].{key}", "needs a law", None, "leave it out")
     return tuple(_segment(value, reader.scale(stroke)) for value in values)
 
 

@@ -70,13 +70,13 @@ Shape: TypeAlias = FormulaShape | FourierShape | ReuleauxShape | HypocycloidShap
 
 @dataclass(frozen=True)
 class SupportCam(FlatFacedCam):
-    """A cam given by its support function; `pivot` is the shaft in the axes of that function, mm."""
+    """A cam given by its support function; `shaft` is the camshaft's place in the axes of that function, mm."""
 
     kind: ClassVar[str] = "support"
     offers: ClassVar[frozenset[str]] = frozenset({"face", "plate"})
     less_steep: ClassVar[str] = ""  # a support function has no stroke of its own
     shape: Shape
-    pivot: tuple[float, float]
+    shaft: tuple[float, float]
     undercut: Undercut
 
     def intent(self) -> Intent:
@@ -85,14 +85,14 @@ class SupportCam(FlatFacedCam):
 
         shape = self.shape
         if isinstance(shape, FormulaShape):
-            return _with_size(_formula(shape, self.pivot), "p", shape.scale)
+            return _with_size(_formula(shape, self.shaft), "p", shape.scale)
         if isinstance(shape, FourierShape):
-            found = support_function.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), self.pivot)
+            found = support_function.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), self.shaft)
             return _with_size(found, "fourier.mean")
         if isinstance(shape, ReuleauxShape):
-            found = support_function.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, self.pivot)
+            found = support_function.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, self.shaft)
             return _with_size(found, "reuleaux.breadth")
-        found = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, self.pivot)
+        found = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, self.shaft)
         return _with_size(found, "hypocycloid.breadth")
 
     @property
@@ -110,12 +110,12 @@ class SupportCam(FlatFacedCam):
 
     @property
     def shaft_at(self) -> tuple[float, float]:
-        """The pivot."""
-        return self.pivot
+        """Where the recipe puts it."""
+        return self.shaft
 
     def about_origin(self) -> Cam:
         """The shaft at the origin of p."""
-        return replace(self, pivot=(0.0, 0.0))
+        return replace(self, shaft=(0.0, 0.0))
 
     def harmonic(self, path: str) -> tuple[int, bool, float] | None:
         """Harmonics of a Fourier series or a hypocycloid: all that these are linear in."""
@@ -164,12 +164,12 @@ def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
     )
 
 
-def _formula(shape: FormulaShape, pivot: tuple[float, float]) -> Lift:
+def _formula(shape: FormulaShape, shaft: tuple[float, float]) -> Lift:
     from kin.law.formula.formula import Formula
     from kin.law.from_formula import lift_from_formula
     from kin.law.programme import IntentError
 
-    lift = lift_from_formula(Formula(shape.text), pivot, shape.scale)
+    lift = lift_from_formula(Formula(shape.text), shaft, shape.scale)
     t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
     size = np.abs(lift.derivatives(t, 0)[0]) / shape.scale
     largest = int(np.argmax(size))
@@ -216,7 +216,13 @@ TABLE = Table(
         _FOURIER,
         _REULEAUX,
         _HYPOCYCLOID,
-        Field("pivot", Kind.POINT, "the shaft [x, y] in the axes in which p is written", default="[0, 0]"),
+        Field(
+            "shaft",
+            Kind.POINT,
+            "place [x, y] of the shaft in the axes in which p is written",
+            default="[0, 0]",
+            formerly="pivot",
+        ),
         UNDERCUT,
     ),
     alternatives=(("p", ()), ("fourier", ()), ("reuleaux", ()), ("hypocycloid", ())),
@@ -234,7 +240,7 @@ def check(cam: Values, reader: Reader) -> None:
 
 def build(cam: Values, mm: float) -> Cam:
     """Make the cam of values in which there is no fault."""
-    return SupportCam(_shape(cam, mm), cam.get("pivot", (0.0, 0.0)), cam.get("undercut", "refuse"))
+    return SupportCam(_shape(cam, mm), cam.get("shaft", (0.0, 0.0)), cam.get("undercut", "refuse"))
 
 
 def _shape(cam: Values, mm: float) -> Shape:

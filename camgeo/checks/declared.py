@@ -13,10 +13,17 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.checks import remedies
 from camgeo.recipe.export import NO_CONTOUR, NO_PART, SOLIDS
+from camgeo.recipe.figures import (
+    BACKLASH_LEFT,
+    CONTACT_TRAVEL,
+    FIGURES,
+    FORMER,
+    LEAST_WALL,
+    PRESSURE_ANGLE,
+    RADIUS,
+    VELOCITY_RATIO,
+)
 from camgeo.recipe.figures import DWELL as LONGEST_DWELL
-from camgeo.recipe.figures import FACE_LENGTH as TRAVEL
-from camgeo.recipe.figures import FIGURES, LEAST_WALL, PRESSURE_ANGLE, RADIUS
-from camgeo.recipe.figures import TRANSMISSION as STEEPEST
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +34,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
 
 LEAST_ROOM = 1e-2  # mm: a hole that is wider than the cutter by less than twice this is not milled
-STANDS = "the mechanism does not turn: it has no motion over the shaft angle"
+STANDS = "the mechanism does not make a full turn: it has no motion over the shaft angle"
 LIMIT = "limit:"  # before the name of the figure that a recipe limits
 
 
@@ -75,9 +82,9 @@ class Declared:
     `units` are those it may have, lengths as mm. `exact` tells whether it is made of the exact cam, its motion and
     mechanism, `of_file` whether of a file; `why_not` why it is not made, empty where that needs no words. `field` is
     the recipe's field that it hangs on most, `own_field` the one that takes its place where the recipe gives it.
-    `remedy` tells what would let it hold, empty where nothing would or where the check itself tells it. `play` is
+    `remedy` tells what would let it hold, empty where nothing would or where the check itself tells it. `backlash` is
     whether it concerns what is left between contour and follower; `in_frame` whether under a linkage it concerns the
-    cam in its frame alone, its place being the relative angle then.
+    cam in its frame alone, its place being the relative angle then. `formerly` is its former name.
     """
 
     name: str
@@ -88,8 +95,9 @@ class Declared:
     field: str = ""
     own_field: str = ""
     remedy: remedies.Remedy | None = None
-    play: bool = False
+    backlash: bool = False
     in_frame: bool = False
+    formerly: str = ""
 
     def place(self, recipe: Recipe, file: str | None) -> str:
         """Give the recipe's field on which it hangs most."""
@@ -202,11 +210,11 @@ def _dwelling(scene: Scene, file: FileRequest) -> bool:
 
 
 def _sprung(scene: Scene) -> bool:
-    return scene.recipe.dynamics is not None and scene.recipe.dynamics.play is None
+    return scene.recipe.dynamics is not None and scene.recipe.dynamics.backlash is None
 
 
 def _loose(scene: Scene) -> bool:
-    return scene.recipe.dynamics is not None and scene.recipe.dynamics.play is not None
+    return scene.recipe.dynamics is not None and scene.recipe.dynamics.backlash is not None
 
 
 def _run_with(scene: Scene, file: FileRequest) -> bool:
@@ -218,7 +226,7 @@ def _run_with(scene: Scene, file: FileRequest) -> bool:
 
 
 def _no_swing(scene: Scene) -> str:
-    return "" if scene.swings else "the follower does not swing"
+    return "" if scene.swings else "the follower does not oscillate"
 
 
 def _no_roller(scene: Scene) -> str:
@@ -226,7 +234,7 @@ def _no_roller(scene: Scene) -> str:
 
 
 def _convex(scene: Scene) -> str:
-    return "" if scene.roller else "a convex profile meets itself nowhere else"
+    return "" if scene.roller else "a convex profile does not intersect itself"
 
 
 def _one_face(scene: Scene) -> str:
@@ -250,12 +258,12 @@ def _output_lost(scene: Scene) -> str:
     if scene.linked and not scene.turns:
         return STANDS
     lost = scene.linked and scene.trimmed and scene.recipe.verify.output_error is None
-    return "the contour is trimmed and verify.output_error is not given: told, not judged" if lost else ""
+    return "the contour is trimmed and verify.output_error is not given: reported, not judged" if lost else ""
 
 
 def _motion_lost(scene: Scene) -> str:
     lost = scene.trimmed and scene.recipe.verify.motion_error is None
-    return "the contour is trimmed and verify.motion_error is not given: told, not judged" if lost else ""
+    return "the contour is trimmed and verify.motion_error is not given: reported, not judged" if lost else ""
 
 
 # --- the checks: of the motion and the curve --------------------------------------------------------------------------
@@ -266,7 +274,14 @@ UNDERCUT_GLOBAL = Declared(
     "undercut-global", ("mm",), lambda scene: scene.roller, why_not=_convex, field="cam.roller_radius"
 )
 CLOSING = Declared("closing-equation", ("mm",), _named("closing-equation"), why_not=_no_swing)
-TRANSMISSION = Declared(STEEPEST, ("",), _named(STEEPEST), why_not=_no_swing, remedy=remedies.smaller_swing)
+RATIO = Declared(
+    VELOCITY_RATIO,
+    ("",),
+    _named(VELOCITY_RATIO),
+    why_not=_no_swing,
+    remedy=remedies.smaller_swing,
+    formerly=FORMER[VELOCITY_RATIO],
+)
 PRESSURE = Declared(PRESSURE_ANGLE, ("deg",), _named(PRESSURE_ANGLE), why_not=_no_roller, remedy=remedies.smaller_swing)
 BREADTH = Declared(
     "constant-breadth",
@@ -274,11 +289,11 @@ BREADTH = Declared(
     _named("constant-breadth"),
     _in_a_yoke,
     why_not=_one_face,
-    play=True,
+    backlash=True,
     in_frame=True,
 )
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
-FACE = Declared(TRAVEL, ("mm",), _named(TRAVEL), why_not=_no_plate)
+TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate, formerly=FORMER[CONTACT_TRAVEL])
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
 DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")
@@ -330,8 +345,8 @@ MOTION = Declared(
     remedy=remedies.nearer,
     in_frame=True,
 )
-BREADTH_MAX = Declared("breadth-max", ("mm",), of_file=_in_a_yoke, play=True, in_frame=True)
-FORM_CLOSURE = Declared("form-closure", ("mm", "deg"), of_file=_form_closed, play=True)
+BREADTH_MAX = Declared("breadth-max", ("mm",), of_file=_in_a_yoke, backlash=True, in_frame=True)
+FORM_CLOSURE = Declared("form-closure", ("mm", "deg"), of_file=_form_closed, backlash=True)
 OUTPUT = Declared(
     "linkage-error",
     ("mm", "deg"),
@@ -341,7 +356,13 @@ OUTPUT = Declared(
     own_field="verify.output_error",
 )
 FLOAT = Declared("float", ("N", "N m"), _sprung, lambda scene, file: _sprung(scene) and _run_with(scene, file))
-PLAY = Declared("play", ("mm", "deg", "N"), _loose, lambda scene, file: _loose(scene) and _run_with(scene, file))
+LEAST_BACKLASH = Declared(
+    BACKLASH_LEFT,
+    ("mm", "deg", "N"),
+    _loose,
+    lambda scene, file: _loose(scene) and _run_with(scene, file),
+    formerly=FORMER[BACKLASH_LEFT],
+)
 
 CHECKS: dict[str, Declared] = {one.name: one for one in globals().values() if isinstance(one, Declared)}
 """Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""
@@ -365,7 +386,9 @@ def _of_figure(name: str, figure: Figure) -> Declared:
             return _driven(scene, file) if figure.needs == "linkage" else _contour(scene, file)
         return False
 
-    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}")  # the check itself tells what would do
+    former = LIMIT + FORMER[name] if name in FORMER else ""
+    # the check itself tells what would do
+    return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", formerly=former)
 
 
 LIMITS: dict[str, Declared] = {LIMIT + name: _of_figure(name, figure) for name, figure in FIGURES.items()}

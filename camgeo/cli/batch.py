@@ -38,7 +38,7 @@ class Result:
 
 
 def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Result]:
-    """Give the result of each recipe in their order; `jobs` processes at once, None for as many as pay."""
+    """Give the result of each recipe in their order; `jobs` processes at once, None for as many as are worthwhile."""
     count = workers.needed(jobs or (workers.available() if len(recipes) >= PARALLEL_FROM else 1), len(recipes))
     if count == 1:
         for recipe in recipes:

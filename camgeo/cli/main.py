@@ -101,24 +101,26 @@ def _parser() -> argparse.ArgumentParser:
     export.add_argument(
         "--only", action="append", default=[], choices=KINDS, help="only files of this kind; repeatable"
     )
-    export.add_argument("--watch", action="store_true", help="export again at each saving; a page reloads itself")
+    export.add_argument(
+        "--watch", action="store_true", help="export again each time the recipe is saved; a page reloads itself"
+    )
     check = command("check", _check, "Every check of a recipe; nothing is written.")
     _add_recipes(check)
-    text = "folder of earlier results, whose files are held against their reports (default: out)"
+    text = "folder of earlier results, whose files are compared with their reports (default: out)"
     check.add_argument("--out", default="out", metavar="DIR", help=text)
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
-    _add_options(verify, "to which all the files are held, in the recipe's unit")
+    _add_options(verify, "for all the files, in the recipe's unit")
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
     sweep_command.add_arguments(sweep, _jobs)
-    new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, which there are.")
+    new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND")
     new.add_argument("file", nargs="?", metavar="FILE")
     study = command("study", study_command.run, "Error against run time of each output form; a recipe's margins.")
     study_command.add_arguments(study)
-    report = command("report", page_command.run, "A page to look at: the mechanism turning, its curves, its checks.")
+    report = command("report", page_command.run, "An HTML page: the animated mechanism, its curves, its checks.")
     page_command.add_arguments(report)
     laws = command("laws", laws_command.run, "The motion laws with their peak velocity, acceleration and jerk.")
     laws_command.add_arguments(laws)
@@ -130,7 +132,9 @@ def _add_recipes(command: argparse.ArgumentParser) -> None:
     """Give a command of several recipes what all such take."""
     command.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
     _add_options(command, "in place of export.tolerance, in the recipe's unit")
-    command.add_argument("--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as pay)")
+    command.add_argument(
+        "--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as are worthwhile)"
+    )
 
 
 def _add_options(command: argparse.ArgumentParser, tolerance: str) -> None:
@@ -186,9 +190,9 @@ def _check(arguments: argparse.Namespace) -> int:
 
 def _watch(arguments: argparse.Namespace) -> int:
     """Export one recipe at each saving until interrupted; its page, asked for or not, is shown on 127.0.0.1."""
+    from camgeo.cli.recipes import load
     from camgeo.cli.watch import watch
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.loading import load
     from camgeo.recipe.schema.errors import RecipeErrors
 
     if len(arguments.recipes) != 1 or arguments.json:
@@ -220,7 +224,7 @@ def _watch(arguments: argparse.Namespace) -> int:
 
 def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) -> tuple[list[Recipe], int]:
     """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong."""
-    from camgeo.recipe.loading import load
+    from camgeo.cli.recipes import load
     from camgeo.recipe.schema.errors import RecipeErrors
 
     recipes: list[Recipe] = []
@@ -233,7 +237,7 @@ def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) 
         if only and not any(request.kind in only for request in recipe.export.files):
             line, column = recipe.locate("export.files")
             _complain(
-                f"{escaped(path)}:{line}:{column}: export.files lists no {' or '.join(only)}, which --only asks for"
+                f"{escaped(path)}:{line}:{column}: export.files lists no {' or '.join(only)}, which --only requests"
             )
             continue
         recipes.append(_at(recipe, tolerance))
@@ -292,7 +296,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     """Judge files of any origin by a recipe's motion."""
     from camgeo.api.errors import CallError
     from camgeo.api.run import verify
-    from camgeo.recipe.loading import load
+    from camgeo.cli.recipes import load
     from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.report.document import encoded
     from kin.judge.verify import UnitsError
@@ -329,7 +333,7 @@ def _new(arguments: argparse.Namespace) -> int:
         print("\n".join(STARTERS))
         return OK
     if arguments.kind not in STARTERS:
-        _complain(f"no recipe is called {arguments.kind}; there are: {', '.join(STARTERS)}")
+        _complain(f"no starter is called {arguments.kind}; there are: {', '.join(STARTERS)}")
         return WRONG
     text = starter(arguments.kind)
     if arguments.file is None:

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
 from camgeo.files.errors import install
+from camgeo.recipe.figures import PRESENT
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from camgeo.sweep.search.ask import Ask
     from camgeo.sweep.search.run import Told
     from camgeo.sweep.search.search import Means, Outcome
 
 _EXTRAS = {"distributed": "dask", "numba": "fast"}  # of packages that are not in the extra `sweep`
-_SAID = 5  # best designs that -v tells
+_SAID = 5  # best designs that -v lists
+Number = TypeVar("Number", int, float)
 
 
 def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -> None:
@@ -27,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `sweep`")
     parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
     engine = parser.add_mutually_exclusive_group()
-    engine.add_argument("--jobs", type=jobs, metavar="N", help="processes at once (default: as many as pay)")
+    engine.add_argument("--jobs", type=jobs, metavar="N", help="processes at once (default: as many as are worthwhile)")
     engine.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
     parser.add_argument("--fresh", action="store_true", help="compute again what earlier runs have computed")
     parser.add_argument("-v", "--verbose", action="store_true", help="the best designs and the counts")
@@ -36,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -
 
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
-    from camgeo.recipe.loading import load
+    from camgeo.cli.recipes import load
     from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.sweep.search.ask import Ask
 
@@ -75,7 +77,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
 
     progress = Progress(ask.recipe.name)
     how = How(arguments.jobs, arguments.scheduler)
-    resume = "what was computed is kept, and the same command goes on from there"
+    resume = "what was computed is kept; the same command continues from there"
     try:
         outcome = search(ask, Path(arguments.out), how, _means(), fresh=arguments.fresh, told=_teller(progress))
     except KeyboardInterrupt:
@@ -136,9 +138,9 @@ def _summary(report: dict[str, Any], folder: Path) -> str:
         value = _value(report, rank, best["figures"][rank])
         return f"{report['recipe']}: {rank} {value}, the best of {counts['kept']:,} kept of {looked}; {folder}"
     reasons = [_stuck(report)] if counts["not_turning"] else []
-    reasons += [f"{number:,} break the limit of {figure}" for figure, number in counts["failing"].items() if number]
+    reasons += [f"{number:,} break the limit of {figure}" for figure, number in _by_figure(counts["failing"]) if number]
     near = _nearest(report) if report["nearest"] is not None else ""
-    return f"{report['recipe']}: no design will do, of {looked}: {', '.join(reasons)}{near}; {folder}"
+    return f"{report['recipe']}: no design is within the limits, of {looked}: {', '.join(reasons)}{near}; {folder}"
 
 
 def _nearest(report: dict[str, Any]) -> str:
@@ -149,7 +151,12 @@ def _nearest(report: dict[str, Any]) -> str:
     asked = f"at least {bounds['at_least']:.6g}" if least else f"at most {bounds['at_most']:.6g}"
     values = ", ".join(f"{path} {value:.6g}" for path, value in near["values"].items())
     figure = f"{near['breaks']} {near['value']:.6g} {near['unit']}".rstrip()
-    return f"; nearest: {values}, with {figure} where {asked} is asked"
+    return f"; nearest: {values}, with {figure} where {asked} is required"
+
+
+def _by_figure(values: Mapping[str, Number]) -> list[tuple[str, Number]]:
+    """Give values by figures without their former names, under which a report has them too."""
+    return [(name, value) for name, value in values.items() if name not in PRESENT]
 
 
 def _stuck(report: dict[str, Any]) -> str:
@@ -167,11 +174,11 @@ def _table(report: dict[str, Any]) -> str:
     """The counts and the first of the best designs."""
     counts = report["counts"]
     lines = [f"  {_stuck(report)}"]
-    lines += [f"  {number:,} break the limit of {figure}" for figure, number in counts["failing"].items()]
+    lines += [f"  {number:,} break the limit of {figure}" for figure, number in _by_figure(counts["failing"])]
     if counts["rows"] < counts["kept"]:
         lines.append(f"  the table holds the best {counts['rows']:,} of {counts['kept']:,}")
     for design in report["best"][:_SAID]:
         values = ", ".join(f"{path} {value:.6g}" for path, value in design["values"].items())
-        figures = ", ".join(f"{name} {_value(report, name, value)}" for name, value in design["figures"].items())
+        figures = ", ".join(f"{name} {_value(report, name, value)}" for name, value in _by_figure(design["figures"]))
         lines.append(f"  {design['file']}: {values}\n    {figures}")
     return "\n".join(lines)

@@ -28,7 +28,7 @@ AHEAD = 2  # items handed out for each worker: one at work, one waiting
 MOST_ON_WINDOWS = 61  # processes that one wait of Windows can wait for, less two
 _TO_CLEAR_UP = 2.0  # seconds after which a worker whose run is over ends in any case
 FORKS = sys.platform == "linux"  # macOS has it too, and its libraries do not bear it
-KILLED = "a process was killed before {} was done, for want of memory perhaps; see --jobs"
+KILLED = "a process was killed before {} was done, perhaps for lack of memory; see --jobs"
 
 
 class _OverError(BaseException):

@@ -97,7 +97,7 @@ def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Loop, Loop]
     if solid.chamfer is None:
         return stack.wall(outline, 0.0, solid.thickness)
     if not isinstance(outline, ArcSpline):
-        raise TypeError("the chamfer of a spline is no spline")
+        raise TypeError("the chamfer of a spline is not a spline")
     c = solid.chamfer
     foot, head = stack.wall(outline, c, solid.thickness - c)
     inner = inset(outline, c)
@@ -218,7 +218,7 @@ def _sound(solid: Shape) -> Shape:
     from OCP.BRepCheck import BRepCheck_Analyzer
 
     if not BRepCheck_Analyzer(solid).IsValid():
-        raise RegionError("Open CASCADE finds the solid unsound: another tolerance may do")
+        raise RegionError("Open CASCADE finds the solid invalid: another tolerance may help")
     return solid
 
 

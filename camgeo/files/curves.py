@@ -54,7 +54,7 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
     if float(length.min()) < SHORTEST:
         raise RegionError(
             f"a piece of the contour is {float(length.min()):.3g} mm long, and Open CASCADE takes points within "
-            f"{CONFUSION:g} mm as one: a larger tolerance would do"
+            f"{CONFUSION:g} mm as one: give a larger tolerance"
         )
     ends = np.roll(outline.points, -1, axis=0)
     found = []

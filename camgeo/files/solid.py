@@ -121,7 +121,7 @@ def manifold_maker(what: str) -> Callable[[Array, Triangles], Any]:
     def made(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - manifold3d has no types
         body = manifold3d.Manifold(manifold3d.Mesh64(points, triangles.astype(np.uint64)))
         if body.status() != manifold3d.Error.NoError:
-            raise RegionError(f"a body is not sound: {body.status().name}")
+            raise RegionError(f"a body is not valid: {body.status().name}")
         return body
 
     return made

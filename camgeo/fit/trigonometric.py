@@ -190,7 +190,7 @@ def _of_expression(expression: Expression) -> Polynomial:
     if isinstance(result, _Angle):
         raise FormError("the formula has t outside cos and sin")
     if any(f.denominator > 1 for f, c in result.items() if abs(c.value) > c.error):
-        raise FormError("the formula has a harmonic that is no whole number")
+        raise FormError("the formula has a harmonic that is not a whole number")
     order = max(int(abs(f)) for f in result)
     c, error, rest = np.zeros(order + 1, dtype=np.complex128), np.zeros(order + 1), 0.0
     for f, number in result.items():
@@ -228,7 +228,7 @@ def _apply(step: Instruction, args: list[Waves | _Angle]) -> Waves | _Angle:
     if step.op == "pow" and step.value == int(step.value) and step.value >= 0 and not isinstance(first, _Angle):
         return _power(first, int(step.value), step)
     what = "power" if step.op in {"pow", "power"} else step.op
-    raise FormError(f"{what} is no operation on trigonometric polynomials{_at(step)}")
+    raise FormError(f"{what} is not an operation on trigonometric polynomials{_at(step)}")
 
 
 def _at(step: Instruction) -> str:

@@ -62,7 +62,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
     try:
         grown = cam.grown(out, scale)
     except GrownError as error:
-        what = f"the metal grows by {out / recipe.mm:.6g}, {error.args[0]} is {error.args[1] / recipe.mm:.6g}"
+        what = f"the metal is enlarged by {out / recipe.mm:.6g}, {error.args[0]} is {error.args[1] / recipe.mm:.6g}"
         raise recipe.error(field, what, None, "give less") from error
     body = None
     try:

@@ -36,7 +36,7 @@ def intent_of_file(
     if recipe.part.thickness is None:
         raise recipe.error("part.thickness", "missing", None, "give part.thickness: a program is judged by its depth")
     if design.contour is None:
-        raise recipe.error("cam", "a check of the exact contour fails, so that nothing can be milled")
+        raise recipe.error("cam", "a check of the exact contour fails, so nothing can be milled")
     from camgeo.machining.milling import milling_intent
 
     try:

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from camgeo.checks.declared import MOTION, TRANSMISSION
+from camgeo.checks.declared import MOTION, RATIO
 from camgeo.common.clock import Clock
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError
@@ -153,9 +153,9 @@ class Job:
         """Say why a roller may miss a file's contour, where the cam itself can hardly be turned through."""
         if check.name != MOTION.name or check.value is not None:
             return check
-        slope = next((own.value for own in self.design.checks if own.name == TRANSMISSION.name), None)
+        slope = next((own.value for own in self.design.checks if own.name == RATIO.name), None)
         if slope is None or slope < STEEP:
             return check
         less = self.recipe.cam.less_swing(self.recipe.mm)
-        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would do"
+        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would satisfy it"
         return replace(check, detail=f"{check.detail}: {why}")

@@ -197,7 +197,7 @@ class Run:
         last = self._last(folder)
         for name in come:
             if name not in last and os.path.lexists(folder / name):
-                raise SurroundingsError("is in the way, and no report says that it may be replaced", folder / name)
+                raise SurroundingsError("is in the way, and no report lists it as replaceable", folder / name)
         _make_own(folder)
         before = tuple(name for name in last if name not in keep or name in come)
         (self.folder / _OLD).mkdir()
@@ -357,5 +357,5 @@ def _surroundings(error: OSError, path: Path) -> SurroundingsError:
     where = Path(os.fsdecode(error.filename)) if isinstance(error.filename, (str, bytes)) else path
     text = error.strerror or str(error)
     if system.WINDOWS and isinstance(error, PermissionError):
-        text += "; if another program has it open, close it there and run again"
+        text += "; if another program has it open, close it there and run the command again"
     return SurroundingsError(text, where)

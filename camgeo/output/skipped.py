@@ -21,7 +21,7 @@ def left_out(recipe: Recipe, requests: tuple[FileRequest, ...], design: Design) 
     if recipe.dynamics is None:
         found.append(("dynamics", "dynamics is not given"))
     if not any(request.parts == "all" for request in requests):
-        found.append(("mechanism", "no file is asked for with parts: all"))
+        found.append(("mechanism", "no file is requested with parts: all"))
     found += _of_linkage(recipe, design)
     scene = scene_of(recipe, design)
     found += [(one.name, why) for one in CHECKS.values() if one.why_not is not None and (why := one.why_not(scene))]

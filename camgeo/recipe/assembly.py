@@ -12,7 +12,7 @@ class MechanismAsked:
     """Sizes of the printable mechanism.
 
     `clearance` is what a hole is wider than its pin, and what the faces stand farther apart than the cam's breadth;
-    `gap` what bodies that lie above one another are apart, `press` what is pressed on is too narrow by, `space` what
+    `gap` axial gap between bodies that lie above one another, `press` what is pressed on is too narrow by, `space` what
     bodies that never touch keep in plan by construction. `plate` is the thickness of the base, `link` that of arms,
     rockers and rods, `bar` their width, `wall` that of frames and hubs about a hole, `clip` the thickness of retainers.
     """
@@ -31,10 +31,10 @@ class MechanismAsked:
 
 
 MECHANISM = (
-    length("clearance", "what a hole is wider than its pin, and faces are wider apart than the cam", default="0.2 mm"),
-    length("gap", "what bodies that lie above one another are apart", default="0.4 mm"),
-    length("press", "what a hole that is pressed on is narrower than its pin", default="0.1 mm"),
-    length("space", "what bodies that never touch are apart in plan, where their size is free", default="1 mm"),
+    length("clearance", "running clearance of holes on their pins, and of faces about the cam", default="0.2 mm"),
+    length("gap", "axial gap between bodies that lie above one another", default="0.4 mm"),
+    length("press", "interference of a pressed hole on its pin", default="0.1 mm"),
+    length("space", "gap in plan between bodies that never touch, where their size is free", default="1 mm"),
     length("pin", "diameter of the pins", default="by the cam's size"),
     length("bar", "width of bars, stems and guides", default="the pin and two walls"),
     length("plate", "thickness of the base plate", default="by the cam's size"),

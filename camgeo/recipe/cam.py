@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 CAMS: dict[str, Table] = {kind: family.table for kind, family in FAMILIES.items()}
 MADE = (
-    "made are cams for one roller, knife edge, curved shoe or flat face on a stem or an arm (disc), for a yoke of two "
+    "cams are made for one roller, knife edge, curved shoe or flat face on a stem or an arm (disc), for a yoke of two "
     "parallel faces (constant-breadth, support) or two opposite rollers (constant-diameter), for two rollers on one "
     "oscillating arm (double-roller) and for two faces on one (flat-pair); grooves, conjugate and cylindrical cams are "
     "not made"

@@ -1,9 +1,9 @@
-"""The follower train whose dynamics are asked for."""
+"""The follower train whose dynamics are requested."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
@@ -17,7 +17,10 @@ MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
 
 @dataclass(frozen=True)
 class Dynamics:
-    """A follower train in SI, but for `play`, mm; of `preload` and `play` one is None. `rpm` is the shaft's speed."""
+    """A follower train in SI, but for `backlash`, mm.
+
+    Of `preload` and `backlash` one is None. `rpm` is the shaft's speed.
+    """
 
     mass: float
     stiffness: float
@@ -25,7 +28,7 @@ class Dynamics:
     damping: float = 0.0
     preload: float | None = None
     rate: float = 0.0
-    play: float | None = None
+    backlash: float | None = None
 
 
 _MOST = MOST**2  # of figures in SI: a bound against slips
@@ -64,7 +67,12 @@ DYNAMICS = Table(
             above=0,
             at_most=_MOST,
         ),
-        length("play", "play between the two faces or rollers that hold the cam, at the contact, instead of a spring"),
+        replace(
+            length(
+                "backlash", "clearance between the cam and the two faces or rollers that hold it, in place of a spring"
+            ),
+            formerly="play",
+        ),
         Field(
             "rate",
             Kind.NUMBER,
@@ -75,19 +83,19 @@ DYNAMICS = Table(
         ),
         Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
     ),
-    alternatives=(("preload", ()), ("play", ())),
+    alternatives=(("preload", ()), ("backlash", ())),
 )
 
 
 def check_train(train: Values, reader: Reader) -> None:
     """Note the faults between the fields of a follower train."""
-    if "play" in train and "rate" in train:
-        reader.fault_at(
-            "dynamics.rate", "a spring's rate beside play", None, "give preload instead of play, or leave it out"
-        )
-    if "play" in train and "linkage" in reader.marks:
-        remedy = "give preload: what the joints have of play is not the cam's"
-        reader.fault_at("dynamics.play", "play at the cam under a linkage", None, remedy)
+    if "backlash" in train and "rate" in train:
+        key = reader.written("dynamics.backlash").removeprefix("dynamics.")
+        remedy = f"give preload in place of {key}, or leave the rate out"
+        reader.fault_at("dynamics.rate", f"a spring rate beside {key}", None, remedy)
+    if "backlash" in train and "linkage" in reader.marks:
+        remedy = "give preload: clearance in the joints of a linkage is not modelled"
+        reader.fault_at("dynamics.backlash", "backlash at the cam under a linkage", None, remedy)
     if {"mass", "stiffness"} <= train.keys() and "damping" in train:
         ratio = train["damping"] / math.sqrt((train["stiffness"] + train.get("rate", 0.0)) * train["mass"]) / 2
         if ratio > MOST_DAMPING:

@@ -172,7 +172,7 @@ def read_files(reader: Reader, field: Field, node: Node, path: str) -> list[Valu
 
 
 def _refuse_format(reader: Reader, kind: Scalar, path: str) -> None:
-    reader.fault(kind.mark, path, "no such file format", shown(kind.text), f"give {either(tuple(FILES))}")
+    reader.fault(kind.mark, path, "unknown file format", shown(kind.text), f"give {either(tuple(FILES))}")
 
 
 def _format(node: Node) -> tuple[Scalar | None, Node | None]:
@@ -234,7 +234,7 @@ def check_files(values: Values, reader: Reader) -> None:
             check_milling(path, reader)
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
             remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
-            reader.fault_at(f"{path}.step.as", "the chamfer of a spline is no spline", f"'{request.as_}'", remedy)
+            reader.fault_at(f"{path}.step.as", "the chamfer of a spline is not a spline", f"'{request.as_}'", remedy)
         if request.as_ in {"spline", "exact"} and request.version == "R12":
             remedy = "give arcs or polyline, or a later version"
             reader.fault_at(f"{path}.dxf.as", "R12 has no splines", f"'{request.as_}'", remedy)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 from camgeo.recipe.schema.errors import suggestion
 from camgeo.recipe.schema.fields import MOST, Field, Form, Kind, Table, either
@@ -12,21 +12,26 @@ from camgeo.recipe.schema.json_schema import table_schema
 from camgeo.recipe.schema.yaml_source import Mapping, described, entries, join, keys, scalars
 
 if TYPE_CHECKING:
+    import collections.abc
+
     from camgeo.recipe.schema.fields import Schema
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
 
 
+Value = TypeVar("Value")
+
+
 @dataclass(frozen=True)
 class Limit:
-    """Bounds of a figure, as figures are told: angles in degrees, lengths in mm, rates per radian of shaft angle."""
+    """Bounds of a figure, as reported: angles in degrees, lengths in mm, rates per radian of shaft angle."""
 
     figure: str
     at_least: float | None = None
     at_most: float | None = None
 
 
-Needs = Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "play"]
+Needs = Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"]
 
 
 NEEDS: dict[Needs, str] = {
@@ -39,7 +44,7 @@ NEEDS: dict[Needs, str] = {
     "wall": "a part with openings or a hub",
     "all": "a file with `parts: all`",
     "preload": "dynamics.preload",
-    "play": "dynamics.play",
+    "backlash": "dynamics.backlash",
 }
 """What a figure is taken from, besides the cam and its files, in words."""
 
@@ -48,19 +53,34 @@ _OPENINGS = ("bore", "hub", "bolts", "dowel", "lightening", "mark")
 
 
 # Names that stand in programs too.
-DWELL, SIZE, FACE_LENGTH, LEAST_WALL = "dwell", "size", "face-length", "wall"
+DWELL, SIZE, CONTACT_TRAVEL, LEAST_WALL = "dwell", "size", "contact-travel", "wall"
 
 
 RADIUS, HOLLOW_RADIUS, PITCH_RADIUS = "radius-of-curvature", "hollow-radius", "pitch-radius"
 
 
-PRESSURE_ANGLE, TRANSMISSION, MOTION_ERROR = "pressure-angle", "transmission", "motion-error"
+PRESSURE_ANGLE, VELOCITY_RATIO, MOTION_ERROR = "pressure-angle", "velocity-ratio", "motion-error"
+
+
+BACKLASH_LEFT = "least-backlash"
+
+
+FORMER = {VELOCITY_RATIO: "transmission", CONTACT_TRAVEL: "face-length", BACKLASH_LEFT: "play"}
+"""Former names of renamed figures: in this version they are read, and written beside the present ones."""
+
+
+PRESENT = {former: name for name, former in FORMER.items()}
+
+
+def with_former(values: collections.abc.Mapping[str, Value]) -> dict[str, Value]:
+    """Give values by figures, and behind them those of renamed figures by their former names."""
+    return {**values, **{FORMER[name]: value for name, value in values.items() if name in FORMER}}
 
 
 PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
 
 
-STEEP = frozenset({PRESSURE_ANGLE, TRANSMISSION, FACE_LENGTH, *PEAKS})  # the less the smaller the motion
+STEEP = frozenset({PRESSURE_ANGLE, VELOCITY_RATIO, CONTACT_TRAVEL, *PEAKS})  # the less the smaller the motion
 
 
 @dataclass(frozen=True)
@@ -99,8 +119,10 @@ FIGURES: dict[str, Figure] = {
         "least",
         "follower",
     ),
-    TRANSMISSION: Figure("greatest swing of the arm per turn of the shaft", Kind.NUMBER, "least", "swings"),
-    FACE_LENGTH: Figure("length of the face along which the contact travels", Kind.LENGTH, "least", "face"),
+    VELOCITY_RATIO: Figure(
+        "greatest angular velocity of the arm over that of the shaft", Kind.NUMBER, "least", "swings"
+    ),
+    CONTACT_TRAVEL: Figure("how far the contact travels along the face", Kind.LENGTH, "least", "face"),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
     "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
@@ -117,7 +139,9 @@ FIGURES: dict[str, Figure] = {
     "contour-error": _of_file("distance between a file's contour and the exact one", Kind.LENGTH),
     MOTION_ERROR: _of_file("greatest motion error of a file", Kind.ERROR),
     "dwell-error": _of_file("range of the follower's position over a dwell, of a file", Kind.ERROR),
-    "backlash": _of_file("greatest play or interference of a follower that is held twice, of a file", Kind.PLAY),
+    "backlash": _of_file(
+        "greatest backlash or interference of a follower held from both sides, of a file", Kind.BACKLASH
+    ),
     "output-error": _of_file("greatest error of the linkage's output, of a file", Kind.OUTPUT, "linkage"),
     "pieces": _of_file("number of pieces of a file's contour", Kind.NUMBER),
     "least-force": Figure(
@@ -126,7 +150,14 @@ FIGURES: dict[str, Figure] = {
     "peak-force": Figure(
         "greatest contact force, N; N m where it turns", Kind.NUMBER, "least", "preload", of="dynamics", swept=False
     ),
-    "play": Figure("least play between the faces", Kind.ERROR, "most", "play", of="dynamics", swept=False),
+    BACKLASH_LEFT: Figure(
+        "least backlash that the dynamics leave between the faces",
+        Kind.ERROR,
+        "most",
+        "backlash",
+        of="dynamics",
+        swept=False,
+    ),
 }
 
 
@@ -135,7 +166,7 @@ def bounds(figure: Figure) -> Table:
     return Table(
         tuple(
             Field(name, Kind.NUMBER, about, at_least=-(MOST**2), at_most=MOST**2, unit=figure.kind)
-            for name, about in (("at_least", "least value that will do"), ("at_most", "greatest value that will do"))
+            for name, about in (("at_least", "least value accepted"), ("at_most", "greatest value accepted"))
         )
     )
 
@@ -144,12 +175,12 @@ ALL = "parts: all"
 
 
 def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]) -> bool:
-    """Tell whether a recipe has what a figure needs, by what its cam offers and the paths of the fields given.
+    """Say whether a recipe has what a figure needs, by what its cam offers and the paths of the fields given.
 
     `ALL` is given where a file shows every body.
     """
     match needs:
-        case "linkage" | "play" | "preload" | "dwell":
+        case "linkage" | "backlash" | "preload" | "dwell":
             return (needs if needs in {"linkage", "dwell"} else f"dynamics.{needs}") in given
         case "follower":
             return "linkage" not in given
@@ -169,30 +200,39 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
         return None
     given = entries(node)
     limits = []
-    for name, key in keys(node).items():
-        below = join(path, name)
+    former = dict(field.former_choices)
+    for word, key in keys(node).items():
+        name, below = former.get(word, word), join(path, word)
+        if name != word:
+            reader.notice(key.mark, reader.written(below), name)
+            if name in given:
+                reader.fault(key.mark, below, f"the former name of {name}, which is given too", None, "leave it out")
+                continue
+            reader.renamed[join(path, name)] = below
         if name not in field.choices:
             known = tuple(here for here in of_recipe(reader) if here in field.choices)
             remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
-            reader.fault(key.mark, below, "no such figure", None, remedy)
+            reader.fault(key.mark, below, "unknown figure", None, remedy)
             continue
         table = Field("", Kind.TABLE, "", table=bounds(FIGURES[name]))
         found = len(reader.errors)
-        values = reader.field(table, given[name], below)
+        values = reader.field(table, given[word], below)
         if values is None or len(reader.errors) > found:
             continue
         if not values:
-            reader.fault(given[name].mark, below, "no bound", None, "give at_least, at_most or both")
+            reader.fault(given[word].mark, below, "no bound", None, "give at_least, at_most or both")
         factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
         if values.get("at_least", -math.inf) > values.get("at_most", math.inf):
-            told = "no design" if field is not LIMITS else "nothing"
-            reader.fault_at(f"{below}.at_most", f"below at_least, so {told} will do", None, "exchange them")
+            none = "no design" if field is not LIMITS else "nothing"
+            reader.fault_at(f"{below}.at_most", f"below at_least, so {none} is accepted", None, "exchange them")
         limits.append({"figure": name, "at": below, **{bound: factor * value for bound, value in values.items()}})
     return limits
 
 
 def _limits_schema(field: Field) -> Schema:
     limits = {name: {**table_schema(bounds(FIGURES[name])), "minProperties": 1} for name in field.choices}
+    for former, name in field.former_choices:
+        limits[former] = {**limits[name], "description": f"former name of {name}", "deprecated": True}
     return {"type": "object", "properties": limits, "additionalProperties": False}
 
 
@@ -210,6 +250,7 @@ LIMITS = Field(
     "figures that must keep within bounds, each a check of its own, such as {pressure-angle: {at_most: 45}}",
     default="none",
     choices=tuple(FIGURES),
+    former_choices=tuple(PRESENT.items()),
     form=FORM,
 )
 

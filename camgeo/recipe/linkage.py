@@ -333,7 +333,7 @@ def check_linkage(values: Values, reader: Reader) -> None:
         return
     if reader.kinds["cam"] and "plate" not in reader.offers:
         remedy = "a frame around a cam of kind support or constant-breadth drives it"
-        reader.fault_at("linkage", f"cannot stand beside a cam of kind {reader.kinds['cam']}", None, remedy)
+        reader.fault_at("linkage", f"cannot be combined with a cam of kind {reader.kinds['cam']}", None, remedy)
     for part, harmonics in values.get("cam", {}).get("fourier", {}).items():
         for j, value in harmonics if part in {"cos", "sin"} else ():
             if j % 2 == 0 and value:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.recipe import RECIPE, build, read_values
-from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
+from camgeo.recipe.schema.errors import DeprecatedKeyWarning, RecipeError, RecipeErrors
 from camgeo.recipe.schema.file_bytes import bytes_of
 from camgeo.recipe.schema.reader import Reader
 from camgeo.recipe.schema.readers import READERS
@@ -20,7 +22,22 @@ if TYPE_CHECKING:
 
 
 def load(path: str | PathLike[str]) -> Recipe:
-    """Read a recipe from a file; raises RecipeErrors with all its faults, also where there is no such file."""
+    """Read a recipe from a file, and warn of former names in it, which `load_silent` does not.
+
+    Raises RecipeErrors with all its faults, also where the file does not exist; warns by DeprecatedKeyWarning.
+    """
+    return announced(load_silent(path))
+
+
+def announced(recipe: Recipe) -> Recipe:
+    """Warn of the former names in a recipe, a DeprecatedKeyWarning for each, and give the recipe back."""
+    for notice in recipe.notices:
+        warnings.warn(str(notice), DeprecatedKeyWarning, stacklevel=3)
+    return recipe
+
+
+def load_silent(path: str | PathLike[str]) -> Recipe:
+    """Read a recipe from a file, whose `notices` are left to the caller; raises RecipeErrors as `load` does."""
     try:
         data = bytes_of(path, MAX_BYTES, "recipe")
     except Complaint as complaint:
@@ -42,7 +59,11 @@ def read(data: bytes, path: str | PathLike[str]) -> Recipe:
             reader.fault(source.root.mark, "name", f"the file's stem is {complaint.problem}", repr(stem), remedy)
     if reader.errors:
         raise RecipeErrors(reader.errors)
-    return build(values, Path(path), reader.marks, source.text)
+    return replace(
+        build(values, Path(path), reader.marks, source.text),
+        renamed=reader.renamed,
+        notices=tuple(reader.notices),
+    )
 
 
 def load_text(text: str, path: str | PathLike[str]) -> Recipe:

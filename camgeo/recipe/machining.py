@@ -109,7 +109,7 @@ MANUFACTURE = Table(
         Field(
             "direction",
             Kind.CHOICE,
-            "side on which a right-handed cutter that turns clockwise meets the metal",
+            "side on which a right-handed cutter that turns clockwise enters the metal",
             default="climb",
             choices=("climb", "conventional"),
         ),
@@ -143,7 +143,7 @@ LEAST_TOLD |= dict.fromkeys(("cutter", "depth_of_cut", "safe_height", "lead_in",
 
 COMPENSATION = (
     length("kerf", "width of the cut: the metal is drawn larger by half of it, openings smaller", default="0"),
-    length("clearance", "what the metal stands back all round; openings become larger", default="0"),
+    length("clearance", "distance by which the metal is reduced all round; openings become larger", default="0"),
     Field(
         "shrinkage",
         Kind.NUMBER,

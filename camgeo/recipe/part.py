@@ -255,7 +255,7 @@ def read_keyway(reader: Reader, field: Field, node: Node, path: str) -> Values |
     if isinstance(node, Scalar):
         if node.text == STANDARD:
             return {"standard": STANDARD}
-        reader.fault(node.mark, path, "no such keyway", shown(node.text), reader.wanted(field))
+        reader.fault(node.mark, path, "unknown keyway", shown(node.text), reader.wanted(field))
         return None
     return reader.mapping(field, node, path)
 
@@ -301,7 +301,7 @@ PART = mapping(
     _LIGHTENING,
     length("chamfer", "chamfer of 45 degrees along both edges of the contour, its height", default="none"),
     _optional("mark", "timing mark on the ray where the shaft angle is 0", *_MARK),
-    length("wall", "least wall between any two edges", default="told, and above 0"),
+    length("wall", "least wall between any two edges", default="reported, and above 0"),
     later=("follower",),
 )
 
@@ -337,7 +337,7 @@ def _needs(reader: Reader, name: str, other: str, why: str) -> None:
 def _round(part: Values, bore: float, reader: Reader) -> None:
     keyway, flat = part.get("keyway"), part.get("flat")
     if keyway is not None and flat is not None:
-        reader.fault_at("part.flat", "cannot stand beside keyway", None, "give one of them")
+        reader.fault_at("part.flat", "cannot be combined with keyway", None, "give one of them")
     if keyway is not None and "standard" in keyway and key_for(bore) is None:
         low, high = LEAST / reader.mm, WIDEST / reader.mm
         remedy = f"the standard has bores from {low:.6g} to {high:.6g} {reader.units}; give width and depth"

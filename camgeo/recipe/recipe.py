@@ -19,10 +19,11 @@ from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, DwellAsked, build_linkage, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
 from camgeo.recipe.part import PART, build_part, check_part
+from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
-from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, mapping
+from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, mapping, present
 from camgeo.recipe.schema.reader import kind_of
-from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Sequence, described, entries
+from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Sequence, as_written, described, entries
 from camgeo.recipe.sweep import SWEEP, build_sweep, check_sweep
 
 if TYPE_CHECKING:
@@ -60,7 +61,8 @@ class Verify:
 class Recipe:
     """A recipe, checked as far as no geometry is needed.
 
-    `mm` is the length of its unit, `path` where it was read, `text` what stands there.
+    `mm` is the length of its unit, `path` where it was read, `text` what stands there. `marks` are the places of the
+    fields given, `renamed` the paths as written of those given by a former key, `notices` what is to be said of those.
     """
 
     name: str
@@ -82,6 +84,8 @@ class Recipe:
     limits: tuple[Limit, ...] = ()
     marks: collections.abc.Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
+    renamed: collections.abc.Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
+    notices: tuple[RecipeError, ...] = field(default=(), repr=False, compare=False)
 
     @overload
     def replace(self, path: str, value: Value, /) -> Recipe: ...
@@ -93,8 +97,8 @@ class Recipe:
         """Give the recipe with another value at a path such as `cam.base_radius`, or with several, by a mapping.
 
         Values are in the recipe's units, as its text has them; where a path has none yet, the field is added. All else
-        in the text stays, comments included. Raises RecipeErrors for a path that leads nowhere, and where the new
-        recipe has faults.
+        in the text stays, comments and former keys included. Raises RecipeErrors for a path that leads nowhere, and
+        where the new recipe has faults.
         """
         from camgeo.recipe.loading import load_text
         from camgeo.recipe.schema.change import changed
@@ -102,7 +106,8 @@ class Recipe:
 
         text = self.text
         for at, new in ({path: value} if isinstance(path, str) else path).items():
-            text = changed(read_source(text.encode("utf-8", "surrogatepass"), str(self.path)), at, new)
+            source = read_source(text.encode("utf-8", "surrogatepass"), str(self.path))
+            text = changed(source, self.written(self.present(at)), new)
         return load_text(text, self.path)
 
     def save(self, path: str | PathLike[str]) -> None:
@@ -113,6 +118,7 @@ class Recipe:
 
     def locate(self, path: str) -> tuple[int, int]:
         """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
+        path = self.written(path)
         while path and path not in self.marks:
             path = path[: max(path.rfind("."), path.rfind("["), 0)]
         return self.marks.get(path, (1, 1))
@@ -120,7 +126,23 @@ class Recipe:
     def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
         """Make the error that a later stage raises about a field, with the field's place in the file."""
         line, column = self.locate(path)
-        return RecipeErrors([RecipeError(str(self.path), line, column, path, problem, value, remedy)])
+        return RecipeErrors([RecipeError(str(self.path), line, column, self.written(path), problem, value, remedy)])
+
+    def written(self, path: str) -> str:
+        """Give a path as the recipe has it, with a former key where one stands."""
+        return as_written(path, self.renamed)
+
+    def present(self, path: str) -> str:
+        """Give the path of a field of cam or linkage with present keys in the place of former ones."""
+        linkage = "" if self.linkage is None else self.linkage.kind
+        return present(RECIPE, path, {"cam": self.cam.kind, "linkage": linkage})
+
+    def text_with(self, values: collections.abc.Mapping[str, float]) -> str:
+        """Give the recipe's text with other numbers by their paths, by former keys or present ones.
+
+        Raises ValueError and RecipeErrors as `camgeo.recipe.schema.edit.with_values` does.
+        """
+        return with_values(self.text, {self.written(self.present(path)): value for path, value in values.items()})
 
 
 RECIPE = Table(
@@ -212,7 +234,7 @@ def read_values(reader: Reader) -> Values:
         last = kind_of(dyads.items[-1], DYADS)
     if (family := FAMILIES.get(reader.kinds["cam"])) is not None:
         cam = family.of(top["cam"])
-        own = ((Kind.STROKE, cam.unit), (Kind.ERROR, cam.unit), (Kind.PLAY, cam.play_unit))
+        own = ((Kind.STROKE, cam.unit), (Kind.ERROR, cam.unit), (Kind.BACKLASH, cam.backlash_unit))
         reader.angular |= {kind for kind, unit in own if unit == "deg"}
         reader.offers = cam.offers
     if last not in SLIDING:

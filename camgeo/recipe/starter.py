@@ -35,7 +35,7 @@ def _roller(title: str, ratio: str, route: str, given: str | Given) -> _Starter:
     return _Starter(title, "double-roller", {"ratio": ratio, "arm": "60", "roller_radius": "8", route: given})
 
 
-_PIVOT: Given = {"pivot": "[10, 4]"}
+_SHAFT: Given = {"shaft": "[10, 4]"}
 # Figures 9a and 13a of AS 2023: what their outputs do around 3 pi/2 and pi no plain four-bar can
 _DWELLING = "25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)"
 _FOUR_BAR: Given = {
@@ -44,22 +44,22 @@ _FOUR_BAR: Given = {
 }
 _STARTERS = {
     "support": _Starter(
-        "A cam from a formula for its support function.", "support", {"p": "25 + 2*cos(3*t)", **_PIVOT}
+        "A cam from a formula for its support function.", "support", {"p": "25 + 2*cos(3*t)", **_SHAFT}
     ),
     "fourier": _Starter(
         "A cam from a Fourier series; odd harmonics alone give constant breadth.",
         "support",
-        {"fourier": {"mean": "25", "cos": "{3: 1.5}", "sin": "{5: 0.3}"}, **_PIVOT},
+        {"fourier": {"mean": "25", "cos": "{3: 1.5}", "sin": "{5: 0.3}"}, **_SHAFT},
     ),
     "reuleaux": _Starter(
         "A regular Reuleaux polygon with rounded corners.",
         "support",
-        {"reuleaux": {"sides": "3", "breadth": "50", "rounding": "5"}, **_PIVOT},
+        {"reuleaux": {"sides": "3", "breadth": "50", "rounding": "5"}, **_SHAFT},
     ),
     "hypocycloid": _Starter(
         "The parallel curve of a hypocycloid.",
         "support",
-        {"hypocycloid": {"cusps": "3", "size": "2", "breadth": "50"}, **_PIVOT},
+        {"hypocycloid": {"cusps": "3", "size": "2", "breadth": "50"}, **_SHAFT},
     ),
     "constant-breadth": _Starter(
         "A cam between two parallel faces, from its motion over one half turn.",
@@ -98,13 +98,13 @@ _STARTERS = {
     "four-bar": _Starter(
         "A cam in a square frame, the frame the coupler of a four-bar that dwells.",
         "support",
-        {"p": _DWELLING, "pivot": "[18, 8.5]"},
+        {"p": _DWELLING, "shaft": "[18, 8.5]"},
         _FOUR_BAR,
     ),
     "inverted-slider-crank": _Starter(
         "A cam in a square frame that slides on a rocker, which dwells.",
         "support",
-        {"p": _DWELLING, "pivot": "[18.5, 8.5]"},
+        {"p": _DWELLING, "shaft": "[18.5, 8.5]"},
         {
             "linkage": {"kind": "inverted-slider-crank", "ground": "130", "rocker": "70"},
             "dwell": {"band": "0.1", "at_least": "35"},
@@ -113,18 +113,18 @@ _STARTERS = {
     "slider-crank": _Starter(
         "A cam in a square frame, the frame the coupler of a slider-crank.",
         "support",
-        {"hypocycloid": {"cusps": "3", "size": "2", "breadth": "50"}, **_PIVOT},
+        {"hypocycloid": {"cusps": "3", "size": "2", "breadth": "50"}, **_SHAFT},
         {"linkage": {"kind": "slider-crank", "coupler": "75", "offset": "5"}, "dwell": {"band": "0.1"}},
     ),
     "sweep": _Starter(
         "A search for a longer dwell of a four-bar.",
         "support",
-        {"p": _DWELLING, "pivot": "[18, 8.5]"},
+        {"p": _DWELLING, "shaft": "[18, 8.5]"},
         {
             **_FOUR_BAR,
             "sweep": {
                 "vary": (
-                    "\n    cam.pivot[0]: {from: 16, to: 20, steps: 9}"
+                    "\n    cam.shaft[0]: {from: 16, to: 20, steps: 9}"
                     "\n    linkage.rocker: {from: 95, to: 110, steps: 16}"
                 ),
                 "limits": "{radius-of-curvature: {at_least: 3}, transmission-angle: {at_least: 30}}",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.figures import FIGURES as EVERY
-from camgeo.recipe.figures import FORM, NEEDS, Limit, build_limits, there
+from camgeo.recipe.figures import FORM, NEEDS, PRESENT, Limit, build_limits, there
 from camgeo.recipe.schema.errors import shown, suggestion
 from camgeo.recipe.schema.fields import (
     MOST_AXES,
@@ -20,6 +20,7 @@ from camgeo.recipe.schema.fields import (
     Kind,
     Table,
     field_at,
+    present,
 )
 from camgeo.recipe.schema.json_schema import number_schema, table_schema
 from camgeo.recipe.schema.yaml_source import Mapping, Sequence, described, entries, join, scalars
@@ -65,6 +66,9 @@ class Sweep:
 
 FIGURES = {name: figure for name, figure in EVERY.items() if figure.swept}
 """The figures that a sweep knows."""
+
+
+_FORMER = tuple((former, name) for former, name in PRESENT.items() if name in FIGURES)
 
 
 RANGE = Table(
@@ -148,9 +152,17 @@ SWEEP = (
         "figures that a design must keep within bounds",
         default="none",
         choices=tuple(FIGURES),
+        former_choices=_FORMER,
         form=FORM,
     ),
-    Field("rank", Kind.CHOICE, "the figure to be best in", required=True, choices=tuple(FIGURES)),
+    Field(
+        "rank",
+        Kind.CHOICE,
+        "figure by which the designs are ranked",
+        required=True,
+        choices=tuple(FIGURES),
+        former_choices=_FORMER,
+    ),
     Field("keep", Kind.INTEGER, "number of best designs that become recipes", default="10", at_least=1, at_most=1000),
     Field(
         "angles",
@@ -171,18 +183,27 @@ def check_sweep(sweep: Values, reader: Reader) -> None:
     """Note the faults of a sweep that was read."""
     _figures(sweep, reader)
     axes: list[Values] = sweep.get("vary", [])
-    design = [path for path in reader.numbers if path.startswith(_VARIED)]
+    design = [reader.written(path) for path in reader.numbers if path.startswith(_VARIED)]
     counts = Counter(id(scalar) for _, scalar in scalars(reader.source.root))
     shared = {path for path, scalar in scalars(reader.source.root) if counts[id(scalar)] > 1}
     for axis in axes:
-        if axis["path"] not in design:
+        path = _as_written(axis, reader)
+        if path not in design:
             _no_number(axis, design, reader)
-        elif axis["path"] in shared:
+        elif path in shared:
             remedy = "write the number out wherever it is meant"
             reader.fault_at(axis["at"], "a number that an alias shares with other fields", None, remedy)
         else:
             _values(axis, reader)
     _method(sweep, axes, reader)
+
+
+def _as_written(axis: Values, reader: Reader) -> str:
+    """Give the path of an axis as the number itself has it, and take notice of a former key in it."""
+    found = present(reader.root, axis["path"], reader.kinds)
+    if found != axis["path"]:
+        reader.notice(reader.marks[axis["at"]], axis["path"].partition("[")[0], found.partition("[")[0])
+    return reader.written(found)
 
 
 def _figures(sweep: Values, reader: Reader) -> None:
@@ -199,11 +220,11 @@ def _figures(sweep: Values, reader: Reader) -> None:
 
 def _no_number(axis: Values, design: list[str], reader: Reader) -> None:
     """Say why there is nothing to vary at a path."""
-    path, at = axis["path"], axis["at"]
+    path, at = _as_written(axis, reader), axis["at"]
     if any(error.path == path for error in reader.errors):  # a number, but a faulty one
         return
     such = f", such as {design[0]}" if design else ""
-    if path in reader.numbers:
+    if path in map(reader.written, reader.numbers):
         reader.fault_at(at, "no figure of a design depends on it", None, f"vary numbers of cam and linkage{such}")
     elif path in reader.marks:
         within = next((one for one in design if one.startswith((f"{path}.", f"{path}["))), None)
@@ -213,7 +234,7 @@ def _no_number(axis: Values, design: list[str], reader: Reader) -> None:
         reader.fault_at(at, "the recipe gives it no value", None, "give it a value first, which the sweep replaces")
     else:
         reader.fault_at(
-            at, "no such field", shown(path), suggestion(path, design) or f"give the path of a number{such}"
+            at, "unknown field", shown(axis["path"]), suggestion(path, design) or f"give the path of a number{such}"
         )
 
 
@@ -231,7 +252,7 @@ def _is_absent(path: str, reader: Reader) -> bool:
 def _values(axis: Values, reader: Reader) -> None:
     """Note values that the field itself would refuse."""
     path, at = axis["path"], axis["at"]
-    field = reader.numbers[path]
+    field = reader.numbers[present(reader.root, path, reader.kinds)]
     whole = field.kind is Kind.INTEGER
     if "values" in axis:
         given = {f"{at}[{i}]": value for i, value in enumerate(axis["values"])}

@@ -8,11 +8,11 @@ from camgeo.checks.declared import (
     CHAMFER,
     CLEARANCE,
     CURVATURE,
+    LEAST_BACKLASH,
     MOBILITY,
-    PLAY,
     PRESSURE,
+    RATIO,
     REVERSAL,
-    TRANSMISSION,
     WALL,
 )
 
@@ -22,9 +22,9 @@ STRICT: dict[str, float | None] = {
     WALL.name: 0.0,
     MOBILITY.name: 0.0,
     REVERSAL.name: 0.0,
-    PLAY.name: 0.0,
+    LEAST_BACKLASH.name: 0.0,
     CLEARANCE.name: 0.0,
-    TRANSMISSION.name: 1.0,
+    RATIO.name: 1.0,
     PRESSURE.name: 90.0,
 }
 """Checks that a figure on its limit does not hold, and the one limit for which that is so (None: any)."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from camgeo import __version__
+from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
 from camgeo.recipe.export import NO_CONTOUR, NO_PART
 from camgeo.report.bound import is_strict, sign, words
@@ -142,6 +143,8 @@ def _check(recipe: Recipe, check: Check) -> dict[str, Any]:
         "sense": check.sense,
         "at_deg": check.at_deg,
     }
+    if check.name in EVERY and EVERY[check.name].formerly:
+        entry["formerly"] = EVERY[check.name].formerly
     if check.file is not None:
         entry["file"] = check.file
     if check.detail:

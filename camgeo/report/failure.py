@@ -24,8 +24,8 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
         ("at", "" if check["at_deg"] is None else f"{check['at_deg']:.4f} deg of shaft angle"),
         ("file", check.get("file", "")),
         ("found", check.get("detail", "")),
-        ("would do", remedy(check, report, recipe)),
-        ("recipe", f"{shown or recipe.path}:{line}:{column} {field}"),
+        ("remedy", remedy(check, report, recipe)),
+        ("recipe", f"{shown or recipe.path}:{line}:{column} {recipe.written(field)}"),
     ]
     return headline(check) + "".join(f"{INDENT}{name:<9}{text}" for name, text in rows if text)
 

@@ -7,8 +7,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.checks.declared import CHECKS, CLEARANCE, COLLISION, CURVATURE, FACE, PLAY, PRESSURE, STANDS, WALL
-from camgeo.checks.declared import TRANSMISSION as STEEPEST
+from camgeo.checks.declared import (
+    CHECKS,
+    CLEARANCE,
+    COLLISION,
+    CURVATURE,
+    LEAST_BACKLASH,
+    PRESSURE,
+    RATIO,
+    STANDS,
+    TRAVEL,
+    WALL,
+)
 from camgeo.recipe.figures import DWELL, FIGURES, HOLLOW_RADIUS, PEAKS, PITCH_RADIUS, RADIUS, SIZE
 from kin.numeric.angles import TURN
 
@@ -28,7 +38,7 @@ POINTS = 4096  # of each run of a contour, among which the farthest from the sha
 _CLOSER = 64  # points about the farthest, once more
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
-_OF_CHECKS = {one.name: one for one in (PRESSURE, STEEPEST, FACE, WALL, CLEARANCE, COLLISION)}
+_OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, TRAVEL, WALL, CLEARANCE, COLLISION)}
 
 
 class Measured(NamedTuple):
@@ -99,7 +109,7 @@ def _hollow_radius(design: Design) -> Measured:
         return NO_CONTOUR
     radius, at = least_hollow(design.contour)
     if math.isinf(radius):
-        return Measured(radius, "mm", detail="the contour has no hollow")
+        return Measured(radius, "mm", detail="the contour has no concave part")
     return Measured(radius, "mm", design.position.shaft_deg(at))
 
 
@@ -152,7 +162,7 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
             lambda t: position.by_parameter(t, order), between(0.0, TURN, design.intent.breaks.tolist()), share=_SHARE
         )
     except RoughError:
-        why = "the motion is too sudden to be followed"
+        why = "the motion changes too abruptly to be resolved"
         return {name: Measured(None, unit + FIGURES[name].per, detail=why) for name in names}
     found: dict[str, Measured] = {}
     for name in names:
@@ -212,9 +222,11 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
         error = None if file.linkage is None else file.linkage.error
         return Measured(None, "", detail=unread) if error is None else Measured(error.max, error.unit, error.at_deg)
     if name == "backlash":
-        play = [one for one in checks if one.file == file.path.name and one.name in CHECKS and CHECKS[one.name].play]
+        held = [
+            one for one in checks if one.file == file.path.name and one.name in CHECKS and CHECKS[one.name].backlash
+        ]
         lost = "a single flat face has no backlash, and of a trimmed contour it is not judged"
-        return _of_check(max(play, key=_nearness)) if play else Measured(None, "mm", detail=lost)
+        return _of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=lost)
     if motion is None:
         return Measured(None, "", detail=unread)
     if name == "dwell-error":
@@ -224,8 +236,8 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
 
 def of_dynamics(name: str, section: Mapping[str, Any], checks: Sequence[Check]) -> dict[str | None, Measured]:
     """Measure a figure of each run of the dynamics, by the file that drives it, None for the intended motion."""
-    if name == PLAY.name:
-        return {check.file: _of_check(check) for check in checks if check.name == PLAY.name}
+    if name == LEAST_BACKLASH.name:
+        return {check.file: _of_check(check) for check in checks if check.name == LEAST_BACKLASH.name}
     kind, found = name.partition("-")[0], {}
     for run in section["runs"]:
         steady = run.get("steady") or {}

@@ -67,6 +67,8 @@ def _held(
         ok = value is not None and (value >= bound - slack if sense == "at_least" else value <= bound + slack)
         detail = measured.detail if value is None or math.isinf(value) else ""
         if value is not None and not ok:
-            detail = f"{of_limit(recipe, limit.figure, Missed(value, bound, measured.unit, tolerance))} would do"
+            detail = (
+                f"{of_limit(recipe, limit.figure, Missed(value, bound, measured.unit, tolerance))} would satisfy it"
+            )
         found.append(Check(LIMIT + limit.figure, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail))
     return found

@@ -144,13 +144,16 @@ def _file(recipe: Recipe, name: str, verdict: LinkageVerdict) -> dict[str, Any]:
         "path": name,
         "error": _error(recipe, verdict.error),
         "centred": _error(recipe, verdict.centred),
-        "play_across": _play(recipe, verdict.play_across),
-        "play_along": _play(recipe, verdict.play_along),
+        "backlash_across": _backlash(recipe, verdict.play_across),
+        "backlash_along": _backlash(recipe, verdict.play_along),
+        # by their former names too, in this version
+        "play_across": _backlash(recipe, verdict.play_across),
+        "play_along": _backlash(recipe, verdict.play_along),
         "shaft_rate": verdict.least_rate,
     }
 
 
-def _play(recipe: Recipe, play: Play) -> dict[str, Any]:
+def _backlash(recipe: Recipe, play: Play) -> dict[str, Any]:
     least, unit = in_units(recipe, play.least, play.unit)
     most, _ = in_units(recipe, play.most, play.unit)
     return {"min": least, "min_at_deg": play.least_at_deg, "max": most, "max_at_deg": play.most_at_deg, "unit": unit}

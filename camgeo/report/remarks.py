@@ -68,7 +68,7 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
     stroke, arm = _stroke(design)
     length = stroke * arm
     if length <= STILL * design.profile.curve.size:
-        return [Remark("no-motion", 0.0, None, "mm", "the follower stands still all round")]
+        return [Remark("no-motion", 0.0, None, "mm", "the follower does not move at all")]
     files = [request for request in recipe.export.files if request.kind not in NO_CONTOUR]
     tolerance = max((request.tolerance or recipe.export.tolerance for request in files), default=0.0)
     found = [_share(recipe, "coarse-tolerance", ("the tolerance", tolerance), length)]

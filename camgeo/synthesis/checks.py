@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from camgeo.cams.flat_faced import SAME_BREADTH, breadth_of, spread
-from camgeo.checks.declared import BREADTH, CLOSING, DIAMETER, FACE, PRESSURE, TRANSMISSION
+from camgeo.checks.declared import BREADTH, CLOSING, DIAMETER, PRESSURE, RATIO, TRAVEL
 from kin.judge.check import Check
 from kin.law.feasibility import steepest
 from kin.numeric.angles import degrees
@@ -43,7 +43,7 @@ def _face_length(cam: Cam, intent: Intent, profile: Profile) -> Check:
     t = spread(intent.breaks, 2.0 * math.pi)
     low = _greatest(lambda u: -place(u), t)  # continuous too
     high = _greatest(place, t)
-    return Check(FACE.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
+    return Check(TRAVEL.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 
 
 def _closing_equation(_: Cam, intent: Intent, __: Profile) -> Check:
@@ -67,7 +67,7 @@ def _transmission(_: Cam, intent: Intent, __: Profile) -> Check:
     """How near the cam is to turning back: psi' of the shaft angle stays below 1."""
     law = cast("Transmission", intent)
     at, value = steepest(law)
-    return Check(TRANSMISSION.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))
+    return Check(RATIO.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))
 
 
 def _pressure_angle(cam: Cam, intent: Intent, profile: Profile) -> Check:
@@ -111,9 +111,9 @@ def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
 MADE: dict[str, Callable[[Cam, Intent, Profile], Check]] = {
     BREADTH.name: _constant_breadth,
     DIAMETER.name: _constant_diameter,
-    FACE.name: _face_length,
+    TRAVEL.name: _face_length,
     CLOSING.name: _closing_equation,
-    TRANSMISSION.name: _transmission,
+    RATIO.name: _transmission,
     PRESSURE.name: _pressure_angle,
 }
 """How each check of an intended motion is made."""

@@ -143,7 +143,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
         try:
             outcome, contour = "; trimmed", _trimmed(profile.curve)
         except UndercutError as error:
-            outcome = f"; it cannot be trimmed: {error}"
+            outcome = f"; trimming is not possible: {error}"
     if not (roomy or found):
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
     # of a trimmed contour the radius that was asked for is told, and held against nothing
@@ -184,9 +184,9 @@ def _unproved(recipe: Recipe, error: CurveError, intent: Intent) -> str:
     most, least = error.most / recipe.mm, error.least / recipe.mm
     half = f"lies between {least:.9g} and {most:.9g}" if error.seen else f"is at least {least:.9g}"
     return (
-        f"whether a roller radius of {most:.9g} is free of undercut between {first:.6g} and {second:.6g} deg cannot be "
+        f"whether a roller radius of {most:.9g} has no undercut between {first:.6g} and {second:.6g} deg cannot be "
         f"proved: half the width of the neck there {half}; "
-        f"{f'one below {downward(least)}' if least > 0.0 else 'none'} is proved to be free of it"
+        f"{f'one below {downward(least)}' if least > 0.0 else 'none'} is proved to have no undercut"
     )
 
 

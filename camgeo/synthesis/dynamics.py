@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from camgeo.checks.declared import FLOAT, PLAY
+from camgeo.checks.declared import FLOAT, LEAST_BACKLASH, STANDS
 from kin.judge.check import Check, about, failed
 from kin.numeric.angles import degrees
 
@@ -88,7 +88,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
     sources: list[Path | None] = [None]
     if recipe.linkage is None:
         sources += [path for path in files if path.suffix.lstrip(".") in KINDS]
-    scene = _scene(recipe, asked, design, _Purse(len(sources), each=1 if asked.play is not None else 2), units)
+    scene = _scene(recipe, asked, design, _Purse(len(sources), each=1 if asked.backlash is not None else 2), units)
     entries: list[dict[str, Any]] = []
     checks: list[Check] = []
     for path in sources:
@@ -100,7 +100,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
             if path is None:
                 raise recipe.error("dynamics", str(error)) from error
             entry = {"from": path.name}
-            check = failed((FLOAT if asked.play is None else PLAY).name, str(error), unit="N", limit=0.0)
+            check = failed((FLOAT if asked.backlash is None else LEAST_BACKLASH).name, str(error), unit="N", limit=0.0)
         entries.append(entry)
         checks.append(check if path is None else about(check, path.name))
     train = scene.train
@@ -127,11 +127,11 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn
         swings, found = follower.unit == "deg", follower.rests
     else:
         if not design.driven.turns:
-            raise recipe.error("dynamics", "the mechanism does not turn: it has no motion over the shaft angle")
+            raise recipe.error("dynamics", STANDS)
         swings = design.driven.mechanism.unit == "deg"
         found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
-    if asked.play is not None and design.yoke_breadth is None and not swings:
-        raise recipe.error("dynamics.play", "a single flat face has no play", None, "give preload")
+    if asked.backlash is not None and design.yoke_breadth is None and not swings:
+        raise recipe.error("dynamics.backlash", "a single flat face has no backlash", None, "give preload")
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
     return _Scene(recipe, asked, train, purse, found, unit, name, drawn)
@@ -145,7 +145,7 @@ def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
     if design.driven is not None:
         return Faces(OfMechanism(design.driven.mechanism), None)
     intent = intended(scene.recipe, design)
-    play = scene.asked.play
+    play = scene.asked.backlash
     if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
         play = intent.follower.moved_by(play)
     if path is None:
@@ -183,7 +183,7 @@ def _one(scene: _Scene, design: Design, path: Path | None) -> tuple[dict[str, An
     found = drives([face for face in faces if face is not None], ends)
     entry: dict[str, Any] = {"from": "intended" if path is None else path.name}
     if len(found) > 1:
-        return _with_play(scene, entry, found[0], found[1])
+        return _with_backlash(scene, entry, found[0], found[1])
     return _with_spring(scene, entry, found[0])
 
 
@@ -216,7 +216,7 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
     return entry, Check(FLOAT.name, least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
 
 
-def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
+def _with_backlash(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
     from kin.dynamics.events import LOWER, UPPER
     from kin.dynamics.impacts import course, least_gap
     from kin.dynamics.train import DynamicsError
@@ -232,10 +232,10 @@ def _with_play(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive)
         bore = followed.turns[-1].bore
         entry["impacts"]["faces"] = [name for name, face in (("lower", LOWER), ("upper", UPPER)) if face in bore]
         if not bore:
-            detail = "the follower touches neither face: the play is more than the cam moves"
+            detail = "the follower touches neither face: the backlash exceeds the cam's motion"
     swings = scene.name == "deg"
     value, unit = (math.degrees(least), "deg") if swings else (1e3 * least, "mm")
-    return entry, Check(PLAY.name, least > 0.0, value, 0.0, unit, degrees(at), "at_least", detail=detail)
+    return entry, Check(LEAST_BACKLASH.name, least > 0.0, value, 0.0, unit, degrees(at), "at_least", detail=detail)
 
 
 def _steady(scene: _Scene, found: Steady) -> dict[str, Any]:

@@ -32,7 +32,7 @@ def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
     scene, files = Scene(recipe, _follower(recipe)), recipe.export.files
     found = [Foreseen(one.name) for one in EVERY.values() if one.exact is not None and one.exact(scene)]
     # of a file, what its contour is in itself comes before what is left between it and the follower
-    in_turn = sorted(EVERY.values(), key=lambda one: one.play or one.exact is not None)
+    in_turn = sorted(EVERY.values(), key=lambda one: one.backlash or one.exact is not None)
     for request in files:
         file = request.filename(recipe.name, files)
         made = (one.name for one in in_turn if one.of_file is not None and one.of_file(scene, request))

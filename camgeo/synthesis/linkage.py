@@ -58,7 +58,7 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
 def mobility_checks(mechanism: Mechanism) -> list[Check]:
     """That every loop closes all round (AS after eq. 18), and that the shaft never has to turn back.
 
-    Where the mechanism does not turn right round there is no shaft angle: the places are then told by the detail alone.
+    Where the mechanism does not make a full turn there is no shaft angle: the places are then told by the detail alone.
     """
     found = mechanism.mobility()
     loop = "the linkage" if found.loop == 0 else f"dyad {found.loop}"
@@ -116,7 +116,7 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
     """Mechanism of a recipe that has a linkage, with its checks; `breadth` (mm) is that of the cam, None if it varies.
 
     Raises RecipeErrors where no square frame holds the cam, or the shaft does not lie within it, where a dyad's output
-    would not swing, a band is lost in rounding, or the motion is too sudden to be followed.
+    would not swing, a band is lost in rounding, or the motion changes too abruptly to be resolved.
     """
     if breadth is None:
         remedy = "give p odd harmonics alone, or take another kind of cam"
@@ -127,13 +127,13 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
         mechanism = mechanism_of(recipe, lift, breadth)
     except RoughError as error:
         at = math.degrees(error.at % TURN)
-        problem = f"its motion is too sudden for a linkage's to be followed, near {at:.6g} degrees"
+        problem = f"its motion changes too abruptly for that of a linkage to be resolved, near {at:.6g} degrees"
         raise recipe.error("cam", problem, None, "give p fewer or lower waves") from error
     try:
         return _driven(recipe, mechanism)
     except RoughError as error:
         at = math.degrees(error.at % TURN)
-        problem = f"the motion is too sudden to be followed, near a relative angle of {at:.6g} degrees"
+        problem = f"the motion changes too abruptly to be resolved, near a relative angle of {at:.6g} degrees"
         remedy = "keep its loops farther from binding, or give p fewer waves"
         raise recipe.error("linkage", problem, None, remedy) from error
 

@@ -160,7 +160,7 @@ def clearances(
     asked = {frozenset((one.a, one.b)): one for one in allowed}
     for pair in asked:
         if len(pair) != 2 or not pair <= set(names):
-            raise ValueError(f"no such pair of bodies: {' and '.join(sorted(pair))}")
+            raise ValueError(f"unknown pair of bodies: {' and '.join(sorted(pair))}")
     found = []
     for one, other in combinations(movers, 2):
         wanted = asked.get(frozenset((one.name, other.name)), Allowed(one.name, other.name, gap))

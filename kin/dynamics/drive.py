@@ -151,7 +151,7 @@ def drives(motions: Sequence[Motion], also: Sequence[float] | Array = (), tolera
             worst = int(np.argmax((tail / least).max(axis=0)))
             reached = float((tail / least)[:, worst].max())
             raise DriveError(
-                f"the acceleration is followed within {reached:.2g} of its greatest, no closer", low[worst]
+                f"the acceleration is followed within {reached:.2g} of its greatest, not better", low[worst]
             )
         width = np.repeat(0.5 * width[open_], 2)
         low, before = np.repeat(low[open_], 2), np.repeat(tail[:, open_], 2, axis=1)

@@ -124,7 +124,7 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
     """
     contacts, drives = follower.contacts, follower.drives(contour)
     if play is not None and len(contacts) == 1:
-        raise ValueError("a follower of one contact has no play")
+        raise ValueError("a follower of one contact has no backlash")
     si = contacts[0].guide.si
     if play is None:
         return Faces(Moved(drives[0], 1.0, -si * contacts[0].zero), None)

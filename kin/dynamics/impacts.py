@@ -109,7 +109,7 @@ class _Course:
             least, at = least_gap(self.lower, self.upper)
             if least <= 0.0:
                 where = math.degrees(at) % 360.0
-                raise DynamicsError(f"no play is left at {where:.6g} degrees: {least:.3g} m or rad")
+                raise DynamicsError(f"no backlash is left at {where:.6g} degrees: {least:.3g} m or rad")
             self.found[UPPER] = running.response(self.upper)
             rows = (self.upper.position - self.lower.position, self.upper.velocity - self.lower.velocity)
             self.gap = np.stack(rows, axis=1)

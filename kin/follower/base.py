@@ -107,7 +107,7 @@ class Closure:
         if self.breadth is not None:
             return f"breadth {self.breadth - play.most:.9g} to {self.breadth - play.least:.9g} mm"
         sampled = ", sampled" if play.extremes == "sampled" else ""
-        return f"play from {play.least:.3g} to {play.most:.3g} {play.unit}{sampled}"
+        return f"backlash from {play.least:.3g} to {play.most:.3g} {play.unit}{sampled}"
 
 
 class Follower(ABC):

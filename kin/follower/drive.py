@@ -139,7 +139,7 @@ class OfRoller:
     def _met(self, phi: Array) -> tuple[Array, Indices]:
         r, piece = first_contact(self.obstacle, self.guide, phi + self.turned)
         if (piece < 0).any():
-            raise ContactError("the roller meets nothing", float(phi[int(np.argmin(piece))]))
+            raise ContactError("the roller does not touch the contour", float(phi[int(np.argmin(piece))]))
         return r, piece
 
     def rows(self, phi: Array) -> Array:

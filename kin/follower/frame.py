@@ -154,7 +154,7 @@ def judge_frame(
     try:
         return _judged(contour, mechanism, shaft, tolerance, band=band, over=over)
     except UnsettledError as error:
-        raise FrameError(f"the error of the output cannot be told: {error}") from error
+        raise FrameError(f"the error of the output cannot be determined: {error}") from error
 
 
 def _judged(

@@ -1,6 +1,6 @@
 """The longest dwell of an output that has thousands of breaks, as a polygon gives it, without looking everywhere.
 
-Blocks of the period are told apart by the least and greatest value at their nodes. Runs of whole blocks that surely
+Blocks of the period are separated by the least and greatest value at their nodes. Runs of whole blocks that surely
 stay within the band say how long the longest window is at least; runs that cannot be excluded and are long enough say
 where it may begin and end. Only there the output is followed exactly (`kin.numeric.longest_window`). What every such
 window contains counts by its extremes alone, and the rest of the period not at all.

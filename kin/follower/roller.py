@@ -350,7 +350,7 @@ def _touched(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
     """Distance from the shaft of a roller held in contact, and the piece it meets, at shaft angles phi (n,)."""
     r, piece = first_contact(obstacle, guide, phi)
     if (piece < 0).any():
-        raise ContactError("the roller meets nothing", float(phi[int(np.argmin(piece))]))
+        raise ContactError("the roller does not touch the contour", float(phi[int(np.argmin(piece))]))
     return r, piece
 
 

@@ -285,8 +285,9 @@ def _band_less_sure(asked: DwellAsked, mechanism: Mechanism, off: float) -> floa
 def _output_check(found: LinkageVerdict, limits: Limits, slack: float) -> Check:
     error, across, along = found.error, found.play_across, found.play_along
     detail = (
-        f"{found.centred.max:.3g} {error.unit} with the frame centred; play {across.least:.3g} to {across.most:.3g} mm "
-        f"across, {along.least:.3g} to {along.most:.3g} mm along the frame"
+        f"{found.centred.max:.3g} {error.unit} with the frame centred; "
+        f"backlash {across.least:.3g} to {across.most:.3g} mm across, "
+        f"{along.least:.3g} to {along.most:.3g} mm along the frame"
     )
     limit = found.limit if limits.output is None else limits.output
     if limit is None:
@@ -311,9 +312,9 @@ def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float) -
     if bore is None:
         if not holes:
             return None
-        return failed("bore", f"{len(holes)} hole(s), where none is meant to be", unit="mm", limit=tolerance)
+        return failed("bore", f"{len(holes)} hole(s), where none is expected", unit="mm", limit=tolerance)
     if len(holes) != 1:
-        detail = f"{len(holes)} holes, where one of diameter {bore:.9g} mm is meant to be"
+        detail = f"{len(holes)} holes, where one of diameter {bore:.9g} mm is expected"
         return failed("bore", detail, unit="mm", limit=tolerance)
     return round_check("bore", holes[0], bore, tolerance)
 

@@ -111,7 +111,7 @@ def tally(
             kind = alike[0].kind
         else:
             kind = "holes" if "holes" in tallies or len(tallies) > 1 else next(iter(tallies), "bore")
-        fault = f"an opening of {abs(contour.area):.6g} mm^2 about ({x:.6g}, {y:.6g}){where}, where none is meant to be"
+        fault = f"an opening of {abs(contour.area):.6g} mm^2 about ({x:.6g}, {y:.6g}){where}, where none is expected"
         tallies.setdefault(kind, Tally()).faults.append(fault)
 
 

@@ -138,7 +138,7 @@ def slotted(outline: Hole, hole: Hole, at: float, half: float) -> Contour:
     out_x, out_piece = reach(outer, ends)
     in_x, in_piece = reach(inner, ends)
     if not np.isfinite([*out_x, *in_x]).all():
-        raise ValueError("the slot does not meet both outlines")
+        raise ValueError("the slot does not reach both outlines")
     outside = _part(outer, (float(out_x[0]), half, int(out_piece[0])), (float(out_x[1]), -half, int(out_piece[1])))
     inside = _part(inner, (float(in_x[0]), half, int(in_piece[0])), (float(in_x[1]), -half, int(in_piece[1])))
     # round the outline, in along the lower side, back round the hole, out along the upper side

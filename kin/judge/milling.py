@@ -176,7 +176,9 @@ def _cutter_check(program: Program, milling: Milling) -> Check:
         return Check("cutter", True, None, None, "mm", detail="the program names no cutter")
     diameter = named[0] * program.units_mm
     off, detail = abs(diameter - 2.0 * milling.radius), f"the program names {diameter:.9g} mm across"
-    return at_most("cutter", off, 1e-6 * milling.radius, "mm", detail=f"{detail}, {2.0 * milling.radius:.9g} are meant")
+    return at_most(
+        "cutter", off, 1e-6 * milling.radius, "mm", detail=f"{detail}, {2.0 * milling.radius:.9g} are expected"
+    )
 
 
 def _arcs_check(program: Program) -> Check:

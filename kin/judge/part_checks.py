@@ -83,13 +83,13 @@ def _faces(tallies: Tallies, solid: AnySolid, layers: Sequence[Layer], tolerance
             told.faults.append(f"no horizontal face at z = {z:.9g} mm")
             continue
         nearest = float(found[np.abs(found - z).argmin()])
-        told.measured(abs(nearest - z), f"a face at z = {nearest:.9g} mm, where {z:.9g} mm is meant")
+        told.measured(abs(nearest - z), f"a face at z = {nearest:.9g} mm, where {z:.9g} mm is expected")
     places = np.array([z for _, z in meant])
     for z in solid.faces:
         k = int(np.abs(places - z).argmin())
         if abs(float(places[k]) - z) > tolerance + SAME:
             kind = meant[k][0]
-            tallies[kind].faults.append(f"a horizontal face at z = {z:.9g} mm, where none is meant to be")
+            tallies[kind].faults.append(f"a horizontal face at z = {z:.9g} mm, where none is expected")
 
 
 def _section(tallies: Tallies, level: tuple[float, Layer], section: Section, intent: Intent, tolerance: float) -> None:
@@ -120,7 +120,7 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Section, int
     bore, *others = layer.holes
     told = tallies["set-screw"]
     if len(section.holes) != len(others):
-        fault = f"the section has {len(section.holes)} holes, {len(others)} are meant"
+        fault = f"the section has {len(section.holes)} holes, {len(others)} are expected"
         told.faults.append(f"{bored.name}{where}: {fault}")
         return
     meant = slotted(layer.outline, bore, bored.at, bored.half_width(z))

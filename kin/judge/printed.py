@@ -41,7 +41,7 @@ def judge_body(name: str, corners: Array, slabs: Sequence[Slab], tolerance: floa
     low, high = min(slab.low for slab in slabs), max(slab.high for slab in slabs)
     z = mesh.points[:, 2]
     off = max(abs(float(z.min()) - low), abs(float(z.max()) - high))
-    told = f"{name}: z from {z.min():.9g} to {z.max():.9g} mm, {low:.9g} to {high:.9g} mm is meant"
+    told = f"{name}: z from {z.min():.9g} to {z.max():.9g} mm, {low:.9g} to {high:.9g} mm is expected"
     checks = [
         at_most("watertight", sum(faults), 0, "faults", detail=name),
         at_most("thickness", off, tolerance, "mm", detail=told, slack=ROUNDING),

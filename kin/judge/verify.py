@@ -178,11 +178,11 @@ def _units_check(stated: float | None, given: float | None, intent: Intent, cont
     meant = intent.mm
     if stated is None and given is None:
         told = f"the drawing states no unit and is judged in that of the recipe, {meant:.9g} mm"
-        return failed("units", f"{told}; tell it by --units, such as --units mm", limit=UNITS_SHARE)
+        return failed("units", f"{told}; give it by --units, such as --units mm", limit=UNITS_SHARE)
     if stated is None:
         return Check("units", True, 0.0, UNITS_SHARE, "", detail=f"the file states no unit; {given:.9g} mm is given")
     off = abs(stated / meant - 1.0)
-    detail = f"a drawing unit is {stated:.9g} mm, {meant:.9g} mm is meant"
+    detail = f"a drawing unit is {stated:.9g} mm, {meant:.9g} mm is expected"
     if off > UNITS_SHARE:
         large = float(np.abs(contour.vertices).max() / np.abs(intent.follower.envelope.points(SIZED)).max())
         if abs(large * meant / stated - 1.0) > SIZE_SHARE or abs(large - 1.0) <= SIZE_SHARE:
@@ -250,10 +250,10 @@ def _thickness_check(solid: AnySolid, thickness: float, tolerance: float) -> Che
     Walls that only the rounding of the file's own numbers makes lean do stand upright; what they differ by is counted.
     """
     off = max(abs(solid.z_min), abs(solid.z_max - thickness))
-    detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, 0 to {thickness:.9g} mm is meant"
+    detail = f"z from {solid.z_min:.9g} to {solid.z_max:.9g} mm, 0 to {thickness:.9g} mm is expected"
     for unit, mm in OTHERS:
         if abs(mm * solid.thickness - thickness) <= 1e-3 * thickness:
-            detail += f"; as if drawn in {unit} and told as mm"
+            detail += f"; as if drawn in {unit} and stated as mm"
     if not solid.prism:
         return failed("thickness", f"the sections at different heights differ; {detail}", unit="mm", limit=tolerance)
     checked = at_most("thickness", off, tolerance, "mm", detail=detail, slack=ROUNDING * thickness)

@@ -43,7 +43,7 @@ def checked(law: Transmission, knots: Sequence[float], functions: Sequence[Stret
         _demand_possible(law, knots, functions, field)
         _demand_joined(law, field)
     except DomainError as error:
-        raise IntentError(f"there is no such law: {error.operation}", field) from error
+        raise IntentError(f"the law is not defined: {error.operation}", field) from error
     return law
 
 
@@ -137,7 +137,7 @@ def demand_leaf(x: Array, distance: Array, arm: float, most: float) -> None:
         raise IntentError(f"|OQ| is a distance; it is {distance[low]:.9g} mm at x = {x[low]:.6g}", field)
     if distance[high] >= most:
         raise IntentError(
-            f"|OQ| must stay below {most:.9g} mm, where an arm would meet the shaft or stretch out; it is "
+            f"|OQ| must stay below {most:.9g} mm, where an arm would reach the shaft or be fully stretched; it is "
             f"{distance[high]:.9g} mm at x = {x[high]:.6g}",
             field,
         )

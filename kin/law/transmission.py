@@ -175,7 +175,7 @@ def _least_concave(lam: int, mu: int, mean: float) -> float:
         raise IntentError(
             f"psi'(phi) must stay below 1, else the cam cannot be turned through; with a whole ratio such as {lam} a "
             "straight first line reaches 1 where it begins, and a concave arc of any radius more; a convex arc would "
-            "do, or a ratio such as 5/3",
+            "satisfy it, or a ratio such as 5/3",
             "arc.side",
             math.degrees(alpha / 2),
         )

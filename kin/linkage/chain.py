@@ -59,7 +59,7 @@ class Chain:
 
     def __post_init__(self) -> None:
         if self.dyads and self.dyads[0].on == "previous":
-            raise ValueError("the first dyad has no previous one to hang on")
+            raise ValueError("the first dyad has no previous one to be attached to")
 
     @property
     def unit(self) -> str:

@@ -215,7 +215,7 @@ Dyad = RRR | RRP | RPR
 
 def _demand_place(on: str, point: Point, numbers: tuple[float, ...]) -> None:
     if on not in {"output", "coupler", "previous"}:
-        raise ValueError(f"a dyad hangs on the output, the coupler or the previous dyad, not on {on!r}")
+        raise ValueError(f"a dyad is attached to the output, the coupler or the previous dyad, not to {on!r}")
     if not all(math.isfinite(number) for number in (*point, *numbers)):
         raise ValueError(f"the place of a dyad must be finite, not {(*point, *numbers)!r}")
 

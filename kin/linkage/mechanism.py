@@ -120,8 +120,8 @@ class Mechanism:
 
     `breadth` is that of the frame and the cam, mm; `chain` is all the links. ValueError if the first dyad hangs on a
     previous one. IntentError if the breadth is not above 0 or p(theta) + p(theta + pi) is not the breadth all round
-    (field "p"), or if the shaft is not within the cam (field "pivot"): on its edge is allowed; or if the point a dyad
-    hangs on goes right round the dyad's ground pivot (field "dyads").
+    (field "p"), or if the shaft is not within the cam (field "shaft"): on its edge is allowed; or if the point a dyad
+    is attached to circles the dyad's ground pivot (field "dyads").
     """
 
     linkage: Linkage
@@ -304,8 +304,8 @@ class Mechanism:
             x, y = self.chain.hung(self.chain.solve(s0, s01, found), loop)
             if len(theta) == _TABLE and abs(dyad.turned(x.c[0], y.c[0])) > math.pi:
                 raise IntentError(
-                    f"the point that dyad {loop + 1} hangs on goes right round the dyad's ground pivot: its output "
-                    "would turn on and on, not swing",
+                    f"the point that dyad {loop + 1} is attached to circles the dyad's ground pivot: its "
+                    "output would rotate, not oscillate",
                     "dyads",
                 )
             found = (*found, dyad.middle(x.c[0], y.c[0]))
@@ -357,7 +357,7 @@ class Mechanism:
             degrees = math.degrees(at) % 360
             raise IntentError(
                 f"the shaft lies outside the cam, by {-least:.6g} mm in the direction of {degrees:.6g} degrees",
-                "pivot",
+                "shaft",
                 degrees,
             )
 

@@ -87,7 +87,9 @@ def extremes(
         if not open_.any():
             break
         if halving == MOST_HALVINGS or 2 * np.count_nonzero(open_) > most:
-            raise UnsettledError(f"extremes cannot be told to {resolution:.3g}: rounding makes the function rougher")
+            raise UnsettledError(
+                f"extremes cannot be resolved to {resolution:.3g}: rounding makes the function rougher"
+            )
         low, high, at_low, at_high, owner = low[open_], high[open_], at_low[:, open_], at_high[:, open_], owner[open_]
         middle = 0.5 * (low + high)
         at_middle = evaluate(middle, owner)

@@ -29,7 +29,7 @@ def beside(bodies: Sequence[tuple[str, tuple[Array, Array] | None]], count: int,
     others = [told(*one) for k, one in enumerate(bodies) if k != part]
     more = f", and {count - len(bodies)} more" if count > len(bodies) else ""
     name = bodies[part][0]
-    message = f"it holds {count} bodies, where one is meant to be; beside {name} there is {'; '.join(others)}{more}"
+    message = f"it holds {count} bodies, where one is expected; beside {name} there is {'; '.join(others)}{more}"
     return ReadError("several", f"{message}; take out what does not belong", path)
 
 

@@ -88,7 +88,7 @@ def read_gcode(path: Path | str) -> Program:
     if not machine.ended:
         raise ReadError("truncated", "the program does not end: there is no M30 or M2", path)
     if not machine.moves:
-        raise ReadError("empty", "the program moves nothing", path)
+        raise ReadError("empty", "the program makes no move", path)
     return Program(path, tuple(machine.moves), machine.unit, tuple(machine.comments))
 
 
@@ -198,7 +198,7 @@ class _Machine:
                 raise self._refused(number, f"{letter} stands twice", "syntax")
             numbers[letter] = float(text)
             if not abs(numbers[letter]) <= LARGEST:
-                raise self._refused(number, f"{letter}{text} is beyond all measure", "range")
+                raise self._refused(number, f"{letter}{text} is out of range", "range")
         return numbers
 
     def _modes(self, number: int, codes: list[tuple[str, str]]) -> None:

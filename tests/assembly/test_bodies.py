@@ -20,7 +20,7 @@ def test_a_body_reaches_from_its_lowest_plate_to_its_highest():
 
 @pytest.mark.parametrize("name", ["", "Roller", "roller a", "../frame", "frame.stl", "-a"])
 def test_names_are_safe_in_file_names(name):
-    with pytest.raises(ValueError, match="is no name for a body"):
+    with pytest.raises(ValueError, match="is not a name for a body"):
         PrintBody(name, (PLATE,))
 
 

@@ -39,7 +39,7 @@ FIT = 0.002  # mm
 FLATTENED = 0.0005  # mm by which a shapely polygon of an outline is off, about
 PART = "part: {thickness: 8, bore: 8}\nexport: {files: [{3mf: {parts: all}}]}\n"
 HUBS = "part: {thickness: 8, bore: 8, hub: {diameter: 14, height: 6, side: both}}\n"
-AS_1 = "  p: 4*cos(3*t/2)**2 + 23\n  pivot: [16, 7.5]\n"
+AS_1 = "  p: 4*cos(3*t/2)**2 + 23\n  shaft: [16, 7.5]\n"
 SHAPES = {
     "yoke": f"cam:\n  kind: support\n{AS_1}",
     "flat face": "cam: {kind: support, p: 25 + 3*cos(2*t)}\n",
@@ -131,7 +131,7 @@ def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
                 for second, low_2, high_2 in there[other.name]:
                     apart = max(low, low_2) - min(high, high_2)
                     if apart < assembly.sizes.gap - 1e-9:
-                        least = assembly.sizes.play - FIT - FLATTENED
+                        least = assembly.sizes.gap_each_side - FIT - FLATTENED
                         assert first.distance(second) >= least, (one.name, other.name, phi)
 
 
@@ -225,7 +225,7 @@ def test_the_faces_of_a_yoke_stand_at_the_breadth_and_the_clearance() -> None:
     x0, _, x1, _ = frame.holes[0].box()
     assert design.yoke_breadth == pytest.approx(50.0)
     assert x1 - x0 == pytest.approx(50.0 + assembly.sizes.clearance, abs=1e-12)
-    assert x1 == pytest.approx(assembly.sizes.play)  # face 1 is at the intended place, half the clearance out
+    assert x1 == pytest.approx(assembly.sizes.gap_each_side)  # face 1 is at the intended place, half the clearance out
 
 
 def test_the_square_of_a_linkage_stands_at_the_breadth_and_the_clearance() -> None:
@@ -239,7 +239,7 @@ def test_the_pair_of_faces_stands_off_by_half_the_clearance() -> None:
     for plate in assembly.member("pair").plates[1:]:
         edge = np.roll(plate.outline.points, -1, axis=0) - plate.outline.points
         off = (plate.outline.points[:, 0] * edge[:, 1] - plate.outline.points[:, 1] * edge[:, 0]) / np.hypot(*edge.T)
-        assert np.abs(off).min() == pytest.approx(assembly.sizes.play)
+        assert np.abs(off).min() == pytest.approx(assembly.sizes.gap_each_side)
 
 
 def test_rollers_are_exactly_as_intended_and_turn_on_their_pins() -> None:
@@ -379,12 +379,12 @@ def test_a_bar_at_the_level_of_the_cam_is_caught() -> None:
     low, assembly = whole.member("cam").plates[0].low, only(whole, "frame", "rocker")
     planted = shifted(assembly, "rocker", low - assembly.member("rocker").plates[0].low)
     wrong = [check for check in collision_checks(planted) if not check.ok]
-    assert [check.detail.partition(" meet")[0] for check in wrong] == ["frame and rocker"]
+    assert [check.detail.partition(" interfere")[0] for check in wrong] == ["frame and rocker"]
     assert wrong[0].value is not None
     assert wrong[0].value < -4.0
     assert wrong[0].at_deg is not None
     assert "mm" in wrong[0].detail
-    # shapely agrees that there they meet
+    # shapely agrees that there they interfere
     there = [placed(planted.member(name), math.radians(wrong[0].at_deg)) for name in ("frame", "rocker")]
     assert any(a[0].intersects(b[0]) and a[1] < b[2] and b[1] < a[2] for a in there[0] for b in there[1])
 
@@ -396,7 +396,7 @@ def test_a_pivot_that_stands_through_the_cam_is_caught() -> None:
     planted = replace(assembly, members=(assembly.member("cam"), replace(ground, plates=(*ground.plates, post))))
     (_, check) = collision_checks(planted)
     assert not check.ok
-    assert check.detail.startswith("cam and base meet, near (5")
+    assert check.detail.startswith("cam and base interfere, near (5")
     assert check.value is not None
     assert check.value < -3.9
 
@@ -406,7 +406,7 @@ def test_too_small_an_axial_gap_is_caught() -> None:
     assert all(check.ok for check in collision_checks(assembly))
     (_, check) = collision_checks(shifted(assembly, "cap-right", -0.2))
     assert not check.ok
-    assert check.detail.startswith("yoke and cap-right meet")
+    assert check.detail.startswith("yoke and cap-right interfere")
 
 
 def test_bodies_pressed_together_move_as_one_and_are_not_held_against_each_other() -> None:

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 YOKE = """\
-cam: {kind: support, fourier: {mean: 20, cos: {3: 1}}, pivot: [6, 0]}
+cam: {kind: support, fourier: {mean: 20, cos: {3: 1}}, shaft: [6, 0]}
 part: {thickness: 5, bore: {square: 6}}
 export: {tolerance: 0.02, files: [{stl: {parts: all}}]}
 verify: {angles: 24}
 """
 FOUR_BAR = """\
-cam: {kind: support, fourier: {mean: 25, cos: {3: 2.9}}, pivot: [14.8, 0]}
+cam: {kind: support, fourier: {mean: 25, cos: {3: 2.9}}, shaft: [14.8, 0]}
 linkage: {kind: four-bar, ground: 79.28, coupler: 61.85, rocker: 60}
 part: {thickness: 8, bore: 9}
 export: {tolerance: 0.02, files: [{stl: {parts: all}}]}
@@ -97,7 +97,7 @@ def test_a_collision_fails_the_set_and_tells_who_where_and_when(
     path.write_text(f"{FOUR_BAR}mechanism: {{wall: 22, pin: 4, bar: 10}}\n", encoding="utf-8")
     assert main(["export", str(path), "--out", str(tmp_path / "out")]) == 1
     told = "".join(capsys.readouterr())
-    assert "frame and base meet, near (" in told
+    assert "frame and base interfere, near (" in told
     assert "collision" in told
     assert "deg" in told
     assert not (tmp_path / "out" / "wide").exists()
@@ -116,7 +116,7 @@ def test_the_same_recipe_gives_the_same_bytes(tmp_path: Path, yoke: pipeline.Out
 
 def test_without_parts_all_the_mechanism_is_skipped_and_told() -> None:
     outcome = pipeline.check(load_text(YOKE.replace("{stl: {parts: all}}", "csv"), "yoke.yaml"))
-    assert {"what": "mechanism", "why": "no file is asked for with parts: all"} in [
+    assert {"what": "mechanism", "why": "no file is requested with parts: all"} in [
         {"what": entry["what"], "why": entry["why"]} for entry in outcome.report["skipped"]
     ]
 
@@ -178,6 +178,6 @@ def test_slips_are_told_at_their_field(old: str, new: str, message: str) -> None
 @pytest.mark.slow
 def test_a_cam_far_from_its_shaft_has_a_yoke_that_reaches_round_it(tmp_path: Path) -> None:
     """Greatest distance from the shaft between the ends of the curve's cells."""
-    text = "cam: {kind: support, fourier: {mean: 25}, pivot: [10, 0]}\n" + YOKE.split("\n", 1)[1]
+    text = "cam: {kind: support, fourier: {mean: 25}, shaft: [10, 0]}\n" + YOKE.split("\n", 1)[1]
     outcome = pipeline.export(load_text(text, "far.yaml"), tmp_path)
     assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]

@@ -134,7 +134,7 @@ def test_crossing_walls_that_go_on_through_storeys_leave_no_slivers(precision):
 
 
 SLANTED = """
-cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [9.65, 0.831]}
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [9.65, 0.831]}
 part: {thickness: 8, bore: {hexagon: 9}}
 linkage:
   kind: four-bar
@@ -161,7 +161,7 @@ def test_corners_that_are_one_once_rounded_leave_nothing_open():
 
 def test_plates_may_overlap_and_fill_each_other_s_holes_in_part():
     """The pin of radius 2 stands free in the hole of radius 4, a piece of its own, unless a plate below holds it."""
-    with pytest.raises(RegionError, match="body: its plates make 2 separate bodies, where one is meant"):
+    with pytest.raises(RegionError, match="body: its plates make 2 separate bodies, where one is expected"):
         body_mesh(body(OVERLAPPING), tolerance=E, precision=DECIMALS)
     held = body([*OVERLAPPING, Plate(BAR, (), -1.0, 0.0)])
     mesh, _ = body_mesh(held, tolerance=E, precision=DECIMALS)

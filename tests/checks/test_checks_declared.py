@@ -110,7 +110,7 @@ verify: {angles: 60}
 manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5, safe_height: 5, holes: true}
 """,
     "bodies": """\
-cam: {kind: support, p: 25 + 1.5*cos(3*t), pivot: [3, 2]}
+cam: {kind: support, p: 25 + 1.5*cos(3*t), shaft: [3, 2]}
 part: {thickness: 8, bore: {hexagon: 10}}
 export: {tolerance: 0.01, files: [{stl: {parts: all}}]}
 verify: {angles: 60}
@@ -123,7 +123,7 @@ dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 600}
     "with play": """\
 cam: {kind: support, p: 30 + 2*cos(3*t)}
 export: {files: [csv]}
-dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, play: 0.05, rpm: 600}
+dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, backlash: 0.05, rpm: 600}
 """,
     "a double roller": """\
 cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 300}}}
@@ -131,7 +131,7 @@ export: {tolerance: 0.01, files: [dxf]}
 verify: {angles: 60}
 """,
     "a linkage": """\
-cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 dwell: {band: 0.1, at_least: 30}
 export: {tolerance: 0.01, files: [dxf]}

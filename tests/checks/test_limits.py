@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe.figures import FIGURES
+from camgeo.recipe.figures import FIGURES, PRESENT
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.errors import RecipeErrors
@@ -45,25 +45,25 @@ cam:
   motion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]
 """
 TRAIN = "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 600}\n"
-LOOSE = "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, play: 0.05, rpm: 600}\n"
+LOOSE = "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, backlash: 0.05, rpm: 600}\n"
 LINKED = """\
-cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 dwell: {band: 0.1}
 """
 SET = """\
-cam: {kind: support, p: 25 + 1.5*cos(3*t), pivot: [3, 2]}
+cam: {kind: support, p: 25 + 1.5*cos(3*t), shaft: [3, 2]}
 part: {thickness: 8, bore: {hexagon: 10}}
 export: {tolerance: 0.01, files: [{stl: {parts: all}}]}
 verify: {angles: 120}
 """
 # of each figure a recipe that has it
 HAVE = {
-    **dict.fromkeys(("pressure-angle", "transmission", "hollow-radius", "pitch-radius", "backlash"), ROLLER),
+    **dict.fromkeys(("pressure-angle", "velocity-ratio", "hollow-radius", "pitch-radius", "backlash"), ROLLER),
     **dict.fromkeys(("radius-of-curvature", "size", "swing", "peak-velocity", "peak-acceleration"), FLAT),
-    **dict.fromkeys(("peak-jerk", "face-length", "wall", "contour-error", "motion-error", "pieces"), FLAT),
+    **dict.fromkeys(("peak-jerk", "contact-travel", "wall", "contour-error", "motion-error", "pieces"), FLAT),
     **dict.fromkeys(("least-force", "peak-force"), YOKE + VERIFY + TRAIN),
-    "play": YOKE + VERIFY + LOOSE,
+    "least-backlash": YOKE + VERIFY + LOOSE,
     "dwell-error": YOKE + VERIFY,
     **dict.fromkeys(("dwell", "dwell-relative", "transmission-angle", "force-angle"), LINKED + VERIFY),
     **dict.fromkeys(("margin", "shaft-rate", "output-error"), LINKED + VERIFY),
@@ -141,7 +141,7 @@ def test_what_a_figure_is_against_the_motion_itself() -> None:
         "peak-velocity": np.abs(p[1]).max(),
         "peak-acceleration": np.abs(p[2]).max(),
         "peak-jerk": np.abs(p[3]).max(),
-        "face-length": np.ptp(p[1]),
+        "contact-travel": np.ptp(p[1]),
         "radius-of-curvature": (p[0] + p[2]).min(),
         "size": np.hypot(p[0], p[1]).max(),
         "wall": p[0].min() - 5,
@@ -158,7 +158,7 @@ def test_a_roller_s_figures_against_the_pitch_curve() -> None:
     values = {one["name"].removeprefix(LIMIT): one["value"] for one in held(ROLLER, wide(ROLLER))}
     checks = {one["name"]: one["value"] for one in report_of(ROLLER)["checks"]}
     assert values["pitch-radius"] == checks["radius-of-curvature"]
-    for name in ("pressure-angle", "transmission"):
+    for name in ("pressure-angle", "velocity-ratio"):
         assert values[name] == checks[name]
     assert values["backlash"] == pytest.approx(checks["form-closure"], rel=1e-9)
     profile = designed(loaded(ROLLER)).profile
@@ -235,7 +235,7 @@ def told(text: str, limits: str) -> list[str]:
 def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
     (one,) = told(FLAT, "{weight: {at_most: 1}}")
     line = FLAT.count("\n") + 1
-    assert one.startswith(f"cam.yaml:{line}:10: limits.weight: no such figure; the figures are swing, ")
+    assert one.startswith(f"cam.yaml:{line}:10: limits.weight: unknown figure; the figures are swing, ")
     assert "transmission-angle" not in one
     assert "pressure-angle" in one
     assert told(FLAT, "{presure-angle: {at_most: 1}}")[0].endswith("did you mean pressure-angle?")
@@ -243,7 +243,7 @@ def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
 
 def test_a_figure_that_a_recipe_has_not() -> None:
     missing = {"linkage": FLAT, "dwell": FLAT, "follower": LINKED, "roller": FLAT, "swings": FLAT, "face": ROLLER}
-    missing |= {"wall": ROLLER, "all": FLAT, "preload": FLAT, "play": FLAT}
+    missing |= {"wall": ROLLER, "all": FLAT, "preload": FLAT, "backlash": FLAT}
     for name, figure in FIGURES.items():
         if figure.needs:
             (one,) = told(missing[figure.needs], f"{{{name}: {{at_most: 1}}}}")
@@ -254,7 +254,7 @@ def test_a_figure_that_a_recipe_has_not() -> None:
 
 
 def test_bounds_the_wrong_way_round_and_none() -> None:
-    assert "below at_least, so nothing will do; exchange them" in told(FLAT, "{size: {at_least: 2, at_most: 1}}")[0]
+    assert "below at_least, so nothing is accepted; exchange them" in told(FLAT, "{size: {at_least: 2, at_most: 1}}")[0]
     assert "no bound; give at_least, at_most or both" in told(FLAT, "{size: {}}")[0]
 
 
@@ -275,7 +275,7 @@ def test_the_exit_status_and_the_text(tmp_path: Path, capsys: pytest.CaptureFixt
     text = failure(check, report_of(ROLLER), recipe)
     assert "at       134.30" in text
     assert "limits.pressure-angle.at_most" in text
-    assert "would do" in text
+    assert "would satisfy it" in text
 
 
 SLIGHT = ROLLER.replace("625", "20")
@@ -287,7 +287,7 @@ FINE = "export: {tolerance: 0.0001, "
     [
         (ROLLER, "pressure-angle", "at_most: 45", "a smaller swing", ("625", "300")),
         (SLIGHT, "pressure-angle", "at_most: 20", "stays below 22.5 deg", ("4/3", "6/5")),
-        (ROLLER, "transmission", "at_most: 0.4", "a smaller swing", ("625", "300")),
+        (ROLLER, "velocity-ratio", "at_most: 0.4", "a smaller swing", ("625", "300")),
         (
             ROLLER,
             "radius-of-curvature",
@@ -317,7 +317,7 @@ def test_what_would_do_does(text: str, name: str, bound: str, said: str, change:
     assert change[0] in text
     assert all(one["ok"] for one in held(text.replace(*change), limits))
     # and the other way, which every limit has: the limit itself
-    sense, value = re.findall(rf"limits\.{name}\.(at_\w+) of (\S+) would do", failed[0]["detail"])[0]
+    sense, value = re.findall(rf"limits\.{name}\.(at_\w+) of (\S+) would satisfy it", failed[0]["detail"])[0]
     assert all(one["ok"] for one in held(text, f"{{{name}: {{{sense}: {value}}}}}"))
 
 
@@ -326,7 +326,8 @@ def test_what_would_do_does(text: str, name: str, bound: str, said: str, change:
 
 def test_the_schema_knows_every_limit() -> None:
     schema = json_schema(RECIPE)["properties"]["limits"]
-    assert set(schema["properties"]) == set(FIGURES)
+    assert set(schema["properties"]) == {*FIGURES, *PRESENT}
+    assert all(schema["properties"][former]["deprecated"] for former in PRESENT)
     assert schema["additionalProperties"] is False
     for bounds in schema["properties"].values():
         assert set(bounds["properties"]) == {"at_least", "at_most"}
@@ -391,7 +392,15 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
     both = enumerate(zip(cos, sin, strict=True), 1)
     terms = [f"{c / 100}*cos({k}*t) + {s / 100}*sin({k}*t)" for k, (c, s) in both]
     text = f"cam: {{kind: support, p: 30 + {' + '.join(terms)}}}\n".replace("+ -", "- ")
-    names = ["swing", "peak-velocity", "peak-acceleration", "peak-jerk", "face-length", "radius-of-curvature", "size"]
+    names = [
+        "swing",
+        "peak-velocity",
+        "peak-acceleration",
+        "peak-jerk",
+        "contact-travel",
+        "radius-of-curvature",
+        "size",
+    ]
     recipe = loaded(text)
     design = designed(recipe)
     t = np.linspace(0, 2 * math.pi, 20_001)

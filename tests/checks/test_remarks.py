@@ -22,7 +22,7 @@ FLAT = "cam: {kind: support, p: 30 + 3*cos(2*t)}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 252}}}\n"
 LINKED = """\
-cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}
+cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 """
 INCH = "units: inch\ncam: {kind: support, p: 1.5 + 0.1*cos(2*t)}\n"
@@ -49,9 +49,9 @@ def test_a_sound_recipe_has_none(text: str) -> None:
         (ROLLER, ["pressure-angle"]),
         (ROLLER + "limits: {pressure-angle: {at_most: 80}}\n", []),
         (ROLLER + "limits: {pressure-angle: {at_least: 1}}\n", ["pressure-angle"]),
-        ("cam: {kind: support, p: 30, pivot: [40, 0]}\n", ["shaft-outside"]),
-        ("cam: {kind: support, p: 30, pivot: [29, 0]}\n", []),
-        ("cam: {kind: support, p: 30, pivot: [40, 0]}\npart: {bolts: {count: 3, circle: 10, hole: 2}}\n", []),
+        ("cam: {kind: support, p: 30, shaft: [40, 0]}\n", ["shaft-outside"]),
+        ("cam: {kind: support, p: 30, shaft: [29, 0]}\n", []),
+        ("cam: {kind: support, p: 30, shaft: [40, 0]}\npart: {bolts: {count: 3, circle: 10, hole: 2}}\n", []),
         ("cam: {kind: support, p: '30'}\n", ["no-motion"]),
         (FLAT + "export: {tolerance: 0.61}\n", ["coarse-tolerance"]),
         (FLAT + "export: {tolerance: 0.59}\n", []),
@@ -83,7 +83,7 @@ def test_what_a_remark_tells() -> None:
     assert pressure.value == pytest.approx(62.5453, abs=1e-4)
     assert pressure.at_deg == pytest.approx(134.30, abs=0.01)
     assert pressure.sentence == "the pressure angle reaches 62.55 deg; up to 45 is the rule for rollers, oscillating"
-    (outside,) = remarks("cam: {kind: support, p: 30, pivot: [40, 0]}\n")
+    (outside,) = remarks("cam: {kind: support, p: 30, shaft: [40, 0]}\n")
     assert outside.sentence == "the shaft lies outside the contour by 10 mm"
     (keyway,) = remarks(INCH + KEYED % ("0.75", "din6885"))
     assert keyway.sentence.startswith("a bore of 0.75 in takes a metric keyway of DIN 6885, 6 mm wide")

@@ -76,48 +76,48 @@ DESIGNS: list[tuple[str, str, Follow]] = [
     (support("p: -25", SLIDER), r"add more than (\S+) to p", lambda by: support(f"p: -25 + {1.001 * by}", SLIDER)),
     (support("p: 15*cos(t)"), r"add more than (\S+) to p", lambda by: support(f"p: 15*cos(t) + {1.001 * by}")),
     (
-        support("fourier: {mean: 1e-30}, pivot: [10, 4]"),
+        support("fourier: {mean: 1e-30}, shaft: [10, 4]"),
         r"fourier\.mean: .*; give a larger one",
-        lambda _: support("fourier: {mean: 1}, pivot: [10, 4]"),
+        lambda _: support("fourier: {mean: 1}, shaft: [10, 4]"),
     ),
     (
         support("p: 25 + 5*cos(3*t)"),
-        r"a p larger by more than (\S+) would be free of it",
+        r"a p larger by more than (\S+) would have no undercut",
         lambda by: support(f"p: 25 + 5*cos(3*t) + {1.00001 * by}"),
     ),
     (
         support("p: 25 + cos(1000*t)"),
-        r"a p larger by more than (\S+) would be free of it",
+        r"a p larger by more than (\S+) would have no undercut",
         lambda by: support(f"p: 25 + cos(1000*t) + {1.00001 * by}"),
     ),
     (
         support("fourier: {mean: 25, cos: {3: 5}}"),
-        r"a fourier\.mean larger by more than (\S+) would be free of it",
+        r"a fourier\.mean larger by more than (\S+) would have no undercut",
         lambda by: support(f"fourier: {{mean: {25 + 1.00001 * by}, cos: {{3: 5}}}}"),
     ),
     (
         support("hypocycloid: {cusps: 3, size: 5, breadth: 50}"),
-        r"a hypocycloid\.breadth larger by more than (\S+) would be free of it",
+        r"a hypocycloid\.breadth larger by more than (\S+) would have no undercut",
         lambda by: support(f"hypocycloid: {{cusps: 3, size: 5, breadth: {50 + 1.00001 * by}}}"),
     ),
     (
         f"cam: {{kind: constant-breadth, base_radius: 5, {RISE}}}{FILES}",
-        r"a base radius larger by more than (\S+) would be free of it",
+        r"a base radius larger by more than (\S+) would have no undercut",
         lambda by: f"cam: {{kind: constant-breadth, base_radius: {5 + 1.00001 * by}, {RISE}}}{FILES}",
     ),
     (
         roller("delta: {cos: {1: 400}}", ratio="4/3", radius=30.0),
-        r"a roller radius below (\S+) would be free of it",
+        r"a roller radius below (\S+) would have no undercut",
         lambda below: roller("delta: {cos: {1: 400}}", ratio="4/3", radius=0.99999 * below),
     ),
     (
         pair("delta: {cos: {1: 2390}}"),
-        "a smaller swing would be free of it",
+        "a smaller swing would have no undercut",
         lambda _: pair("delta: {cos: {1: 2000}}"),
     ),
     (
         pair("arc: {radius: 300}"),
-        r"an arc\.radius nearer to (\S+) would be free of it",
+        r"an arc\.radius nearer to (\S+) would have no undercut",
         lambda mean: pair(f"arc: {{radius: {mean + 10}}}"),
     ),
     (
@@ -151,7 +151,11 @@ DESIGNS: list[tuple[str, str, Follow]] = [
         lambda least: arc(1.1 * least, "convex", "2"),
     ),
     *(
-        (arc(300.0, "concave", ratio), "a convex arc would do", lambda _, ratio=ratio: arc(300.0, "convex", ratio))
+        (
+            arc(300.0, "concave", ratio),
+            "a convex arc would satisfy it",
+            lambda _, ratio=ratio: arc(300.0, "convex", ratio),
+        )
         for ratio in ("2", "3", "4")
     ),
     (arc(1e6, "concave"), "or a ratio such as 5/3", lambda _: arc(1e6, "concave", "5/3")),
@@ -164,9 +168,9 @@ DESIGNS: list[tuple[str, str, Follow]] = [
         for ratio in ("5/3", "7/3", "8/3")
     ),
     (
-        support("p: 25, pivot: [40, 0]", "\npart: {bore: 10}"),
+        support("p: 25, shaft: [40, 0]", "\npart: {bore: 10}"),
         "the shaft lies outside the contour",
-        lambda _: support("p: 25, pivot: [10, 0]", "\npart: {bore: 10}"),
+        lambda _: support("p: 25, shaft: [10, 0]", "\npart: {bore: 10}"),
     ),
 ]
 
@@ -183,7 +187,10 @@ COARSE = FILES.replace("0.001", "0.002")
 WITH_FILES: list[tuple[str, str, Follow]] = [
     (
         arc(1e6, "convex"),
-        r"the roller meets nothing at .* psi'\(phi\) reaches 0\.9999\d+, .*; an arc\.radius nearer to (\S+) would do",
+        (
+            r"the roller does not touch the contour at .* psi'\(phi\) reaches 0\.9999\d+, .*; an arc\.radius "
+            r"nearer to (\S+) would satisfy it"
+        ),
         lambda mean: arc(1000 * mean, "convex"),
     ),
     (
@@ -219,7 +226,7 @@ def test_files_of_a_recipe_that_is_changed_as_told_pass(text: str, pattern: str,
 def test_a_smaller_swing_has_a_smaller_pressure_angle() -> None:
     recipes = (load_text(roller(f"delta: {{cos: {{1: {size}}}}}"), "swung.yaml") for size in (400, 200))
     wide, narrow = ({each.name: each.value for each in designed(recipe).checks} for recipe in recipes)
-    assert narrow["transmission"] < 0.75 * wide["transmission"]
+    assert narrow["velocity-ratio"] < 0.75 * wide["velocity-ratio"]
     assert narrow["pressure-angle"] < wide["pressure-angle"]
 
 
@@ -229,7 +236,7 @@ def test_a_limit_that_is_not_allowed_itself_is_told_as_such() -> None:
 
 
 SET = """\
-cam: {kind: support, fourier: {mean: 20, cos: {3: 1}}, pivot: [6, 0]}
+cam: {kind: support, fourier: {mean: 20, cos: {3: 1}}, shaft: [6, 0]}
 part: {thickness: 5, bore: {square: 6}}
 export: {tolerance: 0.02, files: [{stl: {parts: all}}]}
 verify: {angles: 24}
@@ -294,8 +301,8 @@ def test_a_set_that_is_changed_as_told_can_be_made(old: str, new: str, wrong: fl
 @pytest.mark.parametrize(
     ("p", "words"),
     [
-        ("25 + 25*cos(99*t)", "99 stretches of the contour run backwards into each other; up to 40 are told apart"),
-        ("25 + cos(1000*t)", "1000 stretches of the contour run backwards; up to 200 are told one by one"),
+        ("25 + 25*cos(99*t)", "99 stretches of the contour run backwards into each other; up to 40 are separated"),
+        ("25 + cos(1000*t)", "1000 stretches of the contour run backwards; up to 200 are reported one by one"),
     ],
 )
 def test_undercut_in_very_many_places_is_told_as_a_number(p: str, words: str) -> None:

@@ -193,7 +193,7 @@ def test_verify_says_what_is_wrong_with_what_is_no_file(
     assert main(["verify", str(good), str(tmp_path), str(missing)]) == 2
     assert capsys.readouterr().err.splitlines() == [
         f"camgeo: {tmp_path}: a folder; name the files in it",
-        f"camgeo: {missing}: there is no such file",
+        f"camgeo: {missing}: the file does not exist",
     ]
 
 
@@ -202,4 +202,4 @@ def test_the_module_is_the_command() -> None:
         [sys.executable, "-m", "camgeo", "new", "nothing"], capture_output=True, text=True, check=False
     )
     assert call.returncode == 2
-    assert call.stderr.startswith("camgeo: no recipe is called nothing")
+    assert call.stderr.startswith("camgeo: no starter is called nothing")

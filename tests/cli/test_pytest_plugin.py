@@ -23,7 +23,7 @@ INI = "[pytest]\ncamgeo_recipes = cams/*.yaml\n"
 SMALL = "cam: {kind: support, p: 9 + cos(3*t)}\nexport: {tolerance: 0.01, files: [dxf]}\n"
 UNDERCUT = SMALL.replace("9 +", "7 +")
 OF_DXF = ["units", "closed", "contour", "motion", "constant-breadth", "breadth-max"]
-EXACT = ["radius-of-curvature", "undercut-local", "constant-breadth", "face-length"]
+EXACT = ["radius-of-curvature", "undercut-local", "constant-breadth", "contact-travel"]
 ITEMS = ["recipe", *EXACT, *(f"{name}[small.dxf]" for name in OF_DXF)]
 BOGUS = {"name": "new-check", "ok": False, "value": 2.0, "limit": 1.0, "unit": "mm", "sense": "at_most", "at_deg": 5.0}
 
@@ -220,7 +220,7 @@ def test_selection_works_as_anywhere(project: Pytester) -> None:
     motion = "cams/small.yaml::motion[small.dxf]"
     assert collected(project, motion) == [motion]
     assert collected(project, "cams/small.yaml") == [f"cams/small.yaml::{name}" for name in ITEMS]
-    assert collected(project, "-k", "motion or face") == ["cams/small.yaml::face-length", motion]
+    assert collected(project, "-k", "motion or travel") == ["cams/small.yaml::contact-travel", motion]
     assert collected(project, "--deselect", motion) == [f"cams/small.yaml::{n}" for n in ITEMS if "motion" not in n]
     assert len(collected(project, "-m", "camgeo", "--strict-markers")) == len(ITEMS)
     assert collected(project, "-m", "not camgeo") == []
@@ -247,7 +247,7 @@ def test_a_failure_tells_figure_limit_place_and_remedy(project: Pytester) -> Non
             r"  limit    at most 0\.001 mm",
             r"  at       \d+\.\d{4} deg of shaft angle",
             r"  file     small\.dxf",
-            r"  would do a tolerance of 0\.001, or verify\.motion_error above 0\.00\d+",
+            r"  remedy   a tolerance of 0\.001, or verify\.motion_error above 0\.00\d+",
             r"  recipe   cams/small\.yaml:3:24 verify\.motion_error",
             r"FAILED cams/small\.yaml::motion\[small\.dxf\] - .*motion of small\.dxf.*",
         ]
@@ -314,9 +314,9 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
     result.stdout.fnmatch_lines(
         [
             "radius-of-curvature: -1 mm, more than 0 mm, at *",
-            "  would do a p larger by more than 1 mm",
+            "  remedy   a p larger by more than 1 mm",
             "undercut-local: * mm, at most 0 mm, at *",
-            "  found    from * deg; * larger by more than 1 would be free of it",
+            "  found    from * deg; * larger by more than 1 would have no undercut",
         ]
     )
     alone = run(project, "cams/small.yaml::motion[small.dxf]")
@@ -446,7 +446,7 @@ def test_with_several_processes(project: Pytester) -> None:
     add(project, "poor", SMALL + "verify: {motion_error: 0.001}\n")
     result = run_two(project)
     result.assert_outcomes(passed=2 * len(ITEMS) - 1, failed=1)
-    result.stdout.fnmatch_lines(["motion of poor.dxf: *", "  would do *"])
+    result.stdout.fnmatch_lines(["motion of poor.dxf: *", "  remedy   *"])
 
 
 @pytest.mark.slow

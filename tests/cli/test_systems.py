@@ -69,7 +69,7 @@ def test_a_file_held_open_for_long(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     export(tmp_path, 1)
     with monkeypatch.context() as patch:
         Held(patch, "cam.dxf", 10**6)
-        with pytest.raises(SurroundingsError, match=r"open, close it there and run again|will try again"):
+        with pytest.raises(SurroundingsError, match=r"open, close it there and run the command again|will try again"):
             export(tmp_path, 2)
     assert generation(tmp_path) == 1
     export(tmp_path, 3)

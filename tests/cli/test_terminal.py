@@ -48,7 +48,7 @@ def test_a_narrow_encoding(recipe: Path, encoding: str, what: str) -> None:
 
 def test_a_name_that_the_encoding_has_not() -> None:
     done = run("check", "日本.yaml", env=os.environ | {"PYTHONIOENCODING": "ascii"})
-    assert (done.returncode, done.stderr) == (2, b"\\u65e5\\u672c.yaml: there is no such file\n")
+    assert (done.returncode, done.stderr) == (2, b"\\u65e5\\u672c.yaml: the file does not exist\n")
 
 
 @FULL

@@ -238,7 +238,7 @@ def test_the_limit_of_the_motion_is_held_and_no_more(tmp_path, vertices, recipe)
     path = dxf(tmp_path, vertices)
     reached = testing.assert_motion(recipe, path).max
     assert testing.assert_motion(recipe, path, limit=1.01 * reached, angles=100).max == pytest.approx(reached)
-    with pytest.raises(AssertionError, match=r"motion of cam\.dxf: .*\n(.*\n)*  would do a tolerance of"):
+    with pytest.raises(AssertionError, match=r"motion of cam\.dxf: .*\n(.*\n)*  remedy   a tolerance of"):
         testing.assert_motion(recipe, path, limit=0.99 * reached)
 
 

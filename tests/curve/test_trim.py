@@ -265,8 +265,8 @@ def test_what_is_lost_in_rounding_is_trimmed_all_the_same(margin):
 @pytest.mark.parametrize(
     ("curve", "message"),
     [
-        (roller(PEAR, 15.0), "the undercut parts the metal into 2 pieces"),
-        (roller(booth(60.0, 58.0), 45.0), "the undercut parts the metal into 2 pieces"),
+        (roller(PEAR, 15.0), "the undercut divides the metal into 2 pieces"),
+        (roller(booth(60.0, 58.0), 45.0), "the undercut divides the metal into 2 pieces"),
         (roller(PEAR, 21.0), "the shaft lies outside of what the undercut leaves"),
         (flat(10.0, {3: 2.0}, pivot=(-9.0, 0.0)), "the shaft lies outside of what the undercut leaves"),
         (roller(STAR, 14.0), "the undercut leaves nothing of the contour"),
@@ -281,7 +281,7 @@ def test_what_cannot_be_trimmed_is_refused(curve, message):
 
 
 def test_only_convex_faces():
-    with pytest.raises(ValueError, match="a flat face cannot touch the hollow near parameter"):
+    with pytest.raises(ValueError, match="a flat face cannot touch the concave part near parameter"):
         trimmed(Curve.whole(STAR))
 
 

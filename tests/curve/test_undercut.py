@@ -140,7 +140,7 @@ def not_passed_over(curve):
     try:
         return bool(undercuts(curve))
     except UndercutError as error:
-        return "cannot be told apart" in str(error)
+        return "cannot be separated" in str(error)
 
 
 def test_eight_swallowtails_below_rounding_are_told_apart():

@@ -222,7 +222,7 @@ class Cusp:
 
 
 def test_an_undeclared_cusp_is_refused_with_its_place():
-    with pytest.raises(DriveError, match=r"no closer near (57\.3|237\.3|57\.2|237\.2)"):
+    with pytest.raises(DriveError, match=r"not better near (57\.3|237\.3|57\.2|237\.2)"):
         drives([Cusp()])
 
 

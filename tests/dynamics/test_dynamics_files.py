@@ -188,7 +188,7 @@ def test_double_followers_are_held_from_below_and_above(follower):
     "follower", [FlatFace(lift_from_fourier(25.0, {2: 1.5}, {})), Roller(Arm(40.0, 50.0), 5.0, constant_breadth().law)]
 )
 def test_one_face_has_no_play(follower):
-    with pytest.raises(ValueError, match="has no play"):
+    with pytest.raises(ValueError, match="has no backlash"):
         measured_faces(follower, circle_about(0.0, 0.0, 20.0), 1e-5)
 
 

@@ -130,7 +130,7 @@ def test_no_play_is_refused_with_its_place():
     least, at = least_gap(drives_[0], drives_[1])
     assert least == pytest.approx(-0.05e-3, rel=1e-12)
     assert math.cos(at) == pytest.approx(1.0)
-    with pytest.raises(DynamicsError, match="no play is left at 0 degrees: -5e-05"):
+    with pytest.raises(DynamicsError, match="no backlash is left at 0 degrees: -5e-05"):
         course(Train(1.0, 1.0, 1e5), drives_, 100.0, 1)
 
 

@@ -315,7 +315,7 @@ def test_fine_tolerances_are_held(tmp_path, form):
 
 def test_a_chamfer_along_a_spline_is_refused():
     with pytest.raises(
-        RecipeErrors, match=r"step\.as: the chamfer of a spline is no spline, given 'spline'; give arcs"
+        RecipeErrors, match=r"step\.as: the chamfer of a spline is not a spline, given 'spline'; give arcs"
     ):
         step_recipe("{thickness: 8, chamfer: 0.5}", "{step: {as: spline}}")
 

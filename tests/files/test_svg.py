@@ -333,7 +333,7 @@ BARE = '<svg xmlns="http://www.w3.org/2000/svg" '
         (BARE + 'width="6mm" viewBox="0 0 6">', DISC, "syntax", "the viewBox is '0 0 6'"),
         (BARE + 'width="1e300mm" viewBox="0 0 6 6">', DISC, "range", "a unit of"),
         (HEAD, '<g id="CUT"><circle r="2"/></g><use href="#CUT" x="9"/>', "unsupported", "use #2 is none of path"),
-        (HEAD, f"<style>path {{ transform: scale(2) }}</style>{DISC}", "unsupported", "a style sheet tells transform"),
+        (HEAD, f"<style>path {{ transform: scale(2) }}</style>{DISC}", "unsupported", "a style sheet sets transform"),
         ("<svg>", DISC, "syntax", "not an SVG file: its first element is svg"),
         ('<!DOCTYPE svg [<!ENTITY a "b">]>' + HEAD, DISC, "unsupported", "declares entities"),
     ],

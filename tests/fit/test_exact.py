@@ -190,7 +190,7 @@ def test_a_second_reader_finds_the_contour_on_the_spline(text: str, order: int, 
     source = f"""
     name: cam
     rotation: {rotation}
-    cam: {{kind: support, p: "{text}", pivot: [3, -2]}}
+    cam: {{kind: support, p: "{text}", shaft: [3, -2]}}
     export: {{tolerance: 1.0e-11, files: [{{dxf: {{as: exact}}}}]}}
     verify: {{angles: 360}}
     """
@@ -265,10 +265,10 @@ def test_harmonics_that_cancel_are_left_out() -> None:
     ("cam", "reason"),
     [
         ("p: 25 + 2*sin(pi*cos(t))*cos(pi*sin(t))", r"sin of something other than a multiple of t \(character"),
-        ("p: sqrt(600 + cos(3*t))", "sqrt is no operation"),
-        ("p: 25 + exp(cos(3*t))/10", "exp is no operation"),
+        ("p: sqrt(600 + cos(3*t))", "sqrt is not an operation"),
+        ("p: 25 + exp(cos(3*t))/10", "exp is not an operation"),
         ("p: 25 + 1/(3 + cos(2*t))", "division by something other than a number"),
-        ("p: (25 + cos(2*t))**0.5", "power is no operation"),
+        ("p: (25 + cos(2*t))**0.5", "power is not an operation"),
         ("p: 25 + abs(sin(3*t))**3/100", "pieced together from 6 stretches"),
         ("p: 60 + cos(12*t)/10", r"harmonics up to 12, so .* degree 26; CAD systems take degree 25 at most"),
         ("reuleaux: {sides: 3, breadth: 50, rounding: 5}", "pieced together from 6 stretches"),

@@ -243,7 +243,7 @@ def test_roundings_too_small_for_a_reader_become_corners(sides: int, rounding: f
 )
 def test_next_to_cusps_no_span_is_lost_to_the_knots_or_to_a_reader(fourier: str, pivot: str, tolerance: float) -> None:
     """Least radii of curvature of 1e-12 of the size: spans differ in length and in pace by many orders."""
-    text = f"cam: {{kind: support, fourier: {{{fourier}}}, pivot: {pivot}}}\n"
+    text = f"cam: {{kind: support, fourier: {{{fourier}}}, shaft: {pivot}}}\n"
     text += f"export: {{tolerance: {tolerance}, files: [{{dxf: {{as: spline}}}}]}}\nverify: {{angles: 360}}\n"
     outcome = pipeline.check(load_text(text, "cusps.yaml"))
     assert outcome.ok, [one for one in outcome.report["checks"] if not one["ok"]]

@@ -380,7 +380,7 @@ def test_dwell_of_a_double_roller():
 
 def test_a_roller_that_meets_nothing():
     follower = DoubleRoller(DOUBLES["Booth"][0], 8.0)
-    with pytest.raises(ContactError, match="the roller meets nothing at 0 degrees"):
+    with pytest.raises(ContactError, match="the roller does not touch the contour at 0 degrees"):
         follower.judge(polygon(circle_points(8) + np.array([200.0, 0.0])), PHI)
 
 

@@ -168,7 +168,7 @@ def test_faults_are_told_with_name_and_place(drawing, tmp_path):
     detail = checks["holes"].detail
     assert "bolt hole 2 at (-16, " in detail
     assert "is missing" in detail
-    assert "an opening of 3.14159 mm^2 about (-14, 8), where none is meant to be" in detail
+    assert "an opening of 3.14159 mm^2 about (-14, 8), where none is expected" in detail
 
 
 def test_cut_mark_turned_by_a_fifth_of_a_degree(tmp_path):

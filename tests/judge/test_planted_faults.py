@@ -195,7 +195,7 @@ def test_wrong_units(tmp_path, cam, units, stated):
     assert not check.ok
     assert check.value == pytest.approx(stated - 1.0)
     assert check.limit == 1e-9
-    assert f"{stated:g} mm, 1 mm is meant" in check.detail
+    assert f"{stated:g} mm, 1 mm is expected" in check.detail
     assert not verdict.ok
 
 

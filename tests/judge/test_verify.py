@@ -280,7 +280,7 @@ def test_no_contact_is_a_motion_that_fails(tmp_path):
     path = write_dxf(tmp_path / "cam.dxf", circle_points(100) + np.array([200.0, 0.0]), bores=())
     verdict = verify(path, Intent(ROLLERS), 90, Limits(1e-3))
     assert verdict.motion is None
-    assert "meets nothing" in named(verdict)["motion"].detail
+    assert "does not touch the contour" in named(verdict)["motion"].detail
     assert not named(verdict)["contour"].ok
 
 
@@ -309,4 +309,4 @@ def test_a_solid_that_is_too_small_by_a_unit_is_told_as_that(tmp_path, unit, mm)
     yoke = Yoke(lift_from_fourier(9.0, {3: 0.5}, {}), 18.0)
     checks = named(verify(path, Intent(yoke, bore=4.0, thickness=4.0), 90, Limits(1e-3)))
     assert not checks["thickness"].ok
-    assert checks["thickness"].detail.endswith(f"as if drawn in {unit} and told as mm")
+    assert checks["thickness"].detail.endswith(f"as if drawn in {unit} and stated as mm")

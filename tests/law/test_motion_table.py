@@ -139,7 +139,7 @@ def test_a_measured_dwell_is_given():
     noisy = Samples(rows.theta, rows.s + rng.uniform(-0.0008, 0.0008, 360), rows.lines)
     smoothed = from_table(noisy, 0.002, dwells=[(rad(100), rad(160)), (rad(300), rad(360))])
     assert [r.level for r in smoothed.motion.rests] == pytest.approx([20, 0], abs=5e-4)
-    with pytest.raises(TableError, match=r"line 166: the row is no part of a dwell at 19.99"):
+    with pytest.raises(TableError, match=r"line 166: the row is not part of a dwell at 19.99"):
         from_table(noisy, 0.002, dwells=[(rad(100), rad(165))])
 
 
@@ -229,7 +229,7 @@ def climbing(theta, s, lines):
         (twice, 51, "the angles must rise; 49 stands twice"),
         (gap, 54, "rows are missing between 49 and 53 degrees; the steps beside it are 1"),
         (unfinished, 200, "the table ends after 199 degrees, 17.299 off its first row: the rest of the turn can be"),
-        (hole, 51, "the displacement is no finite number"),
+        (hole, 51, "the displacement is not finite"),
         (climbing, 361, "the motion does not close: 3 off the first row, a turn later"),
     ],
 )
@@ -282,16 +282,19 @@ def test_crank_degrees_inches_and_degrees():
     [
         (
             "w;lift\n0;1\n1;x\n",
-            "line 3: '1;x' is no row parted by semicolons: an angle and a displacement are expected",
+            "line 3: '1;x' is not a row separated by semicolons: an angle and a displacement are expected",
         ),
         (
             "0,1,0,2\n1,5,0,3\n",
             (
-                "line 1: '0,1,0,2' is no row parted by commas: an angle and a displacement are expected: with decimal "
-                "commas, part the columns by semicolons"
+                "line 1: '0,1,0,2' is not a row separated by commas: an angle and a displacement are expected: with "
+                "decimal commas, separate the columns by semicolons"
             ),
         ),
-        ("0 1 2\n1 2 3\n", "line 1: '0 1 2' is no row parted by blanks: an angle and a displacement are expected"),
+        (
+            "0 1 2\n1 2 3\n",
+            "line 1: '0 1 2' is not a row separated by blanks: an angle and a displacement are expected",
+        ),
         ("# nothing\n", "the table is empty"),
     ],
 )

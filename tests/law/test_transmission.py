@@ -518,7 +518,8 @@ def test_ratios_that_wunderlich_excludes(lam, mu, arm, field, message):
             30.0,
             (
                 f"{STEEP.removesuffix('; it reaches')}; with a whole ratio such as 3 a straight first line reaches 1 "
-                "where it begins, and a concave arc of any radius more; a convex arc would do, or a ratio such as 5/3"
+                "where it begins, and a concave arc of any radius more; a convex arc would satisfy it, "
+                "or a ratio such as 5/3"
             ),
         ),
         (
@@ -553,8 +554,8 @@ def test_ratios_that_wunderlich_excludes(lam, mu, arm, field, message):
             "rosette.leaf",
             None,
             (
-                "|OQ| must stay below 45.9220119 mm, where an arm would meet the shaft or stretch out; it is 80 mm at "
-                "x = 0.5"
+                "|OQ| must stay below 45.9220119 mm, where an arm would reach the shaft or be fully stretched; it is "
+                "80 mm at x = 0.5"
             ),
         ),
         (

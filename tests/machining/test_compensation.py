@@ -18,9 +18,9 @@ from kin.law.programme import Segment, law, programme
 from kin.law.support_function import Circle, lift_constant_breadth, lift_from_fourier
 from kin.read.files import read_drawing
 
-SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}\n"
+SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"
 SMALL = "cam: {kind: support, p: 1 + 0.05*cos(3*t)}\n"
-FOURIER = "cam: {kind: support, fourier: {mean: 25, cos: {3: 2}}, pivot: [3, 2]}\n"
+FOURIER = "cam: {kind: support, fourier: {mean: 25, cos: {3: 2}}, shaft: [3, 2]}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 ARC = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, arc: {radius: 70}}\n"
 PAIR = "cam: {kind: flat-pair, ratio: 3, arm: 40, delta: {cos: {1: 200}}}\n"
@@ -31,7 +31,7 @@ cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, la
 PLAIN = "{thickness: 6, bore: 10}"
 FULL = "{thickness: 6, bore: 12, keyway: din6885, hub: {diameter: 22, height: 6}, chamfer: 0.5, "
 FULL += "bolts: {count: 3, circle: 30, hole: 4, start: 30}, set_screw: {diameter: 3, at: 90}}"
-FRAME = "cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}\n"
+FRAME = "cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}\n"
 FRAME += "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}\n"
 
 
@@ -164,7 +164,11 @@ def test_undercut_that_only_the_compensation_makes():
 @pytest.mark.parametrize(
     ("files", "cam", "message"),
     [
-        ("{dxf: {kerf: 17}}", ROLLER, "export.files[0]: the metal grows by 8.5, the roller's radius is 8; give less"),
+        (
+            "{dxf: {kerf: 17}}",
+            ROLLER,
+            "export.files[0]: the metal is enlarged by 8.5, the roller's radius is 8; give less",
+        ),
         (
             "{dxf: {kerf: 10}}",
             SUPPORT,

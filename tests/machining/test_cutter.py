@@ -32,7 +32,7 @@ cam:
 SHU_WU = """\
 cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: modified-sine}, {dwell: 60}]}
 """
-REULEAUX = "cam: {kind: support, reuleaux: {sides: 3, breadth: 50, rounding: 5}, pivot: [3, 2]}\n"
+REULEAUX = "cam: {kind: support, reuleaux: {sides: 3, breadth: 50, rounding: 5}, shaft: [3, 2]}\n"
 TRIMMED = "cam: {kind: support, p: 25 + 4*cos(3*t), undercut: trim}\n"
 
 

@@ -28,7 +28,7 @@ from kin.judge.verify import verify
 from kin.read.errors import ReadError
 from kin.read.gcode import read_gcode
 
-SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}\n"
+SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 DEEP = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 4, delta: {cos: {1: 1500}}}\n"
 SHU_WU = """\
@@ -271,7 +271,7 @@ def test_metal_that_no_cutter_reaches(tmp_path):
     assert checks["cutter-reach"]["ok"]
     assert "3.45 mm outside" in checks["contour"]["detail"]
     assert checks["contour"]["value"] < 0.001
-    assert "motion" not in checks, "told, not judged"
+    assert "motion" not in checks, "reported, not judged"
 
 
 HUBBED = "{thickness: 6, bore: 10, hub: {diameter: 20, height: 12%s}, chamfer: 0.5, mark: {as: engrave}, "
@@ -514,7 +514,7 @@ def test_modes_words_and_comments(tmp_path):
         ("G21 G91\nG0 X3\nM30\n", "line 2: X moves from an unknown place"),
         ("G21 G90 S1 M3 F10\nG1 X3\nM30\n", "line 2: a feed move from an unknown place"),
         ("G21 G90\nG0 X1e9\nM30\n", "line 2: E9 is not read"),
-        ("M30\n", "the program moves nothing"),
+        ("M30\n", "the program makes no move"),
     ],
 )
 def test_what_is_not_read(tmp_path, body, message):

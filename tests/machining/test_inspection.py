@@ -16,7 +16,7 @@ from kin.follower.envelope import FlatEnvelope, RollerEnvelope, TransmissionPitc
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 PAIR = "cam: {kind: flat-pair, ratio: 3, arm: 40, delta: {cos: {1: 200}}}\n"
 TRIMMED = "cam: {kind: support, p: 25 + 4*cos(3*t), undercut: trim}\n"
-SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}\n"
+SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"
 
 
 def table_of(body, angles=24):
@@ -97,7 +97,7 @@ def test_each_face_of_a_pair_passes_the_pivot():
 
 
 def test_a_mirrored_drawing_in_inches_has_the_same_motion():
-    body = "units: inch\ncam: {kind: support, p: 1 + 0.08*cos(3*t), pivot: [0.1, 0.05]}\n"
+    body = "units: inch\ncam: {kind: support, p: 1 + 0.08*cos(3*t), shaft: [0.1, 0.05]}\n"
     _, _, cw = table_of(body)
     _, _, ccw = table_of(body + "rotation: ccw\n")
     assert list(cw) == [
@@ -113,7 +113,7 @@ def test_a_mirrored_drawing_in_inches_has_the_same_motion():
 
 
 def test_over_the_shaft_of_a_linkage():
-    body = "cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), pivot: [18, 8.5]}\n"
+    body = "cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}\n"
     body += "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}\n"
     recipe, design, table = table_of(body)
     from camgeo.synthesis.linkage import motion_table

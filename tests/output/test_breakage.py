@@ -26,7 +26,7 @@ def exported(folder: Path, recipe: str, *more: str) -> int:
 
 
 def test_shaft_on_the_contour_has_no_base_circle(tmp_path: Path) -> None:
-    assert exported(tmp_path, "cam: {kind: support, p: '25', pivot: [25, 0]}\npart: {thickness: 8}\n" + FILES) == 0
+    assert exported(tmp_path, "cam: {kind: support, p: '25', shaft: [25, 0]}\npart: {thickness: 8}\n" + FILES) == 0
 
 
 @pytest.mark.parametrize("undercut", ["refuse", "trim"])
@@ -62,7 +62,7 @@ def test_an_impossible_stl_is_refused_before_anything_is_fitted(
 def test_a_flat_pair_is_not_told_to_enlarge_a_base_radius(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert exported(tmp_path, "cam: {kind: flat-pair, ratio: 3, arm: 60, delta: {cos: {1: 2340}}}\n") == 1
     said = capsys.readouterr().out
-    assert "a smaller swing would be free of it" in said
+    assert "a smaller swing would have no undercut" in said
     assert "base radius" not in said
 
 
@@ -71,7 +71,7 @@ def test_undercut_that_parts_the_metal_keeps_its_figures(tmp_path: Path, capsys:
     assert exported(tmp_path, recipe + "\n") == 1
     said = capsys.readouterr().out
     assert "undercut-global: " in said
-    assert "a roller radius below 17.8885 would be free of it; it cannot be trimmed: " in said
+    assert "a roller radius below 17.8885 would have no undercut; trimming is not possible: " in said
     assert "undercut-local" not in said
 
 

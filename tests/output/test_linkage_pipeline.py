@@ -27,7 +27,7 @@ name: four-bar
 cam:
   kind: support
   p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25
-  pivot: [18, 8.5]
+  shaft: [18, 8.5]
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 dwell: {band: 0.1, at_least: 36}
 part: {thickness: 8, bore: 8}
@@ -159,7 +159,7 @@ def test_a_motion_too_sudden_to_be_followed_is_refused(monkeypatch: pytest.Monke
         raise RoughError(1.3, 1e-9)
 
     monkeypatch.setattr(Mechanism, "figures", rough)
-    with pytest.raises(RecipeErrors, match=r"linkage: the motion is too sudden .* of 74\.4845 degrees; keep"):
+    with pytest.raises(RecipeErrors, match=r"linkage: the motion changes too abruptly .* of 74\.4845 degrees; keep"):
         pipeline.export(recipe(), tmp_path)
     assert not list(tmp_path.iterdir())
 
@@ -171,7 +171,7 @@ linkage: {kind: four-bar, ground: 92.7954, coupler: 84.05541, rocker: 92.11527, 
 """
 REULEAUX = """\
 name: four-bar
-cam: {kind: support, reuleaux: {sides: 3, breadth: 53.51571, rounding: 4.00736}, pivot: [5.98678, 3.8523]}
+cam: {kind: support, reuleaux: {sides: 3, breadth: 53.51571, rounding: 4.00736}, shaft: [5.98678, 3.8523]}
 linkage: {kind: inverted-slider-crank, ground: 132.82878, rocker: 75.20437}
 rotation: ccw
 export: {files: [{dxf: {as: polyline}}]}
@@ -235,14 +235,14 @@ def test_a_limit_of_the_output_error_of_one_s_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("[18, 8.5]", "[28, 8.5]", "four-bar.yaml:5:10: cam.pivot: the shaft lies outside the cam"),
+        ("[18, 8.5]", "[28, 8.5]", "four-bar.yaml:5:10: cam.shaft: the shaft lies outside the cam"),
         ("p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25", "p: 40 + cos(2*t)", "four-bar.yaml:6:10: linkage: a square"),
         ("band: 0.1", "band: 1.0e-13", "e-14 rad; give a wider band"),
         (
             "rocker: 105",
             # the middle of the frame's side goes round this pivot once a turn
             "rocker: 105, dyads: [{kind: rpr, on: coupler, point: [-70, 0], ground: [10, 25]}]",
-            "four-bar.yaml:6:72: linkage.dyads: the point that dyad 1 hangs on goes right round",
+            "four-bar.yaml:6:72: linkage.dyads: the point that dyad 1 is attached to circles",
         ),
     ],
 )

@@ -133,7 +133,7 @@ class TestSurroundings:
         (tmp_path / NAME).mkdir()
         (tmp_path / NAME / "cam.dxf").write_text("mine")
         where = tmp_path / NAME / "cam.dxf"
-        self.refused(tmp_path, f"{where}: is in the way, and no report says that it may be replaced")
+        self.refused(tmp_path, f"{where}: is in the way, and no report lists it as replaceable")
         assert where.read_text() == "mine"
 
     def test_a_folder_is_in_the_way(self, tmp_path):
@@ -141,7 +141,7 @@ class TestSurroundings:
         where = tmp_path / NAME / "cam.dxf"
         where.unlink()
         where.mkdir()
-        self.refused(tmp_path, f"{where}: is in the way, and no report says that it may be replaced")
+        self.refused(tmp_path, f"{where}: is in the way, and no report lists it as replaceable")
 
     @pytest.mark.parametrize("text", ["", "[]", '{"files": 3}', '{"files": [{}]}', "\x00", "[" * 100000])
     def test_a_report_that_is_none(self, tmp_path, text):

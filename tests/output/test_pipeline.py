@@ -138,7 +138,7 @@ def test_undercut_is_refused_with_angle_depth_and_remedy(tmp_path: Path) -> None
     assert found["radius-of-curvature"]["value"] == pytest.approx(-6.0, abs=1e-9)
     assert not found["undercut-local"]["ok"]
     assert found["undercut-local"]["value"] > 0.1
-    assert "a p larger by more than 6 would be free of it" in found["undercut-local"]["detail"]
+    assert "a p larger by more than 6 would have no undercut" in found["undercut-local"]["detail"]
     assert not (tmp_path / "sharp").exists()
     rejected = tmp_path / "sharp.rejected"
     assert json.loads((rejected / "report.json").read_text(encoding="utf-8"))["ok"] is False
@@ -245,7 +245,7 @@ def test_a_bore_through_the_contour_is_a_failed_check_and_no_file(tmp_path: Path
 
 
 def test_a_shaft_beside_the_contour_is_told_as_that(tmp_path: Path) -> None:
-    text = b"cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [100, 0]}\npart: {bore: 10}\n"
+    text = b"cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [100, 0]}\npart: {bore: 10}\n"
     outcome = pipeline.export(read(text, "beside.yaml"), tmp_path)
     assert failed(outcome.report) == {"wall"}
     assert outcome.report["checks"][-1]["detail"] == "the shaft lies outside the contour"

@@ -22,7 +22,7 @@ MM = 25.4
 LINKED = """\
 name: part
 units: {units}
-cam: {{kind: support, p: ({one!r})*(1 + 0.05*sin(3*t)), pivot: [{third!r}, {third!r}]}}
+cam: {{kind: support, p: ({one!r})*(1 + 0.05*sin(3*t)), shaft: [{third!r}, {third!r}]}}
 linkage: {{kind: four-bar, ground: {four!r}, coupler: {four!r}, rocker: {five!r}}}
 part: {{thickness: {third!r}, bore: {third!r}}}
 export: {{tolerance: {fine!r}, files: [{{dxf: {{kerf: {kerf!r}}}}}, dxf, stl]}}

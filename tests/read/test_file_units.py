@@ -12,7 +12,7 @@ from kin.read.files import read_dxf, read_solid
 
 RECIPE = """\
 name: cam
-cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}
+cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}
 part: {thickness: 8, bore: 10}
 export: {tolerance: 0.01, files: [{dxf: {as: arcs, version: R12}}, stl, 3mf, svg]}
 verify: {angles: 36}
@@ -56,7 +56,7 @@ def test_a_drawing_that_states_no_unit(exported, capsys):
     assert verified(exported, name) == 1
     said = capsys.readouterr().out
     assert said.count("\n") == 2
-    assert "states no unit and is judged in that of the recipe, 1 mm; tell it by --units, such as --units mm" in said
+    assert "states no unit and is judged in that of the recipe, 1 mm; give it by --units, such as --units mm" in said
     assert verified(exported, name, "--units", "mm") == 0
     assert verified(exported, name, "--units", "inch") == 1
 

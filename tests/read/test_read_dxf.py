@@ -276,7 +276,7 @@ def test_gaps_are_bridged_up_to_what_is_permitted_and_reported(tmp_path: Path) -
     assert error.width == pytest.approx(0.003)
     assert error.place in {(-20.0, -8.0), (-20.0, 8.0), (-19.997, -8.0), (-19.997, 8.0)} or error.place is not None
     assert str(error).startswith(f"{path}: the contour is open between (-")
-    assert "0.003 apart, permitted are 0.0029; 2 such places" in str(error)
+    assert "0.003 apart, permitted is 0.0029; 2 such places" in str(error)
 
 
 @pytest.mark.parametrize("side", [1e-3, 1.0, 50.0, 1e6])
@@ -402,7 +402,7 @@ def test_units_of_r12_by_a_comment(tmp_path: Path, comment: str, mm: float | Non
 def test_units_that_are_none_for_a_cam(tmp_path: Path) -> None:
     document = new(units=InsertUnits.Parsecs)
     document.modelspace().add_circle((0, 0), 1.0)
-    with pytest.raises(ReadError, match=r"\$INSUNITS 20 is no unit"):
+    with pytest.raises(ReadError, match=r"\$INSUNITS 20 is not a unit"):
         read_dxf(saved(document, tmp_path))
     document.header["$INSUNITS"] = 0
     assert read_dxf(saved(document, tmp_path)).units_mm is None

@@ -135,14 +135,14 @@ def test_a_file_cut_short(tmp_path, bytes_left):
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1", "syntax", r"#\d+ CIRCLE: has 2 values, 3 belong there"),
         (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1,-3.", "range", r"#\d+ CIRCLE: a length of -3 mm"),
         (r"DIRECTION\('',\(0\.0", "DIRECTION('',(1.E400", "range", r"#\d+ DIRECTION: a value of inf"),
-        (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1,'big'", "syntax", r"CIRCLE: 'big' is no number"),
+        (r"CIRCLE\('',(#\d+),[^)]*", r"CIRCLE('',\1,'big'", "syntax", r"CIRCLE: 'big' is not a number"),
         (r"CIRCLE\('',(#\d+),[^)]*", rf"CIRCLE('',\1,{'(' * 5000}{')' * 5000}", "range", "more than 64 brackets deep"),
         ("CYLINDRICAL_SURFACE", "TOROIDAL_SURFACE", "unsupported", r"#\d+ TOROIDAL_SURFACE: is none of PLANE"),
         ("CIRCLE", "HYPERBOLA", "unsupported", r"#\d+ HYPERBOLA: is none of"),
         (r"ADVANCED_FACE\('',\([^)]*\)", "ADVANCED_FACE('',()", "unsupported", r"#\d+ ADVANCED_FACE: it has no bounds"),
         ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "unsupported", "BREP_WITH_VOIDS: is none of MANIFOLD"),
         ("MANIFOLD_SOLID_BREP", "SHELL_BASED_SURFACE_MODEL", "empty", "it holds no solid"),
-        (r"\.MILLI\.,\.METRE\.\)\);\n#902", ".FEMTO.,.METRE.));\n#902", "unsupported", "#901 .*is no unit"),
+        (r"\.MILLI\.,\.METRE\.\)\);\n#902", ".FEMTO.,.METRE.));\n#902", "unsupported", "#901 .*is not a unit"),
         (r"\(#901,#902\)", "(#902)", "unsupported", "states no unit of length"),
         (r"(#\d+)=LINE", r"#899=MAPPED_ITEM('',$,$);\n\1=LINE", "unsupported", "#899 MAPPED_ITEM: is not read"),
         (r"CARTESIAN_POINT\('',\(20.0", "CARTESIAN_POINT('',(1.E99", "range", "a value of 1e.99"),
@@ -166,7 +166,7 @@ def test_two_solids(tmp_path):
     brep = re.search(r"MANIFOLD_SOLID_BREP\('part',#\d+\);", text)[0]
     error = refused(tmp_path, text.replace("#900=", f"#899={brep}\n#900="))
     assert error.reason == "several"
-    assert error.message.startswith("it holds 2 bodies, where one is meant to be; beside solid #")
+    assert error.message.startswith("it holds 2 bodies, where one is expected; beside solid #")
 
 
 def test_a_face_is_missing(tmp_path):
@@ -213,7 +213,7 @@ def test_an_edge_off_its_wall(tmp_path, surface):
     error = refused(tmp_path, changed(washer(), rf"({surface}\('',#\d+,)20\.0", r"\g<1>20.01"))
     assert error.reason == "gap"
     wrong = {"CIRCLE": "EDGE_CURVE: ends beside its curve"}.get(surface, "ADVANCED_FACE: is bounded by edges beside it")
-    assert re.search(rf"#\d+ {wrong}.* by 0\.01 mm, permitted are 1e-06", error.message)
+    assert re.search(rf"#\d+ {wrong}.* by 0\.01 mm, permitted is 1e-06", error.message)
 
 
 def test_a_vertex_off_its_place(tmp_path):
@@ -222,7 +222,7 @@ def test_a_vertex_off_its_place(tmp_path):
     moved = changed(text, rf"{point}=CARTESIAN_POINT\('',\(-10\.0", f"{point}=CARTESIAN_POINT('',(-10.01")
     error = refused(tmp_path, moved)
     assert error.reason == "gap"
-    assert re.search(r"#\d+ \w+: .* by 0\.01 mm, permitted are 1e-06", error.message)
+    assert re.search(r"#\d+ \w+: .* by 0\.01 mm, permitted is 1e-06", error.message)
 
 
 def test_edges_that_do_not_follow_one_another(tmp_path):

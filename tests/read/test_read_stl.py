@@ -278,7 +278,7 @@ def test_a_file_with_more_than_it_should_hold(tmp_path: Path) -> None:
         (b"facet normal", b"facets normal", "facet 1 has"),
         (b"vertex ", b"vertex", "words"),
         (b"normal 0 0 0", b"normal 0 0", "words"),
-        (b"    vertex 3", b"    vertex x3", "no number"),
+        (b"    vertex 3", b"    vertex x3", "not a number"),
         (b"endsolid", b"solidend", "endsolid"),
         (b"normal", b"n" * 1000, "1000 characters"),
     ],

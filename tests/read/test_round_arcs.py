@@ -11,7 +11,7 @@ LAW = "[{rise: 1, over: 30, law: modified-sine}, {dwell: 30}, {return: 1, over: 
 DISCS = [
     ("support, p: 25", 25.0, (0.0, 0.0)),
     ("support, p: 25 + 3*cos(t)", 25.0, (3.0, 0.0)),
-    ("support, p: 25 + 3*cos(t) - sin(t)/3, pivot: [2, 1]", 25.0, (1.0, -4.0 / 3.0)),
+    ("support, p: 25 + 3*cos(t) - sin(t)/3, shaft: [2, 1]", 25.0, (1.0, -4.0 / 3.0)),
     ("support, p: 25 + 3*cos(t/2)**2", 26.5, (1.5, 0.0)),
     ("support, fourier: {mean: 25, cos: {1: 3}}", 25.0, (3.0, 0.0)),
     ("double-roller, ratio: 2, arm: 40, roller_radius: 8, law: [{dwell: 90}]", 40.0 * 2.0**0.5 - 8.0, (0.0, 0.0)),

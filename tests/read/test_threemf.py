@@ -347,23 +347,26 @@ BAD = {
     ),
     "no triangles": (lambda text: re.sub(r"<triangle [^>]*>", "", text), "holds no triangles"),
     "a corner too many": (lambda text: re.sub(r'v1="\d+"', 'v1="99999999"', text, count=1), "none of the"),
-    "a corner below": (lambda text: re.sub(r'v1="\d+"', 'v1="-1"', text, count=1), "v1='-1' is no number"),
-    "no number": (lambda text: re.sub(rf'x="{NUMBER}"', 'x="nan"', text, count=1), "x='nan' is no number"),
-    "a comma": (lambda text: re.sub(rf'x="{NUMBER}"', 'x="1,5"', text, count=1), "x='1,5' is no number"),
+    "a corner below": (
+        lambda text: re.sub(r'v1="\d+"', 'v1="-1"', text, count=1),
+        "not the number of a vertex",
+    ),
+    "no number": (lambda text: re.sub(rf'x="{NUMBER}"', 'x="nan"', text, count=1), "x='nan' is not a number"),
+    "a comma": (lambda text: re.sub(rf'x="{NUMBER}"', 'x="1,5"', text, count=1), "x='1,5' is not a number"),
     "a digit of another script": (
         lambda text: re.sub(r'v1="\d+"', 'v1="٣"', text, count=1),
-        "is no number of a vertex",
+        "is not the number of a vertex",
     ),
-    "beyond all measure": (lambda text: re.sub(rf'x="{NUMBER}"', 'x="1e300"', text, count=1), "beyond all measure"),
-    "a coordinate missing": (lambda text: re.sub(rf'x="{NUMBER}" ', "", text, count=1), "x='' is no number"),
+    "out of range": (lambda text: re.sub(rf'x="{NUMBER}"', 'x="1e300"', text, count=1), "out of range"),
+    "a coordinate missing": (lambda text: re.sub(rf'x="{NUMBER}" ', "", text, count=1), "x='' is not a number"),
     "a unit unknown": (lambda text: text.replace('"millimeter"', '"furlong"'), "the unit 'furlong'"),
     "an extension required": (
         lambda text: text.replace("<model ", '<model requiredextensions="p" xmlns:p="http://p" ', 1),
         "requires extensions, 'p'",
     ),
-    "a place of eleven numbers": (placed("1 0 0 0 1 0 0 0 1 0 0"), "no twelve numbers"),
+    "a place of eleven numbers": (placed("1 0 0 0 1 0 0 0 1 0 0"), "not twelve numbers"),
     "a flat place": (placed("1 0 0 0 1 0 0 0 0 0 0 0"), "is flat"),
-    "a place far away": (placed("1 0 0 0 1 0 0 0 1 1e30 0 0"), "beyond all measure"),
+    "a place far away": (placed("1 0 0 0 1 0 0 0 1 1e30 0 0"), "out of range"),
     "a component of itself": (
         lambda text: text.replace("<mesh>", '<components><component objectid="1"/></components><mesh>', 1),
         "hold themselves",
@@ -456,7 +459,7 @@ def test_places_that_multiply(plain):
         text = text.replace("</resources>", f'<object id="2"><components>{held}</components></object></resources>')
         return text.replace('<item objectid="1"/>', '<item objectid="2"/>')
 
-    with pytest.raises(ReadError, match="reaches beyond all measure"):
+    with pytest.raises(ReadError, match="reaches out of range"):
         read_3mf(rewritten(sound, grown))
 
 
@@ -492,7 +495,7 @@ def test_export_and_verify(tmp_path, capsys):
         ("[{3mf: {tolerence: 0.1}}]", "tolerence: unknown key"),
         ("[{3mf: {parts: some}}]", "give cam or all"),
         ("[{3mf: {as: arcs}}]", "as: unknown key"),
-        ("[3MF]", "no such file format, given '3MF'"),
+        ("[3MF]", "unknown file format, given '3MF'"),
         ("[{3mf: {tolerance: 1.0e-10}}]", "rounding to nine decimals alone moves points by 7.07e-10 mm"),
     ],
 )

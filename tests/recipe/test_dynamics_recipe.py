@@ -54,7 +54,8 @@ def section(recipe: Recipe) -> dict[str, Any]:
 def test_what_a_recipe_says_of_its_train() -> None:
     assert recipe().dynamics == Dynamics(0.4, 2e5, 600.0, 20.0, 150.0, 0.0, None)
     play = recipe(
-        "units: inch\ndynamics: {mass: 1, stiffness: 1e6, play: 0.001, rpm: 60}\n", CAM.replace("rise: 20", "rise: 1")
+        "units: inch\ndynamics: {mass: 1, stiffness: 1e6, backlash: 0.001, rpm: 60}\n",
+        CAM.replace("rise: 20", "rise: 1"),
     )
     assert play.dynamics == Dynamics(1.0, 1e6, 60.0, 0.0, None, 0.0, pytest.approx(0.0254))
     assert recipe("").dynamics is None
@@ -111,14 +112,14 @@ def test_beyond_the_speed_at_which_float_begins_the_check_fails() -> None:
 
 
 def test_play_makes_impacts() -> None:
-    outcome = pipeline.check(recipe(TRAIN.replace("preload: 150", "play: 0.02")))
+    outcome = pipeline.check(recipe(TRAIN.replace("preload: 150", "backlash: 0.02")))
     assert outcome.ok
     intended, cut = outcome.report["dynamics"]["runs"]
     assert intended["impacts"]["count"] == 10
     assert intended["impacts"]["settled"]
     assert cut["impacts"]["greatest_velocity"] == pytest.approx(intended["impacts"]["greatest_velocity"], rel=0.05)
     assert "steady" not in intended
-    play = [check for check in outcome.report["checks"] if check["name"] == "play"]
+    play = [check for check in outcome.report["checks"] if check["name"] == "least-backlash"]
     assert play[0]["value"] == pytest.approx(0.02, abs=1e-9)
     assert 0.018 <= play[1]["value"] <= 0.02
 
@@ -128,7 +129,7 @@ def test_turns_that_do_not_settle_are_told_by_their_range() -> None:
     cam = (
         "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}\n"
     )
-    train = "dynamics: {mass: 0.4, damping: 25, stiffness: 6.0e+6, play: 0.05, rpm: 300}\n"
+    train = "dynamics: {mass: 0.4, damping: 25, stiffness: 6.0e+6, backlash: 0.05, rpm: 300}\n"
     impacts = pipeline.check(recipe(train, cam)).report["dynamics"]["runs"][0]["impacts"]
     assert not impacts["settled"]
     found = impacts["of_turns"]
@@ -140,10 +141,10 @@ def test_turns_that_do_not_settle_are_told_by_their_range() -> None:
 
 
 def test_play_that_the_file_takes_up_fails() -> None:
-    tight = TRAIN.replace("preload: 150", "play: 0.000001")
+    tight = TRAIN.replace("preload: 150", "backlash: 0.000001")
     outcome = pipeline.check(recipe(tight))
     failed = [check for check in outcome.report["checks"] if not check["ok"]]
-    assert [(check["name"], check["file"]) for check in failed] == [("play", "train.dxf")]
+    assert [(check["name"], check["file"]) for check in failed] == [("least-backlash", "train.dxf")]
     assert failed[0]["value"] < 0.0
 
 
@@ -162,9 +163,9 @@ def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None
 
 @pytest.mark.parametrize(("play", "faces"), [("0.02", ["lower", "upper"]), ("50", [])])
 def test_which_faces_bear(play: str, faces: list[str]) -> None:
-    report = pipeline.check(recipe(TRAIN.replace("preload: 150", f"play: {play}"))).report
+    report = pipeline.check(recipe(TRAIN.replace("preload: 150", f"backlash: {play}"))).report
     assert report["dynamics"]["runs"][0]["impacts"]["faces"] == faces
-    check = next(check for check in report["checks"] if check["name"] == "play")
+    check = next(check for check in report["checks"] if check["name"] == "least-backlash")
     assert ("touches neither face" in check.get("detail", "")) == (not faces)
 
 
@@ -181,18 +182,18 @@ def test_a_course_that_cannot_be_followed_is_told(monkeypatch: pytest.MonkeyPatc
     assert (run["transient"], run["impacts"]) == (None, None)
     assert "degrees of turn 1 and no further" in run["transient_why"]
     with pytest.raises(RecipeErrors, match=r"dynamics: followed from rest to .* degrees of turn 1 and no further"):
-        pipeline.check(recipe(TRAIN.replace("preload: 150", "play: 0.02")))
+        pipeline.check(recipe(TRAIN.replace("preload: 150", "backlash: 0.02")))
 
 
-@pytest.mark.parametrize("held", ["preload: 8", "play: 0.02"])
+@pytest.mark.parametrize("held", ["preload: 8", "backlash: 0.02"])
 def test_a_follower_that_swings_has_figures_of_turning(held: str) -> None:
     train = f"dynamics: {{mass: 2.0e-3, damping: 5, stiffness: 3.0e4, {held}, rpm: 400}}\n"
     outcome = pipeline.check(recipe(train, PAIR))
     assert outcome.ok
     found = outcome.report["dynamics"]
     assert (found["unit"], found["force_unit"]) == ("deg", "N m")
-    if "play" in held:
-        play = next(check for check in outcome.report["checks"] if check["name"] == "play")
+    if "backlash" in held:
+        play = next(check for check in outcome.report["checks"] if check["name"] == "least-backlash")
         assert play["value"] == pytest.approx(math.degrees(0.02 / 30.0), rel=1e-6)
         assert play["unit"] == "deg"
 
@@ -209,7 +210,7 @@ def test_the_springs_force_is_given_at_the_lowest_place() -> None:
 def test_a_linkage_is_driven_as_intended() -> None:
     four_bar = """\
 name: linkage
-cam: {kind: support, p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25, pivot: [18, 8.5]}
+cam: {kind: support, p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25, shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
 verify: {angles: 120}
 """
@@ -218,11 +219,11 @@ verify: {angles: 120}
     outcome = pipeline.check(asked)
     assert [run["from"] for run in outcome.report["dynamics"]["runs"]] == ["intended"]
     assert outcome.report["dynamics"]["force_unit"] == "N m"
-    with pytest.raises(RecipeErrors, match=r"dynamics\.play: play at the cam under a linkage"):
-        recipe(train.replace("preload: 8", "play: 0.1"), four_bar)
+    with pytest.raises(RecipeErrors, match=r"dynamics\.backlash: backlash at the cam under a linkage"):
+        recipe(train.replace("preload: 8", "backlash: 0.1"), four_bar)
 
 
-@pytest.mark.parametrize("train", [TRAIN, TRAIN.replace("preload: 150", "play: 0.02"), ""])
+@pytest.mark.parametrize("train", [TRAIN, TRAIN.replace("preload: 150", "backlash: 0.02"), ""])
 def test_the_checks_are_foreseen(train: str) -> None:
     asked = recipe(train)
     made = [(check["name"], check.get("file")) for check in pipeline.check(asked).report["checks"]]
@@ -245,9 +246,9 @@ def test_what_is_not_asked_for_is_skipped() -> None:
             "no steady",
         ),
         (
-            TRAIN.replace("preload: 150", "play: 0.02"),
+            TRAIN.replace("preload: 150", "backlash: 0.02"),
             "cam: {kind: support, p: 25 + 2*cos(2*t)}\n",
-            "a single flat face has no play",
+            "a single flat face has no backlash",
         ),
     ],
 )

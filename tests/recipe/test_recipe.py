@@ -64,7 +64,7 @@ rotation: ccw
 cam:
   kind: support
   p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)
-  pivot: [18, 8.5]
+  shaft: [18, 8.5]
   undercut: trim
 part: {thickness: 8, bore: 10}
 export:
@@ -120,7 +120,7 @@ def test_the_default_tolerance_is_a_micrometre_in_inches_too() -> None:
     ("body", "expected"),
     [
         (
-            "{kind: support, fourier: {mean: 2, sin: {5: 0.01, 3: -0.1}}, pivot: [1, -0.5]}",
+            "{kind: support, fourier: {mean: 2, sin: {5: 0.01, 3: -0.1}}, shaft: [1, -0.5]}",
             SupportCam(FourierShape(2 * MM, (), ((3, -0.1 * MM), (5, 0.01 * MM))), (1 * MM, -0.5 * MM), "refuse"),
         ),
         (

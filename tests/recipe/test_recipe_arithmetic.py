@@ -85,7 +85,7 @@ def test_the_json_schema_knows_it() -> None:
 def test_wherever_a_number_is_expected() -> None:
     text = (
         "units: inch\n"
-        "cam: {kind: support, fourier: {mean: 15/25.4, cos: {3: 1/100 + 0.001}}, pivot: [2*0.05, -(1/20)]}\n"
+        "cam: {kind: support, fourier: {mean: 15/25.4, cos: {3: 1/100 + 0.001}}, shaft: [2*0.05, -(1/20)]}\n"
         "part: {bore: 5/25.4}\n"
         "export: {tolerance: 0.01/25.4, files: [dxf]}\n"
     )

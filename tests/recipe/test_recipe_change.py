@@ -70,9 +70,9 @@ def test_a_field_without_a_value_gets_one() -> None:
 @pytest.mark.parametrize(
     ("path", "value", "message"),
     [
-        ("cam.motion[7].rise", 3, "there is no such entry"),
-        ("cam.foo[1]", 3, "there is no such entry"),
-        ("cam.base_radius.x", 3, "there is no such field"),
+        ("cam.motion[7].rise", 3, "the entry does not exist"),
+        ("cam.foo[1]", 3, "the entry does not exist"),
+        ("cam.base_radius.x", 3, "the field does not exist"),
         ("cam..x", 3, "not the path of a field"),
         ("", 3, "not the path of a field"),
         ("cam.base_radius", float("nan"), "a number is finite"),

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 TEXT = """\
 # a four-bar   é 😀
 name: x
-"cam": {kind: support, "fourier": {mean: 25, cos: {3: 1, 5: '2'}}, pivot: [1,2]}  # shaft at 1
+"cam": {kind: support, "fourier": {mean: 25, cos: {3: 1, 5: '2'}}, shaft: [1,2]}  # shaft at 1
 linkage:
   kind: four-bar
   ground: &r 80     # r1
@@ -73,8 +73,8 @@ def test_numbers_are_replaced_where_they_stand_and_comments_stay() -> None:
         "cam.fourier.mean": 25.5,
         "cam.fourier.cos.3": -1.25,
         "cam.fourier.cos.5": 1e-7,
-        "cam.pivot[0]": 10,
-        "cam.pivot[1]": 3.0,
+        "cam.shaft[0]": 10,
+        "cam.shaft[1]": 3.0,
         "linkage.ground": 81,
         "linkage.rocker": 1 / 3,
         "linkage.dyads[0].point[1]": 2,
@@ -85,7 +85,7 @@ def test_numbers_are_replaced_where_they_stand_and_comments_stay() -> None:
     }
     expected = (
         TEXT.replace(
-            "mean: 25, cos: {3: 1, 5: '2'}}, pivot: [1,2]", "mean: 25.5, cos: {3: -1.25, 5: '1e-07'}}, pivot: [10,3]"
+            "mean: 25, cos: {3: 1, 5: '2'}}, shaft: [1,2]", "mean: 25.5, cos: {3: -1.25, 5: '1e-07'}}, shaft: [10,3]"
         )
         .replace("&r 80 ", "81 ")
         .replace("    105", "    0.3333333333333333")
@@ -109,15 +109,15 @@ def test_line_ends_stay(ends: str) -> None:
 
 
 def test_json_is_yaml() -> None:
-    text = '{"cam":{"p":"5","pivot":[1,2]},"sweep":{"a":[1]}, "name":"x"}'
-    assert with_values(text, {"cam.pivot[1]": -3, "sweep.a[0]": 0.5, "cam.p": 7}) == (
-        '{"cam":{"p":"7","pivot":[1,-3]},"sweep":{"a":[0.5]}, "name":"x"}'
+    text = '{"cam":{"p":"5","shaft":[1,2]},"sweep":{"a":[1]}, "name":"x"}'
+    assert with_values(text, {"cam.shaft[1]": -3, "sweep.a[0]": 0.5, "cam.p": 7}) == (
+        '{"cam":{"p":"7","shaft":[1,-3]},"sweep":{"a":[0.5]}, "name":"x"}'
     )
 
 
 def test_a_second_change_finds_its_way_after_the_first() -> None:
     once = with_values(TEXT, {"cam.fourier.mean": 1234567.875})
-    assert with_values(once, {"cam.fourier.mean": 25, "cam.pivot[1]": 2}) == TEXT
+    assert with_values(once, {"cam.fourier.mean": 25, "cam.shaft[1]": 2}) == TEXT
 
 
 @pytest.mark.parametrize("path", few(SHIPPED, 3), ids=lambda path: path.stem)
@@ -157,9 +157,9 @@ def test_what_is_not_finite_is_refused(x: float) -> None:
         with_values(TEXT, {"linkage.rocker": x})
 
 
-@pytest.mark.parametrize("path", ["linkage.rockers", "linkage", "cam.kind", "cam.pivot", "cam.pivot[2]", "", "name"])
+@pytest.mark.parametrize("path", ["linkage.rockers", "linkage", "cam.kind", "cam.shaft", "cam.shaft[2]", "", "name"])
 def test_only_numbers_are_replaced(path: str) -> None:
-    with pytest.raises(ValueError, match=f"there is no number at {re.escape(path)}"):
+    with pytest.raises(ValueError, match=f"no number at {re.escape(path)}"):
         with_values(TEXT, {path: 1})
 
 

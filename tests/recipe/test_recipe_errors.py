@@ -57,16 +57,16 @@ tolerance: 4
         "cams/a.yaml:6:3: cam.arms: unknown key; did you mean arm?",
         "cams/a.yaml:7:18: cam.roller_radius: not above 0, given -8; give a length above 0 in inch",
         "cams/a.yaml:8:17: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199",
-        "cams/a.yaml:9:11: dynamics: needs preload or play; give exactly one of them",
+        "cams/a.yaml:9:11: dynamics: needs preload or backlash; give exactly one of them",
         "cams/a.yaml:10:14: part.bore: not a number, given '10mm'; write the number without its unit",
-        f"cams/a.yaml:10:20: part.follower: not available in this version; leave it out; here it has {PART}",
+        f"cams/a.yaml:10:20: part.follower: not available in this version; leave it out; the keys here are {PART}",
         (
             "cams/a.yaml:11:34: export.files[1].dxf.as: R12 has no splines, given 'spline'; "
             "give arcs or polyline, or a later version"
         ),
         "cams/a.yaml:11:58: export.files[2]: stl needs a thickness; give part.thickness, or leave stl out",
         (
-            "cams/a.yaml:11:63: export.files[3]: no such file format, given 'stp'; "
+            "cams/a.yaml:11:63: export.files[3]: unknown file format, given 'stp'; "
             "give dxf, svg, stl, 3mf, step, glb, csv, html or gcode"
         ),
         "cams/a.yaml:12:18: verify.angles: a leading zero, which some read as octal, given 010; leave the zero out",
@@ -105,15 +105,15 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         return str(error)
 
     missing = tmp_path / "missing.yaml"
-    assert whole(missing) == f"{missing}: there is no such file"
+    assert whole(missing) == f"{missing}: the file does not exist"
     assert whole(tmp_path) == f"{tmp_path}: cannot be read: {os.strerror(21)}"
     assert whole("a\0b") == "a\\x00b: not the name of a file"
     large = tmp_path / "large.yaml"
     large.write_bytes(b"#" * (MAX_BYTES + 1))
-    assert whole(large) == f"{large}: the file is larger than 1000000 bytes; a recipe takes a few hundred"
+    assert whole(large) == f"{large}: the file is larger than 1000000 bytes; a recipe needs a few hundred"
 
 
-AROUND = "look at indentation, quotes, brackets and colons here and in the line above"
+AROUND = "check indentation, quotes, brackets and colons in this line and the line above"
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ AROUND = "look at indentation, quotes, brackets and colons here and in the line 
             "about: SW: 5\n" + SUPPORT,
             (
                 "1:10: YAML cannot be read: mapping values are not allowed here; "
-                "a text with a colon and a space in it needs quotes; keys of one mapping start in one column"
+                "a text that contains a colon and a space needs quotes; keys of one mapping start in one column"
             ),
         ),
         ("cam: *c\n", "1:6: an alias without its anchor, given '*c'; quote a text that begins with * or &"),
@@ -177,7 +177,7 @@ def test_bounds_hold_from_both_sides(reader: str, monkeypatch: pytest.MonkeyPatc
 
     assert listed(MAX_NODES - 3)[0].startswith("c.yaml:1:6: cam: not a mapping, given a list of 9997;")
     assert listed(MAX_NODES - 2) == [
-        f"c.yaml:1:{7 + 2 * (MAX_NODES - 3)}: more than 10000 entries, aliases expanded; a recipe takes a few dozen"
+        f"c.yaml:1:{7 + 2 * (MAX_NODES - 3)}: more than 10000 entries, aliases expanded; a recipe needs a few dozen"
     ]
 
     def aliased(count: int) -> list[str]:
@@ -191,7 +191,7 @@ def test_laughs_are_counted_not_expanded() -> None:
     lines = ["l0: &l0 [1, 1, 1, 1, 1, 1, 1, 1, 1]"]
     lines += [f"l{i}: &l{i} [{', '.join([f'*l{i - 1}'] * 9)}]" for i in range(1, 9)]
     assert told("\n".join(lines)) == [
-        "c.yaml:5:10: more than 10000 entries, aliases expanded; a recipe takes a few dozen"
+        "c.yaml:5:10: more than 10000 entries, aliases expanded; a recipe needs a few dozen"
     ]
 
 
@@ -207,7 +207,7 @@ def test_laughs_are_counted_not_expanded() -> None:
         ),
         (
             "cam:\n  kind: support\n  p: 9\n  p: 8\n",
-            "4:3: cam.p: a key that stands twice; it stands in line 3 already",
+            "4:3: cam.p: a duplicate key; it is given in line 3 already",
         ),
         (SUPPORT + "? [a]\n: 1\n", "2:3: a key must be a text, given a list of 1"),
         (SUPPORT + "<<: {part: 1}\n", "2:1: '<<': merge keys are not read; write the keys out"),
@@ -228,7 +228,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         (SUPPORT + "naem: x\n", "2:1: naem: unknown key; did you mean name?"),
         (SUPPORT + "bore: 5\n", "2:1: bore: unknown key; it belongs under part"),
         (SUPPORT + "xyz: 5\n", f"2:1: xyz: unknown key; the keys here are {KEYS}"),
-        (SUPPORT + "cam.pivot: 5\n", f"2:1: 'cam.pivot': unknown key; the keys here are {KEYS}"),
+        (SUPPORT + "cam.shaft: 5\n", f"2:1: 'cam.shaft': unknown key; the keys here are {KEYS}"),
         (SUPPORT + "part: {units: mm}\n", "2:8: part.units: unknown key; it belongs at the top level"),
         (SUPPORT + "part: {x: 1}\n", f"2:8: part.x: unknown key; the keys here are {PART}"),
         (
@@ -240,20 +240,23 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
             "1:43: cam.roller_radius: unknown key; it belongs under cam of kind constant-diameter or double-roller",
         ),
         (
-            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, damping: 300, play: 0.1}\n",
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, damping: 300, backlash: 0.1}\n",
             "2:55: dynamics.damping: 15 times critical; give less than 200",
         ),
         (
-            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, play: 0.1, rate: 2}\n",
-            "2:63: dynamics.rate: a spring's rate beside play; give preload instead of play, or leave it out",
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, backlash: 0.1, rate: 2}\n",
+            (
+                "2:67: dynamics.rate: a spring rate beside backlash; give preload in place of backlash, "
+                "or leave the rate out"
+            ),
         ),
         (
-            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, play: 0.1}\n",
-            "2:64: dynamics.play: cannot stand beside preload; give exactly one of preload or play",
+            SUPPORT + "dynamics: {mass: 1, stiffness: 100, rpm: 60, preload: 1, backlash: 0.1}\n",
+            "2:68: dynamics.backlash: cannot be combined with preload; give exactly one of preload or backlash",
         ),
         (
             SUPPORT + "part: {follower: 1}\n",
-            f"2:8: part.follower: not available in this version; leave it out; here it has {PART}",
+            f"2:8: part.follower: not available in this version; leave it out; the keys here are {PART}",
         ),
         ("{}", "1:1: cam: missing; give a mapping with the kind of cam and its fields: the cam, of exactly one kind"),
         ("cam:\n", "1:5: cam: nothing given; give a mapping with the kind of cam and its fields"),
@@ -272,11 +275,11 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
         ),
         (
             "cam: {kind: support, p: 9, fourier: {mean: 1}}",
-            "1:37: cam.fourier: cannot stand beside p; give exactly one of p, fourier, reuleaux or hypocycloid",
+            "1:37: cam.fourier: cannot be combined with p; give exactly one of p, fourier, reuleaux or hypocycloid",
         ),
         (
             "cam: {kind: flat-pair, ratio: 2, arm: 30, arc: {radius: 50}, delta: {cos: {1: 5}}}",
-            "1:48: cam.arc: cannot stand beside delta; give exactly one of delta, law, arc or rosette",
+            "1:48: cam.arc: cannot be combined with delta; give exactly one of delta, law, arc or rosette",
         ),
         (SUPPORT + "part:\n", f"2:6: part: nothing given; give a mapping with {PART}, or leave the key out"),
         (SUPPORT + "part: {bore: ~}\n", f"2:14: part.bore: nothing given; {BORE}, or leave the key out"),
@@ -297,12 +300,12 @@ def test_keys(body: str, message: str) -> None:
     ("written", "message"),
     [
         ("ten", f"not a number, given 'ten'; {LENGTH}"),
-        ("1:30", "not a number, given '1:30'; it is not read to the base of 60; write it as one decimal number"),
+        ("1:30", "not a number, given '1:30'; sexagesimal numbers are not read; write it as one decimal number"),
         ("010", "a leading zero, which some read as octal, given 010; leave the zero out"),
         (".inf", "not a number, given '.inf'; it must be finite"),
         ("-.INF", "not a number, given '-.INF'; it must be finite"),
         (".nan", "not a number, given '.nan'; it must be finite"),
-        ("0x1F", "not a number, given '0x1F'; write it to the base of ten"),
+        ("0x1F", "not a number, given '0x1F'; write it in decimal"),
         ("1_000", "not a number, given '1_000'; write it without underscores"),
         ("1,5", "not a number, given '1,5'; a decimal takes a point, not a comma"),
         ("10 mm", "not a number, given '10 mm'; write the number without its unit"),
@@ -310,7 +313,7 @@ def test_keys(body: str, message: str) -> None:
         ("2020-01-01", "not a number, given '2020-01-01'; this is a date"),
         ("1/0", f"divides by zero, given 1/0; {LENGTH}"),
         ("1e999", f"too large, given 1e999; {LENGTH}"),
-        ("-1e-31", "too small, given -1e-31; write 0, or what was meant"),
+        ("-1e-31", "too small, given -1e-31; write 0, or the intended number"),
         ("1e-999", f"not above 0, given 1e-999; {LENGTH}"),
         ("0", f"not above 0, given 0; {LENGTH}"),
         ("-2", f"not above 0, given -2; {LENGTH}"),
@@ -505,7 +508,7 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
                 "1:50: cam.fourier.cos.3: not a number, given 'x'; give a length in mm",
                 "1:53: cam.fourier.cos.0: below 1, given 0; give a whole number from 1 to 199",
                 "1:59: cam.fourier.cos.'1.5': not a whole number, given 1.5; give a whole number from 1 to 199",
-                "1:73: cam.fourier.cos.'5.0': the harmonic stands twice; give each harmonic once",
+                "1:73: cam.fourier.cos.'5.0': a duplicate harmonic; give each harmonic once",
                 (
                     "1:87: cam.fourier.sin: not a mapping, given 4; give a mapping from harmonics to coefficients, "
                     "such as {3: 0.5} in mm"
@@ -513,12 +516,12 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
             ],
         ),
         (
-            "cam: {kind: support, p: 9, pivot: [1]}",
-            ["1:35: cam.pivot: not a point, given a list of 1; give a list of two lengths [x, y] in mm"],
+            "cam: {kind: support, p: 9, shaft: [1]}",
+            ["1:35: cam.shaft: not a point, given a list of 1; give a list of two lengths [x, y] in mm"],
         ),
         (
-            "cam: {kind: support, p: 9, pivot: [1, a]}",
-            ["1:39: cam.pivot[1]: not a number, given 'a'; give a length in mm"],
+            "cam: {kind: support, p: 9, shaft: [1, a]}",
+            ["1:39: cam.shaft[1]: not a number, given 'a'; give a length in mm"],
         ),
         (
             "cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 2, 2: 1}}}",
@@ -555,13 +558,13 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
         ),
         (
             MOTION.replace("LAW", "modified-sin"),
-            ["1:84: cam.motion[0].law: no such motion law, given 'modified-sin'; did you mean modified-sine?"],
+            ["1:84: cam.motion[0].law: unknown motion law, given 'modified-sin'; did you mean modified-sine?"],
         ),
         (
             MOTION.replace("LAW", "xyz"),
             [
                 (
-                    "1:84: cam.motion[0].law: no such motion law, given 'xyz'; give "
+                    "1:84: cam.motion[0].law: unknown motion law, given 'xyz'; give "
                     f"{', '.join(NAMES)} or match, {{polynomial: [...]}} or {{scca: {{...}}}}"
                 )
             ],
@@ -587,13 +590,13 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
         (
             "cam: {kind: constant-breadth, base_radius: 4, motion: [{dwell: 90, split: 0.4}, {dwell: 90, at_end: {}}]}",
             [
-                "1:75: cam.motion[0].split: cannot stand without a law; leave it out",
-                "1:101: cam.motion[1].at_end: cannot stand without a law; leave it out",
+                "1:75: cam.motion[0].split: needs a law; leave it out",
+                "1:101: cam.motion[1].at_end: needs a law; leave it out",
             ],
         ),
         (
             MOTION.replace("LAW", "{polynomial: [0, 2, -1, 1e-310]}"),
-            ["1:108: cam.motion[0].law.polynomial[3]: too small, given 1e-310; write 0, or what was meant"],
+            ["1:108: cam.motion[0].law.polynomial[3]: too small, given 1e-310; write 0, or the intended number"],
         ),
         (
             MOTION.replace("LAW", "{polynom: [0, 1]}"),
@@ -626,21 +629,21 @@ cam:
     keys = "rise, return, to, rise_fall, displacement, dwell, over, law, split and at_end"
     kinds = "rise, return, to, rise_fall, displacement or dwell"
     assert told(body) == [
-        "c.yaml:5:25: cam.motion[0].over: cannot stand beside dwell; leave it out",
-        "c.yaml:6:25: cam.motion[1].return: cannot stand beside rise; give exactly one of " + kinds,
+        "c.yaml:5:25: cam.motion[0].over: cannot be combined with dwell; leave it out",
+        "c.yaml:6:25: cam.motion[1].return: cannot be combined with rise; give exactly one of " + kinds,
         f"c.yaml:7:7: cam.motion[2]: needs {kinds}; give exactly one of them",
         (
-            "c.yaml:8:7: cam.motion[3].over: missing beside rise; give an angle above 0 up to 180 in degrees: "
-            "shaft angle of the segment"
+            "c.yaml:8:7: cam.motion[3].over: missing, needed with rise; give an angle above 0 up to 180 in "
+            "degrees: shaft angle of the segment"
         ),
         (
-            "c.yaml:9:7: cam.motion[4].law: missing beside return; give a motion law: "
+            "c.yaml:9:7: cam.motion[4].law: missing, needed with return; give a motion law: "
             "motion law by name, match, {polynomial: [c0, c1, ...]} or {scca: ...}"
         ),
         "c.yaml:9:25: cam.motion[4].over: above 180, given 200; give an angle above 0 up to 180 in degrees",
         (
-            "c.yaml:10:7: cam.motion[5].over: missing beside displacement; give an angle above 0 up to 180 in degrees: "
-            "shaft angle of the segment"
+            "c.yaml:10:7: cam.motion[5].over: missing, needed with displacement; give an angle above 0 up to 180 in "
+            "degrees: shaft angle of the segment"
         ),
         f"c.yaml:11:7: cam.motion[6]: needs {kinds}; give exactly one of them",
         f"c.yaml:11:8: cam.motion[6].table: unknown key; the keys here are {keys}",
@@ -671,8 +674,8 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         ("[~]", [f"18: export.files[0]: not a file, given nothing; {CHOOSE}"]),
         ("[[dxf]]", [f"18: export.files[0]: not a file, given a list of 1; {CHOOSE}"]),
         ("[{dxf: {}, csv: {}}]", [f"18: export.files[0]: not a file, given a mapping of 2; {CHOOSE}"]),
-        ("[stp]", [f"18: export.files[0]: no such file format, given 'stp'; {FORMATS}"]),
-        ("[DXF]", [f"18: export.files[0]: no such file format, given 'DXF'; {FORMATS}"]),
+        ("[stp]", [f"18: export.files[0]: unknown file format, given 'stp'; {FORMATS}"]),
+        ("[DXF]", [f"18: export.files[0]: unknown file format, given 'DXF'; {FORMATS}"]),
         (
             "[{dxf: }]",
             [

@@ -159,7 +159,7 @@ linkages = kinded(LINKAGES) | st.fixed_dictionaries(
     {"kind": st.sampled_from(sorted(LINKAGES))},
     optional={"ground": numbers, "coupler": numbers, "rocker": numbers, "offset": numbers, "dyads": dyads},
 )
-PATHS = ["cam.pivot[0]", "cam.base_radius", "linkage.rocker", "linkage.dyads[0].point[1]", "part.bore", "cam", "x[", ""]
+PATHS = ["cam.shaft[0]", "cam.base_radius", "linkage.rocker", "linkage.dyads[0].point[1]", "part.bore", "cam", "x[", ""]
 ranges = st.fixed_dictionaries({"from": numbers, "to": numbers}, optional={"steps": st.integers(0, 9)})
 vary = st.dictionaries(st.sampled_from(PATHS), ranges | st.lists(numbers, max_size=3) | structures, max_size=4)
 known = {

@@ -289,7 +289,7 @@ def test_too_many_dyads() -> None:
             "cam: {kind: flat-pair, ratio: 2, arm: 30, arc: {radius: 50}}\nlinkage: {" + FOUR_BAR + "}",
             [
                 (
-                    "2:10: linkage: cannot stand beside a cam of kind flat-pair; "
+                    "2:10: linkage: cannot be combined with a cam of kind flat-pair; "
                     "a frame around a cam of kind support or constant-breadth drives it"
                 )
             ],

@@ -17,7 +17,7 @@ from camgeo.recipe.sweep import FIGURES, Axis, Sweep
 HERE = {"", "linkage", "dwell", "face"}  # what a recipe with a linkage and a dwell has
 
 BASE = """\
-cam: {kind: support, fourier: {mean: 25, cos: {3: 1.5}}, pivot: [10, 4]}
+cam: {kind: support, fourier: {mean: 25, cos: {3: 1.5}}, shaft: [10, 4]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105, dyads: [{kind: rpr, point: [9, 0], ground: [80, 200]}]}
 dwell: {band: 0.1}
 part: {thickness: 8}
@@ -50,7 +50,7 @@ def told(body: str, base: str = BASE) -> list[str]:
 def test_everything_said() -> None:
     body = """\
   vary:
-    cam.pivot[0]: {from: -10, to: 20}
+    cam.shaft[0]: {from: -10, to: 20}
     linkage.rocker: {to: 110, from: 190/2}
     linkage.dyads[0].point[1]: [1, -2.5, 1/4]
   method: sobol
@@ -64,7 +64,7 @@ def test_everything_said() -> None:
 """
     assert sweep(body) == Sweep(
         vary=(
-            Axis("cam.pivot[0]", -10.0, 20.0),
+            Axis("cam.shaft[0]", -10.0, 20.0),
             Axis("linkage.rocker", 95.0, 110.0),
             Axis("linkage.dyads[0].point[1]", values=(1.0, -2.5, 0.25)),
         ),
@@ -117,8 +117,8 @@ def test_values_stay_as_written_and_limits_come_in_the_units_of_figures() -> Non
         for path in ("cam.base_radius", "cam.motion[0].rise", "cam.motion[1].dwell")
     ]
     + [
-        ("{kind: support, fourier: {mean: 25, sin: {3: 1.5, '5': 0}}, pivot: [1, 2]}", path)
-        for path in ("cam.fourier.mean", "cam.fourier.sin.3", "cam.fourier.sin.5", "cam.pivot[1]")
+        ("{kind: support, fourier: {mean: 25, sin: {3: 1.5, '5': 0}}, shaft: [1, 2]}", path)
+        for path in ("cam.fourier.mean", "cam.fourier.sin.3", "cam.fourier.sin.5", "cam.shaft[1]")
     ]
     + [("{kind: support, reuleaux: {sides: 3, breadth: 50, rounding: 5}}", "cam.reuleaux.rounding")],
 )
@@ -156,7 +156,7 @@ FIRST_PATH = "cam.fourier.mean"
 @pytest.mark.parametrize(
     ("axis", "message"),
     [
-        ("cam.pivot: [1]", "no number stands there; give the path of a number in it, such as cam.pivot[0]"),
+        ("cam.shaft: [1]", "no number stands there; give the path of a number in it, such as cam.shaft[0]"),
         ("cam.kind: [1]", f"no number stands there; give the path of a number, such as {FIRST_PATH}"),
         (
             "linkage.dyads[0].offset: [1]",
@@ -164,14 +164,14 @@ FIRST_PATH = "cam.fourier.mean"
         ),
         ("cam.fourier.sin.3: [1]", "the recipe gives it no value; give it a value first, which the sweep replaces"),
         ("cam.hypocycloid.size: [1]", "the recipe gives it no value; give it a value first, which the sweep replaces"),
-        ("cam.pivot[2]: [1]", "no such field, given 'cam.pivot[2]'; did you mean cam.pivot[1]?"),
+        ("cam.shaft[2]: [1]", "unknown field, given 'cam.shaft[2]'; did you mean cam.shaft[1]?"),
         (
             "linkage.dyads[1].point[0]: [1]",
-            ("no such field, given 'linkage.dyads[1].point[0]'; did you mean linkage.dyads[0].point[0]?"),
+            ("unknown field, given 'linkage.dyads[1].point[0]'; did you mean linkage.dyads[0].point[0]?"),
         ),
-        ("linkage.roker: [1]", "no such field, given 'linkage.roker'; did you mean linkage.rocker?"),
-        ("speed: [1]", f"no such field, given 'speed'; give the path of a number, such as {FIRST_PATH}"),
-        ("part.bore: [1]", f"no such field, given 'part.bore'; give the path of a number, such as {FIRST_PATH}"),
+        ("linkage.roker: [1]", "unknown field, given 'linkage.roker'; did you mean linkage.rocker?"),
+        ("speed: [1]", f"unknown field, given 'speed'; give the path of a number, such as {FIRST_PATH}"),
+        ("part.bore: [1]", f"unknown field, given 'part.bore'; give the path of a number, such as {FIRST_PATH}"),
         (
             "part.thickness: [1]",
             f"no figure of a design depends on it; vary numbers of cam and linkage, such as {FIRST_PATH}",
@@ -310,7 +310,11 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
         ),
         (
             ROCKER,
-            ["1:3: sweep.rank: missing; give " + ", ".join([*FIGURES][:-1]) + " or size: the figure to be best in"],
+            [
+                "1:3: sweep.rank: missing; give "
+                + ", ".join([*FIGURES][:-1])
+                + " or size: figure by which the designs are ranked"
+            ],
         ),
         (ROCKER + "  rank: dwel\n", ["2:9: sweep.rank: not one of the choices, given 'dwel'; did you mean dwell?"]),
         (ROCKER + "  refine: yes\n" + RANK, ["2:11: sweep.refine: not true or false, given 'yes'; give true or false"]),
@@ -326,16 +330,16 @@ def test_a_number_that_an_alias_shares_cannot_vary() -> None:
             + "  limits: {transmision: {at_least: 4}, size: {}, swing: {at_least: 5, at_most: 4}, margin: 3}\n"
             + RANK,
             [
-                "2:12: sweep.limits.transmision: no such figure; did you mean transmission-angle?",
+                "2:12: sweep.limits.transmision: unknown figure; did you mean transmission-angle?",
                 "2:46: sweep.limits.size: no bound; give at_least, at_most or both",
-                "2:80: sweep.limits.swing.at_most: below at_least, so no design will do; exchange them",
+                "2:80: sweep.limits.swing.at_most: below at_least, so no design is accepted; exchange them",
                 "2:92: sweep.limits.margin: not a mapping, given 3; give a mapping with at_least and at_most",
             ],
         ),
         (
             ROCKER + "  limits: {weight: {at_most: 4}, shaft-rate: {at_lest: 0}, size: {at_most: x}}\n" + RANK,
             [
-                "2:12: sweep.limits.weight: no such figure; the figures are "
+                "2:12: sweep.limits.weight: unknown figure; the figures are "
                 + ", ".join([name for name, one in FIGURES.items() if one.needs in HERE][:-1])
                 + " and size",
                 "2:47: sweep.limits.shaft-rate.at_lest: unknown key; did you mean at_least?",
@@ -406,7 +410,7 @@ def test_a_sweep_may_stand_before_what_it_varies() -> None:
 @pytest.mark.parametrize(
     ("path", "known"),
     [
-        ("cam.pivot[0]", True),
+        ("cam.shaft[0]", True),
         ("cam.fourier.cos.7", True),
         ("cam.fourier.cos.x", False),
         ("cam.base_radius", False),
@@ -416,8 +420,8 @@ def test_a_sweep_may_stand_before_what_it_varies() -> None:
         ("linkage.dyads[3].colour", False),
         ("export.tolerance", True),
         ("", False),
-        ("cam..pivot", False),
-        ("cam.pivot.x", False),
+        ("cam..shaft", False),
+        ("cam.shaft.x", False),
     ],
 )
 def test_fields_of_the_schema_are_known_by_their_paths(path: str, known: bool) -> None:

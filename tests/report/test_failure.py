@@ -27,7 +27,7 @@ def told(name: str, value: float | None, limit: float | None, cam: str, more: st
 @pytest.mark.parametrize(
     ("said", "name", "value", "limit", "cam"),
     [
-        ("a smaller swing, or the same over a wider angle", "transmission", 1.2, 1.0, "roller"),
+        ("a smaller swing, or the same over a wider angle", "velocity-ratio", 1.2, 1.0, "roller"),
         ("a smaller swing, or the same over a wider angle", "pressure-angle", None, 90.0, "roller"),
         ("a p larger by more than 1.23457 mm", "radius-of-curvature", -1.2345678, 0.0, "support"),
         ("a base radius larger by more than 1.23457 mm", "radius-of-curvature", -1.2345621, 0.0, "breadth"),

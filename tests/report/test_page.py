@@ -150,7 +150,7 @@ def test_checks_stand_with_their_values_failed_ones_first(tmp_path: Path) -> Non
     assert states[0] == "failed"
     head = made.text.partition("</header>")[0]
     assert f"{states.count('failed')} checks of {len(states)} fail" in head
-    assert "No such cam is made" in made.text
+    assert "The cam is not made" in made.text
     parsed(made.text)
 
 
@@ -273,7 +273,7 @@ def test_ccw_is_the_mirror_image_and_the_motion_stays() -> None:
 def test_dyads_hang_together(tmp_path: Path) -> None:
     path = tmp_path / "dyads.yaml"
     path.write_text(
-        "rotation: ccw\ncam:\n  kind: support\n  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  pivot: [18, 8.5]\n"
+        "rotation: ccw\ncam:\n  kind: support\n  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  shaft: [18, 8.5]\n"
         "linkage:\n  kind: four-bar\n  ground: 80\n  coupler: 70\n  rocker: 105\n  dyads:\n"
         "    - {kind: rpr, on: output, point: [80, 10], ground: [100, -30], offset: 12}\n"
         "    - {kind: rrp, on: previous, point: [60, 0], link: 100, through: [150, -20], direction: 30}\n",
@@ -387,7 +387,7 @@ def test_an_unreadable_file_is_left_out(tmp_path: Path) -> None:
 def test_a_mechanism_that_binds_has_a_page_that_says_so(tmp_path: Path) -> None:
     path = tmp_path / "binds.yaml"
     path.write_text(
-        "cam:\n  kind: support\n  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  pivot: [18, 8.5]\n"
+        "cam:\n  kind: support\n  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  shaft: [18, 8.5]\n"
         "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 30}\nexport: {files: [csv, html]}\n",
         encoding="utf-8",
     )
@@ -395,7 +395,7 @@ def test_a_mechanism_that_binds_has_a_page_that_says_so(tmp_path: Path) -> None:
     assert main(["export", str(path), "--out", str(out)]) == 1
     text = (out / "binds.rejected" / "binds.html").read_text(encoding="utf-8")
     parsed(text)
-    assert "does not turn right round" in text
+    assert "does not make a full turn" in text
     assert re.search(r"It binds from .* to .* of the relative angle", text)
 
 

@@ -12,7 +12,7 @@ from camgeo.synthesis.design import designed, intended
 from kin.judge.contour_checks import Limits
 from kin.judge.verify import verify
 
-CAM = "cam: {kind: support, p: 25 + 2*cos(3*t), pivot: [3, 2]}\n"
+CAM = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"
 EXPORT = "export: {{tolerance: 0.01, files: [{}]}}\nverify: {{angles: 36}}\n"
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 GRID = Plan(
-    (Axis("cam.pivot[0]", 10.0, 20.0, steps(10.0, 20.0, 25)), Axis("linkage.rocker", 95.0, 110.0, steps(95, 110, 33))),
+    (Axis("cam.shaft[0]", 10.0, 20.0, steps(10.0, 20.0, 25)), Axis("linkage.rocker", 95.0, 110.0, steps(95, 110, 33))),
     "grid",
     825,
 )
@@ -32,14 +32,14 @@ about: AS 2023, Figure 9
 cam:
   kind: support
   p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t)
-  pivot: [18, 8.5]  # the shaft
+  shaft: [18, 8.5]  # the shaft
 linkage: {{kind: four-bar, ground: 80, coupler: 70, rocker: 105}}
 dwell: {{band: 0.1}}
 part: {{thickness: 8, bore: 6}}
 sweep:
   # {comment}
   vary:
-    cam.pivot[0]: {{from: 10, to: 20, steps: 25}}
+    cam.shaft[0]: {{from: 10, to: 20, steps: 25}}
     linkage.rocker: {{from: 95, to: 110, steps: 33}}
   limits: {{margin: {{at_least: {margin}}}}}
   rank: {rank}
@@ -80,7 +80,7 @@ def fail(_scene, _values):
 
 def sink(_ask, values):
     """Polish by going to one place, which is better than all."""
-    return {**values, "cam.pivot[0]": 15.0}, {"dwell": 60.0 + round(values["linkage.rocker"]) / 100.0, "margin": 3.0}
+    return {**values, "cam.shaft[0]": 15.0}, {"dwell": 60.0 + round(values["linkage.rocker"]) / 100.0, "margin": 3.0}
 
 
 def measured(_ask, values):

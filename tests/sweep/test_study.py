@@ -154,7 +154,7 @@ def test_an_undercut_recipe_is_told_and_fails(tmp_path: Path, capsys: pytest.Cap
 def test_a_linkage_that_binds_fails_and_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recipe = tmp_path / "cam.yaml"
     recipe.write_text(
-        "cam: {kind: support, p: 25 + cos(3*t), pivot: [12, 6]}\n"
+        "cam: {kind: support, p: 25 + cos(3*t), shaft: [12, 6]}\n"
         "linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 20}\n"
     )
     call = ["study", str(recipe), "--out", str(tmp_path), "--form", "polyline", "--patience", "1e-9"]

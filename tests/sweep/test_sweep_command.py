@@ -63,7 +63,7 @@ def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.Capture
     said = capsys.readouterr().out
     assert " do not turn (binds " in said
     assert " break the limit of margin" in said
-    assert f"  best-1.yaml: cam.pivot[0] 15.8333, linkage.rocker 95\n    {FIRST}\n" in said
+    assert f"  best-1.yaml: cam.shaft[0] 15.8333, linkage.rocker 95\n    {FIRST}\n" in said
 
 
 def test_json_is_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -75,10 +75,10 @@ def test_json_is_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(written(tmp_path, margin=99.0)), "--out", str(tmp_path / "out")]) == 1
     said = capsys.readouterr().out
-    assert said.startswith("four-bar: no design will do, of 825 designs")
+    assert said.startswith("four-bar: no design is within the limits, of 825 designs")
     assert "do not turn (binds " in said
-    assert "break the limit of margin; nearest: cam.pivot[0] " in said
-    assert re.search(r"linkage\.rocker \S+, with margin \S+ mm where at least 99 is asked; ", said)
+    assert "break the limit of margin; nearest: cam.shaft[0] " in said
+    assert re.search(r"linkage\.rocker \S+, with margin \S+ mm where at least 99 is required; ", said)
     assert said.endswith("four-bar.rejected\n")
 
 
@@ -88,11 +88,11 @@ def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: py
         (
             "linkage.rocker: {from",
             "linkage.roker: {from",
-            "no such field, given 'linkage.roker'; did you mean linkage.rocker?",
+            "unknown field, given 'linkage.roker'; did you mean linkage.rocker?",
         ),
-        ("cam.pivot[0]", "cam.pivot[2]", "no such field, given 'cam.pivot[2]'"),
+        ("cam.shaft[0]", "cam.shaft[2]", "unknown field, given 'cam.shaft[2]'"),
         ("rank: dwell", "rank: dwel", "sweep.rank: "),
-        ("margin: {", "margn: {", "sweep.limits.margn: no such figure; did you mean margin?"),
+        ("margin: {", "margn: {", "sweep.limits.margn: unknown figure; did you mean margin?"),
         ("at_least:", "atleast:", "sweep.limits.margin.atleast: "),
         ("steps: 25", "step: 25", "step: "),
         ("dwell: {band: 0.1}\n", "", "sweep.rank: dwell needs dwell.band"),
@@ -114,7 +114,7 @@ def test_a_recipe_without_a_sweep_exits_2(tmp_path: Path, capsys: pytest.Capture
     path = tmp_path / "plain.yaml"
     path.write_text("cam: {kind: support, p: 20}\n", encoding="utf-8")
     assert main(["sweep", str(path)]) == 2
-    assert "sweep: this recipe has no sweep; say what to vary" in capsys.readouterr().err
+    assert "sweep: this recipe has no sweep; add what to vary" in capsys.readouterr().err
 
 
 def test_a_scheduler_that_does_not_answer_exits_3(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -147,7 +147,7 @@ def test_a_users_file_in_the_way_exits_3_and_stays(tmp_path: Path, capsys: pytes
     folder.mkdir(parents=True)
     (folder / "sweep.csv").write_text("mine")
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out")]) == 3
-    assert "is in the way, and no report says that it may be replaced" in capsys.readouterr().err
+    assert "is in the way, and no report lists it as replaceable" in capsys.readouterr().err
     assert (folder / "sweep.csv").read_text() == "mine"
     assert not (folder / "sweep.json").exists()
 
@@ -194,9 +194,7 @@ def test_an_interrupted_sweep_exits_130_and_goes_on_later(jobs: str, tmp_path: P
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert said == (
-        "camgeo: four-bar: interrupted; what was computed is kept, and the same command goes on from there\n"
-    )
+    assert said == ("camgeo: four-bar: interrupted; what was computed is kept; the same command continues from there\n")
     assert main(["sweep", str(path), "--out", str(out), "--jobs", "1"]) == 0
     run = json.loads((out / "four-bar" / "sweep.json").read_text(encoding="utf-8"))["run"]
     assert run["designs_found"] > 0

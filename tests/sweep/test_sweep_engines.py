@@ -70,13 +70,13 @@ def hasty(scene, values):
 # --- equality ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("engine", few(["processes", "as many as pay", "dask"], 3))
+@pytest.mark.parametrize("engine", few(["processes", "as many as are worthwhile", "dask"], 3))
 def test_every_engine_writes_the_same_files(
     engine: str, cluster: LocalCluster, plain: dict[str, bytes], tmp_path: Path
 ) -> None:
     how = {
         "processes": How(2),
-        "as many as pay": How(),
+        "as many as are worthwhile": How(),
         "dask": How(scheduler=cluster.scheduler_address),
     }[engine]
     told = tmp_path / "calls"
@@ -160,7 +160,7 @@ def test_workers_refuse_a_job_that_they_read_otherwise(
     ("address", "message"),
     [
         ("tcp://127.0.0.1:1", "no Dask scheduler answers at tcp://127.0.0.1:1: "),
-        ("nonsense", "nonsense is no address of a Dask scheduler, such as tcp://host:8786"),
+        ("nonsense", "nonsense is not the address of a Dask scheduler, such as tcp://host:8786"),
         ("tcp://here:port", "no Dask scheduler answers at tcp://here:port: Port could not be cast"),
     ],
 )
@@ -183,7 +183,7 @@ def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatc
     with socket.create_server(("127.0.0.1", 0)) as listener:
         threading.Thread(target=answer, daemon=True).start()
         address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
-        with pytest.raises(engines.EngineError, match=f"^what (answers|listens) at {address} (is no|does not|speaks)"):
+        with pytest.raises(engines.EngineError, match=f"^the server at {address} (is not|does not|speaks)"):
             next(engines.dask(job(), [0], address))
         listener.shutdown(socket.SHUT_RDWR)
     for connection in accepted:
@@ -192,7 +192,7 @@ def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatc
 
 def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:
     address = next(iter(cluster.scheduler_info["workers"]))
-    with pytest.raises(engines.EngineError, match=f"^what answers at {address} is no Dask scheduler, but a Worker$"):
+    with pytest.raises(engines.EngineError, match=f"^the server at {address} is not a Dask scheduler, but a Worker$"):
         next(engines.dask(job(), [0], address))
 
 

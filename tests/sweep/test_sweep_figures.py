@@ -33,12 +33,12 @@ PATHS = {
     SLIDER: ("linkage.coupler", "linkage.offset"),
 }
 OF_LINKAGES = tuple(name for name, figure in FIGURES.items() if figure.needs not in {"follower", "roller", "swings"})
-PIVOT = ("cam.pivot[0]", "cam.pivot[1]")
+PIVOT = ("cam.shaft[0]", "cam.shaft[1]")
 
 
 def recipe(shape=CAM_2A, linkage=FOUR_BAR, *, more="", assembly="open", pivot="[18, 8.5]", band=0.1, units="mm"):
     driven = f"linkage: {{{linkage}, assembly: {assembly}{more}}}\ndwell: {{band: {band}}}\n" if linkage else ""
-    place = f"  pivot: {pivot}\n" if pivot else ""
+    place = f"  shaft: {pivot}\n" if pivot else ""
     kind = "" if shape.startswith("kind") else "  kind: support\n"
     return load_text(f"units: {units}\ncam:\n{kind}  {shape}\n{place}{driven}part: {{thickness: 8}}\n", "a.yaml")
 
@@ -65,7 +65,7 @@ def exact(recipe):
         "shaft-rate": mobility.least_rate,
         "radius-of-curvature": (p[0] + p[2]).min(),
         "size": np.hypot(p[0], p[1]).max(),
-        "face-length": np.ptp(p[1]),
+        "contact-travel": np.ptp(p[1]),
     }
 
 
@@ -166,7 +166,7 @@ def test_both_engines_give_the_same_bits():
 @pytest.mark.parametrize(
     ("shape", "given"),
     [
-        (FOURIER, {"cam.fourier.cos.3": 0.5, "cam.fourier.sin.5": 0.2, "cam.fourier.mean": 26.0, "cam.pivot[1]": 5.0}),
+        (FOURIER, {"cam.fourier.cos.3": 0.5, "cam.fourier.sin.5": 0.2, "cam.fourier.mean": 26.0, "cam.shaft[1]": 5.0}),
         (FOURIER, {"cam.fourier.cos.1": 1.5}),
         ("hypocycloid: {cusps: 3, size: 2, breadth: 50}", {"cam.hypocycloid.size": 1.5, "cam.hypocycloid.breadth": 44}),
         ("hypocycloid: {cusps: 3, size: 2, breadth: 50}", {"cam.hypocycloid.cusps": 5, "cam.hypocycloid.size": 0.8}),
@@ -231,9 +231,9 @@ def swept(limits):
 @pytest.mark.parametrize(
     ("rank", "limits", "without"),
     [
-        ("dwell", "", {"dwell-relative", "peak-velocity", "peak-acceleration", "force-angle", "face-length"}),
-        ("force-angle", "peak-velocity: {at_least: 0}", {"dwell-relative", "peak-acceleration", "face-length"}),
-        ("dwell-relative", "", {"peak-velocity", "peak-acceleration", "force-angle", "face-length"}),
+        ("dwell", "", {"dwell-relative", "peak-velocity", "peak-acceleration", "force-angle", "contact-travel"}),
+        ("force-angle", "peak-velocity: {at_least: 0}", {"dwell-relative", "peak-acceleration", "contact-travel"}),
+        ("dwell-relative", "", {"peak-velocity", "peak-acceleration", "force-angle", "contact-travel"}),
     ],
 )
 def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank, limits, without):
@@ -289,7 +289,7 @@ def test_a_limit_on_the_dwell_is_told_too():
 
 def test_lengths_are_in_the_units_of_the_recipe_and_figures_in_mm():
     inch = recipe("fourier: {mean: 1, cos: {3: 0.05}}", pivot="[0.5, 0.2]", units="inch", linkage=FOUR_BAR_INCH)
-    given = {"cam.pivot[0]": 0.55, "linkage.ground": 3.0, "cam.fourier.cos.3": 0.06}
+    given = {"cam.shaft[0]": 0.55, "linkage.ground": 3.0, "cam.fourier.cos.3": 0.06}
     found = evaluate(inch, tuple(given), np.array([list(given.values())]), samples=720)
     assert_like(found.figures, exact(recipe_with(inch, tuple(given), list(given.values()))))
     assert found.figures["size"][0] > 25.4
@@ -301,7 +301,7 @@ FOUR_BAR_INCH = "kind: four-bar, ground: 3.2, coupler: 2.8, rocker: 4.2"
 def test_dyads_are_figured_design_by_design():
     rrr = ", dyads: [{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
     one = recipe(more=rrr, band=0.2)
-    paths = ("cam.pivot[0]", "linkage.dyads[0].links[1]")
+    paths = ("cam.shaft[0]", "linkage.dyads[0].links[1]")
     found = evaluate(one, paths, np.array([[18.0, 30.0], [18.0, 2.0], [40.0, 30.0], [17.5, 33.0]]), samples=720)
     assert [REASONS[code] for code in found.reason] == ["", "binds", "shaft-outside", ""]
     for row, values in ((0, (18.0, 30.0)), (3, (17.5, 33.0))):
@@ -310,8 +310,8 @@ def test_dyads_are_figured_design_by_design():
 
 def test_a_recipe_without_a_linkage():
     one = recipe(linkage="")
-    found = evaluate(one, ("cam.pivot[0]",), np.array([[18.0], [0.0]]))
-    own = {"swing", "peak-velocity", "peak-acceleration", "peak-jerk", "pressure-angle", "face-length"}
+    found = evaluate(one, ("cam.shaft[0]",), np.array([[18.0], [0.0]]))
+    own = {"swing", "peak-velocity", "peak-acceleration", "peak-jerk", "pressure-angle", "contact-travel"}
     assert set(found.figures) == {"radius-of-curvature", "size", *own}
     assert (found.figures["pressure-angle"] == 0).all()
     t = np.linspace(0, 2 * math.pi, 20_001)
@@ -319,7 +319,7 @@ def test_a_recipe_without_a_linkage():
     for row, name in ((1, "peak-velocity"), (2, "peak-acceleration"), (3, "peak-jerk")):
         assert found.figures[name][0] == pytest.approx(np.abs(p[row]).max(), rel=1e-6)
     assert found.figures["swing"][0] == pytest.approx(np.ptp(p[0]), rel=1e-6)
-    assert found.figures["face-length"][0] == pytest.approx(np.ptp(p[1]), rel=1e-5)
+    assert found.figures["contact-travel"][0] == pytest.approx(np.ptp(p[1]), rel=1e-5)
     assert found.figures["radius-of-curvature"] == pytest.approx(7.815923456997, abs=1e-9)
     assert found.figures["size"][0] == pytest.approx(compute_one(recipe(), {})["size"], rel=1e-6)
     roller = recipe(

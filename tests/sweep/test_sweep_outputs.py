@@ -125,7 +125,7 @@ def test_a_map_shows_the_best_over_the_other_axes(most: bool) -> None:
 
 
 def test_every_design_of_a_sequence_falls_into_its_cell() -> None:
-    plan = Plan((Axis("cam.pivot[0]", 10.0, 20.0), Axis("linkage.rocker", 95.0, 110.0)), "sobol", 5000)
+    plan = Plan((Axis("cam.shaft[0]", 10.0, 20.0), Axis("linkage.rocker", 95.0, 110.0)), "sobol", 5000)
     cells = gather(plan, RANKING, chunks(plan)).cells
     assert (cells.state > 0).all()
     values, figures = plan.values(0, 5000), hills("", plan.values(0, 5000))
@@ -161,7 +161,7 @@ def test_all_files_are_there_and_the_report_tells_them(swept: Path) -> None:
 def test_csv_and_parquet_hold_every_design_kept_to_the_last_bit(swept: Path) -> None:
     rows = list(csv.reader(io.StringIO((swept / "sweep.csv").read_text(encoding="utf-8"))))
     expected = by_hand(RANKING)
-    assert rows[0] == ["place", "index", "cam.pivot[0]", "linkage.rocker", "dwell_deg", "margin_mm"]
+    assert rows[0] == ["place", "index", "cam.shaft[0]", "linkage.rocker", "dwell_deg", "margin_mm"]
     assert [(float(row[4]), int(row[1])) for row in rows[1:]] == expected
     assert [int(row[0]) for row in rows[1:]] == list(range(1, len(expected) + 1))
     values = GRID.values(0, 825)
@@ -178,7 +178,7 @@ def test_the_best_are_whole_recipes_that_say_what_was_measured(swept: Path) -> N
         x, y = GRID.values(index, index + 1)[0]
         assert recipe.name == f"four-bar-best-{place}"
         assert recipe.sweep is None
-        assert recipe.cam.pivot == (x, 8.5)
+        assert recipe.cam.shaft == (x, 8.5)
         assert replace(recipe.linkage, rocker=0.0) == replace(ask().recipe.linkage, rocker=0.0)
         assert recipe.linkage.rocker == y
         origin = f"design {index} of 825 of the sweep of four-bar"
@@ -210,7 +210,7 @@ def test_lengths_are_told_in_the_recipes_unit(tmp_path: Path) -> None:
     report = search(inches, tmp_path, How(1), MEANS).report
     first, limit = report["best"][0], report["sweep"]["limits"]["margin"]["at_least"]
     assert limit == pytest.approx(0.04)
-    assert first["figures"]["margin"] == pytest.approx((first["values"]["cam.pivot[0]"] - 12.0) / 25.4)
+    assert first["figures"]["margin"] == pytest.approx((first["values"]["cam.shaft[0]"] - 12.0) / 25.4)
     assert report["figures"]["margin"]["unit"] == "in"
     assert b"margin_in" in (tmp_path / "four-bar" / "sweep.csv").read_bytes()
 
@@ -236,7 +236,7 @@ def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, 
         dict.fromkeys(rockers), key=lambda rocker: (-round(rocker), rockers.index(rocker))
     )
     assert 1 < len(best) < len(rockers)
-    assert all(design["polished"] and design["values"]["cam.pivot[0]"] == 15.0 for design in best)
+    assert all(design["polished"] and design["values"]["cam.shaft[0]"] == 15.0 for design in best)
     assert [design["file"] for design in best] == [f"best-{place}.yaml" for place in range(1, len(best) + 1)]
     assert load(outcome.folder / "best-1.yaml").about.startswith(f"polished from design {best[0]['index']} of 825")
 
@@ -304,8 +304,8 @@ def test_what_a_missing_package_leaves_out_is_told(
     assert (tmp_path / "four-bar" / "sweep.csv").exists()
 
 
-CAM = "cam: {kind: support, p: 20, pivot: [0, 0]}"
-SWEEP = "sweep: {vary: {'cam.pivot[0]': [1, 2]}, rank: size}"
+CAM = "cam: {kind: support, p: 20, shaft: [0, 0]}"
+SWEEP = "sweep: {vary: {'cam.shaft[0]': [1, 2]}, rank: size}"
 
 
 @pytest.mark.parametrize(
@@ -318,10 +318,10 @@ SWEEP = "sweep: {vary: {'cam.pivot[0]': [1, 2]}, rank: size}"
 )
 def test_recipes_are_written_in_the_way_of_the_users(text: str) -> None:
     asked = Ask.of(read(text.encode(), "mine.yaml"))
-    best = Best(2, 1, polished=False, values={"cam.pivot[0]": 2.0}, figures={"size": 22.0})
+    best = Best(2, 1, polished=False, values={"cam.shaft[0]": 2.0}, figures={"size": 22.0})
     recipe = read(recipe_text(asked, best).encode(), "other.yaml")
     assert recipe.name == f"{asked.recipe.name}-best-2"
-    assert recipe.cam == replace(asked.recipe.cam, pivot=(2.0, 0.0))
+    assert recipe.cam == replace(asked.recipe.cam, shaft=(2.0, 0.0))
     assert recipe.about.startswith(f"design 1 of 2 of the sweep of {asked.recipe.name}: size 22 mm")
     assert recipe.about.endswith(asked.recipe.about)
 

@@ -22,7 +22,7 @@ TEXT = """
 cam:
   kind: support
   p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25
-  pivot: [18, 8.5]
+  shaft: [18, 8.5]
 linkage: {kind: KIND}
 dwell: {band: 0.1}
 sweep:
@@ -33,7 +33,7 @@ sweep:
   rank: RANK
 """
 FOUR_BAR = "four-bar, ground: 80, coupler: 70, rocker: 105"
-RANGES = "'cam.pivot[0]': {from: 14, to: 20}, 'cam.pivot[1]': {from: 5, to: 12}, linkage.rocker: {from: 100, to: 110}"
+RANGES = "'cam.shaft[0]': {from: 14, to: 20}, 'cam.shaft[1]': {from: 5, to: 12}, linkage.rocker: {from: 100, to: 110}"
 
 
 def ask(limits="", rank="dwell", vary=RANGES, kind=FOUR_BAR):
@@ -96,7 +96,7 @@ def test_where_nothing_better_is_found_the_start_stays():
 
 
 def test_listed_values_stay():
-    asked = ask(vary="linkage.rocker: [100, 105], 'cam.pivot[0]': {from: 14, to: 20}")
+    asked = ask(vary="linkage.rocker: [100, 105], 'cam.shaft[0]': {from: 14, to: 20}")
     given, before = start(asked, (105.0, 17.0))
     values, after = polish(asked, given)
     assert values["linkage.rocker"] == 105.0
@@ -107,13 +107,13 @@ def test_listed_values_stay():
 
 def test_where_there_is_nothing_to_gain_the_start_stays():
     # the cam's least radius of curvature does not depend on where its shaft is
-    asked = ask(rank="radius-of-curvature", vary="'cam.pivot[0]': {from: -20, to: 20}")
-    assert polish(asked, {"cam.pivot[0]": 17.0})[0] == {"cam.pivot[0]": 17.0}
+    asked = ask(rank="radius-of-curvature", vary="'cam.shaft[0]': {from: -20, to: 20}")
+    assert polish(asked, {"cam.shaft[0]": 17.0})[0] == {"cam.shaft[0]": 17.0}
 
 
 def test_a_polished_zero_has_no_sign():
-    asked = ask(vary="'cam.pivot[1]': {from: -20, to: 20}")
-    goal = refine._goal(asked, ["cam.pivot[1]"], np.array([3.0]))
+    asked = ask(vary="'cam.shaft[1]': {from: -20, to: 20}")
+    goal = refine._goal(asked, ["cam.shaft[1]"], np.array([3.0]))
     assert repr(float(refine._rounded(goal, np.array([-1e-9]))[0])) == "0.0"
 
 

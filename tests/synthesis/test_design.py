@@ -32,7 +32,7 @@ def sharp(text: str, **values: float) -> Design:
 def free(design: Design, words: str) -> float:
     assert design.contour is None
     (detail,) = (check.detail for check in design.checks if check.name == "undercut-local")
-    found = re.search(words + r" (\S+) would be free of it", detail)
+    found = re.search(words + r" (\S+) would have no undercut", detail)
     assert found, detail
     return float(found[1])
 

@@ -161,7 +161,7 @@ def test_rotation_mirrors_the_part_and_leaves_its_walls():
 
 
 def test_inches_and_millimetres_make_the_same_part():
-    inch = "cam: {kind: support, p: (25 + 2*cos(3*t))/25.4, pivot: [3/254, 2/254]}\n".replace("3/254", "15/127")
+    inch = "cam: {kind: support, p: (25 + 2*cos(3*t))/25.4, shaft: [3/254, 2/254]}\n".replace("3/254", "15/127")
     cam = inch.replace("2/254", "10/127")
     part = "{bore: 60/127, mark: {width: 5/254, length: 20/127}, bolts: {count: 3, circle: 160/127, hole: 20/127}}"
     _, inches = found(recipe_of(part, cam=cam, more="units: inch\n"))
@@ -191,11 +191,11 @@ def test_foreseen_checks_are_those_that_are_made():
         ("{keyway: din6885}", "part.keyway: needs part.bore: a keyway is cut into a bore"),
         ("{bore: 5, keyway: din6885}", "part.keyway: no key of DIN 6885 for this bore, given 5 mm"),
         ("{bore: {hexagon: 10}, keyway: din6885}", "part.keyway: needs a round bore"),
-        ("{bore: {hexagon: 10, square: 10}}", "part.bore.hexagon: cannot stand beside square"),
+        ("{bore: {hexagon: 10, square: 10}}", "part.bore.hexagon: cannot be combined with square"),
         ("{bore: 10, keyway: {width: 10, depth: 1}}", "part.keyway.width: not below the bore's diameter, given 10 mm"),
-        ("{bore: 10, keyway: {width: 3}}", "part.keyway.depth: missing beside width"),
-        ("{bore: 10, keyway: din6886}", "part.keyway: no such keyway, given 'din6886'"),
-        ("{bore: 10, keyway: din6885, flat: {across: 9}}", "part.flat: cannot stand beside keyway"),
+        ("{bore: 10, keyway: {width: 3}}", "part.keyway.depth: missing, needed with width"),
+        ("{bore: 10, keyway: din6886}", "part.keyway: unknown keyway, given 'din6886'"),
+        ("{bore: 10, keyway: din6885, flat: {across: 9}}", "part.flat: cannot be combined with keyway"),
         ("{bore: 10, flat: {across: 10}}", "part.flat.across: not below the bore's diameter, given 10 mm"),
         ("{bore: 10, flat: {across: 5}}", "part.flat.across: not above half the bore, given 5 mm"),
         ("{bore: 10, hub: {diameter: 20, height: 5}}", "part.hub: needs part.thickness: a hub stands on the disc"),

@@ -25,7 +25,7 @@ UNITS = {
     Kind.ERROR: "length; deg",
     Kind.OUTPUT: "deg; length",
     Kind.MOTION: "deg; length",
-    Kind.PLAY: "length; deg",
+    Kind.BACKLASH: "length; deg",
 }
 
 

@@ -76,7 +76,9 @@ def causes(curve: Curve) -> Causes:
     if math.isinf(radius):
         hollow = curve.cells.rows[3] < 0.0
         if hollow.any():
-            raise ValueError(f"a flat face cannot touch the hollow near parameter {curve.cells.low[hollow][0]:.9g}")
+            raise ValueError(
+                f"a flat face cannot touch the concave part near parameter {curve.cells.low[hollow][0]:.9g}"
+            )
         return Causes(found, ())
     from camgeo.curve.undercut.bottleneck import OpenNeckError, narrowest_necks, neck_from
     from camgeo.curve.undercut.pairs import Pitch

@@ -75,7 +75,7 @@ def trimmed(curve: Curve) -> Curve:
     """Contour that is left of a whole curve where it undercuts: several runs that meet in corners, round the shaft.
 
     The curve itself if it does not undercut. Raises UndercutError where nothing is left, the metal falls into pieces,
-    the shaft is not inside, or the crossings cannot be told apart.
+    the shaft is not inside, or the crossings cannot be separated.
     """
     if not in_ring(curve):
         return _trimmed(curve, 1)
@@ -97,7 +97,7 @@ def _trimmed(curve: Curve, sense: int) -> Curve:
         raise UndercutError("the undercut leaves nothing of the contour", where)
     if what.pieces > 1:
         middle = 0.5 * (what.lost[0].start + what.lost[0].end)
-        raise UndercutError(f"the undercut parts the metal into {what.pieces} pieces", middle)
+        raise UndercutError(f"the undercut divides the metal into {what.pieces} pieces", middle)
     result = Curve(curve.shape, kept_runs(curve, what))
     if _turns(result) != sense:
         raise UndercutError("the shaft lies outside of what the undercut leaves", where)
@@ -105,7 +105,7 @@ def _trimmed(curve: Curve, sense: int) -> Curve:
 
 
 def remains(curve: Curve, why: Causes) -> Remains:
-    """Find what is left of a curve that undercuts. Raises UndercutError where crossings cannot be told apart.
+    """Find what is left of a curve that undercuts. Raises UndercutError where crossings cannot be separated.
 
     Every corner is checked against all contact positions. Where the pitch curve is convex, and for a flat face, that
     settles the whole contour: kept stretches run forward and turn once round, so they bound the body of the half planes
@@ -119,7 +119,7 @@ def remains(curve: Curve, why: Causes) -> Remains:
     reverse = sum(not r.still for r in why.reversals)
     if reverse > MOST_TANGLED * curve.shape.repeats:
         message = (
-            f"{reverse} stretches of the contour run backwards into each other; up to {MOST_TANGLED} are told apart"
+            f"{reverse} stretches of the contour run backwards into each other; up to {MOST_TANGLED} are separated"
         )
         raise UndercutError(message, why.reversals[0].start)
     for turn in range(ROUNDS):
@@ -133,14 +133,14 @@ def remains(curve: Curve, why: Causes) -> Remains:
         if stretches is not None and _explained(stretches, contact, why, nodes, on):
             return _with_depths(curve, contact, corners, stretches)
     where = why.reversals[0].start if why.reversals else why.necks[0].first
-    raise UndercutError(f"the crossings of the undercut contour near parameter {where:.9g} cannot be told apart", where)
+    raise UndercutError(f"the crossings of the undercut contour near parameter {where:.9g} cannot be separated", where)
 
 
 def _swallowtails(curve: Curve, contact: _Contact, why: Causes) -> Remains | None:
     """What is left where each reversal is cut off by a crossing of its own, apart from all others; else None.
 
     Without a hollow in the pitch curve that settles it: what is kept runs forward and turns once round in left corners,
-    so it bounds a convex body. Many small swallowtails, equal but for rounding, are told apart by this alone.
+    so it bounds a convex body. Many small swallowtails, equal but for rounding, are separated by this alone.
     """
     convex = bool((curve.cells.rows[2] >= 0.0).all())
     if not convex or why.necks or not why.reversals or any(r.still for r in why.reversals):

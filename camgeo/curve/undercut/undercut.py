@@ -63,7 +63,7 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
         return ()
     reverse = sum(not r.still for r in why.reversals)
     if reverse > MOST_TOLD * curve.shape.repeats:
-        message = f"{reverse} stretches of the contour run backwards; up to {MOST_TOLD} are told one by one"
+        message = f"{reverse} stretches of the contour run backwards; up to {MOST_TOLD} are reported one by one"
         raise UndercutError(message, why.reversals[0].start, _free_at(curve, why))
     from camgeo.curve.undercut.trim import remains
 
@@ -159,7 +159,7 @@ def _neck_of(curve: Curve, lost: Lost) -> Neck:
     radius = follower_radius(curve)
     if math.isinf(radius):  # a flat face has no necks: a reversal was not found where contact is lost for it
         where = f"near parameter {lost.start:.9g}"
-        raise UndercutError(f"the stretches of the contour that run backwards cannot be told apart {where}", lost.start)
+        raise UndercutError(f"the stretches of the contour that run backwards cannot be separated {where}", lost.start)
     pitch = Pitch.of(curve)
     t = np.linspace(lost.start, lost.end, LOOKS)
     s = curve.runs[0].low + curve.shape.period * np.arange(4 * LOOKS) / (4 * LOOKS)

@@ -85,12 +85,12 @@ def _added(source: Source, node: Node, at: str, steps: list[str | int], value: V
     path = f"{at}{'' if whole.startswith('[') or not at else '.'}{whole}"
     for step in reversed(steps[1:]):
         if isinstance(step, int):
-            raise _refused(source, path, "there is no such entry", "give the whole list by its own path")
+            raise _refused(source, path, "the entry does not exist", "give the whole list by its own path")
         value = {step: value}
     name = steps[0]
     if isinstance(name, int) or not (isinstance(node, Mapping) or is_empty(node)):
         held = "entry" if isinstance(name, int) else "field"
-        raise _refused(source, path, f"there is no such {held}", "give a value to a field or an entry that is there")
+        raise _refused(source, path, f"the {held} does not exist", "give a value to a field or an entry that is there")
     text = f"{name}: {_flow(value, path, source.file, 0)}"
     if not isinstance(node, Mapping):
         return changed(source, at, {name: value})

@@ -20,7 +20,7 @@ _NAME = "recipe"  # of a text in errors
 
 
 def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float]) -> str:
-    """Put numbers in the place of others in a recipe's text, by paths such as `cam.pivot[0]`.
+    """Put numbers in the place of others in a recipe's text, by paths such as `cam.shaft[0]`.
 
     A number is written as briefly as reads back exactly. Raises ValueError for a path at which no number stands, for
     one whose number an alias shares with other fields, and for a number that is not finite; RecipeErrors for a text
@@ -32,12 +32,12 @@ def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float
     changes = []
     for path, value in values.items():
         if path not in places:
-            raise ValueError(f"there is no number at {path}")
+            raise ValueError(f"no number at {path}")
         scalar = places[path]
         try:
             read_number(scalar.text)
         except Complaint as complaint:
-            raise ValueError(f"there is no number at {path}: {complaint.problem}") from None
+            raise ValueError(f"no number at {path}: {complaint.problem}") from None
         if shared := [other for other, node in found if node is scalar and other != path]:
             raise ValueError(f"an alias shares the number at {path} with {shared[0]}")
         changes.append((scalar, spelled(value)))

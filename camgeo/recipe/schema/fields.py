@@ -2,7 +2,8 @@
 
 The tables themselves stand in the topics above this room. They are data: recipes are read and checked by them,
 `json_schema` publishes them, `starter` turns them into comments. A key that a coming version will know stands under
-`later` of its table: moving it into `fields` is what makes it known.
+`later` of its table: moving it into `fields` is what makes it known. A key that was renamed is read under its former
+name for one version, with a notice: `formerly` of its field is all that says so.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ class Kind(Enum):
     ERROR = "a motion error"  # a length, or an angle where the follower swings
     OUTPUT = "a change of the output"  # of a linkage: an angle, or a length where its last link slides
     MOTION = "a motion"  # of the output, or without a linkage of the follower
-    PLAY = "a backlash"  # an angle of a flat pair, else a length
+    BACKLASH = "a backlash"  # an angle of a flat pair, else a length
     TRUTH = "true or false"
     RATIO = "a ratio"
     FORMULA = "a formula"
@@ -89,7 +90,10 @@ class Form:
 
 @dataclass(frozen=True)
 class Field:
-    """One key of a table. Bounds are in the recipe's own units and degrees, as written."""
+    """One key of a table. Bounds are in the recipe's own units and degrees, as written.
+
+    `formerly` is the key's former name, `former_choices` are pairs of a former choice and the present one.
+    """
 
     name: str
     kind: Kind
@@ -107,6 +111,8 @@ class Field:
     table: Table | None = None  # of a mapping, or of each segment of a motion
     unit: Kind | None = None  # of the coefficients of harmonics, or of a form of its own
     form: Form | None = None  # of a field of Kind.OWN
+    formerly: str = ""
+    former_choices: tuple[tuple[str, str], ...] = ()
 
     @property
     def noun(self) -> str:
@@ -181,6 +187,11 @@ class Table:
         """The keys."""
         return tuple(item.name for item in self.fields)
 
+    @property
+    def former(self) -> Mapping[str, str]:
+        """The present key of each former one."""
+        return {item.formerly: item.name for item in self.fields if item.formerly}
+
     def field(self, name: str) -> Field:
         """Find a field by its key, which must be one of the table's."""
         return next(item for item in self.fields if item.name == name)
@@ -202,18 +213,33 @@ def mapping(name: str, about: str, *fields: Field, later: tuple[str, ...] = ()) 
 
 
 def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
-    """Find the field at a path such as `cam.pivot[0]`, whichever entry of a list it is in, or None.
+    """Find the field at a path such as `cam.shaft[0]`, whichever entry of a list it is in, or None.
 
     `kinds` says which kind each mapping with kinds is of; one that it does not name may be of any. An entry of points,
-    numbers and harmonics has the field of the whole.
+    numbers and harmonics has the field of the whole. Former keys are found as present ones.
     """
+    return _walked(root, path, kinds)[0]
+
+
+def present(root: Table, path: str, kinds: Mapping[str, str]) -> str:
+    """Give a path with its present keys in the place of former ones, as far as fields are found along it."""
+    return _walked(root, path, kinds)[1]
+
+
+def _walked(root: Table, path: str, kinds: Mapping[str, str]) -> tuple[Field | None, str]:
+    """Find the field at a path, or None, and what the path is with present keys."""
     table: Table | None = root
     field: Field | None = None
-    for name in re.sub(r"\[[0-9]+\]", "", path).split("."):
+    parts = path.split(".")
+    for k, part in enumerate(parts):
+        name, bracket, index = part.partition("[")
+        if re.fullmatch(r"([0-9]+\]\[)*[0-9]+\]", index) is None and bracket:
+            return None, path
         if field is not None and field.kind is Kind.HARMONICS:
-            return field if name.isdecimal() else None
-        if table is None or name not in table.keys:
-            return None
+            return (field if name.isdecimal() else None), ".".join(parts)
+        if table is None or (name := table.former.get(name, name)) not in table.keys:
+            return None, ".".join(parts)
+        parts[k] = name + bracket + index
         field = table.field(name)
         tables = field.form.tables if field.form else None
         instead = field.form.instead if field.form else None
@@ -224,18 +250,18 @@ def field_at(root: Table, path: str, kinds: Mapping[str, str]) -> Field | None:
             table = tables.get(kinds[field.name])
         else:
             table = Table(tuple(item for each in tables.values() for item in each.fields))
-    return field
+    return field, ".".join(parts)
 
 
 def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
     """Say where a key belongs that stands in the wrong place, or else which keys there are."""
     if name in root.keys:
         return "it belongs at the top level"
-    plain = tuple(item.name for item in root.fields if item.table and name in item.table.keys)
+    plain = tuple(item.name for item in root.fields if item.table and name in (*item.table.keys, *item.table.former))
     places = [either(plain)] if plain else []
     of_group: dict[str, list[str]] = {}
     for group, kind, table in _grouped(root):
-        if name in table.keys:
+        if name in (*table.keys, *table.former):
             of_group.setdefault(group, []).append(kind)
     places += [f"{group} {either(tuple(kinds))}" for group, kinds in of_group.items()]
     if places:

@@ -63,7 +63,7 @@ def read_harmonics(reader: Reader, field: Field, node: Node, path: str) -> tuple
         j = reader.readers[harmonic.kind](reader, harmonic, key, below)
         value = reader.field(coefficient, values[name], below)
         if j in read:
-            reader.fault(key.mark, below, "the harmonic stands twice", None, "give each harmonic once")
+            reader.fault(key.mark, below, "a duplicate harmonic", None, "give each harmonic once")
         elif isinstance(j, int) and value is not None:
             read[j] = value
     return tuple(sorted(read.items()))

@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.recipe.schema.errors import RecipeError, shown, suggestion
 from camgeo.recipe.schema.fields import Field, Kind, Table, either, elsewhere
-from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Sequence, described, entries, is_empty, join, keys
+from camgeo.recipe.schema.yaml_source import (
+    Mapping,
+    Scalar,
+    Sequence,
+    as_written,
+    described,
+    entries,
+    is_empty,
+    is_within,
+    join,
+    keys,
+)
 
 if TYPE_CHECKING:
     import collections.abc
@@ -20,15 +31,17 @@ Values: TypeAlias = dict[str, Any]
 # How each kind of field is read; a reader of a kind gives None for what is faulty, and has noted the fault.
 Readers: TypeAlias = "collections.abc.Mapping[Kind, Callable[[Reader, Field, Node, str], Any]]"
 
-_LENGTHS = (Kind.LENGTH, Kind.STROKE, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.PLAY)  # unless it is an angle
+_LENGTHS = (Kind.LENGTH, Kind.STROKE, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.BACKLASH)  # unless it is an angle
 
 
 class Reader:
     """Reads one recipe; what it has found grows as it does.
 
     `root` is the table of the whole recipe. `errors`; `marks` of every field given and `numbers`, the fields of every
-    number given, by path. Further what decides how other fields read, which whoever reads the recipe finds first: its
-    unit, the `kinds` of its mappings with kinds, the kinds of field that hold an angle, what figures its cam offers.
+    number given, by path; `renamed`, the paths as written of fields given by a former key, by their present paths, and
+    `notices` of those. All paths are present ones, but those in errors and notices, which are as written. Further what
+    decides how other fields read, which whoever reads the recipe finds first: its unit, the `kinds` of its mappings
+    with kinds, the kinds of field that hold an angle, and what figures its cam offers.
     """
 
     def __init__(self, source: Source, readers: Readers, root: Table) -> None:
@@ -37,6 +50,8 @@ class Reader:
         self.root = root
         self.errors: list[RecipeError] = []
         self.marks: dict[str, Mark] = {}
+        self.renamed: dict[str, str] = {}
+        self.notices: list[RecipeError] = []
         self.numbers: dict[str, Field] = {}
         self.units = "mm"
         self.mm = 1.0
@@ -48,11 +63,21 @@ class Reader:
 
     def fault(self, mark: Mark, path: str, problem: str, value: str | None = None, remedy: str = "") -> None:
         """Note a fault."""
-        self.errors.append(RecipeError(self.source.file, *mark, path, problem, value, remedy))
+        self.errors.append(RecipeError(self.source.file, *mark, self.written(path), problem, value, remedy))
 
     def fault_at(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> None:
         """Note a fault of a field that was given."""
         self.fault(self.marks[path], path, problem, value, remedy)
+
+    def written(self, path: str) -> str:
+        """Give a path as the recipe has it, with a former key where one stands."""
+        return as_written(path, self.renamed)
+
+    def notice(self, mark: Mark, path: str, present: str) -> None:
+        """Note a former name that is read all the same, once for each."""
+        if all(notice.path != path for notice in self.notices):
+            problem = "a former name, read in this version alone"
+            self.notices.append(RecipeError(self.source.file, *mark, path, problem, None, f"write {present}"))
 
     def wanted(self, field: Field) -> str:
         """Say what would do for a field, with its unit: `give a length above 0 in mm`."""
@@ -93,15 +118,15 @@ class Reader:
                 if key.tag is not None:
                     self.fault(key.mark, below, "a YAML tag", shown(key.tag), "leave it out")
                 if key.text in lines:
-                    remedy = f"it stands in line {lines[key.text]} already"
-                    self.fault(key.mark, below, "a key that stands twice", None, remedy)
+                    remedy = f"it is given in line {lines[key.text]} already"
+                    self.fault(key.mark, below, "a duplicate key", None, remedy)
                     continue
                 lines[key.text] = key.mark[0]
                 self.survey(value, below)
 
     def table(self, table: Table, node: Mapping, path: str) -> Values:
         """Read a mapping's fields, each by its own kind; refuse what is unknown, missing or in each other's way."""
-        given = entries(node)
+        given = self._by_present_keys(table, node, path)
         self._refuse_unknown(table, node, path)
         self._refuse_alternatives(table, given, node, path)
         values: Values = {}
@@ -114,6 +139,22 @@ class Reader:
             elif field.required:
                 self.fault(node.mark, below, "missing", None, f"{self.wanted(field)}: {field.about}")
         return values
+
+    def _by_present_keys(self, table: Table, node: Mapping, path: str) -> dict[str, Node]:
+        """Give the values of a mapping by present keys, and take notice of former ones."""
+        given = entries(node)
+        for former, name in table.former.items():
+            if former not in given:
+                continue
+            mark, old, new = keys(node)[former].mark, self.written(join(path, former)), join(path, name)
+            if name in given:
+                self.fault(mark, old, f"the former name of {name}, which is given too", None, "leave it out")
+                continue
+            self.notice(mark, old, name)
+            self.renamed[new] = old
+            self.marks |= {new + at[len(old) :]: mark for at, mark in self.marks.items() if is_within(at, old)}
+            given[name] = given.pop(former)
+        return given
 
     def field(self, field: Field, node: Node, path: str) -> Any:  # noqa: ANN401 - settled by the field's kind
         """Read one field, or None where it is faulty."""
@@ -128,10 +169,10 @@ class Reader:
         known = table.keys
         for name, key in keys(node).items():
             below = join(path, name)
-            if name in known:
+            if name in known or name in table.former:
                 continue
             if name in table.later:
-                remedy = f"leave it out; here it has {either(known, 'and')}"
+                remedy = f"leave it out; the keys here are {either(known, 'and')}"
                 self.fault(key.mark, below, "not available in this version", None, remedy)
             elif name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
@@ -146,7 +187,7 @@ class Reader:
         if names and not chosen and not any(name in given for name in table.later):
             self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
         for name in chosen[1:]:
-            problem = f"cannot stand beside {chosen[0]}"
+            problem = f"cannot be combined with {self._key(path, chosen[0])}"
             self.fault_at(join(path, name), problem, None, f"give exactly one of {either(tuple(names))}")
         if len(chosen) != 1:
             return
@@ -155,10 +196,17 @@ class Reader:
             if name not in given:
                 field = table.field(name)
                 remedy = f"{self.wanted(field)}: {field.about}"
-                self.fault(node.mark, join(path, name), f"missing beside {chosen[0]}", None, remedy)
+                self.fault(
+                    node.mark, join(path, name), f"missing, needed with {self._key(path, chosen[0])}", None, remedy
+                )
         for name in dict.fromkeys(name for others in companions.values() for name in others):
             if name in given and name not in companions[chosen[0]]:
-                self.fault_at(join(path, name), f"cannot stand beside {chosen[0]}", None, "leave it out")
+                problem = f"cannot be combined with {self._key(path, chosen[0])}"
+                self.fault_at(join(path, name), problem, None, "leave it out")
+
+    def _key(self, path: str, name: str) -> str:
+        """Name a key of a mapping as the recipe does."""
+        return self.written(join(path, name)).rpartition(".")[2]
 
     # --- kinds that several readers share ----------------------------------------------------------------------------
 

@@ -20,8 +20,8 @@ _LEAST = 1e-30  # so that no later square or quotient leaves the range of floats
 # Other ways to write a number, and what would do.
 _NOT_NUMBERS = (
     (re.compile(r"[+-]?\.?(?:inf|infinity|nan)", re.IGNORECASE), "it must be finite"),
-    (re.compile(r"[+-]?[0-9]+(?::[0-9.]+)+"), "it is not read to the base of 60; write it as one decimal number"),
-    (re.compile(r"[+-]?0[xob][0-9a-f_]+", re.IGNORECASE), "write it to the base of ten"),
+    (re.compile(r"[+-]?[0-9]+(?::[0-9.]+)+"), "sexagesimal numbers are not read; write it as one decimal number"),
+    (re.compile(r"[+-]?0[xob][0-9a-f_]+", re.IGNORECASE), "write it in decimal"),
     (re.compile(r"[+-]?[0-9][0-9_]*_[0-9_]*(?:\.[0-9_]*)?"), "write it without underscores"),
     (re.compile(r"[+-]?[0-9]*,[0-9]+"), "a decimal takes a point, not a comma"),
     (re.compile(r"[+-]?[0-9.]+ ?(?:mm|cm|m|in|inch|\"|deg|°|rad|degrees?)"), "write the number without its unit"),
@@ -65,7 +65,7 @@ def read_number(text: str) -> float:
     if not math.isfinite(value):
         raise Complaint("too large")
     if 0 < abs(value) < _LEAST:
-        raise Complaint("too small", "write 0, or what was meant")
+        raise Complaint("too small", "write 0, or the intended number")
     return value
 
 

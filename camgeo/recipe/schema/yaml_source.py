@@ -17,6 +17,7 @@ import yaml
 from camgeo.recipe.schema.errors import RecipeError, RecipeErrors, shown
 
 if TYPE_CHECKING:
+    import collections.abc
     from collections.abc import Iterator
 
 MAX_BYTES = 1_000_000
@@ -121,7 +122,7 @@ def read_source(data: bytes, file: str) -> Source:
     directives, and anything above the bounds of this module.
     """
     if len(data) > MAX_BYTES:
-        raise _fault(file, (0, 0), f"the file is larger than {MAX_BYTES} bytes", remedy="a recipe takes a few hundred")
+        raise _fault(file, (0, 0), f"the file is larger than {MAX_BYTES} bytes", remedy="a recipe needs a few hundred")
     text = _decode(data, file)
     if _DIRECTIVE.match(text):
         place = _place(text, text.index("%"))
@@ -136,6 +137,19 @@ def join(path: str, key: str | int) -> str:
         return f"{path}[{key}]"
     name = key if _PLAIN_KEY.fullmatch(key) else shown(key)
     return f"{path}.{name}" if path else name
+
+
+def is_within(path: str, of: str) -> bool:
+    """Tell whether a path is another or lies below it."""
+    return path == of or path.startswith((f"{of}.", f"{of}["))
+
+
+def as_written(path: str, renamed: collections.abc.Mapping[str, str]) -> str:
+    """Put the paths as written in the place of the present ones in `renamed`."""
+    for new, old in renamed.items():
+        if is_within(path, new):
+            return old + path[len(new) :]
+    return path
 
 
 def scalars(node: Node, path: str = "") -> Iterator[tuple[str, Scalar]]:
@@ -247,10 +261,10 @@ def _syntax_remedy(problem: str) -> str:
     if r"'\t'" in problem:
         return "indent with spaces, not tabs"
     if "mapping values are not allowed" in problem:
-        return "a text with a colon and a space in it needs quotes; keys of one mapping start in one column"
+        return "a text that contains a colon and a space needs quotes; keys of one mapping start in one column"
     if "alias" in problem or "anchor" in problem:
         return "quote a text that begins with * or &"
-    return "look at indentation, quotes, brackets and colons here and in the line above"
+    return "check indentation, quotes, brackets and colons in this line and the line above"
 
 
 _OfTree = yaml.ScalarEvent | yaml.AliasEvent | yaml.CollectionStartEvent | yaml.CollectionEndEvent
@@ -321,7 +335,7 @@ class _Tree:
         """Put a node where it belongs."""
         if self.nodes > MAX_NODES:
             problem = f"more than {MAX_NODES} entries, aliases expanded"
-            raise _fault(self.file, mark, problem, remedy="a recipe takes a few dozen")
+            raise _fault(self.file, mark, problem, remedy="a recipe needs a few dozen")
         if anchor is not None:
             self.anchors[anchor] = node
         if self.frames:

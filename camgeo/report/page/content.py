@@ -99,7 +99,7 @@ def _mechanism(
     """Return scene and plots in mm, and the relative angle over the shaft angle (STEPS + 1,)."""
     reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
     size, bore = JOINT * reach, recipe.part.bore
-    note = "" if design.contour is not None else "No such cam is made: a check of the exact contour fails."
+    note = "" if design.contour is not None else "The cam is not made: a check of the exact contour fails."
     on_it = _on_face(design)
     disk = cam(drawn, bore, size, -SHAFT, on_it)
     if design.driven is not None and design.driven.turns:
@@ -115,7 +115,7 @@ def _mechanism(
         )
     if design.driven is not None:
         where = "; ".join(check.detail for check in design.driven.checks if not check.ok and check.detail)
-        slides = "The mechanism does not turn right round: the cam is shown in a frame that only slides. "
+        slides = "The mechanism does not make a full turn: the cam is shown in a frame that only slides. "
         note = f"{slides}{where[0].upper()}{where[1:]}. {note}" if where else slides + note
     drawn_as = DRAWN[design.follower.name]
     bodies, more = drawn_as.bodies(recipe, design, reach, size)

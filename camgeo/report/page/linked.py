@@ -282,6 +282,6 @@ def _forces(driven: Driven, size: float) -> list[Body]:
     shapes = arrow(8.0 * size, 1.2 * size, "load")
     centre = (Shape("load dot", (disc(0.0, 0.0, 0.5 * size),)),)
     return [
-        Body("where the contact normals meet", "forces", centre, poses(*at.instant_centre(*driven.slopes), 0.0)),
+        Body("where the contact normals intersect", "forces", centre, poses(*at.instant_centre(*driven.slopes), 0.0)),
         Body("force of the frame on the link it drives", "forces", shapes, poses(line.x, line.y, direction)),
     ]

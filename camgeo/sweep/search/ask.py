@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.export import Export
-from camgeo.recipe.figures import FACE_LENGTH, HOLLOW_RADIUS, PEAKS
+from camgeo.recipe.figures import CONTACT_TRAVEL, HOLLOW_RADIUS, PEAKS
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import RECIPE, Recipe, Verify
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.sweep import Sweep
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
-_DEAR = ("dwell-relative", *PEAKS, "force-angle", FACE_LENGTH, HOLLOW_RADIUS)
+_DEAR = ("dwell-relative", *PEAKS, "force-angle", CONTACT_TRAVEL, HOLLOW_RADIUS)
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 
@@ -52,7 +52,7 @@ class Ask:
         """Take the sweep of a recipe; raises RecipeErrors where it has none."""
         sweep = recipe.sweep
         if sweep is None:
-            raise recipe.error("sweep", "this recipe has no sweep", None, "say what to vary: `sweep: {vary: ...}`")
+            raise recipe.error("sweep", "this recipe has no sweep", None, "add what to vary: `sweep: {vary: ...}`")
         axes = tuple(map(_axis, sweep.vary))
         count = sweep.count
         if count is None:

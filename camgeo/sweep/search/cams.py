@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from camgeo.cams.flat_faced import is_constant_breadth
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.sweep.search.ends import least
 from camgeo.sweep.search.linkages import Support, angles
@@ -52,7 +51,7 @@ class Cams:
     """Where the cams of a sweep come from.
 
     `terms` are the harmonics that vary: order (0 for the mean radius), whether of a sine, column of the values, mm per
-    unit; they are 0 in `base`, but for the mean radius. `pivot` are the columns of the shaft's place, or None with its
+    unit; they are 0 in `base`, but for the mean radius. `shaft` are the columns of its place, or None with its
     value in mm. `others` are the columns of all else in the cam, which a cam is made anew for.
     """
 
@@ -60,7 +59,7 @@ class Cams:
     paths: tuple[str, ...]
     count: int
     terms: tuple[tuple[int, bool, int, float], ...]
-    pivot: tuple[tuple[int | None, float], tuple[int | None, float]]
+    shaft: tuple[tuple[int | None, float], tuple[int | None, float]]
     others: tuple[int, ...]
     base: _Base | None
 
@@ -69,8 +68,8 @@ class Cams:
         """Sort the fields that vary; `paths` are those of all columns, `count` is that of the angles."""
         cam, mm = recipe.cam, recipe.mm
         place = cam.shaft_at
-        columns = {path: column for column, path in enumerate(paths) if path.startswith("cam.")}
-        pivot = tuple((columns.pop(f"cam.pivot[{i}]", None), place[i]) for i in (0, 1))
+        columns = {recipe.present(path): column for column, path in enumerate(paths) if path.startswith("cam.")}
+        shaft = tuple((columns.pop(f"cam.shaft[{i}]", None), place[i]) for i in (0, 1))
         terms = []
         for path in list(columns):
             found = cam.harmonic(path)
@@ -81,7 +80,7 @@ class Cams:
         if others:  # whatever else varies with them is part of the same cam
             others, terms = tuple(sorted({*others, *(term[2] for term in terms)})), []
         base = None if others else _base(_silent(recipe, terms), count)
-        return Cams(recipe, tuple(paths), count, tuple(terms), (pivot[0], pivot[1]), others, base)
+        return Cams(recipe, tuple(paths), count, tuple(terms), (shaft[0], shaft[1]), others, base)
 
     def sampled(self, values: Array) -> Sampled:
         """Sample the cams of designs with the given values (m, k), in the recipe's units."""
@@ -98,7 +97,7 @@ class Cams:
             radius = least(rows[0] + rows[2])
         x, y = (
             (np.full((m, 1), fixed) if column is None else values[:, column : column + 1] * self.recipe.mm)
-            for column, fixed in self.pivot
+            for column, fixed in self.shaft
         )
         cosine, sine = np.cos(angles(self.count)), np.sin(angles(self.count))
         shift = x * cosine
@@ -142,7 +141,7 @@ class Cams:
         for cam in distinct:
             given = {self.paths[column]: float(value) for column, value in zip(self.others, cam, strict=True)}
             try:
-                found.append(_base(load_text(with_values(self.recipe.text, given), self.recipe.path), self.count))
+                found.append(_base(load_text(self.recipe.text_with(given), self.recipe.path), self.count))
             except RecipeErrors:
                 found.append(_Base(np.nan, np.nan, np.full((3, self.count), np.nan), smooth=False, fault=IMPOSSIBLE))
         which = which.reshape(-1)

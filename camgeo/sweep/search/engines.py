@@ -108,7 +108,7 @@ def _connected(client: Any, address: str) -> Iterator[Any]:  # noqa: ANN401 - di
     try:
         opened = client(address, timeout=_PATIENCE, set_as_default=False)
     except OSError as error:
-        raise EngineError(f"what answers at {address} is no Dask scheduler: {error}") from error
+        raise EngineError(f"the server at {address} is not a Dask scheduler: {error}") from error
     with opened:
         yield opened
 
@@ -122,21 +122,21 @@ def _heard(address: str) -> None:
     try:
         parts = urlsplit(address if "://" in address else f"tcp://{address}")
         if not parts.hostname or not parts.port:
-            raise EngineError(f"{address} is no address of a Dask scheduler, such as tcp://host:8786")
+            raise EngineError(f"{address} is not the address of a Dask scheduler, such as tcp://host:8786")
         socket.create_connection((parts.hostname, parts.port), _PATIENCE).close()
     except (OSError, ValueError) as error:
         raise EngineError(f"no Dask scheduler answers at {address}: {error}") from error
     try:
         kind = asyncio.run(asyncio.wait_for(_kind_of(address), _PATIENCE))
     except TimeoutError:
-        text = f"what listens at {address} does not speak as a Dask scheduler does: no answer in {_PATIENCE:g} s"
+        text = f"the server at {address} does not answer as a Dask scheduler does: no answer in {_PATIENCE:g} s"
         raise EngineError(text) from None
     except MemoryError:  # its first bytes were read as a length
-        raise EngineError(f"what answers at {address} speaks another protocol than a Dask scheduler") from None
+        raise EngineError(f"the server at {address} speaks another protocol than a Dask scheduler") from None
     except (OSError, ValueError) as error:
-        raise EngineError(f"what answers at {address} is no Dask scheduler: {error}") from error
+        raise EngineError(f"the server at {address} is not a Dask scheduler: {error}") from error
     if kind != "Scheduler":
-        raise EngineError(f"what answers at {address} is no Dask scheduler, but a {kind}")
+        raise EngineError(f"the server at {address} is not a Dask scheduler, but a {kind}")
 
 
 async def _kind_of(address: str) -> str:

@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.recipe.figures import DWELL, FACE_LENGTH, RADIUS, SIZE, there
+from camgeo.recipe.figures import CONTACT_TRAVEL, DWELL, RADIUS, SIZE, there
 from camgeo.recipe.linkage import output_slides
-from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.sweep import FIGURES
 from camgeo.sweep.search import rebuilt
 from camgeo.sweep.search.cams import BINDS, BROKEN, FINE, REVERSES, Cams
@@ -147,7 +146,7 @@ class Evaluator:
         limits = sweep.limits if sweep else ()
         wanted = tuple(dict.fromkeys((*(figures or asked_of(recipe)), *(limit.figure for limit in limits))))
         count = samples or (sweep.angles if sweep else _SAMPLES)
-        with_values(recipe.text, dict.fromkeys(paths, 1.0))  # raises where no number stands
+        recipe.text_with(dict.fromkeys(paths, 1.0))  # raises where no number stands
         return Evaluator(recipe, tuple(paths), wanted, limits, -(-count // 4) * 4, engine)
 
     @cached_property
@@ -225,8 +224,8 @@ class Evaluator:
         alive = reason == FINE
         if RADIUS in figures:
             figures[RADIUS][:] = cams.radius
-        if FACE_LENGTH in figures:
-            figures[FACE_LENGTH][:] = greatest(cams.support.dp, cams.smooth) - least(cams.support.dp, cams.smooth)
+        if CONTACT_TRAVEL in figures:
+            figures[CONTACT_TRAVEL][:] = greatest(cams.support.dp, cams.smooth) - least(cams.support.dp, cams.smooth)
         if SIZE in figures:
             square = cams.support.p * cams.support.p
             square += cams.support.dp * cams.support.dp

@@ -10,6 +10,7 @@ import numpy as np
 
 from camgeo import __version__
 from camgeo.files.errors import install
+from camgeo.recipe.figures import with_former
 from camgeo.recipe.sweep import FIGURES
 from camgeo.report.document import encoded
 from camgeo.report.listed import listed
@@ -155,22 +156,24 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
             "count": ask.plan.count,
             "seed": None if sweep.method == "grid" else sweep.seed,
             "angles": sweep.angles,
-            "limits": bounds,
+            "limits": with_former(bounds),
             "rank": sweep.rank,
             "best": FIGURES[sweep.rank].best,
             "keep": sweep.keep,
             "refine": sweep.refine,
         },
-        "figures": {
-            name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in found.figures}
-            for name in FIGURES
-            if name in found.figures or any(name in design.figures for design in best)
-        },
+        "figures": with_former(
+            {
+                name: {"unit": units[name].name, "about": FIGURES[name].about, "in_table": name in found.figures}
+                for name in FIGURES
+                if name in found.figures or any(name in design.figures for design in best)
+            }
+        ),
         "counts": {
             "computed": counts.computed,
             "not_turning": counts.not_turning,
             "reasons": {reasons[number]: count for number, count in counts.reasons},
-            "failing": dict(counts.failing),
+            "failing": with_former(dict(counts.failing)),
             "kept": counts.kept,
             "rows": found.rows,
             "most_rows": MOST_ROWS,
@@ -182,7 +185,7 @@ def _report(ask: Ask, found: Gathered, best: Sequence[Best], reasons: Sequence[s
                 "index": design.index,
                 "polished": design.polished,
                 "values": design.values,
-                "figures": {name: value / units[name].divisor for name, value in design.figures.items()},
+                "figures": with_former({name: value / units[name].divisor for name, value in design.figures.items()}),
             }
             for design in best
         ],

@@ -1,7 +1,7 @@
 """Pictures of a sweep: the map of its figure, and the output curves of the best designs. PNG and SVG, as bytes.
 
 Drawn with matplotlib's own defaults, whatever the user's are, and without a date, so the same sweep gives the same
-bytes. Colours are told apart by those who see few: viridis, and the set of Okabe and Ito.
+bytes. Colours are separated by those who see few: viridis, and the set of Okabe and Ito.
 """
 
 from __future__ import annotations

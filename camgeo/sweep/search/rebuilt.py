@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.part import Part
-from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.sweep.search.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
 from camgeo.sweep.search.linkages import angles
@@ -48,7 +47,7 @@ class Rows:
 def recipe_with(recipe: Recipe, paths: Sequence[str], values: Sequence[float] | Array) -> Recipe:
     """Give the recipe with values put in at paths. RecipeErrors where it is none; ValueError for a wrong path."""
     given = {path: float(value) for path, value in zip(paths, values, strict=True)}
-    return load_text(with_values(recipe.text, given), recipe.path)
+    return load_text(recipe.text_with(given), recipe.path)
 
 
 def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[str]) -> tuple[dict[str, Array], Codes]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from camgeo.recipe.loading import read
 from camgeo.recipe.schema.change import changed
-from camgeo.recipe.schema.edit import with_values, without
+from camgeo.recipe.schema.edit import without
 from camgeo.recipe.schema.fields import MOST_TEXT
 from camgeo.recipe.schema.yaml_source import Mapping, read_source, scalars
 from camgeo.sweep.search.pictures import Curve
@@ -49,7 +49,7 @@ def recipe_text(ask: Ask, best: Best) -> str:
 
     Raises RecipeErrors where the sweep cannot be cut out of the text.
     """
-    text = with_values(ask.recipe.text, best.values)
+    text = ask.recipe.text_with(best.values)
     for section in ("sweep", "name", "about"):
         text = without(text, section)
     for path in [path for path in ask.recipe.marks if path.startswith("cam.") and path.endswith(".table")]:

@@ -35,7 +35,7 @@ _SHORT = 16  # digits of the key that name the folder
 
 @dataclass(frozen=True)
 class How:
-    """Who computes: the scheduler at an address, else so many processes, else as many as pay."""
+    """Who computes: the scheduler at an address, else so many processes, else as many as are worthwhile."""
 
     jobs: int | None = None
     scheduler: str | None = None

@@ -122,7 +122,7 @@ def demand_room(ask: Ask, out: Path) -> None:
     best = (f"best-{place}.yaml" for place in range(1, min(ask.sweep.keep, ask.plan.count) + 1))
     for name in (*TABLES, *PICTURES, *best):
         if name not in ours and os.path.lexists(folder / name):
-            raise SurroundingsError("is in the way, and no report says that it may be replaced", folder / name)
+            raise SurroundingsError("is in the way, and no report lists it as replaceable", folder / name)
 
 
 def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None = None) -> list[Best]:

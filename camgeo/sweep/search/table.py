@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from camgeo.recipe.figures import FORMER
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -21,12 +23,18 @@ if TYPE_CHECKING:
 
 
 def columns(plan: Plan, found: Gathered, units: Mapping[str, Unit]) -> Columns:
-    """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units."""
+    """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units.
+
+    Renamed figures stand under their former names too, behind all others.
+    """
+    figures = {name: values / units[name].divisor for name, values in found.figures.items()}
+    former = {FORMER[name]: name for name in figures if name in FORMER}
     return {
         "place": np.arange(1, found.rows + 1),
         "index": found.index,
         **{axis.path: found.values[:, i] for i, axis in enumerate(plan.axes)},
-        **{_head(name, units[name].name): values / units[name].divisor for name, values in found.figures.items()},
+        **{_head(name, units[name].name): values for name, values in figures.items()},
+        **{_head(old, units[name].name): figures[name] for old, name in former.items()},
     }
 
 

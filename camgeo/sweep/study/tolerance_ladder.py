@@ -1,7 +1,7 @@
 """A ladder of tolerances for each output form: error of the file read back, run time, pieces and bytes.
 
 Each rung writes a file into a private folder and has it judged there, as an export does, then repeats the work to time
-it warm: the exact curve and its bounds are made once and are told apart as the stages of the design. A ladder ends
+it warm: the exact curve and its bounds are made once and are separated as the stages of the design. A ladder ends
 where the form cannot hold the tolerance, which is told with the reason and what can be held, or at a run (fit, write
 and judge) that takes longer than the patience that is given. An exact spline is the same whatever the tolerance: it has
 one rung.
@@ -124,7 +124,7 @@ def request_of(form: str, tolerance: float) -> FileRequest:
         return FileRequest("stl", tolerance=tolerance)
     if form in {"polyline", "arcs", "spline", "exact"}:
         return FileRequest("dxf", as_=form, version="R2010", tolerance=tolerance)  # type: ignore[arg-type] # one of these
-    raise ValueError(f"no such form: {form}")
+    raise ValueError(f"unknown form: {form}")
 
 
 def _rung(recipe: Recipe, design: Design, form: str, tolerance: float, folder: Path) -> Rung:

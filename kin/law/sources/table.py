@@ -96,7 +96,7 @@ def _demand_rows(rows: Samples, total: float, field: str) -> None:
     for column, what in ((rows.theta, "the angle"), (rows.s, "the displacement")):
         bad = np.flatnonzero(~np.isfinite(column))
         if len(bad):
-            raise TableError(f"{what} is no finite number", field, int(rows.lines[bad[0]]))
+            raise TableError(f"{what} is not finite", field, int(rows.lines[bad[0]]))
     falls = np.flatnonzero(np.diff(rows.theta) <= SAME_ANGLE)
     if len(falls):
         i = int(falls[0]) + 1
@@ -205,7 +205,7 @@ def _given(task: _Task, dwells: Sequence[tuple[float, float]], field: str) -> li
         level = float(0.5 * (s.min() + s.max()))
         if s.max() - s.min() > 2 * reading:
             line = int(rows.lines[index[int(np.argmax(np.abs(s - np.median(s))))] % n])
-            raise TableError(f"the row is no part of a dwell at {float(np.median(s)):.6g}", field, line)
+            raise TableError(f"the row is not part of a dwell at {float(np.median(s)):.6g}", field, line)
         turns = ends[0] // n
         found.append(Dwelling(ends[0] - turns * n, ends[1] - turns * n, level))
     return sorted(found)

@@ -84,8 +84,8 @@ def _unread(line: str, separator: str, number: int, field: str) -> TableError:
     shown = line if len(line) <= 40 else f"{line[:37]}..."
     hint = "an angle and a displacement are expected"
     if separator == "," and line.count(",") > 1:
-        hint += ": with decimal commas, part the columns by semicolons"
-    return TableError(f"{shown!r} is no row parted by {_SEPARATORS[separator]}: {hint}", field, number)
+        hint += ": with decimal commas, separate the columns by semicolons"
+    return TableError(f"{shown!r} is not a row separated by {_SEPARATORS[separator]}: {hint}", field, number)
 
 
 def _places(cell: str) -> int:

@@ -136,6 +136,6 @@ def opening(free: Indices, ends: Array, gap: float, path: Path) -> ReadError:
     more = f"; {len(free) // 2} such places" if len(free) > 2 else ""
     what = "the contour is open, a segment is missing" if missing else "the contour is open"
     message = (
-        f"{what} between ({x:.9g}, {y:.9g}) and ({x2:.9g}, {y2:.9g}): {wide:.3g} apart, permitted are {gap:.3g}{more}"
+        f"{what} between ({x:.9g}, {y:.9g}) and ({x2:.9g}, {y2:.9g}): {wide:.3g} apart, permitted is {gap:.3g}{more}"
     )
     return ReadError("open" if missing else "gap", message, path, (x, y), wide)

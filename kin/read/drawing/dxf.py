@@ -128,7 +128,7 @@ def unit_of(document: Document, head: bytes, path: Path) -> float | None:
     if code in UNIT_MM:
         return UNIT_MM[code]
     if code != 0:
-        raise ReadError("unsupported", f"$INSUNITS {code} is no unit to draw a cam in", path)
+        raise ReadError("unsupported", f"$INSUNITS {code} is not a unit for a cam drawing", path)
     comment = UNIT_COMMENT.search(head)
     return None if comment is None else UNIT_NAMES.get(comment[1].decode("ascii", errors="ignore").lower())
 

@@ -133,7 +133,7 @@ def _elements(parent: Element, layer: str, to: Affine, path: Path, depth: int = 
         tag = element.tag if isinstance(element.tag, str) else ""  # not a comment
         kind = tag.removeprefix(SVG)
         if kind == "style" and (moving := MOVING.search(element.text or "")):
-            raise ReadError("unsupported", f"a style sheet tells {moving[1]}; give it to the elements", path)
+            raise ReadError("unsupported", f"a style sheet sets {moving[1]}; give it to the elements", path)
         if not tag or kind.rpartition("}")[2] in SILENT:
             continue
         style = element.get("style", "")

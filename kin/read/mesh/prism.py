@@ -22,7 +22,7 @@ __all__ = ["Evened", "Outline", "Upright", "evened", "rounding", "upright"]
 
 SINGLE, DOUBLE = 2.0**-24, 2.0**-53  # greatest relative error of a number rounded to either precision
 FEW_DIGITS = 9  # tell any number of single precision; more are written of doubles
-SPLITS = 16  # passes in which places are told apart; two or three will do for a part
+SPLITS = 16  # passes in which places are separated; two or three will do for a part
 
 
 class Outline(NamedTuple):

@@ -144,7 +144,7 @@ def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
 def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path) -> Solid:
     """Make the part of triangles (t, 3, 3), mm, as `read_stl` does."""
     if not bool((np.abs(corners) <= LARGEST).all()):
-        raise ReadError("range", "a coordinate is not finite or beyond all measure", path)
+        raise ReadError("range", "a coordinate is not finite or out of range", path)
     z = corners[:, :, 2]
     z_min, z_max = float(z.min()), float(z.max())
     if z_min == z_max:
@@ -277,10 +277,10 @@ def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "te
     if raw.lstrip()[:5] == b"solid" and (b"facet" in raw[:2000] or b"endsolid" in raw[:2000]):
         return facets(raw, path), "text"
     if len(raw) < HEADER:
-        raise ReadError("truncated", f"{len(raw)} bytes are no STL file, whose header alone has {HEADER}", path)
+        raise ReadError("truncated", f"{len(raw)} bytes are not an STL file, whose header alone has {HEADER}", path)
     begin = raw[:HEADER]
     if begin.isascii() and begin.decode("ascii").translate(SPACES).isprintable():
-        raise ReadError("syntax", f"no STL file, neither binary nor text: it begins with {begin[:20]!r}", path)
+        raise ReadError("syntax", f"not an STL file, neither binary nor text: it begins with {begin[:20]!r}", path)
     reason = "truncated" if len(raw) < expected else "syntax"
     raise ReadError(reason, f"{count} triangles make a file of {expected} bytes, not {len(raw)}", path)
 
@@ -297,7 +297,7 @@ def facets(raw: bytes, path: Path) -> Array:
     if b"endsolid" in words:
         raise ReadError("unsupported", "the file holds more than one solid", path)
     if len(words) % WORDS:
-        raise ReadError("syntax", f"its facets have {len(words)} words, which is no multiple of {WORDS}", path)
+        raise ReadError("syntax", f"its facets have {len(words)} words, which is not a multiple of {WORDS}", path)
     longest = max(map(len, words))
     if longest > LONGEST_WORD:
         raise ReadError("syntax", f"a word of {longest} characters", path)
@@ -310,7 +310,7 @@ def facets(raw: bytes, path: Path) -> Array:
     try:
         return table[:, NUMBERS].astype(np.float64).reshape(-1, 3, 3)
     except ValueError as error:
-        raise ReadError("syntax", f"a coordinate is no number: {error}", path) from error
+        raise ReadError("syntax", f"a coordinate is not a number: {error}", path) from error
 
 
 def section(mesh: Mesh, height: float) -> tuple[float, Outline]:

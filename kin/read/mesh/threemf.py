@@ -212,7 +212,7 @@ class _Model:
                 raise ReadError("empty", f"object {one.name or name!r} holds no triangles", self.path)
             there = np.concatenate((place[:3], self.mm * place[3:]))
             if not all(bool((np.abs(numbers) <= LARGEST).all()) for numbers in (corners, there)):
-                raise ReadError("range", f"object {one.name or name!r} reaches beyond all measure", self.path)
+                raise ReadError("range", f"object {one.name or name!r} reaches out of range", self.path)
             found.append(Placed(one.name, corners, there, self.mm))
         return tuple(found)
 
@@ -271,24 +271,24 @@ class _Model:
     def _number(self, given: dict[str, str], name: str) -> float:
         text = given.get(name, "")
         if not NUMBER.fullmatch(text):
-            raise self._fault(f"{name}={text!r} is no number")
+            raise self._fault(f"{name}={text!r} is not a number")
         if not abs(float(text)) <= LARGEST:
-            raise ReadError("range", f"{name}={text!r} is beyond all measure", self.path)
+            raise ReadError("range", f"{name}={text!r} is out of range", self.path)
         return float(text)
 
     def _whole(self, given: dict[str, str], name: str) -> int:
         text = given.get(name, "")
         if not (text.isascii() and text.isdecimal() and len(text) < 18):
-            raise self._fault(f"{name}={text!r} is no number of a vertex")
+            raise self._fault(f"{name}={text!r} is not the number of a vertex")
         return int(text)
 
     def _place(self, given: dict[str, str]) -> Array:
         words = given.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()
         if len(words) != 12 or not all(NUMBER.fullmatch(word) for word in words):
-            raise self._fault(f"transform={given['transform']!r} is no twelve numbers")
+            raise self._fault(f"transform={given['transform']!r} is not twelve numbers")
         place = np.array(words, dtype=np.float64).reshape(4, 3)
         if not bool((np.abs(place) <= LARGEST).all()):
-            raise ReadError("range", f"transform={given['transform']!r} is beyond all measure", self.path)
+            raise ReadError("range", f"transform={given['transform']!r} is out of range", self.path)
         if np.linalg.det(place[:3]) == 0.0:
             raise self._fault(f"transform={given['transform']!r} is flat")
         return place

@@ -90,7 +90,7 @@ class Exchange(NamedTuple):
         if isinstance(value, Typed) and len(value.values) == 1:
             value = value.values[0]
         if isinstance(value, bool) or not isinstance(value, int | float) or isinstance(value, Reference):
-            raise self.error(by, f"{shown(value)} is no number", "syntax")
+            raise self.error(by, f"{shown(value)} is not a number", "syntax")
         if not abs(value) <= LARGEST:
             raise self.error(by, f"a value of {value:g}", "range")
         return float(value)
@@ -98,13 +98,13 @@ class Exchange(NamedTuple):
     def reference(self, value: Value, by: int) -> int:
         """Return a value as the number of an instance."""
         if not isinstance(value, Reference):
-            raise self.error(by, f"{shown(value)} is no reference", "syntax")
+            raise self.error(by, f"{shown(value)} is not a reference", "syntax")
         return int(value)
 
     def several(self, value: Value, by: int) -> tuple[Value, ...]:
         """Return a value as a list."""
         if not isinstance(value, tuple) or isinstance(value, Typed):
-            raise self.error(by, f"{shown(value)} is no list", "syntax")
+            raise self.error(by, f"{shown(value)} is not a list", "syntax")
         return value
 
     def flag(self, value: Value, by: int) -> bool:

@@ -234,9 +234,9 @@ def _unit(file: Exchange, number: int, depth: int = 0) -> float:
             return 1.0
         if name == "METRE" and (prefix is None or prefix in PREFIXES):
             return 1000.0 if prefix is None else PREFIXES[str(prefix)]
-        raise file.error(number, f"is no unit that is read: {prefix} {name}")
+        raise file.error(number, f"is not a unit that is read: {prefix} {name}")
     if "CONVERSION_BASED_UNIT" not in records or depth > 3:
-        raise file.error(number, "is no unit that is read")
+        raise file.error(number, "is not a unit that is read")
     measure = file.reference(file.values(number, "CONVERSION_BASED_UNIT", 2)[1], number)
     kinds = ("LENGTH_MEASURE_WITH_UNIT", "PLANE_ANGLE_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT")
     size, unit, *_ = file.values(measure, file.kind(measure, kinds, number), 2)

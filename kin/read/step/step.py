@@ -282,6 +282,6 @@ class _Body:
         worst = max(off, key=lambda number: off[number])
         if off[worst] > self.space.accuracy:
             what = "ends beside its curve" if worst in self.edges else "is bounded by edges beside its surface"
-            message = f"{what} by {off[worst]:.3g} mm, permitted are {self.space.accuracy:.3g}"
+            message = f"{what} by {off[worst]:.3g} mm, permitted is {self.space.accuracy:.3g}"
             raise self.space.file.error(worst, message, "gap")
         return off[worst]
