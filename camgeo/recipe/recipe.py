@@ -83,6 +83,11 @@ class Recipe:
     marks: collections.abc.Mapping[str, tuple[int, int]] = field(default_factory=dict, repr=False, compare=False)
     text: str = field(default="", repr=False, compare=False)
 
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Fields that name a file which is read with the recipe, from the folder that it stands in."""
+        return tuple(path for path in self.marks if path.startswith("cam.") and path.endswith(".table"))
+
     @overload
     def replace(self, path: str, value: Value, /) -> Recipe: ...
 

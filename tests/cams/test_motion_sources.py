@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from camgeo.cams.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
+from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe import RecipeErrors, load_text
 from camgeo.recipe.recipe import RECIPE
@@ -427,3 +428,18 @@ def test_kin_s_own_error_keeps_its_angle(tmp_path):
     with pytest.raises(IntentError) as caught:
         recipe("{formula: 5*sin(t/2)}", tmp_path).cam.intent()
     assert caught.value.at_deg == 180
+
+
+def test_a_sweep_reads_the_table_and_its_best_design_finds_it_from_its_own_folder(tmp_path, monkeypatch, capsys):
+    written(tmp_path, HALF, sampled(HALF))
+    vary = "{cam.base_radius: {from: 38, to: 44, steps: 3}, cam.motion.reading: [0.001, 0.002]}"
+    (tmp_path / "case.yaml").write_text(
+        f"cam: {{{BREADTH}, motion: {{table: lift.csv, reading: 0.001}}}}\nexport: {{files: [csv]}}\n"
+        f"sweep: {{vary: {vary}, rank: radius-of-curvature, keep: 1}}\n"
+    )
+    assert main(["sweep", str(tmp_path / "case.yaml"), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    (best,) = (tmp_path / "out").rglob("best-1.yaml")
+    monkeypatch.chdir("/")
+    assert main(["check", str(best)]) == 0
+    assert "base_radius: 44" in best.read_text()
+    capsys.readouterr()
