@@ -87,6 +87,11 @@ class Recipe:
     renamed: collections.abc.Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
     notices: tuple[RecipeError, ...] = field(default=(), repr=False, compare=False)
 
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Fields that name a file which is read with the recipe, from the folder that it stands in."""
+        return tuple(path for path in self.marks if path.startswith("cam.") and path.endswith(".table"))
+
     @overload
     def replace(self, path: str, value: Value, /) -> Recipe: ...
 

@@ -95,7 +95,7 @@ class Ask:
             export=Export(1.0, ()),
             verify=Verify(1),
             dynamics=None,
-            path=Path("recipe.yaml"),
+            path=self.recipe.path if self.recipe.tables else Path("recipe.yaml"),
             sweep=plain,
         )
         return Scene(recipe, figures)

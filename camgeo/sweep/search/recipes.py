@@ -52,7 +52,7 @@ def recipe_text(ask: Ask, best: Best) -> str:
     text = ask.recipe.text_with(best.values)
     for section in ("sweep", "name", "about"):
         text = without(text, section)
-    for path in [path for path in ask.recipe.marks if path.startswith("cam.") and path.endswith(".table")]:
+    for path in ask.recipe.tables:
         source = read_source(text.encode(), str(ask.recipe.path))  # its recipe stands in another folder
         file = dict(scalars(source.root))[path].text
         text = changed(source, path, (ask.recipe.path.parent / file).resolve().as_posix())

@@ -76,7 +76,9 @@ def from_table(
     if event is not None:
         found = merged(sorted([*found, event]), len(rows.s))
     _demand_even(rows, found, field)
-    smoother = _Smoother(reading, spans, field, step=2 if around == -1 else 1)
+    smoother = _Smoother(reading, spans, field)
+    if around == -1:
+        smoother.step, smoother.image = 2, (total, float(rows.s[0] + rows.s[-1]))
     motion = laid(rows, found, total, around, smoother)
     return Smoothed(motion, smoother.count, smoother.residual, smoother.line)
 
@@ -233,7 +235,10 @@ def _demand_even(rows: Samples, dwells: Sequence[Dwelling], field: str) -> None:
 
 @dataclass
 class _Smoother:
-    """Least squares with the fewest spans, a multiple of `step`; keeps their count and the worst row."""
+    """Least squares with the fewest spans, a multiple of `step`; keeps their count and the worst row.
+
+    Of rows that are laid a second time, upside down, `image` has the angle of the half and what the two add up to.
+    """
 
     reading: float
     spans: int | None
@@ -242,6 +247,7 @@ class _Smoother:
     count: int = 0
     residual: float = 0.0
     line: int = 0
+    image: tuple[float, float] | None = None
 
     def __call__(
         self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
@@ -294,9 +300,20 @@ class _Smoother:
             int(rows.lines[worst]),
         )
 
+    def _written(self, theta: float, s: float) -> float:
+        """A displacement as the table has it."""
+        if self.image is None:
+            return s
+        half, total = self.image
+        return total - s if theta % (2 * half) >= half - SAME_ANGLE else s
+
     def _single(self, rows: Samples, i: int) -> TableError:
         """Say which row stands out, or where the table steps, near row i."""
         s = rows.s
+
+        def there(k: int, value: float) -> float:
+            return self._written(float(rows.theta[k]), float(value))
+
         near = range(max(i - 2, 2), min(i + 3, len(s) - 2))
         expected = {k: (4 * (s[k - 1] + s[k + 1]) - s[k - 2] - s[k + 2]) / 6 for k in near}
         left = {}
@@ -308,8 +325,8 @@ class _Smoother:
         whole = float(np.abs(np.diff(s[max(best - 6, 0) : best + 7], 4)).max())
         if left[best] < 0.2 * whole:
             return TableError(
-                f"the row does not lie on a smooth curve with its neighbours: it is {s[best]:.7g}, about "
-                f"{expected[best]:.7g} is expected",
+                f"the row does not lie on a smooth curve with its neighbours: it is {there(best, s[best]):.7g}, about "
+                f"{there(best, expected[best]):.7g} is expected",
                 self.field,
                 int(rows.lines[best]),
             )
@@ -318,5 +335,7 @@ class _Smoother:
         jump = step[local] - 0.5 * (step[local - 1] + step[local + 1])
         k = int(local[np.argmax(np.abs(jump))]) + 1
         return TableError(
-            f"the displacement steps from {s[k - 1]:.7g} to {s[k]:.7g} here", self.field, int(rows.lines[k])
+            f"the displacement steps from {there(k - 1, s[k - 1]):.7g} to {there(k, s[k]):.7g} here",
+            self.field,
+            int(rows.lines[k]),
         )

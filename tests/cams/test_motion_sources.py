@@ -1,0 +1,445 @@
+"""A motion by a formula, a table, points or a lobe, from the recipe's text to the judged cam."""
+
+import math
+import os
+import pickle
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from support.cases import examples
+
+from camgeo.cams.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
+from camgeo.cli.main import main
+from camgeo.output import pipeline
+from camgeo.recipe import RecipeErrors, load_text
+from camgeo.recipe.recipe import RECIPE
+from camgeo.recipe.schema.fields import Kind, field_at
+from camgeo.recipe.schema.json_schema import table_schema
+from camgeo.recipe.schema.reader import Reader
+from camgeo.recipe.schema.readers import READERS
+from camgeo.recipe.schema.yaml_source import entries, read_source
+from kin.law.programme import IntentError
+from kin.law.sources.laws import named
+from kin.law.sources.lobe import lobe
+from kin.law.sources.programme import Dwell, Move, programme
+
+rad = math.radians
+BREADTH = "kind: constant-breadth, base_radius: 40"
+ROLLER = "kind: double-roller, ratio: 2, arm: 60, roller_radius: 8"
+HALF = np.arange(0.0, 181.0, 2.0)
+RISE = programme([Move(rad(120), named("modified-sine"), by=20.0), Dwell(rad(60))], math.pi, around=-1)
+
+
+def recipe(motion, folder, head=BREADTH, key="motion", units="mm"):
+    files = "export: {files: [{dxf: {tolerance: 0.01}}]}\nverify: {angles: 360}\n"
+    return load_text(f"units: {units}\ncam: {{{head}, {key}: {motion}}}\n{files}", folder / "case.yaml")
+
+
+def lift(made, degrees, order=0):
+    intent = made.cam.intent()
+    found = intent.derivatives(np.radians(degrees), order)
+    found[0] -= intent.datum
+    return found
+
+
+def written(folder, angles, values, form="{:g},{:.3f}", *, head=""):
+    rows = [form.format(a, s) for a, s in zip(angles, values, strict=True)]
+    (folder / "lift.csv").write_text("\n".join([*([head] if head else []), *rows, ""]), encoding="utf-8")
+    return rows
+
+
+def sampled(degrees):
+    return RISE.derivatives(np.radians(degrees), 0)[0]
+
+
+def fault(motion, folder, **of):
+    """The one error of reading or making a motion."""
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.check(recipe(motion, folder, **of))
+    (error,) = caught.value.errors
+    return error
+
+
+# --- each source ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [
+        "{formula: 10*(1 - cos(t))}",
+        "{table: lift.csv}",
+        "{points: [[0, 0], [30, 2], [60, 6], [90, 10], [120, 12], [180, 12]]}",
+        "{lobe: {lift: 3, half: 68, powers: [2, 8, 14, 20, 26]}}",
+    ],
+)
+def test_a_plate_of_any_source_is_exported_and_passes(motion, tmp_path):
+    written(tmp_path, HALF, sampled(HALF))
+    made = recipe(motion, tmp_path)
+    assert pickle.loads(pickle.dumps(made)) == made
+    assert hash(made.cam) == hash(recipe(motion, tmp_path).cam)
+    (tmp_path / "lift.csv").unlink()  # the recipe is complete
+    outcome = pipeline.check(made)
+    assert outcome.ok
+    theta = np.arange(0.0, 180.0, 7.0)
+    first, second = lift(made, theta)[0], lift(made, theta + 180)[0]
+    stroke = lift(made, np.array([180.0]))[0, 0]
+    assert second == pytest.approx(stroke - first, abs=1e-12)  # Shu and Wu eq. 2
+    assert lift(made, np.array([0.0]))[0, 0] == pytest.approx(0, abs=1e-12)
+
+
+def test_a_formula_is_in_radians_and_in_the_recipe_s_unit(tmp_path):
+    made = recipe("{formula: 0.2*(1 - cos(t))}", tmp_path, "kind: constant-breadth, base_radius: 1.5", units="inch")
+    theta = np.arange(0.0, 180.0, 15.0)
+    assert lift(made, theta)[0] == pytest.approx(5.08 * (1 - np.cos(np.radians(theta))), abs=1e-13)
+    swing = recipe("{formula: 3*sin(2*t)**3}", tmp_path, ROLLER, "law").cam.intent()
+    assert np.degrees(swing.psi_of_shaft(rad(30), 0)[0]) == pytest.approx([3 * math.sin(rad(60)) ** 3], abs=1e-12)
+
+
+def test_points_are_met_and_equal_neighbours_rest(tmp_path):
+    made = recipe("{points: [[0, 0], [20, 0], [40, 0], [70, 4], [100, 9], [130, 12], [180, 12]]}", tmp_path)
+    assert lift(made, np.array([0.0, 31.0, 40.0, 70.0, 100.0, 130.0, 155.0]))[0] == pytest.approx(
+        [0, 0, 0, 4, 9, 12, 12], abs=1e-12
+    )
+    rests = made.cam.motion.motion(math.pi, "motion", -1).rests
+    assert [(round(math.degrees(r.begin), 9), round(math.degrees(r.end), 9)) for r in rests] == [(0, 40), (130, 180)]
+
+
+def test_points_of_a_whole_turn_rest_over_its_end():
+    asked = read_motion("{points: [[0, 5], [40, 5], [90, 9], [200, 8], [300, 5], [360, 5]]}")
+    made = asked.motion(2 * math.pi, "motion", 1)
+    ((begin, end, level),) = made.rests
+    assert np.degrees([begin, end]) == pytest.approx([300, 400], abs=1e-9)
+    assert level == pytest.approx(0, abs=1e-3)  # the spline's least is a little lower, beside it
+    assert made.range[0] == pytest.approx(0, abs=1e-12)
+    assert made.derivatives(np.radians([90.0, 200.0]), 0)[0] == pytest.approx([4 + level, 3 + level], abs=1e-12)
+    still = read_motion("{points: [[0, 5], [40, 5]]}").motion(2 * math.pi, "motion", 1)
+    assert still.range == (0, 0)
+
+
+def test_a_lobe_stands_in_the_middle_of_a_part_of_a_turn_and_at_0_of_a_whole_one(tmp_path):
+    text = "{lobe: {lift: 3, half: 60, powers: [2, 8, 14, 20, 26]}}"
+    plain = lobe(3.0, rad(60), (2, 8, 14, 20, 26))
+    off = np.array([0.0, 10.0, 35.0, 59.0, 75.0])
+    expected = plain.derivatives(np.radians(off), 0)[0]
+    made = recipe(text, tmp_path)
+    assert lift(made, 90 + off)[0] == pytest.approx(expected, abs=1e-13)
+    assert lift(made, 90 - off)[0] == pytest.approx(expected, abs=1e-13)
+    whole = read_motion(text).motion(2 * math.pi, "motion", 1)
+    assert whole.derivatives(np.radians(off), 0)[0] == pytest.approx(expected, abs=1e-13)
+
+
+# --- whole turns ------------------------------------------------------------------------------------------------------
+
+
+def reader_of(text):
+    source = read_source(f"motion: {text}\n".encode(), "case.yaml")
+    reader = Reader(source, READERS, RECIPE)
+    reader.survey(source.root, "")
+    return reader, entries(source.root)["motion"]
+
+
+def read_motion(text):
+    reader, node = reader_of(text)
+    asked = reader.field(motion_field("motion", Kind.LENGTH, "a turn", whole_turn=True), node, "motion")
+    if asked is not None:
+        check_whole_turn(asked, "motion", reader)
+    if reader.errors:
+        raise RecipeErrors(reader.errors)
+    return asked
+
+
+def test_segments_that_repeat_are_made_once_and_stand_on_their_least():
+    asked = read_motion(
+        "{repeat: 3, segments: [{return: 4, over: 50, law: cycloidal}, {rise: 4, over: 70, law: cubic}]}"
+    )
+    assert isinstance(asked, SegmentsAsked)
+    made = asked.motion(2 * math.pi, "motion", 1)
+    assert (asked.repeats, made.total) == (3, 2 * math.pi / 3)
+    assert made.range == pytest.approx((0, 4), abs=1e-12)
+    assert made.periodic().period == made.total
+
+
+def test_a_formula_of_a_whole_turn_stands_on_its_least():
+    made = FormulaAsked("7 - 12*cos(t)", 1.0).motion(2 * math.pi, "motion", 1)
+    assert made.derivatives(np.array([0.0, math.pi]), 0)[0] == pytest.approx([0, 24], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "{repeat: 3, segments: [{rise: 4, over: 50, law: cycloidal}]}",
+            (
+                "motion: the segments do not fill their angle, given 50 degrees; let them cover 360/3 degrees; "
+                "an angle may be a fraction such as 180/7"
+            ),
+        ),
+        ("{segments: [{dwell: 360}]}", "motion.repeat: missing beside segments; give a whole number from 1 to 100"),
+        ("{repeat: 2, formula: cos(t)}", "motion.repeat: cannot stand beside formula; leave it out"),
+        ("{formula: cos(t), reading: 1}", "motion.reading: cannot stand without a table; leave it out"),
+    ],
+)
+def test_keys_of_a_mapping_that_do_not_go_together(text, message):
+    with pytest.raises(RecipeErrors) as caught:
+        read_motion(text)
+    assert message in str(caught.value)
+
+
+def test_the_schema_takes_what_the_reader_takes():
+    field = motion_field("motion", Kind.LENGTH, "a turn", whole_turn=True)
+    segments, sources = field.form.schema(field)["anyOf"]
+    assert segments["items"]["properties"]["over"]["anyOf"][0]["maximum"] == 360
+    assert sources == table_schema(field.form.instead)
+    assert [one["required"] for one in sources["oneOf"]] == [
+        ["segments", "repeat"],
+        ["formula"],
+        ["table"],
+        ["points"],
+        ["lobe"],
+    ]
+    part = motion_field("law", Kind.ANGLE, "a part of a turn")
+    assert set(table_schema(part.form.instead)["properties"]) == {
+        *("formula", "table", "angle", "reading", "points", "lobe"),
+    }
+
+
+def test_a_number_of_a_source_can_be_varied_by_its_path():
+    kinds = {"cam": "constant-breadth"}
+    for path in ("cam.motion.lobe.lift", "cam.motion[0].rise", "cam.motion.reading"):
+        assert field_at(RECIPE, path, kinds) is not None
+    assert field_at(RECIPE, "cam.motion.lobe.drop", kinds) is None
+
+
+# --- tables -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("form", "head"),
+    [
+        ("{:g},{:.3f}", ""),
+        ("{:g}; {:.3f}", "angle; lift"),
+        ("{:g}\t{:.3f}", "# read off\nangle\tlift"),
+    ],
+)
+@pytest.mark.parametrize("comma", [False, True])
+def test_a_table_says_the_same_in_every_way_of_writing(form, head, comma, tmp_path):
+    if comma and "," in form:
+        form = "{:g} {:.3f}"
+    rows = written(tmp_path, HALF, sampled(HALF), form, head=head)
+    if comma:
+        text = "\n".join([head, *(row.replace(".", ",") for row in rows)])
+        (tmp_path / "lift.csv").write_text(text, encoding="utf-8")
+    asked = recipe("{table: lift.csv}", tmp_path).cam.motion
+    assert isinstance(asked, TableAsked)
+    assert asked.rows.s == tuple(np.round(sampled(HALF), 3).tolist())
+    assert asked.reading == pytest.approx(0.001)
+
+
+def test_crank_degrees_and_inches_of_a_table(tmp_path):
+    written(tmp_path, HALF, sampled(HALF))
+    plain = recipe("{table: lift.csv, reading: 0.001}", tmp_path)
+    written(tmp_path, 2 * HALF, np.round(sampled(HALF), 3) / 25.4, "{:g};{:.12f}")
+    other = recipe("{table: lift.csv, angle: crank, units: inch, reading: 0.001}", tmp_path)
+    theta = np.arange(0.0, 360.0, 3.0)
+    assert lift(other, theta)[0] == pytest.approx(lift(plain, theta)[0], abs=1e-6)
+
+
+def test_a_dwell_of_a_table_is_one_exactly(tmp_path):
+    written(tmp_path, HALF, sampled(HALF))
+    rows = lift(recipe("{table: lift.csv}", tmp_path), np.array([125.0, 150.0, 179.0]), 2)
+    assert rows[1].tolist() == rows[2].tolist() == [0, 0, 0]
+    assert rows[0] == pytest.approx([20, 20, 20], abs=1e-3)
+
+
+@settings(max_examples=examples(40), deadline=None)
+@given(
+    law=st.sampled_from(["cycloidal", "modified-sine", "polynomial-345", "modified-trapezoid"]),
+    stroke=st.floats(0.5, 30),
+    over=st.integers(80, 150),
+    places=st.integers(2, 4),
+)
+def test_a_table_of_a_law_comes_back_within_its_reading(law, stroke, over, places, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("table")
+    true = programme([Move(rad(over), named(law), by=stroke), Dwell(rad(180 - over))], math.pi, around=-1)
+    angles = np.arange(0.0, 181.0)
+    values = true.derivatives(np.radians(angles), 0)[0]
+    written(folder, angles, values, f"{{:g}};{{:.{places}f}}")
+    reading = 10.0**-places
+    made = recipe(f"{{table: lift.csv, reading: {reading}}}", folder)
+    assert np.abs(lift(made, angles)[0] - np.round(values, places)).max() <= reading * (1 + 1e-6)
+    between = angles[:-1] + 0.5
+    off = np.abs(lift(made, between)[0] - true.derivatives(np.radians(between), 0)[0])
+    assert off.max() <= 3 * reading
+
+
+def test_a_hundred_thousand_rows(tmp_path):
+    angles = np.linspace(0, 180, 100_000)
+    written(tmp_path, angles, 10 * (1 - np.cos(np.radians(angles))), "{:.6f},{:.4f}")
+    made = recipe("{table: lift.csv, reading: 0.0002}", tmp_path)
+    assert len(made.cam.motion.rows.s) == 100_000
+    theta = np.arange(0.0, 180.0, 3.7)
+    assert lift(made, theta)[0] == pytest.approx(10 * (1 - np.cos(np.radians(theta))), abs=3e-4)
+
+
+def without_row(rows):
+    return rows[:20] + rows[21:], r"lift\.csv, line 21: rows are missing between 38 and 42 degrees"
+
+
+def with_noise(rows):
+    noisy = [f"{2 * i},{float(row.split(',')[1]) + 0.05 * (i % 2):.3f}" for i, row in enumerate(rows)]
+    return [*noisy[:60], *rows[60:]], r"lift\.csv, line \d+: the rows scatter about any smooth curve"
+
+
+def with_step(rows):
+    return rows[:30] + [f"{2 * i},{float(rows[i].split(',')[1]) + 1:.3f}" for i in range(30, 91)], (
+        r"lift\.csv, line 31: the displacement steps from 9\.414 to 11 here"
+    )
+
+
+def with_word(rows):
+    return [*rows[:9], "17,none", *rows[10:]], r"lift\.csv, line 10: '17,none' is no row parted by commas"
+
+
+def with_angle_twice(rows):
+    return [*rows[:9], rows[8], *rows[9:]], r"lift\.csv, line 10: the angles must rise; 16 stands twice"
+
+
+def with_slip(rows):
+    return [*rows[:30], f"60,{float(rows[30].split(',')[1]) + 0.2:.3f}", *rows[31:]], (
+        r"lift\.csv, line 31: the row does not lie on a smooth curve with its neighbours"
+    )
+
+
+def begun_above(rows):
+    return [f"{2 * i},{float(row.split(',')[1]) + 3:.3f}" for i, row in enumerate(rows)], (
+        r"lift\.csv, line 1: the motion begins at 3; S\(0\) must be 0: make every displacement 3 less"
+    )
+
+
+@pytest.mark.parametrize(
+    "harm", [without_row, with_noise, with_step, with_word, with_angle_twice, with_slip, begun_above]
+)
+def test_a_table_that_is_none_is_refused_with_its_line(harm, tmp_path):
+    rows, message = harm(written(tmp_path, HALF, sampled(HALF)))
+    (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
+    error = fault("{table: lift.csv, reading: 0.001}", tmp_path)
+    assert (error.line, error.path) == (2, "cam.motion.table")
+    assert re.search(message, str(error)), str(error)
+
+
+def test_a_reading_that_the_rows_keep_mends_scatter(tmp_path):
+    rows, _ = with_noise(written(tmp_path, HALF, sampled(HALF)))
+    (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
+    assert "give a reading error above that" in str(fault("{table: lift.csv, reading: 0.001}", tmp_path))
+    recipe("{table: lift.csv, reading: 0.06}", tmp_path).cam.intent()
+
+
+def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "bytes.csv").write_bytes(b"0,0\n\x00\x01")
+    (tmp_path / "empty.csv").write_text("\n# nothing\n")
+    found = {name: str(fault(f"{{table: {name}}}", tmp_path)) for name in ("none.csv", ".", "pipe", "bytes.csv")}
+    where = f"{tmp_path}/case.yaml:2:64: cam.motion.table: "
+    looked = "give its path as seen from the recipe's folder"
+    assert found == {
+        "none.csv": f"{where}there is no such file, given 'none.csv'; {looked}",
+        ".": f"{where}cannot be read: Is a directory, given '.'; {looked}",
+        "pipe": f"{where}a pipe or a device, not a file, given 'pipe'; save the table as a file",
+        "bytes.csv": f"{where}not a text, given 'bytes.csv'; save the table as CSV",
+    }
+    assert "empty.csv, the table is empty" in str(fault("{table: empty.csv}", tmp_path))
+    (tmp_path / "none.csv").write_text("\n".join(written(tmp_path, HALF, sampled(HALF))))
+    recipe("{table: none.csv}", tmp_path).cam.intent()
+
+
+# --- what is refused, with a remedy that does -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("motion", "path", "message", "mended"),
+    [
+        (
+            "{formula: 10*(2 - cos(t))}",
+            "cam.motion.formula",
+            "the motion begins at 10; S(0) must be 0: make every displacement 10 less",
+            "{formula: 10*(2 - cos(t)) - 10}",
+        ),
+        (
+            "{points: [[0, -1], [60, 3], [120, 7], [180, 9]]}",
+            "cam.motion.points[0]",
+            "the motion begins at -1; S(0) must be 0: make every displacement 1 more",
+            "{points: [[0, 0], [60, 4], [120, 8], [180, 10]]}",
+        ),
+        (
+            "{points: [[0, 0], [60, 3], [120, 7], [170, 9]]}",
+            "cam.motion.points",
+            "the angles must reach from 0 to 180 degrees, these from 0 to 170",
+            "{points: [[0, 0], [60, 3], [120, 7], [180, 9]]}",
+        ),
+        (
+            "{lobe: {lift: 3, half: 95, powers: [2, 8, 14, 20, 26]}}",
+            "cam.motion.lobe.half",
+            "half the event lies between 0 and 90 degrees, not 95",
+            "{lobe: {lift: 3, half: 80, powers: [2, 8, 14, 20, 26]}}",
+        ),
+        (
+            "{formula: 5*sin(t/2)}",
+            "cam.motion",
+            "the motion does not join over the half turn",
+            "{formula: 5*sin(t/2)**2}",
+        ),
+        (
+            "{formula: abs(t - 1) - 1}",
+            "cam.motion",
+            "p' jumps from -1 to 1 mm/rad at 57.2958 degrees",
+            "{formula: t - sin(2*t)/2}",
+        ),
+        (
+            "7",
+            "cam.motion",
+            "not a list, given 7; give a list of segments",
+            "[{rise: 9, over: 120, law: cubic}, {dwell: 60}]",
+        ),
+    ],
+)
+def test_what_no_plate_can_do_is_refused_at_its_field(motion, path, message, mended, tmp_path):
+    error = fault(motion, tmp_path)
+    assert error.path == path
+    assert message in str(error)
+    recipe(mended, tmp_path).cam.intent()
+
+
+@pytest.mark.parametrize("stroke", [1e-7, 1e-3, 2.0])
+def test_a_rise_over_a_hundredth_of_a_degree_is_exact_or_fails_its_check(stroke, tmp_path):
+    form = f"{stroke}*max(0, min(1, (t - 1)/{math.radians(0.01)!r}))"
+    assert "p' jumps" in str(fault(f"{{formula: '{form}'}}", tmp_path))  # a ramp alone would tear the contour
+    made = recipe(f"[{{dwell: 100}}, {{rise: {stroke:.9f}, over: 0.01, law: cycloidal}}, {{dwell: 79.99}}]", tmp_path)
+    middle = lift(made, np.array([100.005]), 1)
+    assert middle[:, 0] == pytest.approx([stroke / 2, 2 * stroke / rad(0.01)], rel=1e-9)
+    outcome = pipeline.check(made)
+    failed = {check["name"] for check in outcome.report["checks"] if not check["ok"]}
+    assert failed == (set() if stroke == 1e-7 else {"radius-of-curvature", "undercut-local"})
+
+
+def test_kin_s_own_error_keeps_its_angle(tmp_path):
+    with pytest.raises(IntentError) as caught:
+        recipe("{formula: 5*sin(t/2)}", tmp_path).cam.intent()
+    assert caught.value.at_deg == 180
+
+
+def test_a_sweep_reads_the_table_and_its_best_design_finds_it_from_its_own_folder(tmp_path, monkeypatch, capsys):
+    written(tmp_path, HALF, sampled(HALF))
+    vary = "{cam.base_radius: {from: 38, to: 44, steps: 3}, cam.motion.reading: [0.001, 0.002]}"
+    (tmp_path / "case.yaml").write_text(
+        f"cam: {{{BREADTH}, motion: {{table: lift.csv, reading: 0.001}}}}\nexport: {{files: [csv]}}\n"
+        f"sweep: {{vary: {vary}, rank: radius-of-curvature, keep: 1}}\n"
+    )
+    assert main(["sweep", str(tmp_path / "case.yaml"), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    (best,) = (tmp_path / "out").rglob("best-1.yaml")
+    monkeypatch.chdir("/")
+    assert main(["check", str(best)]) == 0
+    assert "base_radius: 44" in best.read_text()
+    capsys.readouterr()
