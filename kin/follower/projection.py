@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 COARSE = 4096  # samples of one turn from which a search starts
 WITHIN = 16  # samples of a stretch between two breaks, at least
 FINE_STEP = 1e-5  # rad: a Newton step below this leaves the value good to a third power of it
-SHARE_OF_STRETCH, FINEST_STEP = 1e-3, 1e-8  # of the shortest stretch, and rad
+SHARE_OF_STRETCH, FINEST_STEP = 1e-5, 1e-11  # of the shortest stretch, and rad
 MOST_STEPS = 60
 LONGEST_STEP = 0.2  # rad
 CORNER_REACH = 8.0  # depths of a point: farther from a tight corner than this, it has one foot only

@@ -75,7 +75,7 @@ def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
     points, bulges = arcs_through(follower.envelope.inset(depth).points(DENSE))
     sound = arcs_through(follower.envelope.points(DENSE))
     path = tmp_path / "cam.dxf"
-    assert failures(drawn(path, *sound, follower), intent(follower)) == set()
+    assert failures(drawn(path, sound[0], sound[1], follower), intent(follower)) == set()
     assert failures(drawn(path, points, bulges, follower), intent(follower)) >= {"contour", "motion"}
 
 
