@@ -18,7 +18,7 @@ from support.disc_followers import (
     on_stem,
     on_swinging_face,
 )
-from support.discs import DEGREE, M01, M02, M03, M07, M08, TURN
+from support.discs import DEGREE, M01, M02, M03, M07, M08, TURN, displaced
 from support.stepfiles import washer
 
 from camgeo.curve.curve import Curve
@@ -102,7 +102,18 @@ def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
     assert failures(drawn(path, points, bulges, follower), intent(follower)) >= {"contour", "motion"}
 
 
+# motions of the shaft read as those of a crank that turns twice as fast
+M01_TWICE = displaced(*(2 * [(20, 60, "cycloidal"), (30,), (-20, 60, "polynomial-345"), (30,)]))
+M03_TWICE = displaced(*(2 * [(12, 50, "cycloidal"), (20,), (-12, 50, "modified-trapezoid"), (60,)]))
+M07_TWICE = displaced(*(2 * [(20, 55, "modified-sine"), (25,), (-20, 60, "cycloidal"), (40,)]), scale=DEGREE)
+M08_TWICE = displaced(*(2 * [(10, 60, "cycloidal"), (20,), (-10, 60, "polynomial-345"), (40,)]), scale=DEGREE)
+
 MISTAKEN = {
+    "cam for crank degrees, roller": ("roller", on_stem(M01_TWICE, 50.0, 0.0, 10.0)),
+    "cam for crank degrees, ring": ("ring", on_stem(M01_TWICE, 50.0, 0.0, 10.0, internal=True)),
+    "cam for crank degrees, tilted": ("flat, tilted", on_face(M03_TWICE, 32.0, 8 * DEGREE)),
+    "cam for crank degrees, arm": ("trailing arm", on_arm(M07_TWICE, Oscillating.on(42.0, 80.0, 65.0, 1), 8.0)),
+    "cam for crank degrees, face": ("trailing face", on_swinging_face(M08_TWICE, 36.0, 90.0, 10.0, 1)),
     "offset on the other side": ("roller, offset", on_stem(M02, 45.0, -10.0, 9.0)),
     "offset on the other side, against": ("roller, offset against", on_stem(M02, 45.0, 10.0, 9.0)),
     "in line for offset": ("roller, offset", on_stem(M02, 45.0, 0.0, 9.0)),
