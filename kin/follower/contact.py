@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 STRAIGHT_ON = 1e-12  # corners that turn less, in radians, get no arc of their own
 MOST_TURN = np.pi / 8.0  # pieces are cut until each turns less
+WIDER = 1e3  # of the slack, where nothing is met with it
 PAIRS_AT_ONCE = 1_000_000  # bounds the memory that a hostile contour can ask for
 
 
@@ -68,14 +69,15 @@ def extent(pieces: Arcs) -> float:
     return float(np.abs(pieces.start).max())
 
 
-def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indices]:
+def first_contact(obstacle: Arcs, guide: Guide, phi: Array, share: float = 1.0) -> tuple[Array, Indices]:
     """Find where the roller's centre, coming from outside, meets the obstacle: distance from the shaft, and piece met.
 
     From within if the guide counts inwards. `obstacle` is the dilated contour, `phi` (n,) shaft angles. Returns r (n,)
     in mm and the index of the piece (n,): nan and -1 where nothing is met. Cost: one sort of phi, and the pairs of
-    piece and angle that can meet.
+    piece and angle that can meet. Where nothing is met, as by rounding at the joints of walls along the centre's own
+    path, the slack, `share` of the guide's own, is widened.
     """
-    slack = guide.slack(extent(obstacle))
+    slack = share * guide.slack(extent(obstacle))
     pieces, owner = shortened(obstacle, guide)
     within = within_reach(pieces, guide, slack)
     pieces, owner = pieces.take(within), owner[within]
@@ -106,6 +108,9 @@ def first_contact(obstacle: Arcs, guide: Guide, phi: Array) -> tuple[Array, Indi
     touched = met >= 0
     radius[order[touched]] = guide.away * best[touched]
     piece_met[order[touched]] = owner[met[touched]]
+    missed = np.flatnonzero(piece_met < 0)
+    if share < WIDER and len(missed):
+        radius[missed], piece_met[missed] = first_contact(obstacle, guide, phi[missed], WIDER)
     return radius, piece_met
 
 
@@ -125,9 +130,13 @@ def angles_of(pieces: Arcs, guide: Guide, slack: float) -> tuple[Array, Array]:
     r = np.hypot(middle[:, 0], middle[:, 1])
     half = 0.5 * pieces.length + slack
     least, most = np.maximum(r - half, slack), r + half
+    lead = guide.lead(r)
     with np.errstate(over="ignore"):
         reach = half * np.hypot(1.0 / least, guide.lead_slope(least, most))
-    angle = np.arctan2(middle[:, 1], middle[:, 0]) - guide.lead(r)
+        # at an end of the travel the lead is infinitely steep, and yet changes by no more than between its extremes
+        ends = [guide.lead(x) - lead for x in (least, most, np.clip(guide.turning, least, most))]
+        reach = np.fmin(reach, half / least + np.abs(ends).max(axis=0))
+    angle = np.arctan2(middle[:, 1], middle[:, 0]) - lead
     return angle, np.fmin(reach, np.pi)
 
 

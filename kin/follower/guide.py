@@ -72,6 +72,10 @@ class Guide(Protocol):
     def lead_slope(self, least: Array, most: Array) -> Array:
         """Greatest change of the lead with r, rad/mm, for r between least and most (n,); infinite beyond the reach."""
 
+    @property
+    def turning(self) -> float:
+        """Distance of the centre from the shaft, mm, on either side of which the lead rises or falls all the way."""
+
     def position(self, r: Array) -> Array:
         """Position at distance r (n,) of the centre from the shaft, mm or radians; beyond the reach its end."""
 
@@ -173,13 +177,18 @@ class Arm:
         def w(x: Array) -> Array:
             return (x * x + excess) / (2.0 * x * self.pivot)
 
-        turning = np.sqrt(max(excess, 0.0))  # where w is least, if at all
+        turning = self.turning
         sine = np.sqrt(np.maximum(1.0 - np.maximum(np.abs(w(least)), np.abs(w(most))) ** 2, 0.0))
         slope = np.maximum(np.abs(1.0 - excess / least**2), np.abs(1.0 - excess / most**2)) / (2.0 * self.pivot)
         slope = np.where((least < turning) & (turning < most), np.maximum(slope, 1.0 / (2.0 * self.pivot)), slope)
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             steepest: Array = slope / sine
         return steepest
+
+    @property
+    def turning(self) -> float:
+        """Where the cosine of the lead is least, if at all."""
+        return float(np.sqrt(max(self.pivot**2 - self.length**2, 0.0)))
 
     def position(self, r: Array) -> Array:
         """Angle at the pivot between shaft and roller centre, from the centre's distance r (n,) from the shaft.
@@ -329,6 +338,11 @@ class Translating:
         with np.errstate(divide="ignore", invalid="ignore"):
             steepest: Array = np.where(least > e, e / (least * np.sqrt(least**2 - e**2)), np.inf)
         return steepest
+
+    @property
+    def turning(self) -> float:
+        """The lead falls all the way."""
+        return 0.0
 
     def position(self, r: Array) -> Array:
         """Distance along the line of travel, from the centre's distance r (n,) from the shaft."""

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array, Indices
 
 COARSE = 4096  # samples of one turn from which a search starts
+WITHIN = 16  # samples of a stretch between two breaks, at least
 FINE_STEP = 1e-5  # rad: a Newton step below this leaves the value good to a third power of it
+SHARE_OF_STRETCH, FINEST_STEP = 1e-5, 1e-11  # of the shortest stretch, and rad
 MOST_STEPS = 60
 LONGEST_STEP = 0.2  # rad
 CORNER_REACH = 8.0  # depths of a point: farther from a tight corner than this, it has one foot only
@@ -48,8 +50,12 @@ class Feet:
 
 
 def grid(breaks: Array, count: int = COARSE) -> Array:
-    """`count` equal steps of [0, 2 pi) and the breaks, rising and distinct."""
-    return distinct(np.concatenate([np.arange(count) * (TURN / count), np.mod(breaks, TURN)]))
+    """`count` equal steps of [0, 2 pi), the breaks, and `WITHIN` parts of short stretches between, rising, distinct."""
+    ends = np.sort(np.mod(breaks, TURN))
+    width = np.diff(ends, append=ends[:1] + TURN)
+    short = width < WITHIN * TURN / count
+    parts = ends[short, None] + width[short, None] * (np.arange(1, WITHIN) / WITHIN)
+    return distinct(np.concatenate([np.arange(count) * (TURN / count), ends, np.mod(parts.ravel(), TURN)]))
 
 
 def climb(
@@ -59,13 +65,17 @@ def climb(
 
     `slopes(x, which)` gives f, f' and -f''; `breaks`, in [0, 2 pi), are where f'' jumps. Returns x, the step that
     remains (below FINE_STEP and across no break, unless the bracket closed first), and f, f', -f'' at x: (n,) each.
+    Where stretches between breaks are short, the step is small beside the shortest, too.
     """
     x = x.copy()
+    ends = distinct(breaks)
+    shortest = float(np.diff(ends, append=ends[:1] + TURN).min(initial=TURN))
+    fine = min(FINE_STEP, max(SHARE_OF_STRETCH * shortest, FINEST_STEP))
     f, slope, bend = slopes(x, np.arange(len(x)))
     step = _newton(slope, bend)
 
     def far(at: Array, by: Array) -> NDArray[np.bool_]:
-        large: NDArray[np.bool_] = np.abs(by) > FINE_STEP
+        large: NDArray[np.bool_] = np.abs(by) > fine
         return large | ((by != 0.0) & across(breaks, at, by)) if len(breaks) else large
 
     todo = np.flatnonzero(far(x, step))

@@ -5,8 +5,15 @@ import pytest
 import shapely
 from support.camfiles import arcs_through
 from support.cases import few
-from support.disc_followers import FOLLOWERS, contour
+from support.disc_followers import FOLLOWERS, contour, fitted, on_arm, on_stem
+from support.discs import M02, M07, M15, displaced
 
+from camgeo.curve.backwards import least_hollow
+from camgeo.curve.curvature import least_radius
+from camgeo.curve.curve import Curve
+from camgeo.curve.moving_frame import CentreShape, Oscillating
+from camgeo.curve.moving_frame import Translating as Stem
+from camgeo.curve.parallel import Parallel
 from kin.contour.contour import Contour
 from kin.follower.deviation import deviation
 from kin.follower.follower import ContactError, Roller, SwingingFace, TiltedFace
@@ -233,3 +240,64 @@ def test_what_drives_a_train_is_the_contact_and_its_derivatives(name):
     for k in range(2):
         slope = (drive.rows(far + step)[k] - drive.rows(far - step)[k]) / (2.0 * step)
         assert slope == pytest.approx(rows[k + 1], rel=1e-5, abs=1e-6 * np.abs(rows[k + 1]).max())
+
+
+# --- at the edge ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("offset", [43.0, -44.0, 44.9])
+def test_an_eccentricity_near_the_prime_radius_is_proved(offset):
+    made = fitted(Parallel(CentreShape(M02, Stem.on(45.0, offset)), 9.0), 1e-5)
+    proved(on_stem(M02, 45.0, offset, 9.0), made, 1e-5)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("prime", [17.0, 15.2])
+def test_an_arm_that_comes_near_to_pointing_at_the_shaft_is_proved(prime, side):
+    sized = Oscillating.on(prime, 80.0, 65.0, side)
+    assert np.degrees(sized.rest) < 7.0
+    proved(on_arm(M07, sized, 3.0), fitted(Parallel(CentreShape(M07, sized), 3.0), 1e-5), 1e-5)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_pivot_inside_the_disc_and_an_arm_stretched_out(side):
+    inside = Oscillating.on(42.0, 30.0, 65.0, side)
+    proved(on_arm(M07, inside, 8.0), fitted(Parallel(CentreShape(M07, inside), 8.0), 1e-5), 1e-5)
+    stretched = Oscillating(80.0, 65.0, np.radians(158.9), side)
+    proved(on_arm(M07, stretched, 3.0), fitted(Parallel(CentreShape(M07, stretched), 3.0), 1e-5), 1e-5)
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-9])
+def test_a_roller_a_hair_above_undercut(gap):
+    shape = CentreShape(M15, Stem.on(26.0))
+    radius = least_radius(Curve.whole(shape))[0] - gap
+    proved(on_stem(M15, 26.0, 0.0, radius), fitted(Parallel(shape, radius), 1e-5), 1e-5)
+    hollow = displaced((20, 40, "cycloidal"), (10,), (-20, 40, "cycloidal"), (270,))
+    shape = CentreShape(hollow, Stem.on(50.0))
+    radius = least_hollow(Curve.whole(shape))[0] - gap
+    ring = on_stem(hollow, 50.0, 0.0, radius, internal=True)
+    proved(ring, fitted(Parallel(shape, -radius), 1e-5), 1e-5)
+
+
+def proved(follower, made, tolerance):
+    motion = follower.judge(made, PHI).motion
+    assert motion.extremes == "true"
+    assert motion.bound <= follower.motion_limit(tolerance) * (1.0 + 1e-3)
+    assert deviation(made.as_arcs()[0], follower.envelope).worst[0] <= tolerance
+
+
+@pytest.mark.parametrize("width", [1.0, 0.1, 0.01])
+def test_a_rise_of_a_hundredth_of_a_degree_is_measured_as_any_other(width):
+    """A wall almost along the line of travel: contact is found everywhere, limit and deviation are still right."""
+    steep = displaced((20, width, "cycloidal"), (10,), (-20, width, "cycloidal"), (350 - 2 * width,))
+    shape = CentreShape(steep, Stem.on(30.0))
+    follower, made = on_stem(steep, 30.0, 0.0, 0.0), fitted(shape, 1e-5)
+    u = TURN * np.linspace(0.0, 1.0, 10_001)
+    slope = 20.0 / np.radians(width) * (1.0 - np.cos(u)) / (30.0 + 20.0 / TURN * (u - np.sin(u)))
+    assert follower.motion_limit(1e-9) == pytest.approx(1e-9 * np.hypot(1.0, slope).max(), rel=2e-3)
+    assert follower.judge(made, PHI).motion.max < 1.01 * follower.motion_limit(1e-5)
+    found = deviation(made.as_arcs()[0], follower.envelope)
+    dense = np.radians(width * np.linspace(0.0, 1.0, 20_001))
+    apart = np.abs(made.distance(shape.sample(dense).point)).max()
+    assert apart <= found.worst[0] * (1.0 + 1e-6)
+    assert found.worst[0] <= 1e-5

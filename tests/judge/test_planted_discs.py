@@ -3,10 +3,13 @@
 The sound files are fits of curves that know nothing of the judge. A ring is drawn as its opening in a circle.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.camfiles import arcs_through, solid_triangles, write_dxf, write_stl
 from support.disc_followers import (
+    CURVES,
     FOLLOWERS,
     TRAILING,
     chain,
@@ -15,11 +18,20 @@ from support.disc_followers import (
     on_stem,
     on_swinging_face,
 )
-from support.discs import DEGREE, M01, M02, M03, M07, M08, TURN
+from support.discs import DEGREE, M01, M02, M03, M07, M08, TURN, displaced
+from support.stepfiles import washer
 
+from camgeo.curve.curve import Curve
 from camgeo.curve.moving_frame import Oscillating
+from camgeo.files.dxf import write_dxf as drawn_spline
+from camgeo.fit.spline import fit_spline
 from kin.follower.follower import Roller
+from kin.follower.guide import Translating
+from kin.judge.holes import round_hole
+from kin.judge.milling import Milling
 from kin.judge.verify import Intent, Limits, verify
+from kin.law.piecewise import Piecewise
+from kin.law.segment import Constant
 
 OUTER = 200.0
 LIMITS = Limits(tolerance=1e-4)
@@ -56,6 +68,17 @@ def test_a_sound_file_passes(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", FOLLOWERS)
+def test_a_spline_under_every_follower(tmp_path, name):
+    follower, path = FOLLOWERS[name], tmp_path / "cam.dxf"
+    asked = intent(follower)
+    drawn_spline(path, fit_spline(Curve.whole(CURVES[name]), 1e-5), bore=asked.outer)
+    verdict = verify(path, asked, 180, LIMITS)
+    assert verdict.ok, [check for check in verdict.checks if not check.ok]
+    assert verdict.measured_error <= 1e-5 + 1e-8  # the judge's own arcs for a spline count
+    assert verdict.motion.max <= follower.motion_limit(1e-5 + 1e-8)
+
+
+@pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
     mirrored = made.points[::-1] * np.array([1.0, -1.0])
@@ -75,11 +98,22 @@ def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
     points, bulges = arcs_through(follower.envelope.inset(depth).points(DENSE))
     sound = arcs_through(follower.envelope.points(DENSE))
     path = tmp_path / "cam.dxf"
-    assert failures(drawn(path, *sound, follower), intent(follower)) == set()
+    assert failures(drawn(path, sound[0], sound[1], follower), intent(follower)) == set()
     assert failures(drawn(path, points, bulges, follower), intent(follower)) >= {"contour", "motion"}
 
 
+# motions of the shaft read as those of a crank that turns twice as fast
+M01_TWICE = displaced(*(2 * [(20, 60, "cycloidal"), (30,), (-20, 60, "polynomial-345"), (30,)]))
+M03_TWICE = displaced(*(2 * [(12, 50, "cycloidal"), (20,), (-12, 50, "modified-trapezoid"), (60,)]))
+M07_TWICE = displaced(*(2 * [(20, 55, "modified-sine"), (25,), (-20, 60, "cycloidal"), (40,)]), scale=DEGREE)
+M08_TWICE = displaced(*(2 * [(10, 60, "cycloidal"), (20,), (-10, 60, "polynomial-345"), (40,)]), scale=DEGREE)
+
 MISTAKEN = {
+    "cam for crank degrees, roller": ("roller", on_stem(M01_TWICE, 50.0, 0.0, 10.0)),
+    "cam for crank degrees, ring": ("ring", on_stem(M01_TWICE, 50.0, 0.0, 10.0, internal=True)),
+    "cam for crank degrees, tilted": ("flat, tilted", on_face(M03_TWICE, 32.0, 8 * DEGREE)),
+    "cam for crank degrees, arm": ("trailing arm", on_arm(M07_TWICE, Oscillating.on(42.0, 80.0, 65.0, 1), 8.0)),
+    "cam for crank degrees, face": ("trailing face", on_swinging_face(M08_TWICE, 36.0, 90.0, 10.0, 1)),
     "offset on the other side": ("roller, offset", on_stem(M02, 45.0, -10.0, 9.0)),
     "offset on the other side, against": ("roller, offset against", on_stem(M02, 45.0, 10.0, 9.0)),
     "in line for offset": ("roller, offset", on_stem(M02, 45.0, 0.0, 9.0)),
@@ -136,6 +170,32 @@ def test_a_ring_of_another_size_or_without_an_opening(tmp_path):
     assert "no opening about the shaft" in only.detail
     beside = write_dxf(tmp_path / "hole.dxf", made.points, made.bulges, bores=[(0, 0, 100.0), (85.0, 0.0, 3.0)])
     assert failures(beside, intent(FOLLOWERS["ring"])) == {"bore"}
+
+
+def test_a_ring_with_bolt_holes(tmp_path):
+    made, places = chain("ring"), [(92.0, 0.0), (0.0, -92.0)]
+    holes = tuple(round_hole(f"bolt {k}", "holes", place, 6.0) for k, place in enumerate(places))
+    asked = intent(FOLLOWERS["ring"], holes=holes)
+    for drawn_at, failed in ((places, set()), (places[:1], {"holes"}), ([(92.0, 0.01), places[1]], {"holes"})):
+        bores = [(0.0, 0.0, 0.5 * OUTER), *((x, y, 3.0) for x, y in drawn_at)]
+        path = write_dxf(tmp_path / "ring.dxf", made.points, made.bulges, bores=bores)
+        assert failures(path, asked) == failed
+
+
+def test_a_ring_as_a_solid_of_faces(tmp_path):
+    """Concentric, so that the follower rests: an opening of radius 6 in a disc of radius 20."""
+    path = tmp_path / "ring.step"
+    path.write_text(washer(20.0, 6.0, 8.0))
+    still = Piecewise(np.array([0.0, TURN]), (Constant(4.0),), TURN, smooth_seam=True)
+    follower = Roller(Translating(), 2.0, still, internal=True)
+    for outer, failed in ((40.0, set()), (40.002, {"outer", "volume"})):
+        verdict = verify(path, Intent(follower, outer=outer, thickness=8.0), 30, LIMITS)
+        assert {check.name for check in verdict.checks if not check.ok} == failed
+    asked = Intent(follower, outer=40.0)
+    program = tmp_path / "ring.gcode"
+    program.write_text("G21\n")
+    (only,) = verify(program, replace(asked, milling=Milling(3.0, 8.0, 4.0)), 30, LIMITS).checks
+    assert "a program that mills a ring is not judged" in only.detail
 
 
 def test_the_side_of_an_arm_is_not_lost_in_the_ring(tmp_path):
