@@ -15,6 +15,7 @@ from camgeo.checks import remedies
 from camgeo.recipe.export import NO_CONTOUR, NO_PART, SOLIDS
 from camgeo.recipe.figures import DWELL as LONGEST_DWELL
 from camgeo.recipe.figures import FACE_LENGTH as TRAVEL
+from camgeo.recipe.figures import FACE_WIDTH as WIDTH
 from camgeo.recipe.figures import FIGURES, LEAST_WALL, PRESSURE_ANGLE, RADIUS
 from camgeo.recipe.figures import TRANSMISSION as STEEPEST
 
@@ -118,6 +119,14 @@ def _parts(scene: Scene) -> bool:
 def _dwells(scene: Scene) -> bool:
     asked = scene.recipe.dwell
     return scene.linked and asked is not None and asked.at_least is not None
+
+
+def _guided(scene: Scene) -> bool:
+    return scene.recipe.dynamics is not None and scene.recipe.dynamics.guide is not None
+
+
+def _ground(scene: Scene) -> bool:
+    return scene.recipe.manufacture is not None and scene.recipe.manufacture.wheel is not None
 
 
 def _walled(scene: Scene) -> bool:
@@ -279,6 +288,9 @@ BREADTH = Declared(
 )
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
 FACE = Declared(TRAVEL, ("mm",), _named(TRAVEL), why_not=_no_plate)
+FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width")
+JAM = Declared("guide-jam", ("deg",), _guided, field="dynamics.guide")
+WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel")
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
 DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.curve.curve import Bounds, Curve, Frame
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 FIRST = 8  # parts of a stretch, at first
@@ -102,21 +102,19 @@ def _rooted(square: Extreme, sign: float) -> Extreme:
     return Extreme(value, square.at, square.room / value if value else math.sqrt(square.room))
 
 
-def _radial(bounds: Bounds) -> tuple[Array, Array]:
+def _radial(bounds: Bounds) -> tuple[Array, Mask]:
     """Greatest rate of r^2 for each g, and whether it keeps its sign."""
     rate = 2.0 * np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high))
     return rate, (bounds.speed_low >= 0.0) | (bounds.speed_high <= 0.0)
 
 
-def _turning(bounds: Bounds) -> tuple[Array, Array]:
+def _turning(bounds: Bounds) -> tuple[Array, Mask]:
     """Greatest rate of h for each g, and whether it keeps its sign."""
     rate = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high))
     return rate, (bounds.turn_low >= 0.0) | (bounds.turn_high <= 0.0)
 
 
-def _greatest(
-    curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bounds], tuple[Array, Array]]
-) -> Extreme:
+def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bounds], tuple[Array, Mask]]) -> Extreme:
     """Greatest value of a figure whose derivative is g times its pace."""
     cells = curve.cells
     low, high, size = cells.low, cells.high, 2.0 * curve.size

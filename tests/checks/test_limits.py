@@ -398,7 +398,7 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
     p = recipe.cam.intent().derivatives(t, 3)
     peaks = np.abs(p[1:]).max(axis=1)
     wanted = [np.ptp(p[0]), *peaks, np.ptp(p[1]), (p[0] + p[2]).min(), np.hypot(p[0], p[1]).max()]
-    figures = of_design(design, design.checks, names)
+    figures = of_design(recipe, design, design.checks, names)
     for name, value in zip(names, wanted, strict=True):
         assert figures[name].value == pytest.approx(value, rel=1e-5, abs=1e-9), name
     bounds = {name: float(value) * (1 + share) + 1e-3 * share for name, value in zip(names, wanted, strict=True)}
