@@ -103,10 +103,6 @@ class DoubleRollerCam(PairCam):
         """A smaller roller."""
         return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
 
-    def rounder_pitch(self, intent: Intent, radius: float, mm: float) -> str:  # noqa: ARG002
-        """The pitch curve does not hang on the rollers."""
-        return f"a roller radius of {downward(0.5 * radius / mm)}"
-
     @property
     def least_pressure_angle(self) -> float:
         """Without a swing the normal points to the shaft; the arm is at alpha/2 to it, alpha = 180 mu/lambda."""

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.curvature import roots
+from camgeo.curve.curve import CurveError
 from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme
 
 if TYPE_CHECKING:
@@ -73,6 +74,16 @@ def _integrals(curve: Curve, low: Array, high: Array) -> Array:
     at = curve.sample(t.ravel())
     rows = np.stack([at.speed, 0.5 * at.speed * np.sum(at.point * at.normal, axis=1)])
     found: Array = (rows.reshape(2, *t.shape) @ WEIGHTS) * half
+    return found
+
+
+def touched(contour: Curve, parameter: Array) -> Mask:
+    """Whether the contour has a point of each parameter (n,), or was trimmed away there."""
+    if contour.closed:
+        return np.ones(parameter.shape, dtype=bool)
+    period = contour.shape.period
+    kept = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]
+    found: Mask = np.any(kept, axis=0)
     return found
 
 
@@ -151,11 +162,18 @@ def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bou
 # --- over the polar angle ---------------------------------------------------------------------------------------------
 
 
-def polar_radius(curve: Curve, angles: Array) -> Array:
-    """Distance from the shaft (n,) of a contour that each ray meets once (`least_support` above 0), at polar angles.
+class StarError(CurveError):
+    """A contour that is no function of its polar angle about the shaft."""
 
-    The place on each ray is a root on the exact curve.
+
+def polar_radius(curve: Curve, angles: Array) -> Array:
+    """Distance of a contour from the shaft (n,) at polar angles (n,), each a root on the exact curve.
+
+    Raises StarError unless each ray is proved to cross the contour once.
     """
+    least = least_support(curve)
+    if not least.value > least.room:
+        raise StarError("a ray from the shaft may cross the contour more than once or not at all", least.at)
     parameters, turned = _turned(curve)
     wanted = np.mod(angles - turned[0], 2.0 * np.pi) + turned[0]
     cell = np.clip(np.searchsorted(turned, wanted, side="right") - 1, 0, len(turned) - 2)

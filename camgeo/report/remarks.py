@@ -107,8 +107,8 @@ def _cutter(recipe: Recipe, design: Design) -> Remark | None:
     if radius >= made.radius:
         return None
     told = (
-        f"the contour has a hollow of radius {_length(recipe, radius)}, which a cutter of {_length(recipe, made.cutter)} "
-        f"does not reach into; a cutter of {downward(2.0 * radius / recipe.mm)} does"
+        f"the contour has a hollow of radius {_length(recipe, radius)}, which a cutter of "
+        f"{_length(recipe, made.cutter)} does not reach into; a cutter of {downward(2.0 * radius / recipe.mm)} does"
     )
     return Remark("large-cutter", radius, made.radius, "mm", told, design.position.shaft_deg(at))
 
