@@ -131,7 +131,11 @@ export: {tolerance: 0.01, files: [dxf]}
 verify: {angles: 60}
 """,
     "a roller yoke": """\
-cam: {kind: constant-diameter, base_radius: 40, roller_radius: 8, motion: [{rise: 9, over: 120, law: cycloidal}, {dwell: 60}]}
+cam:
+  kind: constant-diameter
+  base_radius: 40
+  roller_radius: 8
+  motion: [{rise: 9, over: 120, law: cycloidal}, {dwell: 60}]
 export: {tolerance: 0.01, files: [csv]}
 """,
     "a stem": """\

@@ -57,7 +57,9 @@ part: {thickness: 8, bore: {hexagon: 10}}
 export: {tolerance: 0.01, files: [{stl: {parts: all}}]}
 verify: {angles: 120}
 """
-MOVE = "motion: [{rise: 18, over: 110, law: cycloidal}, {dwell: 60}, {return: 18, over: 170, law: polynomial-345}, {dwell: 20}]"
+MOVE = (
+    "motion: [{rise: 18, over: 110, law: cycloidal}, {dwell: 60}, {return: 18, over: 170, law: cycloidal}, {dwell: 20}]"
+)
 STEM = (
     f"cam: {{kind: disc, base_radius: 36, follower: {{kind: roller, radius: 9, offset: 6}}, {MOVE}}}\n"
     + VERIFY

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 import pytest
@@ -20,6 +20,9 @@ from camgeo.report.remarks import remarks_of
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
+    from camgeo.cams.disc import RoundCam
+    from camgeo.curve.moving_frame import Displacement
+    from camgeo.recipe.recipe import Recipe
     from camgeo.report.document import Remark
     from camgeo.report.figures import Measured
     from kin.judge.check import Check
@@ -116,11 +119,11 @@ def test_d20_angle_at_which_a_guide_jams() -> None:
 # --- against samples --------------------------------------------------------------------------------------------------
 
 
-def sampled(text: str) -> tuple[Array, Array, Any]:
+def sampled(text: str) -> tuple[Array, Array, Recipe]:
     """Pressure angles and roller speeds from differences of the centre's place, at many shaft angles."""
     recipe = load_text(text, "cam.yaml")
-    cam = recipe.cam
-    law, guide = cam.intent(), cam.guide
+    cam = cast("RoundCam", recipe.cam)
+    law, guide = cast("Displacement", cam.intent()), cam.guide
     theta = np.linspace(0.0, 2.0 * math.pi, 20_001)
     step = 1e-6
     near, far = (guide.place(theta + by, law.derivatives(theta + by, 0)[0])[0] for by in (-step, step))
@@ -164,9 +167,9 @@ def test_any_follower_against_samples(kind: str, radius: float, offset: float, r
         assume(contour is not None)
         assert contour is not None
         point = contour.sample(np.linspace(contour.runs[0].low, contour.runs[0].high, 4001)).point
-        theta = np.linspace(0.0, 2.0 * math.pi, 91)
-        pivots = recipe.cam.pivot * np.column_stack([np.cos(theta), np.sin(theta)])  # type: ignore[attr-defined]
-        inside = np.hypot(*point.T).max() < recipe.cam.pivot  # type: ignore[attr-defined]
+        theta, pivot_at = np.linspace(0.0, 2.0 * math.pi, 91), 75 + offset
+        pivots = pivot_at * np.column_stack([np.cos(theta), np.sin(theta)])
+        inside = np.hypot(*point.T).max() < pivot_at
         if inside:
             away = min(float(np.hypot(*(point - pivot).T).min()) for pivot in pivots)
             assert found["pivot-clearance"].value == pytest.approx(away, abs=0.05)
@@ -261,7 +264,8 @@ def test_a_face_that_is_too_narrow_fails() -> None:
     assert "face-width" not in checks(text.replace(", width: 27.8", ""))
 
 
-HOLLOW = "[{rise: 20, over: 50, law: polynomial-4567}, {return: 20, over: 50, law: polynomial-4567}, {dwell: 130}, {dwell: 130}]"
+HOLLOW = "[{rise: 20, over: 50, law: polynomial-4567}, {return: 20, over: 50, law: polynomial-4567}, "
+HOLLOW += "{dwell: 130}, {dwell: 130}]"
 
 
 def test_wheel_and_cutter_in_a_hollow() -> None:
