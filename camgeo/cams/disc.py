@@ -345,13 +345,11 @@ def variant(node: Node) -> type[Cam]:
 
 
 def _class(kind: str, *, arm: bool) -> type[DiscCam]:
-    return _CLASSES.get(kind, (TranslatingRoundCam, OscillatingRoundCam))[arm]
+    return _ARMS.get(kind, OscillatingRoundCam) if arm else _STEMS.get(kind, TranslatingRoundCam)
 
 
-_CLASSES: dict[str, tuple[type[DiscCam], type[DiscCam]]] = {
-    "roller": (TranslatingRollerCam, OscillatingRollerCam),
-    "flat": (TranslatingFaceCam, OscillatingFaceCam),
-}
+_STEMS: dict[str, type[DiscCam]] = {"roller": TranslatingRollerCam, "flat": TranslatingFaceCam}
+_ARMS: dict[str, type[DiscCam]] = {"roller": OscillatingRollerCam, "flat": OscillatingFaceCam}
 
 
 def check(cam: Values, reader: Reader) -> None:
