@@ -141,12 +141,12 @@ def sampled(text: str) -> tuple[Array, Array, Recipe]:
 @settings(deadline=None, max_examples=examples(40))
 @given(
     st.sampled_from(["stem", "trailing", "leading", "ring"]),
-    st.floats(4, 12),
-    st.floats(-15, 15),
-    st.floats(60, 160),
-    st.floats(60, 160),
+    st.integers(4, 12),
+    st.integers(-150, 150).map(lambda tenths: tenths / 10),
+    st.integers(60, 160),
+    st.integers(60, 160),
 )
-def test_any_follower_against_samples(kind: str, radius: float, offset: float, rise: float, back: float) -> None:
+def test_any_follower_against_samples(kind: str, radius: int, offset: float, rise: int, back: int) -> None:
     stroke = 20.0 if kind in {"stem", "ring"} else 14.0
     motion = f"[{{rise: {stroke}, over: {rise!r}, law: cycloidal}}, {{dwell: {180 - rise!r}}}, "
     motion += f"{{return: {stroke}, over: {back!r}, law: polynomial-345}}, {{dwell: {180 - back!r}}}]"
@@ -362,3 +362,27 @@ def test_a_guide_without_a_stem() -> None:
     for follower in ("kind: flat", "kind: roller, radius: 8, arm: {length: 65, pivot: 80}"):
         with pytest.raises(RecipeErrors, match=r"dynamics\.guide: the follower has no stem that a roller drives"):
             load_text(disc(follower, more=TRAIN), "cam.yaml")
+
+
+def test_a_sweep_ranks_and_limits_by_them() -> None:
+    from camgeo.sweep.search import evaluator
+    from camgeo.sweep.search.ask import Ask
+
+    text = disc("kind: roller, radius: 9, offset: 6", more=TRAIN + "\n")
+    text += """\
+sweep:
+  vary: {cam.base_radius: {from: 30, to: 40, steps: 3}}
+  limits:
+    pressure-angle-return: {at_most: 30}
+    peak-acceleration-at-speed: {at_most: 1.0e6}
+    jam-margin: {at_least: 10}
+  rank: roller-speed
+"""
+    recipe = load_text(text, "cam.yaml")
+    ask = Ask.of(recipe)
+    columns = evaluator.figures(ask.scene(ask.figures), ask.plan.values(0, 3))
+    names = ["pressure-angle-return", "peak-acceleration-at-speed", "jam-margin", "roller-speed"]
+    for i, base in enumerate((30, 35, 40)):
+        found = figures(text.replace("base_radius: 36", f"base_radius: {base}"), *names)
+        for name in names:
+            assert columns[name][i] == pytest.approx(found[name].value, rel=1e-12), name
