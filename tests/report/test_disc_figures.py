@@ -116,6 +116,41 @@ def test_d20_angle_at_which_a_guide_jams() -> None:
     assert began == pytest.approx(math.degrees(math.asin(30 / 45)), abs=1e-9)
 
 
+D01 = "[{rise: 20, over: 120, law: cycloidal}, {dwell: 60}, {return: 20, over: 120, law: polynomial-345}, {dwell: 60}]"
+
+
+@pytest.mark.parametrize(
+    ("text", "area"),
+    [
+        (disc("kind: roller, radius: 10", D01, 40.0), 8033.402512156),  # d01
+        (disc("kind: flat", FLAT, 30.0), 3735.255254814),  # d03
+        (
+            disc(
+                "kind: knife-edge",
+                "[{rise: 25, over: 180, law: harmonic}, {return: 25, over: 180, law: harmonic}]",
+                30.0,
+            ),
+            5919.938656608,  # d05
+        ),
+        (disc("kind: roller, radius: 10;", D01, 60.0), 15665.460508015),  # d10
+    ],
+)
+def test_areas_of_the_worked_cases(text: str, area: float) -> None:
+    from camgeo.output import pipeline
+
+    report = pipeline.check(load_text(text + "export: {files: [csv]}\n", "cam.yaml")).report
+    assert report["contour"]["area"] == pytest.approx(area, abs=1.01e-9)
+
+
+def test_d06_width_of_a_shoe() -> None:
+    motion = "[{rise: 10, over: 90, law: polynomial-4567}, {dwell: 30}, {return: 10, over: 90, law: polynomial-4567}, "
+    found = figures(disc("kind: shoe, radius: 60", motion + "{dwell: 150}]", 25.0), RISE, RETURN, "radius-of-curvature")
+    for name in (RISE, RETURN):
+        assert found[name].value == pytest.approx(8.806525542, abs=1.01e-9)
+        assert 60.0 * math.sin(math.radians(found[name].value or 0.0)) == pytest.approx(9.185903208, abs=2e-9)
+    assert found["radius-of-curvature"].value == pytest.approx(10.950026472, abs=1.01e-9)
+
+
 # --- against samples --------------------------------------------------------------------------------------------------
 
 
