@@ -182,6 +182,10 @@ def test_of_a_file_from_elsewhere_they_are_its_own(tmp_path: Path) -> None:
     report = pipeline.judged(other, [path])
     assert report["files"][0]["perimeter"] == pytest.approx(60 * math.pi, rel=1e-6)
     assert report["contour"]["perimeter"] == pytest.approx(62 * math.pi, rel=1e-12)
+    import camgeo
+
+    (file,) = camgeo.verify(other, path).files
+    assert (file.perimeter, file.area) == (report["files"][0]["perimeter"], report["files"][0]["area"])
 
 
 def test_without_a_contour_there_is_none() -> None:
