@@ -81,7 +81,7 @@ class Design:
         given = set(self.recipe.marks)
         offers = self.recipe.cam.offers
         names = [name for name, one in FIGURES.items() if one.of == "design" and there(one.needs, offers, given)]
-        found = of_design(self.exact, self.exact.checks, names)
+        found = of_design(self.recipe, self.exact, self.exact.checks, names)
         return MappingProxyType({name: Figure.of(self.recipe, one) for name, one in found.items()})
 
     # --- motion -------------------------------------------------------------------------------------------------------

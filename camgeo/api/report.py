@@ -49,7 +49,8 @@ class File:
     """One file of a report, lengths in the recipe's unit; None where a figure does not apply to its kind.
 
     `tolerance` is what was asked, `geometry_error` what was proved of the fit, `measured_error` what was measured in
-    the file as it lies there. `path` leads to it, where it was kept.
+    the file as it lies there, `perimeter` and `area` are those of its outer contour. `path` leads to it, where it was
+    kept.
     """
 
     name: str
@@ -60,6 +61,8 @@ class File:
     geometry_error: float | None
     measured_error: float | None
     motion: Motion | None
+    perimeter: float | None = None
+    area: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +107,7 @@ class Report(Mapping[str, JSON]):
         name = entry["path"]
         path = self._paths[index] if self._paths else None if self.path is None else self.path / name
         motion = entry.get("motion")
-        names = ("kind", "pieces", "tolerance", "geometry_error", "measured_error")
+        names = ("kind", "pieces", "tolerance", "geometry_error", "measured_error", "perimeter", "area")
         told = None if motion is None else Motion(*(motion[name] for name in Motion.__dataclass_fields__))
         return File(name, path, **{name: entry.get(name) for name in names}, motion=told)
 

@@ -31,7 +31,7 @@ class ConstantDiameterCam(GuidedCam):
     """A cam between two opposite rollers of one frame, from the motion over one half turn."""
 
     kind: ClassVar[str] = "constant-diameter"
-    offers: ClassVar[frozenset[str]] = frozenset({"roller"})
+    offers: ClassVar[frozenset[str]] = GuidedCam.offers | {"rolling"}
     base_radius: float
     roller_radius: float
     motion: MotionAsked

@@ -12,6 +12,7 @@ from camgeo.cams.guided import GuidedCam
 from camgeo.cams.motion import MotionAsked, check_whole_turn, motion_field
 from camgeo.cams.position import ArmPosition, LiftPosition, Position
 from camgeo.cams.sizing import SIZING, Sizing, demand_kept, size_arm, size_face, size_stem
+from camgeo.common.rounding import upward
 from camgeo.recipe.schema.fields import Field, Form, Kind, Table, coordinate, length
 from camgeo.recipe.schema.json_schema import one_of_schema
 from camgeo.recipe.schema.reader import kind_of
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
 Side: TypeAlias = Literal["trailing", "leading"]
 Track: TypeAlias = Literal["external", "internal"]
+_MARGIN = 1e-3  # rad: sizes are reported rounded, and where two limits meet rounding breaks one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +103,6 @@ class _Arm:
 class RoundCam(DiscCam, GuidedCam):
     """A disc cam for a roller, a curved shoe of that radius or, of radius 0, a knife edge."""
 
-    offers: ClassVar[frozenset[str]] = frozenset({"roller"})
     gain: ClassVar[float | None] = None
     radius: float = 0.0
     track: Track = "external"
@@ -140,6 +141,7 @@ class RoundCam(DiscCam, GuidedCam):
 class TranslatingRoundCam(RoundCam):
     """The follower's centre moves along a line that passes the shaft at `offset`, mm."""
 
+    offers: ClassVar[frozenset[str]] = RoundCam.offers | {"stem"}
     offset: float = 0.0
 
     @property
@@ -172,6 +174,7 @@ class TranslatingRoundCam(RoundCam):
 class OscillatingRoundCam(_Arm, RoundCam):
     """The follower's centre swings at `length` about the pivot."""
 
+    offers: ClassVar[frozenset[str]] = RoundCam.offers | {"arm"}
     length: float
 
     @property
@@ -196,9 +199,34 @@ class OscillatingRoundCam(_Arm, RoundCam):
         side = guide.TRAILING if self.sense > 0 else guide.LEADING
         return follower.Roller(guide.Arm(self.length, self.pivot, side), self.radius, law, self.metal < 0)
 
+    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> str:
+        """The least base radius for this length of arm, with the pivot's distance."""
+        from camgeo.curve.sizing import least_arm
+        from kin.law.programme import IntentError
+
+        law = cast("Displacement", intent)
+        try:
+            found = least_arm(law, self.length, self.sense, rising - _MARGIN, falling - _MARGIN)
+        except IntentError:
+            return ""
+        base = (found.prime - self.metal * self.radius) / mm
+        return f"a base radius of {upward(base)} with a pivot at {found.pivot / mm:.6g}" if base > 0.0 else ""
+
     def grown(self, out: float, scale: float) -> Cam:
         """A smaller roller on the same pitch curve."""
         return replace(self, **self._resized(out, scale), pivot=scale * self.pivot, length=scale * self.length)
+
+
+class TranslatingRollerCam(TranslatingRoundCam):
+    """A roller on a stem, which the cam turns."""
+
+    offers: ClassVar[frozenset[str]] = TranslatingRoundCam.offers | {"rolling"}
+
+
+class OscillatingRollerCam(OscillatingRoundCam):
+    """A roller on an arm, which the cam turns."""
+
+    offers: ClassVar[frozenset[str]] = OscillatingRoundCam.offers | {"rolling"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -206,10 +234,16 @@ class TranslatingFaceCam(DiscCam, FacedCam):
     """A flat face on a stem at `offset`, mm, its normal turned ahead of the travel by `tilt`, rad."""
 
     checks: ClassVar[tuple[str, ...]] = ("pressure-angle", "face-length")
+    offers: ClassVar[frozenset[str]] = FacedCam.offers | {"stem-face"}
     gain: ClassVar[float | None] = None
     tilt: float = 0.0
     offset: float = 0.0
     width: float | None = None
+
+    def follower(self, intent: Intent, *, framed: bool) -> Follower:
+        """One face; where its width is given, the contact must stay on it."""
+        made = super().follower(intent, framed=framed)
+        return made if self.width is None else replace(made, checks=(*made.checks, "face-width"))
 
     def position(self, intent: Intent) -> Position:
         """The lift."""
@@ -244,6 +278,7 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
     """A flat face on an arm, `face` mm nearer the shaft than its parallel through the pivot."""
 
     checks: ClassVar[tuple[str, ...]] = ("pressure-angle", "face-length")
+    offers: ClassVar[frozenset[str]] = FacedCam.offers | {"arm"}
     nearer: float = 0.0
 
     def position(self, intent: Intent) -> Position:
@@ -360,9 +395,15 @@ def variant(node: Node) -> type[Cam]:
     """Give the class of a cam as written, by its follower."""
     follower = entries(node).get("follower") if isinstance(node, Written) else None
     arm = isinstance(follower, Written) and "arm" in entries(follower)
-    if kind_of(follower, FOLLOWERS) == "flat":
-        return OscillatingFaceCam if arm else TranslatingFaceCam
-    return OscillatingRoundCam if arm else TranslatingRoundCam
+    return _class(kind_of(follower, FOLLOWERS), arm=arm)
+
+
+def _class(kind: str, *, arm: bool) -> type[DiscCam]:
+    return _ARMS.get(kind, OscillatingRoundCam) if arm else _STEMS.get(kind, TranslatingRoundCam)
+
+
+_STEMS: dict[str, type[DiscCam]] = {"roller": TranslatingRollerCam, "flat": TranslatingFaceCam}
+_ARMS: dict[str, type[DiscCam]] = {"roller": OscillatingRollerCam, "flat": OscillatingFaceCam}
 
 
 def check(cam: Values, reader: Reader) -> None:
@@ -423,13 +464,11 @@ def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
     }
     if arm is not None:
         common |= {"side": "trailing", **arm}
-    if kind == "flat":
-        if arm is None:
-            return TranslatingFaceCam(**common, **follower)
+    if kind != "flat":
+        common["track"] = cam.get("track", "external")
+    elif arm is not None:
         common["nearer"] = common.pop("face", 0.0)
-        return OscillatingFaceCam(**common)
-    common["track"] = cam.get("track", "external")
-    return TranslatingRoundCam(**common, **follower) if arm is None else OscillatingRoundCam(**common, **follower)
+    return _class(kind, arm=arm is not None)(**common, **follower)
 
 
 FAMILY = Family(TranslatingRoundCam, TABLE, build, check, variant)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from camgeo.cams.family import Intent
     from camgeo.curve.disc import Face
+    from camgeo.curve.extremes import Figure
     from camgeo.curve.face import FaceShape
     from camgeo.curve.moving_frame import Displacement
     from kin.numeric.arrays import Array
@@ -30,7 +31,7 @@ class FacedCam(Cam):
     """A cam whose follower is a flat face, led along a line or about a pivot."""
 
     less_steep: ClassVar[str] = LARGER_BASE
-    offers: ClassVar[frozenset[str]] = frozenset({"face"})
+    offers: ClassVar[frozenset[str]] = frozenset({"face", "guided"})
     base_radius: float
 
     @abstractmethod
@@ -60,6 +61,11 @@ class FacedCam(Cam):
 
         face = cast("FaceShape[Face]", profile.base.shape).law
         return lambda t: np.asarray(face.contact(Jet.variable(t, 1)).c[0])
+
+    def series(self, intent: Intent, profile: Profile) -> dict[str, Figure]:  # noqa: ARG002
+        """Of the pressure angle, and of the place of contact."""
+        face = cast("FaceShape[Face]", profile.base.shape).law
+        return {"slope": face.slope, "contact": face.contact}
 
     def circles(self) -> tuple[Circle, ...]:
         """The base circle, which the face is tangent to at displacement 0."""

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from camgeo.cams.position import Position
     from camgeo.curve.curve import Curve
+    from camgeo.curve.extremes import Extreme, Figure
     from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.schema.fields import Table
     from camgeo.recipe.schema.reader import Reader, Values
@@ -100,7 +101,8 @@ class Cam(ABC):
     gain: ClassVar[float | None] = 1.0
     """By how much at most the follower is off per mm of the contour's error, None where that depends on the place."""
     offers: ClassVar[frozenset[str]] = frozenset()
-    """What figures may be taken of it: roller, swings (two on one arm), face, plate (that a linkage can carry)."""
+    """What figures may be taken of it: roller, swings (two on one arm), face, plate (that a linkage can carry), guided
+    (on a stem or arm), stem, arm, rolling (one roller that it turns), stem-face."""
     undercut: Undercut
 
     less_steep: ClassVar[str] = SMALLER_SWING
@@ -110,6 +112,11 @@ class Cam(ABC):
     def touch_radius(self) -> float:
         """Radius of what touches the contour, mm: a roller's; 0 of a face."""
         return 0.0
+
+    @property
+    def metal(self) -> int:
+        """On which side of the contour the metal lies: 1 inside, -1 outside, as of a ring."""
+        return 1
 
     # --- motion and curve ---------------------------------------------------------------------------------------------
 
@@ -148,6 +155,25 @@ class Cam(ABC):
         """Where derivatives of the motion that a recipe gives jump; displacements in mm or rad."""
         return ()
 
+    def series(self, intent: Intent, profile: Profile) -> dict[str, Figure]:  # noqa: ARG002
+        """Figures over the shaft angle whose extremes are proved, by name.
+
+        slope: tangent of the pressure angle; contact: place on a flat face, mm; spin: turns of the roller per turn of
+        the shaft.
+        """
+        return {}
+
+    def extremes(self, name: str, intent: Intent, profile: Profile) -> tuple[Extreme, Extreme] | None:
+        """Least and greatest value of one of `series`, None of one that there is not."""
+        from camgeo.curve.extremes import greatest, least
+        from camgeo.curve.rates import stretches
+
+        figure = self.series(intent, profile).get(name)
+        if figure is None:
+            return None
+        over = stretches(profile.base.shape)
+        return least(figure, over), greatest(figure, over)
+
     # --- advice -------------------------------------------------------------------------------------------------------
 
     @abstractmethod
@@ -165,6 +191,14 @@ class Cam(ABC):
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
         """Say how the follower comes to swing less; `mm` is the recipe's unit."""
         return "a smaller swing"
+
+    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> str:  # noqa: ARG002
+        """Say which size keeps the pressure angle below two angles, rad; empty where none is known."""
+        return ""
+
+    def rounder_pitch(self, intent: Intent, radius: float, mm: float) -> str:  # noqa: ARG002
+        """Say what makes the roller half the pitch curve's least convex radius (mm); empty where nothing rolls."""
+        return ""
 
     @property
     def least_pressure_angle(self) -> float:

@@ -11,14 +11,16 @@ from typing import TYPE_CHECKING, ClassVar, cast
 
 from camgeo.cams.family import Cam, Circle, Profile
 from camgeo.cams.position import ArmPosition, LiftPosition, Position
-from camgeo.common.rounding import downward
+from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
+from kin.law.programme import IntentError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.cams.family import Intent
+    from camgeo.curve.extremes import Figure
     from camgeo.curve.moving_frame import CentreShape, Displacement, Oscillating, Translating
     from kin.numeric.arrays import Array
 
@@ -29,6 +31,7 @@ class GuidedCam(Cam):
     """A cam whose follower's centre is led along a line or about a pivot."""
 
     less_steep: ClassVar[str] = LARGER_BASE
+    offers: ClassVar[frozenset[str]] = frozenset({"roller", "guided"})
     roller_field: ClassVar[str] = "roller radius"
     """What its radius is called in a recipe."""
     base_radius: float
@@ -37,11 +40,6 @@ class GuidedCam(Cam):
     @abstractmethod
     def guide(self) -> Translating | Oscillating:
         """How the centre is led; raises IntentError where the guide does not reach the prime circle."""
-
-    @property
-    def metal(self) -> int:
-        """On which side of the pitch curve the metal lies: 1 inside, -1 outside, as of a ring."""
-        return 1
 
     def position(self, intent: Intent) -> Position:
         """The displacement."""
@@ -61,6 +59,37 @@ class GuidedCam(Cam):
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """Between the contact's normal and the way of the centre."""
         return cast("CentreShape", profile.base.shape).pressure_angle
+
+    def series(self, intent: Intent, profile: Profile) -> dict[str, Figure]:  # noqa: ARG002
+        """Of the pressure angle, and of the roller."""
+        pitch = cast("CentreShape", profile.base.shape)
+        if "rolling" not in self.offers:
+            return {"slope": pitch.slope}
+        # on the inner side of a ring the roller turns the other way round
+        radius, sense = self.touch_radius, float(self.metal)
+        return {"slope": pitch.slope, "spin": lambda tau, side=1: pitch.spin(tau, side, radius, sense)}
+
+    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> str:
+        """The least base radius on this guide."""
+        from camgeo.curve.sizing import least_stem
+
+        found = least_stem(cast("Displacement", intent), rising, falling, cast("Translating", self.guide).offset)
+        base = (found.prime - self.metal * self.touch_radius) / mm
+        return f"a base radius of {upward(base)}" if base > 0.0 else ""
+
+    def rounder_pitch(self, intent: Intent, radius: float, mm: float) -> str:  # noqa: ARG002
+        """The base radius at which the roller is half of the pitch curve's least convex radius."""
+        from camgeo.curve.moving_frame import CentreShape
+        from camgeo.curve.sizing import least_prime
+
+        if "rolling" not in self.offers:
+            return ""
+        law, guide = cast("Displacement", intent), self.guide
+        try:
+            prime = least_prime(lambda p: CentreShape(law, guide.resized(p)), 2.0 * self.touch_radius, guide.prime)
+        except IntentError:
+            return ""
+        return f"a base radius of {upward((prime - self.metal * self.touch_radius) / mm)}"
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A smaller roller."""

@@ -24,6 +24,7 @@ from camgeo.recipe.figures import (
     VELOCITY_RATIO,
 )
 from camgeo.recipe.figures import DWELL as LONGEST_DWELL
+from camgeo.recipe.figures import FACE_WIDTH as WIDTH
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -126,6 +127,14 @@ def _parts(scene: Scene) -> bool:
 def _dwells(scene: Scene) -> bool:
     asked = scene.recipe.dwell
     return scene.linked and asked is not None and asked.at_least is not None
+
+
+def _guided(scene: Scene) -> bool:
+    return scene.recipe.dynamics is not None and scene.recipe.dynamics.guide is not None
+
+
+def _ground(scene: Scene) -> bool:
+    return scene.recipe.manufacture is not None and scene.recipe.manufacture.wheel is not None
 
 
 def _walled(scene: Scene) -> bool:
@@ -294,6 +303,9 @@ BREADTH = Declared(
 )
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
 TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate, formerly=FORMER[CONTACT_TRAVEL])
+FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width")
+JAM = Declared("guide-jam", ("deg",), _guided, field="dynamics.guide")
+WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel")
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
 DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")

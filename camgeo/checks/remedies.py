@@ -15,6 +15,7 @@ from camgeo.recipe.figures import HOLLOW_RADIUS, LEAST_WALL, MOTION_ERROR, PRESS
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from camgeo.recipe.figures import Limit
     from camgeo.recipe.recipe import Recipe
 
 Remedy: TypeAlias = "Callable[[dict[str, Any], dict[str, Any], Recipe], str]"
@@ -87,15 +88,16 @@ class Missed(NamedTuple):
     tolerance: float | None = None
 
 
-def of_limit(recipe: Recipe, figure: str, missed: Missed) -> str:
+def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
     """Tell what would keep a limit: of the cam where that is known, and of the limit itself; in the recipe's unit."""
+    figure = limit.figure
     divisor = recipe.mm if missed.unit.partition("/")[0] == "mm" else 1.0
     value, bound = missed.value / divisor, missed.bound / divisor
-    field = f"limits.{figure}"
     if value > bound:
         own = _to_lower(recipe, figure, missed)
-        return f"{own}{field}.at_most of {_outward(value, up=True)}"
-    return f"{_to_raise(recipe, figure, bound - value)}{field}.at_least of {_outward(value, up=False)}"
+        return f"{own}{limit.field('at_most')} of {_outward(value, up=True)}"
+    own = _to_raise(recipe, figure, bound - value)
+    return f"{own}{limit.field('at_least')} of {_outward(value, up=False)}"
 
 
 def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:

@@ -149,6 +149,10 @@ class Guide(Protocol):
         """Give b, a and tau' as series: of the order of S, one fewer, one fewer."""
         ...
 
+    def resized(self, prime: float) -> Guide:
+        """Give the same guide at another prime circle, mm; IntentError where it does not reach that."""
+        ...
+
 
 @dataclass(frozen=True)
 class Translating:
@@ -198,6 +202,10 @@ class Translating:
     def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
         """Give b, a and tau' as series."""
         return s + self.foot, s.derivative() - self.offset, 1.0
+
+    def resized(self, prime: float) -> Translating:
+        """Give the same line at another prime circle."""
+        return Translating.on(prime, self.offset)
 
 
 @dataclass(frozen=True)
@@ -268,6 +276,10 @@ class Oscillating:
         lean = elementary.cos(cut(psi, slope.order)) * self.pivot - self.length
         return elementary.sin(psi) * self.pivot, slope * self.length - lean * side, slope * side + 1.0
 
+    def resized(self, prime: float) -> Oscillating:
+        """Give the same arm and pivot at another prime circle."""
+        return Oscillating.on(prime, self.pivot, self.length, self.side)
+
 
 @dataclass(frozen=True)
 class CentreShape(OfLaw[Displacement]):
@@ -335,6 +347,12 @@ class CentreShape(OfLaw[Displacement]):
         """Tangent of the pressure angle as a series: a/b."""
         b, a, _ = self.guide.frame(self.law.on(tau, side))
         return a / cut(b, a.order)
+
+    def spin(self, tau: Series, side: Side, radius: float, sense: float) -> Series:
+        """Turns of a roller per turn of the shaft: sigma/R - tau', in a ring (`sense` -1) -sigma/R - tau'."""
+        b, a, rate = self.guide.frame(self.law.on(tau, side))
+        speed = elementary.sqrt(a**2 + cut(b, a.order) ** 2)
+        return speed * (sense / radius) - rate
 
     def pressure_angle(self, theta: Array, side: Side = 1) -> Array:
         """Pressure angle at shaft angles (n,), rad: above 0 where the cam drives a rise."""

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.curve.measures import touched
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
@@ -56,7 +55,7 @@ def _contact(recipe: Recipe, contour: Curve, parameter: Array, name: str, unit: 
     columns |= {f"{name}nx": x, f"{name}ny": y, f"{name}normal_deg": _degrees(x, y)}
     if recipe.manufacture is not None:
         columns |= _cartesian(recipe, point + recipe.manufacture.radius * normal, f"{name}cutter_", unit)
-    away = ~_touched(contour, parameter)
+    away = ~touched(contour, parameter)
     return {key: np.where(away, np.nan, column) for key, column in columns.items()} if away.any() else columns
 
 
@@ -81,13 +80,3 @@ def _degrees(x: Array, y: Array) -> Array:
     """Directions in degrees, from 0 to less than 360 (n,)."""
     angle = np.mod(np.degrees(np.arctan2(y, x)), 360.0)
     return np.where(angle < 360.0, angle, 0.0)
-
-
-def _touched(contour: Curve, parameter: Array) -> NDArray[np.bool_]:
-    """Whether the contour has a point of each parameter (n,), or was trimmed away there."""
-    if contour.closed:
-        return np.ones(parameter.shape, dtype=bool)
-    period = contour.shape.period
-    kept = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]
-    touched: NDArray[np.bool_] = np.any(kept, axis=0)
-    return touched

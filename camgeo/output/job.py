@@ -146,7 +146,18 @@ class Job:
         with self.clock.stage(f"judge {request.kind}"):
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance))
         measured = verdict.measured_error
-        file = FileResult(path, request, tolerance, pieces, bound, measured, verdict.motion, verdict.linkage)
+        file = FileResult(
+            path,
+            request,
+            tolerance,
+            pieces,
+            bound,
+            measured,
+            verdict.motion,
+            verdict.linkage,
+            perimeter=verdict.perimeter,
+            area=verdict.area,
+        )
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
     def _why_lost(self, check: Check) -> Check:

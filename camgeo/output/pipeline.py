@@ -104,7 +104,8 @@ def judged(
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within), units)
         request = FileRequest(verdict.kind, compensation=by)
         measured = verdict.measured_error
-        files.append(FileResult(path, request, within, verdict.pieces, None, measured, verdict.motion, verdict.linkage))
+        file = FileResult(path, request, within, verdict.pieces, None, measured, verdict.motion, verdict.linkage)
+        files.append(replace(file, perimeter=verdict.perimeter, area=verdict.area))
         checks += verdict.checks
     return document(recipe, _findings(recipe, design, checks, files, clock, units=units))
 
@@ -199,6 +200,7 @@ def _findings(
         with clock.stage("limits"):
             section = None if train is None else train.section
             checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
+    from camgeo.curve.measures import measures
     from camgeo.report.remarks import remarks_of
 
     with clock.stage("remarks"):
@@ -213,4 +215,5 @@ def _findings(
         dynamics=None if train is None else train.section,
         remarks=remarks,
         joints=design.joints,
+        contour=None if design.contour is None else measures(design.contour),
     )

@@ -1,4 +1,4 @@
-"""Tables: the intended motion, or the contact on the exact cam, row by row; CSV."""
+"""Tables: the intended motion, its contacts on the exact cam, or the contour over its polar angle; CSV."""
 
 from __future__ import annotations
 
@@ -10,9 +10,13 @@ from camgeo.report.document import FileResult
 
 if TYPE_CHECKING:
     from pathlib import Path
+    from typing import TypeAlias
 
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
+    from kin.numeric.arrays import Array
+
+    Columns: TypeAlias = tuple[tuple[str, ...], Array]
 
 
 def make_table(job: Job, request: FileRequest, path: Path) -> Made:
@@ -20,19 +24,46 @@ def make_table(job: Job, request: FileRequest, path: Path) -> Made:
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())
-    inspected = request.as_ == "inspection"
-    with job.clock.stage("inspection" if inspected else "table"):
-        if inspected:
-            from camgeo.machining.inspection import inspection_table
-
-            columns, rows = inspection_table(job.recipe, job.design)
-        elif driven is not None:
-            from camgeo.synthesis import linkage
-
-            columns, rows = linkage.motion_table(job.recipe, driven.mechanism)
-        else:
-            from camgeo.synthesis.motion_table import motion_table
-
-            columns, rows = motion_table(job.recipe, job.design.intent)
-        write_table(path, columns, rows, gaps=inspected)
+    name = request.as_ or "motion"
+    with job.clock.stage(_STAGES[name]):
+        columns, rows = _TABLES[name](job, request)
+        write_table(path, columns, rows, gaps=name in _GAPS)
     return Made((FileResult(path, request, None, None, None, None, None),))
+
+
+def _motion(job: Job, _: FileRequest) -> Columns:
+    if job.design.driven is not None:
+        from camgeo.synthesis import linkage
+
+        return linkage.motion_table(job.recipe, job.design.driven.mechanism)
+    from camgeo.synthesis.motion_table import motion_table
+
+    return motion_table(job.recipe, job.design.intent)
+
+
+def _contacts(job: Job, request: FileRequest) -> Columns:
+    from camgeo.synthesis.contact_table import contact_table
+
+    return contact_table(job.recipe, job.design, _motion(job, request))
+
+
+def _polar(job: Job, request: FileRequest) -> Columns:
+    from camgeo.curve.measures import StarError
+    from camgeo.synthesis.contact_table import polar_table
+
+    try:
+        return polar_table(job.recipe, job.contour)
+    except StarError as error:
+        where, remedy = f"{job.field(request)}.csv.as", "give `as: inspection`, whose rows are places of contact"
+        raise job.recipe.error(where, str(error), "'polar'", remedy) from error
+
+
+def _inspection(job: Job, _: FileRequest) -> Columns:
+    from camgeo.machining.inspection import inspection_table
+
+    return inspection_table(job.recipe, job.design)
+
+
+_TABLES = {"motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection}
+_STAGES = {"motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection"}
+_GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be told

@@ -7,12 +7,26 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
-from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length
+from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
 
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
+
+
+@dataclass(frozen=True)
+class StemGuide:
+    """The guide of a stem, mm: how far the contact stands out before it, its length, and its friction."""
+
+    overhang: float
+    length: float
+    friction: float
+
+    @property
+    def jam(self) -> float:
+        """Pressure angle, rad, at which no force moves the stem: tan = B/(mu (2 A + B))."""
+        return math.atan2(self.length, self.friction * (2.0 * self.overhang + self.length))
 
 
 @dataclass(frozen=True)
@@ -29,6 +43,7 @@ class Dynamics:
     preload: float | None = None
     rate: float = 0.0
     backlash: float | None = None
+    guide: StemGuide | None = None
 
 
 _MOST = MOST**2  # of figures in SI: a bound against slips
@@ -82,6 +97,13 @@ DYNAMICS = Table(
             at_most=_MOST,
         ),
         Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
+        mapping(
+            "guide",
+            "guide of the stem, in which it must not jam",
+            length("overhang", "how far the roller's centre stands out before the guide, at its lowest", required=True),
+            length("length", "length of the guide", required=True),
+            Field("friction", Kind.NUMBER, "coefficient of friction in the guide", required=True, above=0, at_most=10),
+        ),
     ),
     alternatives=(("preload", ()), ("backlash", ())),
 )
@@ -89,6 +111,9 @@ DYNAMICS = Table(
 
 def check_train(train: Values, reader: Reader) -> None:
     """Note the faults between the fields of a follower train."""
+    if "guide" in train and "stem" not in reader.offers:
+        remedy = "leave it out, or give a cam of kind disc whose follower is round and has no arm"
+        reader.fault_at("dynamics.guide", "the follower has no stem that a roller drives", None, remedy)
     if "backlash" in train and "rate" in train:
         key = reader.written("dynamics.backlash").removeprefix("dynamics.")
         remedy = f"give preload in place of {key}, or leave the rate out"
@@ -102,3 +127,9 @@ def check_train(train: Values, reader: Reader) -> None:
             most = train["damping"] * MOST_DAMPING / ratio
             remedy = f"give less than {downward(most)}"
             reader.fault_at("dynamics.damping", f"{ratio:.4g} times critical", None, remedy)
+
+
+def build_train(train: Values) -> Dynamics:
+    """Make the train of values in which there is no fault."""
+    guide = train.get("guide")
+    return Dynamics(**{**train, "guide": None if guide is None else StemGuide(**guide)})

@@ -54,7 +54,7 @@ class FileRequest:
     """
 
     kind: FileKind
-    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "inspection"] | None = None
+    as_: Literal["arcs", "polyline", "spline", "exact", "motion", "contacts", "polar", "inspection"] | None = None
     version: Literal["R12", "R2000", "R2010", "R2013"] | None = None
     tolerance: float | None = None
     compensation: Compensation | None = None
@@ -143,7 +143,17 @@ FILES: dict[str, Table] = {
         ),
     ),
     "glb": Table((_PARTS, _TOLERANCE)),
-    "csv": Table((Field("as", Kind.CHOICE, "which table it is", default="motion", choices=("motion", "inspection")),)),
+    "csv": Table(
+        (
+            Field(
+                "as",
+                Kind.CHOICE,
+                "which table it is",
+                default="motion",
+                choices=("motion", "contacts", "polar", "inspection"),
+            ),
+        )
+    ),
     "html": Table(()),
     "gcode": Table((_TOLERANCE,)),
 }

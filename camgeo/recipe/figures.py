@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
 
 from camgeo.recipe.schema.errors import suggestion
 from camgeo.recipe.schema.fields import MOST, Field, Form, Kind, Table, either
@@ -24,14 +24,27 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Limit:
-    """Bounds of a figure, as reported: angles in degrees, lengths in mm, rates per radian of shaft angle."""
+    """Bounds of a figure, as reported: angles in degrees, lengths in mm, rates per radian of shaft angle.
+
+    `rpm` is the speed, turns a minute, at which a figure in time is bounded, None for that of the dynamics. `key` is
+    the recipe's key of the upper bound below `limits`, empty for the figure's own.
+    """
 
     figure: str
     at_least: float | None = None
     at_most: float | None = None
+    rpm: float | None = None
+    key: str = ""
+
+    def field(self, sense: str) -> str:
+        """Give the recipe's field of a bound, `at_least` or `at_most`."""
+        return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{self.figure}.{sense}"
 
 
-Needs = Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"]
+Own: TypeAlias = Literal["guided", "rolling", "arm", "stem-face", "guide", "speed"]
+Needs: TypeAlias = (
+    Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
+)
 
 
 NEEDS: dict[Needs, str] = {
@@ -45,6 +58,12 @@ NEEDS: dict[Needs, str] = {
     "all": "a file with `parts: all`",
     "preload": "dynamics.preload",
     "backlash": "dynamics.backlash",
+    "guided": "a cam of kind disc or constant-diameter",
+    "rolling": "a roller that a cam of kind disc or constant-diameter turns",
+    "arm": "an arm that a cam of kind disc works",
+    "stem-face": "a flat face on a stem",
+    "guide": "dynamics.guide",
+    "speed": "a follower without a linkage, and dynamics.rpm",
 }
 """What a figure is taken from, besides the cam and its files, in words."""
 
@@ -77,10 +96,20 @@ def with_former(values: collections.abc.Mapping[str, Value]) -> dict[str, Value]
     return {**values, **{FORMER[name]: value for name, value in values.items() if name in FORMER}}
 
 
+ON_RISE, ON_RETURN = "pressure-angle-rise", "pressure-angle-return"
+
+
+FACE_WIDTH, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN = "face-width", "roller-speed", "pivot-clearance", "jam-margin"
+
+
 PEAKS = ("peak-velocity", "peak-acceleration", "peak-jerk")
 
 
-STEEP = frozenset({PRESSURE_ANGLE, VELOCITY_RATIO, CONTACT_TRAVEL, *PEAKS})  # the less the smaller the motion
+AT_SPEED = tuple(f"{name}-at-speed" for name in PEAKS)
+
+
+STEEP = frozenset({PRESSURE_ANGLE, ON_RISE, ON_RETURN, VELOCITY_RATIO, CONTACT_TRAVEL, FACE_WIDTH, *PEAKS, *AT_SPEED})
+"""Figures that are the less the smaller the motion is."""
 
 
 @dataclass(frozen=True)
@@ -113,16 +142,40 @@ FIGURES: dict[str, Figure] = {
     PEAKS[0]: Figure("its greatest velocity, per radian of shaft angle", Kind.MOTION, "least", per="/rad"),
     PEAKS[1]: Figure("its greatest acceleration, per radian squared", Kind.MOTION, "least", per="/rad^2"),
     PEAKS[2]: Figure("the follower's greatest jerk, per radian cubed", Kind.MOTION, "least", "follower", per="/rad^3"),
+    AT_SPEED[0]: Figure("peak-velocity a second, at the shaft's speed", Kind.MOTION, "least", "speed", per="/s"),
+    AT_SPEED[1]: Figure("peak-acceleration a second squared, at that speed", Kind.MOTION, "least", "speed", per="/s^2"),
+    AT_SPEED[2]: Figure("peak-jerk a second cubed, at that speed", Kind.MOTION, "least", "speed", per="/s^3"),
     PRESSURE_ANGLE: Figure(
         "greatest angle between the contact's normal and the follower's way; 0 of a flat face",
         Kind.ANGLE,
         "least",
         "follower",
     ),
+    ON_RISE: Figure("greatest pressure angle, above 0 where the cam drives a rise", Kind.ANGLE, "least", "guided"),
+    ON_RETURN: Figure("the same on the return, greatest below 0", Kind.ANGLE, "least", "guided"),
+    JAM_MARGIN: Figure(
+        "by how much the pressure angle stays below that at which the stem jams in its guide",
+        Kind.ANGLE,
+        "most",
+        "guide",
+    ),
     VELOCITY_RATIO: Figure(
         "greatest angular velocity of the arm over that of the shaft", Kind.NUMBER, "least", "swings"
     ),
     CONTACT_TRAVEL: Figure("how far the contact travels along the face", Kind.LENGTH, "least", "face"),
+    FACE_WIDTH: Figure(
+        "least width of a face, centred on the stem's axis, that the contact does not leave",
+        Kind.LENGTH,
+        "least",
+        "stem-face",
+    ),
+    ROLLER_SPEED: Figure("greatest speed of the roller, turns per turn of the shaft", Kind.NUMBER, "least", "rolling"),
+    PIVOT_CLEARANCE: Figure(
+        "least distance of the arm's pivot from the contour over the turn, below 0 where the disc passes over it",
+        Kind.LENGTH,
+        "most",
+        "arm",
+    ),
     "transmission-angle": Figure("least transmission angle", Kind.ANGLE, "most", "linkage"),
     "force-angle": Figure("least angle between the force at the joint and the rocker", Kind.ANGLE, "most", "linkage"),
     "margin": Figure("least distance from binding", Kind.LENGTH, "most", "linkage"),
@@ -162,13 +215,31 @@ FIGURES: dict[str, Figure] = {
 
 
 def bounds(figure: Figure) -> Table:
-    """Give the table of the limits of a figure."""
+    """Give the table of the limits of a figure; in a recipe's own limits some have a key more."""
     return Table(
         tuple(
             Field(name, Kind.NUMBER, about, at_least=-(MOST**2), at_most=MOST**2, unit=figure.kind)
             for name, about in (("at_least", "least value accepted"), ("at_most", "greatest value accepted"))
         )
     )
+
+
+_RPM = Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", default="dynamics.rpm", above=0, at_most=MOST)
+_RETURN = Field(
+    "on_return",
+    Kind.NUMBER,
+    "greatest value on the return, where at_most is that on the rise alone",
+    default="at_most",
+    at_least=-(MOST**2),
+    at_most=MOST**2,
+    unit=Kind.ANGLE,
+)
+
+
+def own_bounds(name: str) -> Table:
+    """Give the table of the limits of a figure in a recipe's own `limits`."""
+    more = {PRESSURE_ANGLE: (_RETURN,), **dict.fromkeys(AT_SPEED, (_RPM,))}.get(name, ())
+    return Table((*bounds(FIGURES[name]).fields, *more))
 
 
 ALL = "parts: all"
@@ -184,7 +255,11 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return (needs if needs in {"linkage", "dwell"} else f"dynamics.{needs}") in given
         case "follower":
             return "linkage" not in given
-        case "roller" | "swings" | "face":
+        case "speed":
+            return "linkage" not in given and "dynamics.rpm" in given
+        case "guide":
+            return "dynamics.guide" in given
+        case "roller" | "swings" | "face" | "guided" | "rolling" | "arm" | "stem-face":
             return needs in offers
         case "wall":
             return any(f"part.{name}" in given for name in _OPENINGS)
@@ -214,23 +289,33 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
             remedy = suggestion(name, known) or f"the figures are {either(known, 'and')}"
             reader.fault(key.mark, below, "unknown figure", None, remedy)
             continue
-        table = Field("", Kind.TABLE, "", table=bounds(FIGURES[name]))
+        table = Field("", Kind.TABLE, "", table=own_bounds(name) if field is LIMITS else bounds(FIGURES[name]))
         found = len(reader.errors)
         values = reader.field(table, given[word], below)
         if values is None or len(reader.errors) > found:
             continue
-        if not values:
+        rpm, on_return = values.pop("rpm", None), values.pop("on_return", None)
+        if not values and on_return is None:
             reader.fault(given[word].mark, below, "no bound", None, "give at_least, at_most or both")
         factor = reader.mm if reader.unit(FIGURES[name].kind) == reader.units else 1.0
         if values.get("at_least", -math.inf) > values.get("at_most", math.inf):
             none = "no design" if field is not LIMITS else "nothing"
             reader.fault_at(f"{below}.at_most", f"below at_least, so {none} is accepted", None, "exchange them")
-        limits.append({"figure": name, "at": below, **{bound: factor * value for bound, value in values.items()}})
+        said = {bound: factor * value for bound, value in values.items()}
+        if on_return is not None:
+            rising = said.pop("at_most", None)
+            for one, bound, most in ((ON_RISE, "at_most", rising), (ON_RETURN, "on_return", on_return)):
+                if most is not None:
+                    limits.append({"figure": one, "at": below, "at_most": most, "key": f"{name}.{bound}"})
+            if not said:
+                continue
+        limits.append({"figure": name, "at": below, **said} | ({} if rpm is None else {"rpm": rpm}))
     return limits
 
 
 def _limits_schema(field: Field) -> Schema:
-    limits = {name: {**table_schema(bounds(FIGURES[name])), "minProperties": 1} for name in field.choices}
+    tables = {name: own_bounds(name) if field is LIMITS else bounds(FIGURES[name]) for name in field.choices}
+    limits = {name: {**table_schema(table), "minProperties": 1} for name, table in tables.items()}
     for former, name in field.former_choices:
         limits[former] = {**limits[name], "description": f"former name of {name}", "deprecated": True}
     return {"type": "object", "properties": limits, "additionalProperties": False}
@@ -268,11 +353,12 @@ def check_limits(limits: list[Values], reader: Reader) -> None:
     here = of_recipe(reader)
     for limit in limits:
         name, needs = limit["figure"], FIGURES[limit["figure"]].needs
-        if needs and name not in here:
+        if needs and name not in here and not ("rpm" in limit and "linkage" not in reader.marks):
             remedy = f"the figures of this recipe are {either(here, 'and')}"
             reader.fault_at(limit["at"], f"{name} needs {NEEDS[needs]}", None, remedy)
 
 
 def build_limits(limits: list[Values]) -> tuple[Limit, ...]:
     """Make the limits of values in which there is no fault."""
-    return tuple(Limit(limit["figure"], limit.get("at_least"), limit.get("at_most")) for limit in limits)
+    given = ({name: value for name, value in limit.items() if name != "at"} for limit in limits)
+    return tuple(Limit(**limit) for limit in given)

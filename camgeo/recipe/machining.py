@@ -33,6 +33,7 @@ class Manufacture:
     holes: bool = False
     unreached: float = 0.0
     layer: bool = False
+    wheel: float | None = None
 
     @property
     def radius(self) -> float:
@@ -125,6 +126,7 @@ MANUFACTURE = Table(
         Field("holes", Kind.TRUTH, "whether round openings larger than the cutter are milled too", default="false"),
         length("unreached", "greatest depth of metal that may be left where the cutter does not reach", default="none"),
         Field("layer", Kind.TRUTH, "whether a DXF shows the path of the cutter's centre, on TOOLPATH", default="false"),
+        length("wheel", "diameter of the grinding wheel that finishes the contour, which its hollows must take"),
     ),
 )
 

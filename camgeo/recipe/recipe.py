@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal, overload
 from camgeo.cams.families import FAMILIES
 from camgeo.recipe.assembly import MECHANISM, MechanismAsked
 from camgeo.recipe.cam import CAM, CAMS, build_cam, check_cam
-from camgeo.recipe.dynamics import DYNAMICS, Dynamics, check_train
+from camgeo.recipe.dynamics import DYNAMICS, Dynamics, build_train, check_train
 from camgeo.recipe.export import EXPORT, build_export, check_files
 from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, DwellAsked, build_linkage, check_linkage
@@ -284,7 +284,7 @@ def build(values: Values, path: Path, marks: collections.abc.Mapping[str, Mark],
         linkage=build_linkage(values["linkage"]) if "linkage" in values else None,
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         sweep=build_sweep(values["sweep"]) if "sweep" in values else None,
-        dynamics=Dynamics(**values["dynamics"]) if "dynamics" in values else None,
+        dynamics=build_train(values["dynamics"]) if "dynamics" in values else None,
         manufacture=Manufacture(**values["manufacture"]) if "manufacture" in values else None,
         mechanism=MechanismAsked(**values["mechanism"]) if "mechanism" in values else None,
         limits=build_limits(values.get("limits", [])),

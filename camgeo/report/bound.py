@@ -8,6 +8,7 @@ from camgeo.checks.declared import (
     CHAMFER,
     CLEARANCE,
     CURVATURE,
+    JAM,
     LEAST_BACKLASH,
     MOBILITY,
     PRESSURE,
@@ -26,6 +27,7 @@ STRICT: dict[str, float | None] = {
     CLEARANCE.name: 0.0,
     RATIO.name: 1.0,
     PRESSURE.name: 90.0,
+    JAM.name: None,
 }
 """Checks that a figure on its limit does not hold, and the one limit for which that is so (None: any)."""
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from camgeo.curve.measures import Measures
     from camgeo.fit.pieces import Bound
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
@@ -35,7 +36,7 @@ UNIT_NAMES = {"mm": "mm", "inch": "in"}
 class FileResult:
     """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
 
-    `body` is the one that it is judged as.
+    `body` is the one that it is judged as. `perimeter` and `area` (mm, mm^2) are those of its contour as read.
     """
 
     path: Path
@@ -47,6 +48,8 @@ class FileResult:
     motion: MotionError | None
     linkage: LinkageVerdict | None = None
     body: str = "cam"
+    perimeter: float | None = None
+    area: float | None = None
 
     @property
     def shows_cam(self) -> bool:
@@ -80,6 +83,7 @@ class Findings:
     dynamics: dict[str, Any] | None = None
     remarks: tuple[Remark, ...] = ()
     joints: tuple[Joint, ...] = ()
+    contour: Measures | None = None
 
     @property
     def ok(self) -> bool:
@@ -100,6 +104,7 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
         "follower": found.follower,
         "ok": found.ok,
         "tolerance": recipe.export.tolerance / recipe.mm,
+        "contour": None if found.contour is None else _measures(recipe, found.contour.perimeter, found.contour.area),
         "checks": [_check(recipe, check) for check in found.checks],
         "remarks": [_remark(recipe, remark) for remark in found.remarks],
         "joints": [entry for joint in found.joints for entry in _jumps(recipe, joint)],
@@ -198,8 +203,13 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
         "geometry_inward": None if file.bound is None else file.bound.inward / mm,
         "measured_error": None if file.measured_error is None else file.measured_error / mm,
         "motion": None if file.motion is None else _motion(recipe, file.motion),
+        **_measures(recipe, file.perimeter, file.area),
     }
     return entry
+
+
+def _measures(recipe: Recipe, perimeter: float | None, area: float | None) -> dict[str, float | None]:
+    return {"perimeter": in_units(recipe, perimeter, "mm")[0], "area": in_units(recipe, area, "mm^2")[0]}
 
 
 def _motion(recipe: Recipe, motion: MotionError) -> dict[str, Any]:

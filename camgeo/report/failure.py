@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from camgeo.checks.declared import EVERY, LIMITS, Declared
+from camgeo.checks.declared import EVERY, LIMIT, LIMITS, Declared
 from camgeo.report.bound import words
 
 if TYPE_CHECKING:
@@ -50,8 +50,11 @@ def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str
 
 def _field(check: dict[str, Any], recipe: Recipe) -> str:
     declared = EVERY.get(check["name"], UNKNOWN)
-    field = declared.place(recipe, check.get("file"))
-    return f"{field}.{check['sense']}" if check["name"] in LIMITS else field
+    if check["name"] in LIMITS:
+        figure = check["name"].removeprefix(LIMIT)
+        own = [one for one in recipe.limits if one.figure == figure and getattr(one, check["sense"]) is not None]
+        return next((one.field(check["sense"]) for one in own), f"limits.{figure}.{check['sense']}")
+    return declared.place(recipe, check.get("file"))
 
 
 def _value(check: dict[str, Any]) -> str:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from camgeo.checks.declared import (
     CHECKS,
@@ -19,25 +17,41 @@ from camgeo.checks.declared import (
     TRAVEL,
     WALL,
 )
-from camgeo.recipe.figures import DWELL, FIGURES, HOLLOW_RADIUS, PEAKS, PITCH_RADIUS, RADIUS, SIZE
-from kin.numeric.angles import TURN
+from camgeo.recipe.figures import (
+    AT_SPEED,
+    DWELL,
+    FACE_WIDTH,
+    FIGURES,
+    HOLLOW_RADIUS,
+    JAM_MARGIN,
+    ON_RETURN,
+    ON_RISE,
+    PEAKS,
+    PITCH_RADIUS,
+    PIVOT_CLEARANCE,
+    RADIUS,
+    ROLLER_SPEED,
+    SIZE,
+)
+from camgeo.synthesis.checks import hollow_radius, jam_angle, needed_width, slack
+from kin.numeric.angles import TURN, degrees
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Any
 
-    from camgeo.curve.curve import Curve
+    from camgeo.cams.disc import OscillatingRoundCam
+    from camgeo.curve.extremes import Extreme
+    from camgeo.recipe.recipe import Recipe
     from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check
     from kin.linkage.extremes import Place
-    from kin.numeric.arrays import Array
 
-POINTS = 4096  # of each run of a contour, among which the farthest from the shaft is sought
-_CLOSER = 64  # points about the farthest, once more
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
 _ORDERS = {"swing": 0, **{name: k for k, name in enumerate(PEAKS, 1)}}
+_IN_TIME = dict(zip(AT_SPEED, PEAKS, strict=True))
 _OF_CHECKS = {one.name: one for one in (PRESSURE, RATIO, TRAVEL, WALL, CLEARANCE, COLLISION)}
 
 
@@ -53,14 +67,21 @@ class Measured(NamedTuple):
 NO_CONTOUR = Measured(None, "mm", detail="no contour is made")
 
 
-def of_design(design: Design, checks: Sequence[Check], names: Iterable[str]) -> dict[str, Measured]:
+def of_design(
+    recipe: Recipe,
+    design: Design,
+    checks: Sequence[Check],
+    names: Iterable[str],
+    speeds: Mapping[str, float] | None = None,
+) -> dict[str, Measured]:
     """Measure figures of the exact cam, its motion and mechanism; one that no check of this run has is left out.
 
-    `checks` are all that were made.
+    `checks` are all that were made. `speeds` are those, turns a minute, at which figures in time are taken that are not
+    taken at that of the dynamics.
     """
     wanted = [name for name in names if FIGURES[name].of == "design"]
     found: dict[str, Measured] = {}
-    motion = [name for name in wanted if name in _ORDERS]
+    motion = [_IN_TIME.get(name, name) for name in wanted if _IN_TIME.get(name, name) in _ORDERS]
     if design.driven is not None:
         found |= _of_linkage(design.driven, wanted)
     elif motion:
@@ -73,7 +94,10 @@ def of_design(design: Design, checks: Sequence[Check], names: Iterable[str]) -> 
             elif name == PRESSURE.name:
                 found[name] = Measured(0.0, "deg", detail="a flat face is pushed along its normal")
         elif name in _OF_CURVE:
-            found[name] = _OF_CURVE[name](design)
+            found[name] = _OF_CURVE[name](recipe, design)
+        elif name in _IN_TIME:
+            rpm = (speeds or {}).get(name) or (recipe.dynamics.rpm if recipe.dynamics is not None else 0.0)
+            found[name] = _in_time(found[_IN_TIME[name]], name, rpm)
     return {name: found[name] for name in wanted if name in found}
 
 
@@ -91,59 +115,98 @@ def _of_check(check: Check) -> Measured:
 # --- of the curve -----------------------------------------------------------------------------------------------------
 
 
-def _radius(design: Design) -> Measured:
-    """Of the contour, not of the roller's way, which is bent less by the roller's radius."""
+def _radius(recipe: Recipe, design: Design) -> Measured:
+    """Of the metal, not of the roller's way, which is bent less by the roller's radius."""
     bent = next(check for check in design.checks if check.name == CURVATURE.name)
-    value = None if bent.value is None else bent.value - design.profile.roller_radius
-    return Measured(value, "mm", bent.at_deg, bent.detail)
+    if recipe.cam.metal > 0 or bent.value is None or design.contour is None:
+        value = None if bent.value is None else bent.value - design.profile.roller_radius
+        return Measured(value, "mm", bent.at_deg, bent.detail)
+    from camgeo.curve.backwards import least_hollow
+
+    radius, at = least_hollow(design.contour)  # the metal of a ring bulges where its opening is hollow
+    if math.isinf(radius):
+        return Measured(radius, "mm", detail="the metal is convex nowhere")
+    return Measured(radius, "mm", design.position.shaft_deg(at))
 
 
-def _pitch_radius(design: Design) -> Measured:
+def _pitch_radius(_: Recipe, design: Design) -> Measured:
     return _of_check(next(check for check in design.checks if check.name == CURVATURE.name))
 
 
-def _hollow_radius(design: Design) -> Measured:
-    from camgeo.curve.backwards import least_hollow
-
+def _hollow_radius(recipe: Recipe, design: Design) -> Measured:
     if design.contour is None:
         return NO_CONTOUR
-    radius, at = least_hollow(design.contour)
+    radius, at = hollow_radius(recipe.cam, design.contour)
     if math.isinf(radius):
         return Measured(radius, "mm", detail="the contour has no concave part")
     return Measured(radius, "mm", design.position.shaft_deg(at))
 
 
-def _size(design: Design) -> Measured:
+def _size(_: Recipe, design: Design) -> Measured:
+    from camgeo.curve.measures import farthest
+
     if design.contour is None:
         return NO_CONTOUR
-    value, at = farthest(design.contour)
-    return Measured(value, "mm", design.position.shaft_deg(at))
+    far = farthest(design.contour)
+    return Measured(far.value + slack(far), "mm", design.position.shaft_deg(far.at))
 
 
-def farthest(contour: Curve) -> tuple[float, float]:
-    """Greatest distance of a contour from the shaft, mm, and the parameter there."""
+def _pivot_clearance(recipe: Recipe, design: Design) -> Measured:
+    """Of the circle on which the pivot runs round the standing cam; in a ring from within."""
+    from camgeo.curve.measures import farthest, nearest
 
-    def distance(t: Array) -> Array:
-        point = contour.sample(t).point
-        return np.asarray(np.hypot(point[:, 0], point[:, 1]))
-
-    best, at = 0.0, 0.0
-    for run in contour.runs:
-        t = np.linspace(run.low, run.high, POINTS)
-        worst = int(np.argmax(distance(t)))
-        t = np.linspace(t[max(worst - 1, 0)], t[min(worst + 1, POINTS - 1)], 2 * _CLOSER + 1)
-        far = distance(t)
-        worst = int(np.argmax(far))
-        if far[worst] > best:
-            best, at = float(far[worst]), float(t[worst])
-    return best, at
+    if design.contour is None:
+        return NO_CONTOUR
+    pivot = cast("OscillatingRoundCam", recipe.cam).pivot
+    end = farthest(design.contour) if recipe.cam.metal > 0 else nearest(design.contour)
+    value = recipe.cam.metal * (pivot - end.value) - slack(end)
+    return Measured(value, "mm", design.position.shaft_deg(end.at))
 
 
-_OF_CURVE: dict[str, Callable[[Design], Measured]] = {
+def _extremes(recipe: Recipe, design: Design, name: str) -> tuple[Extreme, Extreme]:
+    found = recipe.cam.extremes(name, design.intent, design.profile)
+    if found is None:
+        raise TypeError(f"{recipe.name} has no {name}")
+    return found
+
+
+def _on_rise(recipe: Recipe, design: Design) -> Measured:
+    most = _extremes(recipe, design, "slope")[1]
+    return Measured(math.degrees(math.atan(most.value + slack(most))), "deg", degrees(most.at))
+
+
+def _on_return(recipe: Recipe, design: Design) -> Measured:
+    least = _extremes(recipe, design, "slope")[0]
+    return Measured(math.degrees(math.atan(slack(least) - least.value)), "deg", degrees(least.at))
+
+
+def _roller_speed(recipe: Recipe, design: Design) -> Measured:
+    fastest = max(_extremes(recipe, design, "spin"), key=lambda one: abs(one.value))
+    return Measured(abs(fastest.value) + slack(fastest), "", degrees(fastest.at))
+
+
+def _face_width(recipe: Recipe, design: Design) -> Measured:
+    value, at = needed_width(recipe.cam, design.intent, design.profile)
+    return Measured(value, "mm", at)
+
+
+def _jam_margin(recipe: Recipe, design: Design) -> Measured:
+    value, at = jam_angle(recipe.cam, design.intent, design.profile)
+    guide = None if recipe.dynamics is None else recipe.dynamics.guide
+    return Measured(None if guide is None else math.degrees(guide.jam) - value, "deg", at)
+
+
+_OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     RADIUS: _radius,
     PITCH_RADIUS: _pitch_radius,
     HOLLOW_RADIUS: _hollow_radius,
     SIZE: _size,
+    ON_RISE: _on_rise,
+    ON_RETURN: _on_return,
+    PIVOT_CLEARANCE: _pivot_clearance,
+    ROLLER_SPEED: _roller_speed,
+    FACE_WIDTH: _face_width,
+    JAM_MARGIN: _jam_margin,
 }
 
 
@@ -174,6 +237,14 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
         value, at = max(low, high, key=lambda place: abs(place[0]))
         found[name] = Measured(scale * abs(value), unit + FIGURES[name].per, position.shaft_deg(at % TURN))
     return found
+
+
+def _in_time(made: Measured, name: str, rpm: float) -> Measured:
+    """A derivative by the shaft angle as one by time, the shaft turning evenly."""
+    order = _ORDERS[_IN_TIME[name]]
+    unit = made.unit.partition("/")[0] + FIGURES[name].per
+    value = None if made.value is None else made.value * (rpm * TURN / 60.0) ** order
+    return Measured(value, unit, made.at_deg, made.detail)
 
 
 def _of_linkage(driven: Driven, names: Iterable[str]) -> dict[str, Measured]:

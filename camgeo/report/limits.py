@@ -36,7 +36,8 @@ def limit_checks(
     `checks` are all that were made, `dynamics` the report's section. A figure that cannot be had fails, and tells why.
     """
     scene = Scene(recipe, design.follower)
-    measured = of_design(design, checks, [limit.figure for limit in recipe.limits])
+    speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
+    measured = of_design(recipe, design, checks, [limit.figure for limit in recipe.limits], speeds)
     found: list[Check] = []
     for limit in recipe.limits:
         name, of = limit.figure, FIGURES[limit.figure].of
@@ -67,8 +68,6 @@ def _held(
         ok = value is not None and (value >= bound - slack if sense == "at_least" else value <= bound + slack)
         detail = measured.detail if value is None or math.isinf(value) else ""
         if value is not None and not ok:
-            detail = (
-                f"{of_limit(recipe, limit.figure, Missed(value, bound, measured.unit, tolerance))} would satisfy it"
-            )
+            detail = f"{of_limit(recipe, limit, Missed(value, bound, measured.unit, tolerance))} would satisfy it"
         found.append(Check(LIMIT + limit.figure, ok, value, bound, measured.unit, measured.at_deg, sense, file, detail))
     return found

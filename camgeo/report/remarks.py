@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import PRESSURE
+from camgeo.checks.declared import CURVATURE, PRESSURE
+from camgeo.common.rounding import downward
 from camgeo.recipe.export import NO_CONTOUR
+from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
 from camgeo.report.document import Remark, of_displacements
+from camgeo.report.figures import of_design
+from camgeo.synthesis.checks import hollow_radius
 from kin.law.joints import Joint
 from kin.numeric.angles import degrees
 
@@ -18,12 +22,14 @@ if TYPE_CHECKING:
     from camgeo.synthesis.design import Design
 
 PRESSURE_RULE = {"oscillating": 45.0, "translating": 30.0}  # degrees: cam handbooks' rule of thumb for rollers
+RETURN_RULE = 45.0  # degrees, where a spring holds the follower
 SHARE = 0.1  # of the stroke: an error as great as that is no small one
 THICKEST, THINNEST = 2.0, 0.01  # of the cam's greatest radius
 STILL = 1e-9  # of the cam's size: a motion that is none
 LOOKS = 1440  # places of a turn at which the stroke is looked at
 CLEAR = 0.05  # of the cam's size
-INCH, STEP, HALF = 25.4, 64.0, 0.5  # sizes by the inch are whole 64ths, metric ones whole or half mm
+HALF = 0.5  # of the least convex radius of the pitch curve: the greatest roller by rule of thumb
+INCH, STEP, HALF_MM = 25.4, 64.0, 0.5  # sizes by the inch are whole 64ths, metric ones whole or half mm
 _SAME = 1e-6
 
 
@@ -32,6 +38,9 @@ def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
     found = [
         _size_found(recipe),
         _pressure(recipe, design),
+        _roller(recipe, design),
+        _cutter(recipe, design),
+        _pivot(recipe, design),
         *_motion(recipe, design),
         _acceleration(recipe, design.joints),
         *_output(recipe, design),
@@ -49,9 +58,12 @@ def _size_found(recipe: Recipe) -> Remark | None:
 
 
 def _pressure(recipe: Recipe, design: Design) -> Remark | None:
-    """Past the rule of thumb, unless the recipe has a limit of its own."""
+    """Past the rule of thumb, unless the recipe has a limit of its own; with the size that keeps it, where known.
+
+    On the return a follower that a spring holds may be steeper.
+    """
     if "cam.sizing.pressure-angle" in recipe.marks or any(
-        limit.figure == PRESSURE.name and limit.at_most is not None for limit in recipe.limits
+        limit.figure in {PRESSURE.name, ON_RISE, ON_RETURN} and limit.at_most is not None for limit in recipe.limits
     ):
         return None
     made = next((check for check in design.checks if check.name == PRESSURE.name), None)
@@ -59,8 +71,68 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
     rule = PRESSURE_RULE[kind]
     if made is None or made.value is None or made.value <= rule or not made.ok:
         return None
-    told = f"the pressure angle reaches {made.value:.4g} deg; up to {rule:.0f} is the rule for rollers, {kind}"
-    return Remark(PRESSURE.name, made.value, rule, "deg", told, made.at_deg)
+    proved = recipe.cam.extremes("slope", design.intent, design.profile)
+    falling, value, at_deg, of = rule, made.value, made.at_deg, ""
+    if proved is not None and not design.follower.closure:
+        falling = RETURN_RULE
+        sides = ((proved[1], 1.0, rule, " on the rise"), (proved[0], -1.0, falling, " on the return"))
+        over = [(one, math.degrees(math.atan(sign * one.value)), most, name) for one, sign, most, name in sides]
+        over = [row for row in over if row[1] > row[2]]
+        if not over:
+            return None
+        worst, value, rule, of = max(over, key=lambda row: row[1] - row[2])
+        at_deg = degrees(worst.at)
+    told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for rollers, {kind}"
+    size = recipe.cam.less_pressure(design.intent, math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
+    return Remark(PRESSURE.name, value, rule, "deg", told + (f", which {size} keeps" if size else ""), at_deg)
+
+
+def _roller(recipe: Recipe, design: Design) -> Remark | None:
+    """A roller above half the pitch curve's least convex radius, where the recipe limits no radius."""
+    if any(limit.figure in {RADIUS, PITCH_RADIUS} and limit.at_least is not None for limit in recipe.limits):
+        return None
+    bent = next(check for check in design.checks if check.name == CURVATURE.name)
+    roller, radius = recipe.cam.touch_radius, bent.value
+    if design.contour is None or radius is None or recipe.cam.metal < 0 or not HALF * radius < roller:
+        return None
+    size = recipe.cam.rounder_pitch(design.intent, radius, recipe.mm)
+    if not size:
+        return None
+    told = (
+        f"the roller's radius, {_length(recipe, roller)}, is {roller / radius:.3g} times the pitch curve's least "
+        f"convex radius; up to half is the rule, which {size} keeps"
+    )
+    return Remark("large-roller", roller, HALF * radius, "mm", told, bent.at_deg)
+
+
+def _cutter(recipe: Recipe, design: Design) -> Remark | None:
+    """A hollow that the cutter does not reach into, where no program says so by its checks."""
+    made = recipe.manufacture
+    if made is None or design.contour is None or "roller" not in recipe.cam.offers:
+        return None
+    if made.layer or any(request.kind == "gcode" for request in recipe.export.files):
+        return None
+    radius, at = hollow_radius(recipe.cam, design.contour)
+    if radius >= made.radius:
+        return None
+    told = (
+        f"the contour has a hollow of radius {_length(recipe, radius)}, which a cutter of "
+        f"{_length(recipe, made.cutter)} does not reach into; a cutter of {downward(2.0 * radius / recipe.mm)} does"
+    )
+    return Remark("large-cutter", radius, made.radius, "mm", told, design.position.shaft_deg(at))
+
+
+def _pivot(recipe: Recipe, design: Design) -> Remark | None:
+    """A disc that passes over its arm's pivot: it can be made, and lies in another plane than the pivot's pin."""
+    if "arm" not in recipe.cam.offers or design.contour is None:
+        return None
+    if any(limit.figure == PIVOT_CLEARANCE and limit.at_least is not None for limit in recipe.limits):
+        return None
+    found = of_design(recipe, design, design.checks, [PIVOT_CLEARANCE])[PIVOT_CLEARANCE]
+    if found.value is None or found.value > 0.0:
+        return None
+    told = f"the disc passes over the arm's pivot, by {_length(recipe, -found.value)}"
+    return Remark(PIVOT_CLEARANCE, found.value, 0.0, "mm", told, found.at_deg)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
@@ -150,7 +222,7 @@ def _keyway(recipe: Recipe) -> Remark | None:
     bore, keyway = recipe.part.bore, recipe.part.keyway
     if bore is None or keyway is None or not keyway.standard:
         return None
-    by_inch, metric = _is_whole(bore * STEP / INCH), _is_whole(bore / HALF)
+    by_inch, metric = _is_whole(bore * STEP / INCH), _is_whole(bore / HALF_MM)
     if not (by_inch or not metric if recipe.units == "inch" else by_inch and not metric):
         return None
     told = (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from camgeo.cams.flat_faced import SAME_BREADTH, breadth_of, spread
-from camgeo.checks.declared import BREADTH, CLOSING, DIAMETER, PRESSURE, RATIO, TRAVEL
+from camgeo.checks.declared import BREADTH, CLOSING, DIAMETER, FACE_WIDTH, JAM, PRESSURE, RATIO, TRAVEL, WHEEL
 from kin.judge.check import Check
 from kin.law.feasibility import steepest
 from kin.numeric.angles import degrees
@@ -16,7 +16,11 @@ from kin.numeric.angles import degrees
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from camgeo.cams.disc import TranslatingFaceCam, TranslatingRoundCam
     from camgeo.cams.family import Cam, Intent, Profile
+    from camgeo.curve.curve import Curve
+    from camgeo.curve.extremes import Extreme
+    from camgeo.recipe.recipe import Recipe
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -39,6 +43,10 @@ def _constant_breadth(_: Cam, intent: Intent, __: Profile) -> Check:
 
 def _face_length(cam: Cam, intent: Intent, profile: Profile) -> Check:
     """How far the contact travels along a face."""
+    if (proved := cam.extremes("contact", intent, profile)) is not None:
+        least, most = proved
+        further = max(proved, key=lambda one: abs(one.value))
+        return Check(TRAVEL.name, True, most.value - least.value, None, "mm", degrees(further.at), "at_least")
     place = cam.contact_place(intent, profile)
     t = spread(intent.breaks, 2.0 * math.pi)
     low = _greatest(lambda u: -place(u), t)  # continuous too
@@ -75,6 +83,10 @@ def _pressure_angle(cam: Cam, intent: Intent, profile: Profile) -> Check:
 
     At 90 degrees the cam cannot drive.
     """
+    if (proved := cam.extremes("slope", intent, profile)) is not None:
+        worst = max(proved, key=lambda one: abs(one.value))
+        value, at = math.degrees(math.atan(abs(worst.value) + slack(worst))), worst.at
+        return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(at))
     angle = cam.pressure_angle(intent, profile)
     value, at = _greatest(lambda t: np.degrees(np.abs(angle(t))), spread(intent.breaks, 2.0 * math.pi))
     return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", cam.position(intent).shaft_deg(at))
@@ -89,6 +101,64 @@ def _constant_diameter(_: Cam, intent: Intent, profile: Profile) -> Check:
     off = np.abs(diameter - mean)
     worst, limit = int(np.argmax(off)), SAME_BREADTH * mean
     return Check(DIAMETER.name, bool(off[worst] <= limit), float(off[worst]), limit, "mm", degrees(float(t[worst])))
+
+
+def _face_width(cam: Cam, intent: Intent, profile: Profile) -> Check:
+    """Whether the contact stays on the face, whose width is centred on the stem's axis."""
+    value, at = needed_width(cam, intent, profile)
+    width = cast("TranslatingFaceCam", cam).width
+    return Check(FACE_WIDTH.name, width is None or value <= width, value, width, "mm", at)
+
+
+def needed_width(cam: Cam, intent: Intent, profile: Profile) -> tuple[float, float]:
+    """Least width of a centred face that the contact does not leave, mm, and the shaft angle in degrees."""
+    proved = cam.extremes("contact", intent, profile)
+    if proved is None:
+        raise TypeError("no contact travels along a face")
+    worst = max(proved, key=lambda one: abs(one.value))
+    return 2.0 * (abs(worst.value) + slack(worst)), degrees(worst.at)
+
+
+def jam_angle(cam: Cam, intent: Intent, profile: Profile) -> tuple[float, float]:
+    """Greatest pressure angle at which the stem is pushed on, degrees, and its shaft angle.
+
+    On the rise that is the greatest of all, or where the rise begins: of an eccentric stem |e| over its foot.
+    """
+    proved = cam.extremes("slope", intent, profile)
+    if proved is None:
+        raise TypeError("no stem is led in a guide")
+    guide, most = cast("TranslatingRoundCam", cam).guide, proved[1]
+    steepest = max(most.value + slack(most), abs(guide.offset) / guide.foot)
+    return math.degrees(math.atan(steepest)), degrees(most.at)
+
+
+def guide_checks(recipe: Recipe, intent: Intent, profile: Profile, contour: Curve | None) -> list[Check]:
+    """Whether the stem jams in its guide, and whether a grinding wheel reaches into the hollows."""
+    found, train, made = [], recipe.dynamics, recipe.manufacture
+    if train is not None and train.guide is not None:
+        value, at = jam_angle(recipe.cam, intent, profile)
+        limit = math.degrees(train.guide.jam)
+        found.append(Check(JAM.name, value < limit, value, limit, "deg", at))
+    if made is not None and made.wheel is not None and contour is not None:
+        radius, place = hollow_radius(recipe.cam, contour)
+        at_deg = None if math.isinf(radius) else recipe.cam.position(intent).shaft_deg(place)
+        wheel = 0.5 * made.wheel
+        told = "the contour has no hollow" if math.isinf(radius) else ""
+        found.append(Check(WHEEL.name, radius >= wheel, radius, wheel, "mm", at_deg, "at_least", detail=told))
+    return found
+
+
+def hollow_radius(cam: Cam, contour: Curve) -> tuple[float, float]:
+    """Least radius of the hollows of the metal, mm, infinite without one, and its parameter."""
+    from camgeo.curve.backwards import least_hollow
+    from camgeo.curve.curvature import least_radius
+
+    return least_hollow(contour) if cam.metal > 0 else least_radius(contour)
+
+
+def slack(extreme: Extreme) -> float:
+    """By how much more the extreme may be, where that is more than rounding."""
+    return extreme.room if extreme.room > EXACT * max(abs(extreme.value), 1.0) else 0.0
 
 
 def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
@@ -112,6 +182,7 @@ MADE: dict[str, Callable[[Cam, Intent, Profile], Check]] = {
     BREADTH.name: _constant_breadth,
     DIAMETER.name: _constant_diameter,
     TRAVEL.name: _face_length,
+    FACE_WIDTH.name: _face_width,
     CLOSING.name: _closing_equation,
     RATIO.name: _transmission,
     PRESSURE.name: _pressure_angle,

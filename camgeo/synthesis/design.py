@@ -79,10 +79,11 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
     except CurveError as error:
         raise recipe.error("cam", _unproved(recipe, error, intent)) from error
     with clock.stage("figures"):
-        from camgeo.synthesis.checks import motion_checks
+        from camgeo.synthesis.checks import guide_checks, motion_checks
 
         follower = cam.follower(intent, framed=recipe.linkage is not None)
         more = motion_checks(cam, intent, profile, follower.checks)
+        more += guide_checks(recipe, intent, profile, contour)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage

@@ -58,6 +58,7 @@ class Verdict:
     measured_error  two-sided distance from the exact contour, mm
     pieces          of the outer contour, as the file counts them
     linkage         what the contour makes of the mechanism; None without one, or where it does not drive it all round
+    perimeter, area of the outer contour as read, mm and mm^2
     """
 
     kind: Kind
@@ -67,6 +68,8 @@ class Verdict:
     measured_error: float | None = None
     pieces: int | None = None
     linkage: LinkageVerdict | None = None
+    perimeter: float | None = None
+    area: float | None = None
 
     @property
     def ok(self) -> bool:
@@ -104,6 +107,8 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits, units: float
         measured_error=found.deviation.worst[0] if found.deviation else None,
         pieces=one.pieces,
         linkage=found.linkage,
+        perimeter=one.contour.length,
+        area=abs(one.contour.area),
     )
 
 

@@ -130,6 +130,33 @@ cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {
 export: {tolerance: 0.01, files: [dxf]}
 verify: {angles: 60}
 """,
+    "a roller yoke": """\
+cam:
+  kind: constant-diameter
+  base_radius: 40
+  roller_radius: 8
+  motion: [{rise: 9, over: 120, law: cycloidal}, {dwell: 60}]
+export: {tolerance: 0.01, files: [csv]}
+""",
+    "a stem": """\
+cam:
+  kind: disc
+  base_radius: 40
+  follower: {kind: roller, radius: 8}
+  motion: [{rise: 9, over: 120, law: cycloidal}, {return: 9, over: 160, law: cycloidal}, {dwell: 80}]
+manufacture: {cutter: 6, wheel: 60}
+export: {tolerance: 0.01, files: [csv]}
+dynamics:
+  {mass: 0.4, stiffness: 2.0e5, preload: 900, rpm: 100, guide: {overhang: 40, length: 60, friction: 0.2}}
+""",
+    "a face": """\
+cam:
+  kind: disc
+  base_radius: 40
+  follower: {kind: flat, width: 40}
+  motion: [{rise: 9, over: 120, law: cycloidal}, {return: 9, over: 160, law: cycloidal}, {dwell: 80}]
+export: {tolerance: 0.01, files: [csv]}
+""",
     "a linkage": """\
 cam: {kind: support, p: 25 + sin(3*t) + 13/15*sin(3*t)*cos(2*t), shaft: [18, 8.5]}
 linkage: {kind: four-bar, ground: 80, coupler: 70, rocker: 105}
@@ -185,7 +212,8 @@ def test_fields_are_those_of_a_recipe() -> None:
 
     for one in EVERY.values():
         for path in filter(None, (one.field, one.own_field)):
-            known = field_at(RECIPE, path, {"cam": "double-roller", "linkage": "four-bar"})
+            kinds = ("double-roller", "disc")
+            known = any(field_at(RECIPE, path, {"cam": kind, "linkage": "four-bar"}) for kind in kinds)
             assert known or one.name.startswith(LIMIT), path
 
 

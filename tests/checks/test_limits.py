@@ -57,12 +57,32 @@ part: {thickness: 8, bore: {hexagon: 10}}
 export: {tolerance: 0.01, files: [{stl: {parts: all}}]}
 verify: {angles: 120}
 """
+MOVE = (
+    "motion: [{rise: 18, over: 110, law: cycloidal}, {dwell: 60}, {return: 18, over: 170, law: cycloidal}, {dwell: 20}]"
+)
+STEM = (
+    f"cam: {{kind: disc, base_radius: 36, follower: {{kind: roller, radius: 9, offset: 6}}, {MOVE}}}\n"
+    + VERIFY
+    + "dynamics: {mass: 0.4, stiffness: 2.0e5, preload: 900, rpm: 300, "
+    + "guide: {overhang: 40, length: 60, friction: 0.2}}\n"
+)
+ARM = (
+    "cam: {kind: disc, base_radius: 36, "
+    f"follower: {{kind: roller, radius: 8, arm: {{length: 65, pivot: 80}}}}, {MOVE}}}\n" + VERIFY
+)
+FACE = f"cam: {{kind: disc, base_radius: 36, follower: {{kind: flat, tilt: 8, offset: 5}}, {MOVE}}}\n" + VERIFY.replace(
+    "dxf", "csv"
+)
 # of each figure a recipe that has it
 HAVE = {
     **dict.fromkeys(("pressure-angle", "velocity-ratio", "hollow-radius", "pitch-radius", "backlash"), ROLLER),
     **dict.fromkeys(("radius-of-curvature", "size", "swing", "peak-velocity", "peak-acceleration"), FLAT),
     **dict.fromkeys(("peak-jerk", "contact-travel", "wall", "contour-error", "motion-error", "pieces"), FLAT),
     **dict.fromkeys(("least-force", "peak-force"), YOKE + VERIFY + TRAIN),
+    **dict.fromkeys(("pressure-angle-rise", "pressure-angle-return", "roller-speed", "jam-margin"), STEM),
+    **dict.fromkeys(("peak-velocity-at-speed", "peak-acceleration-at-speed", "peak-jerk-at-speed"), STEM),
+    "pivot-clearance": ARM,
+    "face-width": FACE,
     "least-backlash": YOKE + VERIFY + LOOSE,
     "dwell-error": YOKE + VERIFY,
     **dict.fromkeys(("dwell", "dwell-relative", "transmission-angle", "force-angle"), LINKED + VERIFY),
@@ -244,6 +264,7 @@ def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
 def test_a_figure_that_a_recipe_has_not() -> None:
     missing = {"linkage": FLAT, "dwell": FLAT, "follower": LINKED, "roller": FLAT, "swings": FLAT, "face": ROLLER}
     missing |= {"wall": ROLLER, "all": FLAT, "preload": FLAT, "backlash": FLAT}
+    missing |= {"guided": ROLLER, "rolling": ROLLER, "arm": STEM, "stem-face": FLAT, "guide": FLAT, "speed": FLAT}
     for name, figure in FIGURES.items():
         if figure.needs:
             (one,) = told(missing[figure.needs], f"{{{name}: {{at_most: 1}}}}")
@@ -329,8 +350,10 @@ def test_the_schema_knows_every_limit() -> None:
     assert set(schema["properties"]) == {*FIGURES, *PRESENT}
     assert all(schema["properties"][former]["deprecated"] for former in PRESENT)
     assert schema["additionalProperties"] is False
-    for bounds in schema["properties"].values():
-        assert set(bounds["properties"]) == {"at_least", "at_most"}
+    more = {"pressure-angle": {"on_return"}, **{f"peak-{one}-at-speed": {"rpm"} for one in ("velocity", "jerk")}}
+    more["peak-acceleration-at-speed"] = {"rpm"}
+    for name, bounds in schema["properties"].items():
+        assert set(bounds["properties"]) == {"at_least", "at_most"} | more.get(name, set())
         assert bounds["minProperties"] == 1
 
 
@@ -407,7 +430,7 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
     p = recipe.cam.intent().derivatives(t, 3)
     peaks = np.abs(p[1:]).max(axis=1)
     wanted = [np.ptp(p[0]), *peaks, np.ptp(p[1]), (p[0] + p[2]).min(), np.hypot(p[0], p[1]).max()]
-    figures = of_design(design, design.checks, names)
+    figures = of_design(recipe, design, design.checks, names)
     for name, value in zip(names, wanted, strict=True):
         assert figures[name].value == pytest.approx(value, rel=1e-5, abs=1e-9), name
     bounds = {name: float(value) * (1 + share) + 1e-3 * share for name, value in zip(names, wanted, strict=True)}

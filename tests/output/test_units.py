@@ -43,7 +43,7 @@ verify: {{angles: 360}}
 INCHES = {"one": 1.0, "third": 0.3125, "four": 3.5, "five": 4.5, "fine": 1e-4, "kerf": 0.0078125, "square": 2.5}
 LENGTHS = {"in": MM, "in^2": MM**2, "in^3": MM**3, "deg/in": 1.0 / MM}
 ERRORS = {"geometry_error", "geometry_outward", "geometry_inward", "measured_error", "proved"}
-SCALED = {"tolerance", "outward", "kerf", *ERRORS}
+SCALED = dict.fromkeys(("tolerance", "outward", "kerf", "perimeter", *ERRORS), MM) | {"area": MM**2}
 LEFT_OUT = {"unit", "units", "stages", "seconds", "bytes", "sha256", "detail", "why", "output_unit", "motion_unit"}
 
 
@@ -69,7 +69,7 @@ def alike(one: Any, other: Any, name: str = "", scale: float = 1.0) -> int:
         return 0
     if name.endswith("_deg"):  # of a worst place, which ties may move
         return 0
-    scale = MM if name in SCALED else scale
+    scale = SCALED.get(name, scale)
     if name == "remainder":  # how far a search came, which hangs on rounding
         assert one == pytest.approx(other * scale, rel=0.5, abs=1e-9)
         return int(scale != 1.0)

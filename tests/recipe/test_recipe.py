@@ -685,7 +685,7 @@ manufacture: {cutter: 0.25, feed: 20, plunge: 5, spindle: 9000, depth_of_cut: 0.
                 ),
                 (
                     "2:15: manufacture.diameter: unknown key; the keys here are cutter, feed, plunge, spindle, "
-                    "depth_of_cut, safe_height, lead_in, direction, allowance, start, holes, unreached and layer"
+                    "depth_of_cut, safe_height, lead_in, direction, allowance, start, holes, unreached, layer and wheel"
                 ),
                 "2:39: manufacture.direction: not one of the choices, given 'down'; give climb or conventional",
             ],

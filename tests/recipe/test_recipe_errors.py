@@ -698,7 +698,12 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
         ),
         (
             "[{csv: {as: arcs}}]",
-            ["29: export.files[0].csv.as: not one of the choices, given 'arcs'; give motion or inspection"],
+            [
+                (
+                    "29: export.files[0].csv.as: not one of the choices, given 'arcs'; "
+                    "give motion, contacts, polar or inspection"
+                )
+            ],
         ),
         (
             "[{svg: {as: exact, version: R12}}]",

@@ -32,7 +32,7 @@ PATHS = {
     INVERTED: ("linkage.ground", "linkage.rocker"),
     SLIDER: ("linkage.coupler", "linkage.offset"),
 }
-OF_LINKAGES = tuple(name for name, figure in FIGURES.items() if figure.needs not in {"follower", "roller", "swings"})
+OF_LINKAGES = tuple(name for name, figure in FIGURES.items() if figure.needs in {"", "linkage", "dwell", "face"})
 PIVOT = ("cam.shaft[0]", "cam.shaft[1]")
 
 

@@ -8,7 +8,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.export import Export
-from camgeo.recipe.figures import CONTACT_TRAVEL, HOLLOW_RADIUS, PEAKS
+from camgeo.recipe.figures import (
+    AT_SPEED,
+    CONTACT_TRAVEL,
+    FACE_WIDTH,
+    HOLLOW_RADIUS,
+    JAM_MARGIN,
+    ON_RETURN,
+    ON_RISE,
+    PEAKS,
+    PIVOT_CLEARANCE,
+    ROLLER_SPEED,
+)
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import RECIPE, Recipe, Verify
@@ -25,7 +36,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.sweep import Sweep
 
 # What a four-bar's other figures cost a search depends on these, and most on a second dwell; few searches look at them.
-_DEAR = ("dwell-relative", *PEAKS, "force-angle", CONTACT_TRAVEL, HOLLOW_RADIUS)
+_DEAR = ("dwell-relative", *PEAKS, *AT_SPEED, "force-angle", CONTACT_TRAVEL, FACE_WIDTH, HOLLOW_RADIUS)
+_DEAR += (ON_RISE, ON_RETURN, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN)
 _LENGTH = {"mm": "mm", "inch": "in"}
 _LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
 
@@ -86,6 +98,7 @@ class Ask:
         It leaves out what has no bearing on them, so that a change of limits, ranking or files to export leaves what
         was computed as it is.
         """
+        timed = any(FIGURES[name].needs in {"speed", "guide"} for name in figures)
         plain = replace(self.sweep, limits=(), rank="size", keep=1, refine=False)
         recipe = replace(
             self.recipe,
@@ -94,7 +107,7 @@ class Ask:
             part=Part(),
             export=Export(1.0, ()),
             verify=Verify(1),
-            dynamics=None,
+            dynamics=self.recipe.dynamics if timed else None,
             path=self.recipe.path if self.recipe.tables else Path("recipe.yaml"),
             sweep=plain,
         )

@@ -78,6 +78,8 @@ def compute(recipe: Recipe, values: Array) -> dict[str, Array]:
 def asked_of(recipe: Recipe) -> tuple[str, ...]:
     """Names of the figures that a recipe's designs have."""
     given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
+    if recipe.dynamics is not None:
+        given |= {"dynamics.rpm"} | ({"dynamics.guide"} if recipe.dynamics.guide is not None else set())
     return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.offers, given))
 
 

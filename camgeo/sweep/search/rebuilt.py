@@ -62,7 +62,8 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[s
     figures, fault = {name: np.full(m, np.nan) for name in names}, np.full(m, IMPOSSIBLE, dtype=np.uint8)
     for i, row in enumerate(values):
         try:
-            design = designed(replace(recipe_with(recipe, paths, row), part=Part(), dynamics=None))
+            made = replace(recipe_with(recipe, paths, row), part=Part(), manufacture=None)
+            design = designed(made)
         except RecipeErrors:
             continue
         if isinstance(design.intent, Lift) and _outside(design.intent):
@@ -71,7 +72,7 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[s
         if design.contour is None:
             fault[i] = UNDERCUT
             continue
-        for name, measured in of_design(design, design.checks, names).items():
+        for name, measured in of_design(made, design, design.checks, names).items():
             figures[name][i] = np.nan if measured.value is None else measured.value
         fault[i] = FINE
     return figures, fault

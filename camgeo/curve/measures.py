@@ -1,0 +1,219 @@
+"""Measures of a whole contour: perimeter and area, its distances from the shaft, and the contour over its polar angle.
+
+With g = P.T and h = P.N, N the outward normal, the frame gives
+
+    (r^2)' = 2 sigma g,    h' = omega g,    g' = sigma - omega h,    g'' = sigma' - omega' h - omega^2 g.
+
+So over an interval of width w the greatest |g| is at most ``(e + w^2/8 (|sigma'| + |omega'| r))/(1 - w^2 omega^2/8)``,
+e being the greater of its ends, and r^2 and h differ from those at the nearer end by no more than w/2 times their rate.
+Intervals that may still hold more than the best value found are divided: no extreme is missed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.curve.curvature import roots
+from camgeo.curve.curve import CurveError
+from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.curve.curve import Bounds, Curve, Frame
+    from kin.numeric.arrays import Array, Mask
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+FIRST = 8  # parts of a stretch, at first
+EXACT = 1e-13  # of the whole: where halving a part changes less than its share of this, the part is done
+HALVINGS = 30
+STEP = 0.05  # rad of polar angle at most between two places among which others are sought
+PLACES = 2048  # of each run
+CLOSE = 1e-15  # of such a step
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Perimeter, mm, and area, mm^2, of a closed contour."""
+
+    perimeter: float
+    area: float
+
+
+def measures(curve: Curve) -> Measures:
+    """Perimeter and area: integrals of sigma and of h sigma/2 (Green), to about twelve digits."""
+    stretches = np.concatenate([run.stretches for run in curve.runs])
+    share = np.linspace(0.0, 1.0, FIRST + 1)
+    knots = stretches[:, :1] * (1.0 - share) + stretches[:, 1:] * share
+    low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
+    whole = _integrals(curve, low, high)
+    scale, total = np.abs(whole).sum(axis=1), np.zeros(2)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        first, second = _integrals(curve, low, middle), _integrals(curve, middle, high)
+        change = np.abs(first + second - whole)
+        done = (change <= EXACT * scale[:, None]).all(axis=0)
+        total += (first + second)[:, done].sum(axis=1)
+        if done.all():
+            break
+        low, high = np.concatenate([low[~done], middle[~done]]), np.concatenate([middle[~done], high[~done]])
+        whole = np.concatenate([first[:, ~done], second[:, ~done]], axis=1)
+    else:
+        total += whole.sum(axis=1)  # parts too narrow to count
+    return Measures(float(total[0]), float(total[1]))
+
+
+def _integrals(curve: Curve, low: Array, high: Array) -> Array:
+    """Of sigma and of h sigma/2 over intervals (n,) within stretches, (2, n), by Gauss and Legendre."""
+    half = 0.5 * (high - low)
+    t = 0.5 * (low + high)[:, None] + half[:, None] * NODES
+    at = curve.sample(t.ravel())
+    rows = np.stack([at.speed, 0.5 * at.speed * np.sum(at.point * at.normal, axis=1)])
+    found: Array = (rows.reshape(2, *t.shape) @ WEIGHTS) * half
+    return found
+
+
+def touched(contour: Curve, parameter: Array) -> Mask:
+    """Whether the contour has a point of each parameter (n,), or was trimmed away there."""
+    if contour.closed:
+        return np.ones(parameter.shape, dtype=bool)
+    period = contour.shape.period
+    kept = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]
+    found: Mask = np.any(kept, axis=0)
+    return found
+
+
+# --- distances from the shaft -----------------------------------------------------------------------------------------
+
+
+def farthest(curve: Curve) -> Extreme:
+    """Greatest distance of a contour from the shaft, mm, and the parameter there."""
+    found = _greatest(curve, lambda at: np.sum(at.point**2, axis=1), _radial)
+    return _rooted(found, 1.0)
+
+
+def nearest(curve: Curve) -> Extreme:
+    """Least distance of a contour from the shaft, mm, and the parameter there."""
+    found = _greatest(curve, lambda at: -np.sum(at.point**2, axis=1), _radial)
+    return _rooted(found, -1.0)
+
+
+def least_support(curve: Curve) -> Extreme:
+    """Least distance of the shaft from a tangent, mm, below 0 beyond it: above 0 where each ray has one point."""
+    found = _greatest(curve, lambda at: -np.sum(at.point * at.normal, axis=1), _turning)
+    return Extreme(-found.value, found.at, found.room)
+
+
+def _rooted(square: Extreme, sign: float) -> Extreme:
+    value = math.sqrt(max(sign * square.value, 0.0))
+    return Extreme(value, square.at, square.room / value if value else math.sqrt(square.room))
+
+
+def _radial(bounds: Bounds) -> tuple[Array, Mask]:
+    """Greatest rate of r^2 for each g, and whether it keeps its sign."""
+    rate = 2.0 * np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high))
+    return rate, (bounds.speed_low >= 0.0) | (bounds.speed_high <= 0.0)
+
+
+def _turning(bounds: Bounds) -> tuple[Array, Mask]:
+    """Greatest rate of h for each g, and whether it keeps its sign."""
+    rate = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high))
+    return rate, (bounds.turn_low >= 0.0) | (bounds.turn_high <= 0.0)
+
+
+def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bounds], tuple[Array, Mask]]) -> Extreme:
+    """Greatest value of a figure whose derivative is g times its pace."""
+    cells = curve.cells
+    low, high, size = cells.low, cells.high, 2.0 * curve.size
+    best, at, tolerance = -math.inf, float(low[0]), 0.0
+    for _ in range(LEVELS):
+        ends = curve.span(low, high)
+        values = np.stack([value(one) for one in ends])
+        g = np.stack([np.sum(one.point * one.tangent, axis=1) for one in ends])
+        top = int(np.argmax(values))
+        if values.flat[top] > best:
+            best, at = float(values.flat[top]), float(np.concatenate([low, high])[top])
+        tolerance = max(tolerance, SHARPNESS * float(np.abs(values).max()))
+        bounds, width = cells.over(low, high), high - low
+        turn = np.maximum(np.abs(bounds.turn_low), np.abs(bounds.turn_high))
+        bend = 0.125 * width**2
+        own, left = bend * (bounds.speed_slope + bounds.turn_slope * size), 1.0 - bend * turn**2
+        with np.errstate(divide="ignore", invalid="ignore"):
+            most = np.where(left > 0.0, np.minimum((np.abs(g).max(axis=0) + own) / left, size), size)
+        keeps = (g[0] * g[1] > 0.0) & (np.abs(g).min(axis=0) > own + bend * turn**2 * most)
+        rate, one_way = pace(bounds)
+        reach = values.max(axis=0) + np.where(keeps & one_way, 0.0, 0.5 * width * rate * most)
+        open_ = ~(reach <= best + tolerance)
+        if not open_.any():
+            return Extreme(best, at, tolerance)
+        low, high, reach = low[open_], high[open_], reach[open_]
+        if low.size > MOST:
+            break
+        share = np.linspace(0.0, 1.0, PARTS + 1)
+        knots = low[:, None] * (1.0 - share) + high[:, None] * share
+        low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
+    return Extreme(best, at, float(reach.max()) - best)
+
+
+# --- over the polar angle ---------------------------------------------------------------------------------------------
+
+
+class StarError(CurveError):
+    """A contour that is no function of its polar angle about the shaft."""
+
+
+def polar_radius(curve: Curve, angles: Array) -> Array:
+    """Distance of a contour from the shaft (n,) at polar angles (n,), each a root on the exact curve.
+
+    Raises StarError unless each ray is proved to cross the contour once.
+    """
+    least = least_support(curve)
+    if not least.value > least.room:
+        raise StarError("a ray from the shaft may cross the contour more than once or not at all", least.at)
+    parameters, turned = _turned(curve)
+    wanted = np.mod(angles - turned[0], 2.0 * np.pi) + turned[0]
+    cell = np.clip(np.searchsorted(turned, wanted, side="right") - 1, 0, len(turned) - 2)
+    skipped = parameters[cell + 1] <= parameters[cell]  # the seam between two runs, of one polar angle
+    cell = np.where(skipped, cell - 1, cell)
+    low, high = parameters[cell], parameters[cell + 1]
+    cosine, sine = np.cos(wanted), np.sin(wanted)
+
+    def beside(t: Array) -> Array:
+        point = curve.sample(t).point
+        found: Array = point[:, 1] * cosine - point[:, 0] * sine
+        return found
+
+    ends = beside(low), beside(high)
+    exact = [np.abs(end) <= 0.0 for end in ends]
+    open_ = ~(exact[0] | exact[1]) & (ends[0] < 0.0) & (ends[1] > 0.0)
+    # rounding alone puts a ray beside both ends: the nearer one is it
+    at = np.where(np.abs(ends[0]) <= np.abs(ends[1]), low, high)
+    if open_.any():
+        cosine, sine = cosine[open_], sine[open_]
+        at[open_] = roots(beside, low[open_], high[open_], (ends[0][open_], ends[1][open_]), CLOSE)
+    point = curve.sample(at).point
+    radius: Array = np.hypot(point[:, 0], point[:, 1])
+    return radius
+
+
+def _turned(curve: Curve) -> tuple[Array, Array]:
+    """Parameters run after run, and the polar angle there, rising over one turn and less than `STEP` apart."""
+    found = []
+    for run in curve.runs:
+        t = np.linspace(run.low, run.high, PLACES + 1)
+        for _ in range(LEVELS):
+            point = curve.sample(t).point
+            z = point[:, 0] + 1j * point[:, 1]
+            wide = np.abs(np.angle(z[1:] / z[:-1])) > STEP
+            if not wide.any():
+                break
+            t = np.sort(np.concatenate([t, 0.5 * (t[:-1] + t[1:])[wide]]))
+        found.append((t, z))
+    z = np.concatenate([z for _, z in found])
+    steps = np.angle(z[1:] / z[:-1])
+    turned = np.angle(z[0]) + np.concatenate([[0.0], np.cumsum(np.maximum(steps, 0.0))])
+    return np.concatenate([t for t, _ in found]), turned
