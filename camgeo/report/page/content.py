@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias, cast
 
 import numpy as np
 
 from camgeo.curve.ring import Ring, disc
-from camgeo.report.page import curves, outline
+from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, flat, flat_pair
 from camgeo.report.page.scene import Body, Scene, Shape, pivot
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from camgeo.cams.constant_diameter import ConstantDiameterCam
+    from camgeo.cams.disc import OscillatingFaceCam, OscillatingRoundCam, TranslatingFaceCam, TranslatingRoundCam
+    from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.law.support_function import Lift
@@ -24,6 +28,7 @@ if TYPE_CHECKING:
 
 JOINT = 0.045  # of the cam's reach: the size of a joint
 EXACT = "exact"
+SIGN = "above 0 where the cam drives a rise"
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,12 +141,83 @@ def _faces(_: Recipe, design: Design, reach: float, size: float) -> tuple[list[B
 
 def _two_rollers(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
     bodies, angles = double_roller(cast("Transmission", design.intent), recipe.cam.touch_radius, size)
-    return bodies, [curves.pressure(angles)]
+    return bodies, [curves.pressure(dict(zip(("roller A", "roller B"), angles, strict=True)))]
 
 
 def _two_faces(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
     bodies, lever = flat_pair(cast("Transmission", design.intent), size)
     return bodies, [curves.levers(recipe, lever)]
+
+
+_Touch: TypeAlias = "Callable[[float, Array, float], guided.Touch]"
+"""Radius, pressure angle at the page's steps and size of a joint to what touches the cam."""
+TOUCHES: dict[str, _Touch] = {
+    "roller": lambda radius, _, size: guided.roller(radius, size),
+    "knife edge": lambda _, __, size: guided.knife_edge(size),
+    "shoe": guided.shoe,
+}
+
+
+def _pressed(recipe: Recipe, design: Design, size: float) -> tuple[guided.Touch, Array, list[Body], list[curves.Plot]]:
+    """Return what touches a cam about a centre, the displacement at the page's steps, the contact and the plot."""
+    name = design.follower.name.partition(" ")[2]
+    s = design.position.rows(SHAFT, 0)[0]
+    angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
+    touch = TOUCHES[name](recipe.cam.touch_radius, angle, size)
+    return touch, s, [guided.touched(design.profile, size)], [curves.pressure({name: angle}, SIGN)]
+
+
+def _on_stem(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    touch, s, found, plots = _pressed(recipe, design, size)
+    along = cast("TranslatingRoundCam", recipe.cam).guide
+    x, y = guided.centres(along, s)
+    return [*guided.on_stem(touch, x, float(y[0]), size), *found], plots
+
+
+def _on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    touch, s, found, plots = _pressed(recipe, design, size)
+    arm = cast("OscillatingRoundCam", recipe.cam).guide
+    return [*guided.on_arm(touch, arm, s, (arm.length, 0.0), size), *found], plots
+
+
+def _faced(recipe: Recipe, design: Design, size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
+    """Return the displacement, the run of the contact along a face, the contact, and plots of both."""
+    s = design.position.rows(SHAFT, 0)[0]
+    place = recipe.cam.contact_place(design.intent, design.profile)(SHAFT)
+    angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
+    plots = [curves.pressure({"flat face": angle}, SIGN), curves.along(recipe, place)]
+    margin = guided.MARGIN * size
+    return s, float(place.min()) - margin, float(place.max()) + margin, [guided.touched(design.profile, size)], plots
+
+
+def _face_on_stem(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    s, low, high, found, plots = _faced(recipe, design, size)
+    cam = cast("TranslatingFaceCam", recipe.cam)
+    if cam.width is not None:
+        low, high = -0.5 * cam.width, 0.5 * cam.width
+    face = cam.face(cast("Displacement", design.intent))
+    x = face.level + s
+    return [*guided.on_stem(guided.face(cam.tilt, low, high, size), x, cam.offset, size), *found], plots
+
+
+def _face_on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    s, low, high, found, plots = _faced(recipe, design, size)
+    face = cast("OscillatingFaceCam", recipe.cam).face(cast("Displacement", design.intent))
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    at = (middle, -face.side * face.face)
+    return [*guided.on_arm(guided.face(0.0, -half, half, size), face, s, at, size), *found], plots
+
+
+def _roller_frame(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    cam, s = cast("ConstantDiameterCam", recipe.cam), design.position.rows(SHAFT, 0)[0]
+    x, _y = guided.centres(cam.guide, s)
+    hole = 0.5 * (recipe.part.bore or 0.0)
+    bodies = guided.roller_frame(x, cam.apart(design.intent), cam.touch_radius, hole, size)
+    found, angles = [], {}
+    for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
+        found.append(guided.touched(design.profile, size, on=on, name=f"contact of {name}"))
+        angles[name] = cam.pressure_angle(design.intent, design.profile)(SHAFT + on)
+    return [*bodies, *found], [curves.pressure(angles, SIGN)]
 
 
 DRAWN: dict[str, _Drawn] = {
@@ -150,4 +226,9 @@ DRAWN: dict[str, _Drawn] = {
     "square frame": _Drawn(_faces, ""),  # of a linkage that does not turn right round
     "double roller": _Drawn(_two_rollers, "O"),
     "flat pair": _Drawn(_two_faces, "O"),
+    "translating flat face": _Drawn(_face_on_stem, ""),
+    "oscillating flat face": _Drawn(_face_on_arm, "O"),
+    "roller yoke": _Drawn(_roller_frame, ""),
+    **{f"translating {name}": _Drawn(_on_stem, "") for name in TOUCHES},
+    **{f"oscillating {name}": _Drawn(_on_arm, "O") for name in TOUCHES},
 }

@@ -13,6 +13,8 @@ from camgeo.report.page.followers import SHAFT
 from camgeo.synthesis.design import intended
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
     from camgeo.report.page.outline import Exact
@@ -93,10 +95,10 @@ def output(recipe: Recipe, driven: Driven) -> list[Plot]:
     return found
 
 
-def pressure(angles: tuple[Array, Array]) -> Plot:
-    """Return the plot of a double roller's pressure angles, rad (STEPS + 1,) each."""
-    series = tuple(Series(f"roller {name}", DEGREES * row) for name, row in zip("AB", angles, strict=True))
-    return Plot("Pressure angle", "°", series, dwells=True)
+def pressure(angles: Mapping[str, Array], note: str = "") -> Plot:
+    """Return the plot of pressure angles, rad (STEPS + 1,) each, by the name of what touches."""
+    series = tuple(Series(name, DEGREES * row) for name, row in angles.items())
+    return Plot("Pressure angle", "°", series, dwells=True, note=note)
 
 
 def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
@@ -104,6 +106,13 @@ def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
     series = tuple(Series(f"face {name}", row / recipe.mm) for name, row in zip("AB", found, strict=True))
     note = "a flat face is pushed along its normal; the lever is that of the push about the pivot"
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
+
+
+def along(recipe: Recipe, place: Array) -> Plot:
+    """Return the plot of where a flat face is touched, mm (STEPS + 1,)."""
+    note = "along the face, from the axis of its stem or the pivot of its arm"
+    unit = length_unit(recipe)
+    return Plot("Contact on the face", unit, (Series("contact", place / recipe.mm),), dwells=True, note=note)
 
 
 def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:

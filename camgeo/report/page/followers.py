@@ -63,9 +63,9 @@ def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[B
     """Return a flat face, or the yoke of two faces `breadth` apart, with guides and contacts; `reach` is the cam's."""
     p, slope = touched(lift, SHAFT)
     thick, half_stem, gap = 2.2 * size, 1.3 * size, 1.0 * size
-    guide = 4.5 * size
+    run = 4.5 * size
     first_guide = float(p.max()) + thick + gap
-    length = first_guide + guide + 2.0 * size - float(p.min())
+    length = first_guide + run + 2.0 * size - float(p.min())
     stem = box(thick, -half_stem, length, half_stem)
     moving = poses(p, 0.0, 0.0)
     if breadth is None:
@@ -77,7 +77,7 @@ def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[B
         outer = box(-breadth - thick, -tall - thick, thick, tall + thick)
         frame = Shape("follower", (outer, box(-breadth, -tall, 0.0, tall)), "yoke")
         found = [Body("yoke", "follower", (frame, Shape("follower", (stem,))), moving)]
-    found.append(_guide(first_guide, guide, half_stem, size))
+    found.append(guide(first_guide, run, half_stem, size))
     found.append(contact("contact on face 1", p, slope, 0.0, size))
     if breadth is not None:
         q, back = touched(lift, SHAFT + 0.5 * TURN)
@@ -85,10 +85,10 @@ def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[B
     return found
 
 
-def _guide(start: float, length: float, half: float, size: float) -> Body:
-    """Return a fixed guide of two blocks about a stem."""
+def guide(start: float, length: float, half: float, size: float, y: float = 0.0) -> Body:
+    """Return a fixed guide of two blocks about a stem on a line at y."""
     shapes = [
-        Shape("fixed", (box(start, side * half, start + length, side * (half + 1.3 * size)),), "guide")
+        Shape("fixed", (box(start, y + side * half, start + length, y + side * (half + 1.3 * size)),), "guide")
         for side in (-1.0, 1.0)
     ]
     return Body("guide", "ground", tuple(shapes), still())
