@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.curve.ring import Ring, disc
 from camgeo.report.page import curves, guided, outline
-from camgeo.report.page.followers import SHAFT, cam, double_roller, flat, flat_pair
+from camgeo.report.page.followers import SHAFT, cam, double_roller, edge_ahead, flat, flat_pair
 from camgeo.report.page.scene import Body, Scene, Shape, pivot
 from kin.numeric.angles import TURN
 
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 JOINT = 0.045  # of the cam's reach: the size of a joint
 EXACT = "exact"
+RIM = 4.0  # sizes of a joint: thickness of a ring whose outer edge no file shows
 SIGN = "above 0 where the cam drives a rise"
 
 
@@ -76,6 +77,12 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
     return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
 
 
+def _around(rings: tuple[Ring, ...]) -> bool:
+    """Whether a drawing shows the outer edge of a ring: one hole of it is then no bore."""
+    first, *holes = (float(np.ptp(ring.flattened(), axis=0).max()) for ring in rings)
+    return max(holes, default=0.0) > 0.5 * first
+
+
 def _on_face(design: Design) -> list[Shape]:
     """Hub and timing mark of a part; a file's outline shows neither, or does not tell which hole is the mark."""
     if design.body is None:
@@ -105,6 +112,10 @@ def _mechanism(
     reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contour is not None else "No such cam is made: a check of the exact contour fails."
+    if design.profile.roller_radius < 0.0 and not any(_around(rings) for _, rings in drawn):
+        bore, reach = 2.0 * edge_ahead(drawn[0][1][0]), reach + RIM * size
+        drawn = [(name, (disc(0.0, 0.0, reach), rings[0])) for name, rings in drawn]
+        note = f"The contour is the opening of a ring, whose outer edge is drawn here only. {note}".strip()
     on_it = _on_face(design)
     disk = cam(drawn, bore, size, -SHAFT, on_it)
     if design.driven is not None and design.driven.turns:
@@ -164,14 +175,14 @@ def _pressed(recipe: Recipe, design: Design, size: float) -> tuple[guided.Touch,
     s = design.position.rows(SHAFT, 0)[0]
     angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
     touch = TOUCHES[name](recipe.cam.touch_radius, angle, size)
-    return touch, s, [guided.touched(design.profile, size)], [curves.pressure({name: angle}, SIGN)]
+    return touch, s, [guided.touched(design.profile, size, touch.within)], [curves.pressure({name: angle}, SIGN)]
 
 
-def _on_stem(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+def _on_stem(recipe: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
     touch, s, found, plots = _pressed(recipe, design, size)
     along = cast("TranslatingRoundCam", recipe.cam).guide
     x, y = guided.centres(along, s)
-    return [*guided.on_stem(touch, x, float(y[0]), size), *found], plots
+    return [*guided.on_stem(touch, x, float(y[0]), reach, size), *found], plots
 
 
 def _on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
@@ -190,14 +201,14 @@ def _faced(recipe: Recipe, design: Design, size: float) -> tuple[Array, float, f
     return s, float(place.min()) - margin, float(place.max()) + margin, [guided.touched(design.profile, size)], plots
 
 
-def _face_on_stem(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+def _face_on_stem(recipe: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
     s, low, high, found, plots = _faced(recipe, design, size)
     cam = cast("TranslatingFaceCam", recipe.cam)
     if cam.width is not None:
         low, high = -0.5 * cam.width, 0.5 * cam.width
     face = cam.face(cast("Displacement", design.intent))
     x = face.level + s
-    return [*guided.on_stem(guided.face(cam.tilt, low, high, size), x, cam.offset, size), *found], plots
+    return [*guided.on_stem(guided.face(cam.tilt, low, high, size), x, cam.offset, reach, size), *found], plots
 
 
 def _face_on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
@@ -215,7 +226,7 @@ def _roller_frame(recipe: Recipe, design: Design, _: float, size: float) -> tupl
     bodies = guided.roller_frame(x, cam.apart(design.intent), cam.touch_radius, hole, size)
     found, angles = [], {}
     for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
-        found.append(guided.touched(design.profile, size, on=on, name=f"contact of {name}"))
+        found.append(guided.touched(design.profile, size, cam.touch_radius, on=on, name=f"contact of {name}"))
         angles[name] = cam.pressure_angle(design.intent, design.profile)(SHAFT + on)
     return [*bodies, *found], [curves.pressure(angles, SIGN)]
 

@@ -37,15 +37,19 @@ def cam(
     """
     hole = 0.5 * bore if bore else 0.0
     shapes = [Shape("metal other" if index else "metal", rings, name) for index, (name, rings) in enumerate(drawn)]
-    beyond = drawn[0][1][0].flattened()
-    reach = np.abs(beyond).max()
-    ahead = beyond[beyond[:, 0] > 0.0]
-    edge = float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(reach)
+    edge = edge_ahead(drawn[0][1][0])
     first = max(hole, 1.2 * size)
     if edge - first > size and not any(shape.role == "timing mark" for shape in on_it):
         mark = Ring.through([(edge - 0.45 * (edge - first), 0.0), (edge, 0.0)], closed=False)
         shapes.append(Shape("mark", (mark,), "zero of the motion"))
     return Body("cam", "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
+
+
+def edge_ahead(ring: Ring) -> float:
+    """Where a contour about the shaft crosses the x axis ahead of it."""
+    beyond = ring.flattened()
+    ahead = beyond[beyond[:, 0] > 0.0]
+    return float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(np.abs(beyond).max())
 
 
 def touched(lift: Lift, theta: Array) -> tuple[Array, Array]:

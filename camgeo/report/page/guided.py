@@ -30,18 +30,22 @@ MARGIN = 2.0  # of a face or a shoe beyond the contact
 
 @dataclass(frozen=True, eq=False)
 class Touch:
-    """What touches the cam: shapes, how far along the travel what leads it begins, and how far it reaches there."""
+    """What touches the cam: shapes, how far along the travel what leads it begins, and how far it reaches there.
+
+    `within` is how far the normal of the contact runs in it before it stands out.
+    """
 
     name: str
     shapes: tuple[Shape, ...]
     foot: float = 0.0
     ahead: float = 0.0
+    within: float = 0.0
 
 
 def roller(radius: float, size: float, name: str = "roller") -> Touch:
     """Return a roller on its pin."""
     shapes = (Shape("roller", (disc(0.0, 0.0, radius),), name), pin(min(size, 0.8 * radius)))
-    return Touch(name, shapes, 0.0, radius)
+    return Touch(name, shapes, ahead=radius, within=radius)
 
 
 def knife_edge(size: float) -> Touch:
@@ -74,10 +78,10 @@ def face(tilt: float, low: float, high: float, size: float) -> Touch:
     return Touch("flat face", (Shape("follower", (outline,), "flat face"),), foot, float(outline.points[:, 0].max()))
 
 
-def on_stem(touch: Touch, x: Array, y: float, size: float) -> list[Body]:
-    """Return the follower on a stem at places x (n,) of a line at y, with the guide of the stem."""
+def on_stem(touch: Touch, x: Array, y: float, reach: float, size: float) -> list[Body]:
+    """Return the follower on a stem at places x (n,) of a line at y, with its guide beyond the cam's `reach`."""
     half, run = HALF_STEM * size, 4.5 * size
-    start = float(x.max()) + touch.ahead + size
+    start = max(float(x.max()) + touch.ahead, reach) + size
     length = start + run + 2.0 * size - float(x.min())
     stem = Shape("follower", (box(touch.foot, -half, length, half),), "stem")
     return [
@@ -123,17 +127,18 @@ def on_arm(touch: Touch, arm: Arm, s: Array, at: tuple[float, float], size: floa
     ]
 
 
-def touched(profile: Profile, size: float, *, on: float = 0.0, name: str = "contact") -> Body:
+def touched(profile: Profile, size: float, within: float = 0.0, *, on: float = 0.0, name: str = "contact") -> Body:
     """Return the contact at each shaft angle, with the direction in which the cam pushes.
 
-    The follower stands `on` rad ahead of the x axis. A ring pushes inwards.
+    The follower stands `on` rad ahead of the x axis; the arrow is longer by what it runs `within` it. A ring pushes
+    inwards.
     """
     frame = profile.curve.sample(np.mod(SHAFT + on, TURN))
     back = np.exp(-1j * SHAFT)
     point, normal = ((row[:, 0] + 1j * row[:, 1]) * back for row in (frame.point, frame.normal))
     push = normal if profile.roller_radius >= 0.0 else -normal
     direction = np.unwrap(np.angle(push))
-    return contact(name, point.real, point.imag, direction, size, within=abs(profile.roller_radius))
+    return contact(name, point.real, point.imag, direction, size, within=within)
 
 
 def centres(guide_of: Guide, s: Array) -> tuple[Array, Array]:
