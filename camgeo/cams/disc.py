@@ -17,7 +17,7 @@ from camgeo.recipe.schema.reader import kind_of
 from camgeo.recipe.schema.yaml_source import Mapping, entries
 
 if TYPE_CHECKING:
-    from camgeo.curve.disc import Face
+    from camgeo.curve.disc import StraightFace, SwingingFace
     from camgeo.curve.moving_frame import Displacement, Oscillating, Translating
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
@@ -174,7 +174,7 @@ class TranslatingFaceCam(DiscCam, FacedCam):
         """The lift."""
         return LiftPosition(cast("Displacement", intent))
 
-    def face(self, motion: Displacement) -> Face:
+    def face(self, motion: Displacement) -> StraightFace:
         """The face."""
         from camgeo.curve.disc import StraightFace
 
@@ -201,7 +201,7 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
         """The swing."""
         return ArmPosition(cast("Displacement", intent), arm=self.pivot)
 
-    def face(self, motion: Displacement) -> Face:
+    def face(self, motion: Displacement) -> SwingingFace:
         """The face."""
         from camgeo.curve.disc import SwingingFace
 
