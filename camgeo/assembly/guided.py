@@ -174,11 +174,10 @@ def face_on_arm(face: SwingingFace, contact: Array, drive: Drive) -> Assembly:
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
     hub, inner = 0.5 * s.hole + max(s.wall, THIN), 0.5 * s.hole + THIN
-    if not -hub < face.face < hub + s.bar:
+    if not -0.5 * s.bar < face.face < hub + 0.6 * s.bar:
         message = "the face passes {away} beside the pivot, and its bar beside the hub"
-        remedy = "give between -{below} and {above}"
-        lengths = {"away": abs(face.face), "below": hub, "above": hub + s.bar}
-        raise BodyError("cam.follower.arm.face", message, remedy, **lengths)
+        remedy = "give at most {most}" if face.face > 0.0 else "give 0 or more"
+        raise BodyError("cam.follower.arm.face", message, remedy, away=abs(face.face), most=hub + 0.5 * s.bar)
     y0, y1 = sorted(face.side * (-face.face + y) for y in (0.0, s.bar))
     plates = (
         Plate(disc(hub), (eye(s),), low, high),

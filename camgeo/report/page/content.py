@@ -196,7 +196,7 @@ def _faced(recipe: Recipe, design: Design, size: float) -> tuple[Array, float, f
     s = design.position.rows(SHAFT, 0)[0]
     place = recipe.cam.contact_place(design.intent, design.profile)(SHAFT)
     angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
-    plots = [curves.pressure({"flat face": angle}, SIGN), curves.along(recipe, place)]
+    plots = [curves.pressure({"flat face": angle}), curves.along(recipe, place)]
     margin = guided.MARGIN * size
     return s, float(place.min()) - margin, float(place.max()) + margin, [guided.touched(design.profile, size)], plots
 
