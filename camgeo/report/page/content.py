@@ -169,9 +169,14 @@ TOUCHES: dict[str, _Touch] = {
 }
 
 
+def _touching(design: Design) -> str:
+    """What touches the cam, without how it is led."""
+    return design.follower.name.partition(" ")[2]
+
+
 def _pressed(recipe: Recipe, design: Design, size: float) -> tuple[guided.Touch, Array, list[Body], list[curves.Plot]]:
     """Return what touches a cam about a centre, the displacement at the page's steps, the contact and the plot."""
-    name = design.follower.name.partition(" ")[2]
+    name = _touching(design)
     s = design.position.rows(SHAFT, 0)[0]
     angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
     touch = TOUCHES[name](recipe.cam.touch_radius, angle, size)
@@ -196,7 +201,7 @@ def _faced(recipe: Recipe, design: Design, size: float) -> tuple[Array, float, f
     s = design.position.rows(SHAFT, 0)[0]
     place = recipe.cam.contact_place(design.intent, design.profile)(SHAFT)
     angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
-    plots = [curves.pressure({"flat face": angle}), curves.along(recipe, place)]
+    plots = [curves.pressure({_touching(design): angle}), curves.along(recipe, place)]
     margin = guided.MARGIN * size
     return s, float(place.min()) - margin, float(place.max()) + margin, [guided.touched(design.profile, size)], plots
 
