@@ -201,6 +201,17 @@ def test_a_ring_has_its_metal_outside_and_says_where_its_edge_is_from() -> None:
     assert guide[:, 0].min() > outer.points[:, 0].max()
 
 
+@pytest.mark.parametrize(
+    ("name", "limit", "margin"), [("shoe", (1.0 / 60.0, "shoe"), True), ("ring", (-1.0 / 9.0, "roller"), False)]
+)
+def test_the_curvature_is_held_against_that_of_what_touches(name: str, limit: tuple[float, str], margin: bool) -> None:
+    _, found = drawn(name, "cw")
+    (plot,) = (p for p in found.plots if p.title == "Curvature of the pitch curve")
+    ((value, touch),) = plot.limits
+    assert (value, touch) == (pytest.approx(limit[0]), limit[1])
+    assert ("from undercut" in plot.note) == margin
+
+
 @pytest.mark.parametrize("name", ["roller", "shoe", "tilted face", "ring", "yoke"])
 def test_a_guide_stands_clear_of_what_it_guides(name: str) -> None:
     _, found = drawn(name, "cw")

@@ -65,7 +65,8 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
     exact = outline.Exact.of(design, outline.Exact.looks(files))
     drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    plots.append(curves.curvature(recipe, design, exact))
+    touch = next((name for name in TOUCHES if design.follower.name.endswith(name)), "roller")
+    plots.append(curves.curvature(recipe, design, exact, touch))
     errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files]
     scene = scene.scaled(1.0 / recipe.mm)
     middle = slice(exact.per // 2, None, exact.per)

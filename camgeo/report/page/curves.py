@@ -115,20 +115,23 @@ def along(recipe: Recipe, place: Array) -> Plot:
     return Plot("Contact on the face", unit, (Series("contact", place / recipe.mm),), dwells=True, note=note)
 
 
-def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
-    """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature."""
+def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller") -> Plot:
+    """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
+
+    `touch` names what follows the pitch curve. Of a ring, which is undercut where it is hollow, no margin is told.
+    """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
     found = next((check for check in design.checks if check.name == CURVATURE.name), None)
-    unit = length_unit(recipe)
+    unit, radius = length_unit(recipe), design.profile.roller_radius
     margin = ""
-    if found is not None and found.value is not None and math.isfinite(found.value):
-        room = (found.value - design.profile.roller_radius) / recipe.mm
+    if found is not None and found.value is not None and math.isfinite(found.value) and radius >= 0.0:
+        room = (found.value - radius) / recipe.mm
         margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {room:.5g} {unit} from undercut"
-    if design.profile.roller_radius:
+    if radius:
         values = closed(exact.curvature[:: exact.per]) * recipe.mm
-        limit = recipe.mm / design.profile.roller_radius
+        limit = recipe.mm / radius
         series = (Series("curvature of the pitch curve", values),)
-        return Plot("Curvature of the pitch curve", f"1/{unit}", series, over, ((limit, "roller"),), note=margin)
+        return Plot("Curvature of the pitch curve", f"1/{unit}", series, over, ((limit, touch),), note=margin)
     values = closed(exact.radius[:: exact.per]) / recipe.mm
     return Plot("Radius of curvature", unit, (Series("radius of curvature", values),), over, ((0.0, ""),), note=margin)
 
