@@ -42,7 +42,7 @@ def row(name: str) -> str:
     told = sorted((check.value, check.detail) for check in checks)
     # what is no fit, and not the sink about the shaft's retainer, which is wider by its own rule
     free = next((one for one in told if one[0] > assembly.sizes.clearance and "retainer-shaft" not in one[1]), told[-1])
-    kind = design.follower if recipe.linkage is None else recipe.linkage.kind
+    kind = design.follower.name if recipe.linkage is None else recipe.linkage.kind
     fine = "" if all(check.ok for check in checks) else " **meets**"
     return (
         f"| {name} | {kind} | {len(assembly.members)} | {len(checks)} | {told[0][0]:.3f} {told[0][1]}{fine} | "

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
 
 ROOT = Path(__file__).parents[1]
-FAMILIES = ("Flat faces and yokes", "Linkages", "Double rollers", "Flat pairs")
+FAMILIES = ("Flat faces and yokes", "Linkages", "Double rollers", "Flat pairs", "Disc cams")
+DISC = ("disc", "constant-diameter")
 SHAFT_DEG = 60.0
 COLUMNS = 3
 HEAD = """\
@@ -35,6 +36,8 @@ def family(recipe: Recipe) -> str:
     """The heading under which a recipe stands."""
     if recipe.linkage is not None:
         return "Linkages"
+    if recipe.cam.kind in DISC:
+        return "Disc cams"
     if isinstance(recipe.cam, DoubleRollerCam):
         return "Double rollers"
     return "Flat pairs" if isinstance(recipe.cam, FlatPairCam) else "Flat faces and yokes"

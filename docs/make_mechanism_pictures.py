@@ -19,7 +19,7 @@ import matplotlib.pyplot as plt  # the backend must be chosen first
 
 ROOT = Path(__file__).parents[1]
 INK = "#26323f"
-NAMES = ("print-yoke", "print-double-roller", "print-four-bar")
+NAMES = ("print-yoke", "print-double-roller", "print-four-bar", "print-roller", "print-arm", "print-constant-diameter")
 COLOURS = {
     "cam": "#d08a3c",
     "shaft": "#5b6b7f",
@@ -29,6 +29,7 @@ COLOURS = {
     "yoke": "#4f8f5f",
     "arm": "#4f8f5f",
     "frame": "#4f8f5f",
+    "stem": "#4f8f5f",
     "roller": "#8a6fb0",
     "rocker": "#8a6fb0",
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from camgeo.assembly.assembly import Place
+    from camgeo.curve.moving_frame import Displacement
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -47,6 +49,35 @@ def swinging(law: Transmission, away: float, share: float = 1.0) -> Place:
         found = np.zeros((3, order + 1, len(phi)))
         found[0, 0] = away
         found[2] = -share * law.psi_of_shaft(phi, order)
+        return found
+
+    return place
+
+
+def lifted(motion: Displacement, foot: float, y: float = 0.0) -> Place:
+    """Give the place of a stem that moves along x on a line at y: its origin stands at `foot` at displacement 0."""
+
+    def place(phi: Array, order: int) -> Array:
+        found = np.zeros((3, order + 1, len(phi)))
+        found[0] = motion.derivatives(phi, order)
+        found[0, 0] += foot
+        found[1, 0] = y
+        return found
+
+    return place
+
+
+def swung(motion: Displacement, away: float, rest: float, side: int) -> Place:
+    """Give the place of an arm about a pivot `away` from the shaft, its x from there to what touches the cam.
+
+    `rest` is its angle to the line from pivot to shaft at displacement 0; `side` is +1 trailing, -1 leading.
+    """
+
+    def place(phi: Array, order: int) -> Array:
+        found = np.zeros((3, order + 1, len(phi)))
+        found[0, 0] = away
+        found[2] = side * motion.derivatives(phi, order)
+        found[2, 0] += math.pi + side * rest
         return found
 
     return place

@@ -7,6 +7,7 @@ cam, as in W Figure 5, and no bracket has to reach over it.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +21,11 @@ from camgeo.assembly.sizes import THIN, BodyError
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.assembly.assembly import Place
     from camgeo.assembly.shaft import Drive
+    from camgeo.assembly.shapes import Point
     from kin.law.transmission import Transmission
 
 ARM_COLOUR, ROLLER_COLOUR = "#4f8f5f", "#8a6fb0"
@@ -28,41 +33,104 @@ LOOKS = 720
 SIDES = ((-1.0, "a"), (1.0, "b"))
 
 
-def double_roller(law: Transmission, radius: float, drive: Drive) -> Assembly:
-    """Return the mechanism of a double roller.
+@dataclass(frozen=True)
+class Levels:
+    """Heights of what carries the rollers under the cam, from `low` to `high`, and of the cam's disc above it."""
 
-    The rollers have their nominal radius and touch the cam.
+    low: float
+    high: float
+    cam_low: float
+    cam_high: float
+
+    @staticmethod
+    def of(drive: Drive) -> Levels:
+        """Put the carrier over the base, and the cam over both."""
+        s, disk = drive.sizes, drive.disk
+        low = s.plate + s.gap
+        high = low + s.link
+        cam_low = max(high + s.gap, s.plate + s.gap - disk.bottom)
+        return Levels(low, high, cam_low, cam_low + disk.thickness)
+
+
+@dataclass(frozen=True)
+class Foot:
+    """What stands up from a carrier into the plane of the cam.
+
+    `at` is where the carrier ends under it, `plates` are one with the carrier, `members` run on it; `touches` names the
+    body that touches the cam.
     """
-    s, disk, reach = drive.sizes, drive.disk, drive.reach
-    low = s.plate + s.gap
-    high = low + s.link
-    cam_low = max(high + s.gap, s.plate + s.gap - disk.bottom)
-    cam_high = cam_low + disk.thickness
-    ends = [(law.arm * math.cos(side * law.alpha), law.arm * math.sin(side * law.alpha)) for side, _ in SIDES]
-    place, pivot = swinging(law, law.arm), (law.arm, 0.0)
-    plates = [Plate(bar((0.0, 0.0), end, s.bar), (eye(s),), low, high) for end in ends]
-    rollers = []
-    for end, (_, name) in zip(ends, SIDES, strict=True):
-        plates += pin(s, end, high, cam_low, cam_high)
-        wheel = Plate(disc(radius, *end), (eye(s, *end),), cam_low, cam_high)
-        rollers.append(Member(f"roller-{name}", (wheel,), f"roller-{name}", place, ROLLER_COLOUR))
-        rollers.append(Member(f"retainer-{name}", retainer(s, end, cam_high), "arm", place, CLIP_COLOUR))
-    # where the cam passes over the pivot there is no room for a retainer, and no need: the cam lies on the arm
-    covered = law.arm - max(0.5 * s.bar, s.boss) - s.space < reach
-    held = [] if covered else [Member("retainer-pivot", retainer(s, pivot, high), GROUND, colour=CLIP_COLOUR)]
-    width = max(2.0 * base_radius(drive), reach)
-    foot = bearing(drive, [bar((0.0, 0.0), pivot, width)], cam_low + disk.bottom - s.gap)
-    ground = base((*foot, *pin(s, pivot, s.plate, low, high, crowned=not covered)))
-    members = (Member("arm", tuple(plates), "arm", place, ARM_COLOUR), *rollers, ground, *held)
-    fits = (
-        *shaft_fits(drive),
-        Fit("arm on the pivot", s.clearance),
-        Fit("rollers on their pins", s.clearance),
-        Fit("retainers on pins", s.press, pressed=True),
+
+    at: Point
+    plates: tuple[Plate, ...]
+    touches: str
+    members: tuple[Member, ...] = ()
+
+
+def rolling(
+    centre: Point,
+    radius: float,
+    carrier: tuple[str, Place],
+    drive: Drive,
+    *,
+    names: tuple[str, str] = ("roller", "roller"),
+) -> Foot:
+    """Return a roller on its pin; `carrier` is the name and the place of what that stands on.
+
+    `names` are its own, and that of its retainer.
+    The roller has its nominal radius and touches the cam.
+    """
+    s, z = drive.sizes, Levels.of(drive)
+    (group, place), (name, held) = carrier, names
+    wheel = Plate(disc(radius, *centre), (eye(s, *centre),), z.cam_low, z.cam_high)
+    members = (
+        Member(name, (wheel,), name, place, ROLLER_COLOUR),
+        Member(f"retainer-{held}", retainer(s, centre, z.cam_high), group, place, CLIP_COLOUR),
     )
-    touching = frozenset(frozenset({"cam", f"roller-{name}"}) for _, name in SIDES)
-    remarks = ("the cam passes over the pivot: it keeps the arm on its pin, which has no retainer",) if covered else ()
-    return Assembly((*turned(drive, cam_low, Turning(), members), *members), fits, s, touching, remarks)
+    return Foot(centre, pin(s, centre, z.high, z.cam_low, z.cam_high), name, members)
+
+
+def double_roller(law: Transmission, radius: float, drive: Drive) -> Assembly:
+    """Return the mechanism of a double roller."""
+    place = swinging(law, law.arm)
+    ends = [(law.arm * math.cos(side * law.alpha), law.arm * math.sin(side * law.alpha)) for side, _ in SIDES]
+    feet = [
+        rolling(end, radius, ("arm", place), drive, names=(f"roller-{name}", name))
+        for end, (_, name) in zip(ends, SIDES, strict=True)
+    ]
+    return arm(place, law.arm, feet, drive)
+
+
+def covered(away: float, drive: Drive) -> float:
+    """By how much the cam reaches too near to a pivot `away` from the shaft for a retainer on it; above 0 it does."""
+    s = drive.sizes
+    return drive.reach - (away - max(0.5 * s.bar, s.boss) - s.space)
+
+
+def arm(place: Place, away: float, feet: Sequence[Foot], drive: Drive, remarks: tuple[str, ...] = ()) -> Assembly:
+    """Return the mechanism of an arm with its feet, about a pivot `away` from the shaft; places are the arm's."""
+    s, z, pivot = drive.sizes, Levels.of(drive), (away, 0.0)
+    plates = [Plate(bar((0.0, 0.0), foot.at, s.bar), (eye(s),), z.low, z.high) for foot in feet]
+    plates += [plate for foot in feet for plate in foot.plates]
+    loose = [member for foot in feet for member in foot.members]
+    # where the cam passes over the pivot there is no room for a retainer, and no need: the cam lies on the arm
+    under = covered(away, drive) > 0.0
+    held = [] if under else [Member("retainer-pivot", retainer(s, pivot, z.high), GROUND, colour=CLIP_COLOUR)]
+    width = max(2.0 * base_radius(drive), drive.reach)
+    stand = bearing(drive, [bar((0.0, 0.0), pivot, width)], z.cam_low + drive.disk.bottom - s.gap)
+    ground = base((*stand, *pin(s, pivot, s.plate, z.low, z.high, crowned=not under)))
+    members = (Member("arm", tuple(plates), "arm", place, ARM_COLOUR), *loose, ground, *held)
+    fits = (*shaft_fits(drive), Fit("arm on the pivot", s.clearance), *roller_fits(feet, drive))
+    touching = frozenset(frozenset({"cam", foot.touches}) for foot in feet)
+    if under:
+        remarks = ("the cam passes over the pivot: it keeps the arm on its pin, which has no retainer", *remarks)
+    return Assembly((*turned(drive, z.cam_low, Turning(), members), *members), fits, s, touching, remarks)
+
+
+def roller_fits(feet: Sequence[Foot], drive: Drive) -> list[Fit]:
+    """Fits of rollers, where feet are rollers, and of retainers."""
+    s = drive.sizes
+    running = [Fit("rollers on their pins", s.clearance)] if any(foot.members for foot in feet) else []
+    return [*running, Fit("retainers on pins", s.press, pressed=True)]
 
 
 def flat_pair(law: Transmission, drive: Drive) -> Assembly:

@@ -79,8 +79,12 @@ class Sizes:
         return self.clip + 2.0 * self.gap
 
 
-def sizes_of(asked: MechanismAsked, reach: float, bore: float, roller: float | None = None) -> Sizes:
+def sizes_of(
+    asked: MechanismAsked, reach: float, bore: float, roller: float | None = None, field: str = "cam.roller_radius"
+) -> Sizes:
     """Fill in what a recipe leaves open, for a cam of this reach from the shaft and this bore, and such rollers.
+
+    `field` is where the recipe gives the rollers' radius.
 
     Raises BodyError where sizes do not go together.
     """
@@ -105,9 +109,9 @@ def sizes_of(asked: MechanismAsked, reach: float, bore: float, roller: float | N
     if roller is not None and roller - 0.5 * sizes.hole < THIN:
         most = 2.0 * (roller - THIN) - sizes.clearance
         remedy = "give a pin of at most {most}, or larger rollers" if most >= LEAST_PIN else "give larger rollers"
-        field = "cam.roller_radius" if asked.pin is None else "mechanism.pin"
+        blamed = field if asked.pin is None else "mechanism.pin"
         message = "a pin of {pin} leaves no wall in rollers of radius {roller}"
-        raise BodyError(field, message, remedy, pin=pin, roller=roller, most=most)
+        raise BodyError(blamed, message, remedy, pin=pin, roller=roller, most=most)
     return sizes
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,15 +12,20 @@ from camgeo.assembly.body import Plate
 from camgeo.assembly.guide import guide, guide_length, half_width
 from camgeo.assembly.poses import Turning, sliding
 from camgeo.assembly.shaft import base, base_radius, bearing, shaft_fits, turned
-from camgeo.assembly.shapes import box
+from camgeo.assembly.shapes import box, moved
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from camgeo.assembly.assembly import Place
     from camgeo.assembly.shaft import Drive
     from kin.law.support_function import Lift
+    from kin.numeric.arrays import Array
 
 LOOKS = 720  # angles at which extents are looked up; a stem runs on beyond them by more than a sample misses
 FOLLOWER_COLOUR = "#4f8f5f"
+LOOSE = "gravity or a spring holds the follower on the cam: one flat face does not"
 
 
 def yoke(lift: Lift, breadth: float, drive: Drive) -> Assembly:
@@ -48,47 +54,78 @@ def yoke(lift: Lift, breadth: float, drive: Drive) -> Assembly:
     boxes = (box(right, -half, ends[0], half), box(ends[1], -half, left, half))
     stems = [Plate(outline, (), low, high) for outline in boxes]
     follower = Member("yoke", (frame, *stems), "yoke", sliding(lift), FOLLOWER_COLOUR)
-    return _guided(follower, [("right", first), ("left", last - guide_length(s))], drive, low, held=True)
+    held = [Fit("the yoke's faces about the cam", s.clearance)]
+    guides = [("right", first), ("left", last - guide_length(s))]
+    return guided([follower], guides, (low, high), low, drive, fits=held)
 
 
 def flat_face(lift: Lift, drive: Drive) -> Assembly:
     """Return the mechanism of a single flat face, exact and without clearance: something has to hold it on the cam."""
+    p, slope = lift.derivatives(TURN * np.arange(LOOKS) / LOOKS, 1)
+    tall = float(np.abs(slope).max()) + 0.5 * drive.sizes.bar
+    return face_on_stem(sliding(lift), p, (-tall, tall), drive)
+
+
+def face_on_stem(
+    place: Place, x: Array, face: tuple[float, float], drive: Drive, *, tilt: float = 0.0, line: float = 0.0
+) -> Assembly:
+    """Return a flat face from end to end along itself, on a stem at places x (n,) along the `line` at that y.
+
+    The face crosses the stem's middle in the origin; its normal is turned by `tilt`.
+    """
     s, disk = drive.sizes, drive.disk
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
-    p, slope = lift.derivatives(TURN * np.arange(LOOKS) / LOOKS, 1)
-    least, most = float(p.min()), float(p.max())
-    tall = float(np.abs(slope).max()) + 0.5 * s.bar
-    first = most + s.wall + s.space
-    end = first + guide_length(s) + s.space - least
     half = 0.5 * s.bar
-    plates = Plate(box(0.0, -tall, s.wall, tall), (), low, high), Plate(box(s.wall, -half, end, half), (), low, high)
-    follower = Member("follower", plates, "follower", sliding(lift), FOLLOWER_COLOUR)
-    return _guided(follower, [("right", first)], drive, low, held=False)
+    plate = moved(box(0.0, face[0], s.wall, face[1]), 0.0, 0.0, tilt)
+    first = max(float(x.max()) + float(plate.box()[2]), drive.reach if tilt or line else 0.0) + s.space
+    end = first + guide_length(s) + s.space - float(x.min())
+    # of a tilted one the stem begins within the plate, behind the face
+    lean = half * abs(math.tan(tilt))
+    begin = max(lean, s.wall / math.cos(tilt) - lean)
+    plates = Plate(plate, (), low, high), Plate(box(begin, -half, end, half), (), low, high)
+    follower = Member("follower", plates, "follower", place, FOLLOWER_COLOUR)
+    touching = frozenset({frozenset({"cam", follower.name})})
+    return guided(
+        [follower], [("right", first)], (low, high), low, drive, touching=touching, remarks=(LOOSE,), line=line
+    )
 
 
-def _guided(follower: Member, guides: list[tuple[str, float]], drive: Drive, low: float, *, held: bool) -> Assembly:
-    """Return the whole of it: the base under guides that start at some x, their caps, the shaft."""
+def guided(
+    moving: Sequence[Member],
+    guides: Sequence[tuple[str, float]],
+    stem: tuple[float, float],
+    cam_low: float,
+    drive: Drive,
+    *,
+    fits: Sequence[Fit] = (),
+    touching: frozenset[frozenset[str]] = frozenset(),
+    remarks: tuple[str, ...] = (),
+    line: float = 0.0,
+) -> Assembly:
+    """Return the whole of it: the base under guides that start at some x, their caps, the shaft.
+
+    `stem` is from where to where in height the stem is, its middle the `line` at that y; `fits` are of what moves.
+    """
     s, disk = drive.sizes, drive.disk
-    high = low + disk.thickness
-    fits = [*shaft_fits(drive), Fit("stem in its guide", s.clearance), Fit("cap on its pegs", s.press, pressed=True)]
-    touching: frozenset[frozenset[str]] = frozenset()
-    remarks: tuple[str, ...] = ()
-    if held:
-        fits.insert(0, Fit("the yoke's faces about the cam", s.clearance))
-    else:
-        touching = frozenset({frozenset({"cam", follower.name})})
-        remarks = ("gravity or a spring holds the follower on the cam: one flat face does not",)
     plates: list[Plate] = []
     caps: list[Member] = []
     ends = [0.0]
     for name, start in guides:
-        found, cap = guide(f"cap-{name}", start, low, high, s)
+        found, cap = guide(f"cap-{name}", start, *stem, s, line=line)
         plates += found
         caps.append(cap)
         ends += [start, start + guide_length(s)]
-    half = max(half_width(s), base_radius(drive))
-    pad = box(min(*ends, -half), -half, max(*ends, half), half)
-    ground = base((*bearing(drive, [pad], low + disk.bottom - s.gap), *plates))
-    members = (follower, ground, *caps)
-    return Assembly((*turned(drive, low, Turning(), members), *members), tuple(fits), s, touching, remarks)
+    about, wide = base_radius(drive), half_width(s)
+    half = max(wide, about)
+    low, high = min(line - wide, -about), max(line + wide, about)
+    pad = box(min(*ends, -half), low, max(*ends, half), high)
+    ground = base((*bearing(drive, [pad], cam_low + disk.bottom - s.gap), *plates))
+    members = (*moving, ground, *caps)
+    every = (
+        *fits,
+        *shaft_fits(drive),
+        Fit("stem in its guide", s.clearance),
+        Fit("cap on its pegs", s.press, pressed=True),
+    )
+    return Assembly((*turned(drive, cam_low, Turning(), members), *members), every, s, touching, remarks)

@@ -22,7 +22,7 @@ from camgeo.recipe.schema.yaml_source import entries
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from camgeo.curve.disc import Face
+    from camgeo.curve.disc import StraightFace, SwingingFace
     from camgeo.curve.moving_frame import Displacement, Oscillating, Translating
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
@@ -233,7 +233,7 @@ class OscillatingRollerCam(OscillatingRoundCam):
 class TranslatingFaceCam(DiscCam, FacedCam):
     """A flat face on a stem at `offset`, mm, its normal turned ahead of the travel by `tilt`, rad."""
 
-    checks: ClassVar[tuple[str, ...]] = ("pressure-angle", "face-length")
+    checks: ClassVar[tuple[str, ...]] = ("pressure-angle", "contact-travel")
     offers: ClassVar[frozenset[str]] = FacedCam.offers | {"stem-face"}
     gain: ClassVar[float | None] = None
     tilt: float = 0.0
@@ -249,7 +249,7 @@ class TranslatingFaceCam(DiscCam, FacedCam):
         """The lift."""
         return LiftPosition(cast("Displacement", intent))
 
-    def face(self, motion: Displacement) -> Face:
+    def face(self, motion: Displacement) -> StraightFace:
         """The face."""
         from camgeo.curve.disc import StraightFace
 
@@ -277,7 +277,7 @@ class TranslatingFaceCam(DiscCam, FacedCam):
 class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
     """A flat face on an arm, `face` mm nearer the shaft than its parallel through the pivot."""
 
-    checks: ClassVar[tuple[str, ...]] = ("pressure-angle", "face-length")
+    checks: ClassVar[tuple[str, ...]] = ("pressure-angle", "contact-travel")
     offers: ClassVar[frozenset[str]] = FacedCam.offers | {"arm"}
     nearer: float = 0.0
 
@@ -285,7 +285,7 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
         """The swing."""
         return ArmPosition(cast("Displacement", intent), arm=self.pivot)
 
-    def face(self, motion: Displacement) -> Face:
+    def face(self, motion: Displacement) -> SwingingFace:
         """The face."""
         from camgeo.curve.disc import SwingingFace
 

@@ -81,12 +81,16 @@ class StraightFace(_Face):
         t[0], t[1] = tau + self.tilt, 1.0
         return p, t
 
+    @property
+    def level(self) -> float:
+        """Where the face crosses the stem's axis at S = 0, mm along that from the foot of the shaft."""
+        return (self.base - self.offset * math.sin(self.tilt)) / math.cos(self.tilt)
+
     def contact(self, tau: Series, side: Side = 1) -> Series:
         """Where the cam touches the face, mm from the stem's axis along the face, above 0 ahead of it."""
         s, sine, cosine = self.motion.on(tau, side), math.sin(self.tilt), math.cos(self.tilt)
-        level = (self.base - self.offset * sine) / cosine
         v = s.derivative()
-        return v * cosine + (cut(s, v.order) + level) * sine - self.offset * cosine
+        return v * cosine + (cut(s, v.order) + self.level) * sine - self.offset * cosine
 
     def slope(self, tau: Series, side: Side = 1) -> Series:
         """Tangent of the pressure angle: that of the tilt."""

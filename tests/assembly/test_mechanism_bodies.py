@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from support.bodies import FIT, build, placed, polygon
 from support.cases import few
 
 from camgeo.assembly.body import Plate
@@ -24,18 +25,14 @@ from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.assembly import MechanismAsked
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
-from kin.contour.contour import Contour
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from shapely import Polygon
-
-    from camgeo.assembly.assembly import Assembly, Member
+    from camgeo.assembly.assembly import Assembly
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
-FIT = 0.002  # mm
 FLATTENED = 0.0005  # mm by which a shapely polygon of an outline is off, about
 PART = "part: {thickness: 8, bore: 8}\nexport: {files: [{3mf: {parts: all}}]}\n"
 HUBS = "part: {thickness: 8, bore: 8, hub: {diameter: 14, height: 6, side: both}}\n"
@@ -66,36 +63,33 @@ SHAPES |= {
 }
 
 
+MOTION = (
+    "  motion: [{dwell: 40}, {rise: %s, over: 110, law: modified-sine}, {dwell: 60},"
+    " {return: %s, over: 100, law: cycloidal}, {dwell: 50}]\n"
+)
+SHAPES |= {
+    name: f"cam:\n  kind: disc\n  base_radius: 36\n  follower: {{{follower}}}\n{MOTION % (stroke, stroke)}"
+    for name, follower, stroke in (
+        ("roller on a stem", "kind: roller, radius: 8, offset: 8", 15),
+        ("roller on an arm", "kind: roller, radius: 8, arm: {length: 65, pivot: 80}", 15),
+        ("leading arm", "kind: roller, radius: 8, arm: {length: 40, pivot: 75, side: leading}", 15),
+        ("shoe on a stem", "kind: shoe, radius: 60, offset: 3", 15),
+        ("shoe on an arm", "kind: shoe, radius: 25, arm: {length: 65, pivot: 90, side: leading}", 15),
+        ("face on a stem", "kind: flat, tilt: 8, offset: -5", 10),
+        ("face on an arm", "kind: flat, arm: {pivot: 90, face: 5}", 8),
+        ("face on a leading arm", "kind: flat, arm: {pivot: 90, face: -2, side: leading}", 8),
+    )
+}
+SHAPES["roller yoke"] = (
+    "cam:\n  kind: constant-diameter\n  base_radius: 30\n  roller_radius: 8\n"
+    "  motion: [{dwell: 40}, {rise: 12, over: 100, law: modified-sine}, {dwell: 40}]\n"
+)
+GUIDED = list(SHAPES)[-9:]
+
+
 @cache
 def made(name: str) -> tuple[Recipe, Design, Assembly]:
     return build(SHAPES[name] + (HUBS + PART.partition("\n")[2] if name.endswith("hubs") else PART))
-
-
-def build(text: str) -> tuple[Recipe, Design, Assembly]:
-    recipe = load_text(text, "set.yaml")
-    design = designed(recipe)
-    assert design.contour is not None
-    return recipe, design, assembly_of(recipe, design, fit_arcs(design.contour, FIT))
-
-
-def polygon(outline: ArcSpline, holes: tuple[ArcSpline, ...] = ()) -> Polygon:
-    import shapely
-
-    def ring(one: ArcSpline) -> np.ndarray:
-        return Contour.from_bulges(one.points, one.bulges).sample(96)
-
-    return shapely.Polygon(ring(outline), [ring(hole) for hole in holes])
-
-
-def placed(member: Member, phi: float) -> list[tuple[Polygon, float, float]]:
-    """Plates of a member at a shaft angle, as shapely polygons between heights."""
-    from shapely.affinity import rotate, translate
-
-    x, y, angle = (0.0, 0.0, 0.0) if member.place is None else member.place(np.array([phi]), 0)[:, 0, 0]
-    return [
-        (translate(rotate(polygon(p.outline, p.holes), angle, (0.0, 0.0), use_radians=True), x, y), p.low, p.high)
-        for p in member.plates
-    ]
 
 
 @pytest.mark.parametrize("name", few(SHAPES, 3))
@@ -151,7 +145,7 @@ def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) 
             assert overlap <= 4 * math.pi * largest * 0.5 * assembly.sizes.press + 1e-3, (one.name, other.name)
 
 
-@pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair"], 2))
+@pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair", *GUIDED], 2))
 def test_nothing_meets_at_any_angle(name: str) -> None:
     checks = collision_checks(made(name)[2])
     assert [check.detail for check in checks if not check.ok] == []
@@ -256,6 +250,42 @@ def test_a_single_flat_face_is_exact_and_says_what_holds_it() -> None:
     assert assembly.member("follower").plates[0].outline.box()[0] == 0.0
     assert frozenset({"cam", "follower"}) in assembly.touching
     assert "gravity or a spring" in assembly.remarks[0]
+
+
+@pytest.mark.parametrize("name", GUIDED)
+def test_what_touches_the_cam_on_a_guide_touches_it_at_every_angle(name: str) -> None:
+    """shapely: no farther from the cam than the fit of the contour, and no deeper in it."""
+    assembly = made(name)[2]
+    touching = [next(iter(pair - {"cam"})) for pair in assembly.touching]
+    assert len(touching) == (2 if name == "roller yoke" else 1)
+    allowed = FIT + 3.0 * FLATTENED
+    for phi in np.linspace(0.1, TURN, 13):
+        disc_, low, high = placed(assembly.member("cam"), phi)[0]
+        for touch in touching:
+            level = [p for p, a, b in placed(assembly.member(touch), phi) if a < high and b > low]
+            assert min(p.distance(disc_) for p in level) <= allowed, (touch, phi)
+            assert all(not p.intersects(disc_.buffer(-allowed)) for p in level), (touch, phi)
+
+
+def test_the_frame_leaves_the_boss_of_the_base_its_space() -> None:
+    assembly = made("roller yoke")[2]
+    checks = {check.detail: check for check in collision_checks(only(assembly, "frame", "base"))}
+    frame, base = assembly.member("frame").plates[0], assembly.member("base").plates
+    assert len(frame.holes) == 1
+    assert any(plate.high > frame.low and plate.low < frame.high for plate in base)
+    assert checks["frame and base"].ok
+
+
+def test_a_stem_runs_on_its_own_line_between_its_guides_blocks() -> None:
+    assembly = made("roller on a stem")[2]
+    place = assembly.member("stem").place
+    assert place is not None
+    assert (place(np.linspace(0.0, TURN, 9), 0)[1, 0] == 8.0).all()
+    s, stem = assembly.sizes, assembly.member("stem").plates[0]
+    beside = [p.outline.box() for p in assembly.member("base").plates if p.low < stem.high < p.high]
+    blocks = [box_ for box_ in beside if box_[0] > 45.0]
+    gaps = [min(abs(y - 8.0) for y in (box_[1], box_[3])) for box_ in blocks]
+    assert gaps == pytest.approx([0.5 * (s.bar + s.clearance)] * 2)
 
 
 def test_over_a_pivot_within_the_disc_the_cam_holds_the_arm() -> None:
@@ -475,3 +505,85 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
     with pytest.raises(BodyError, match=part) as caught:
         assembly_of(recipe, design, fit_arcs(design.contour, 0.05))
     assert caught.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "field", "part", "remedy", "mended"),
+    [
+        (
+            "roller on an arm",
+            "length: 65, pivot: 80",
+            "length: 35, pivot: 50",
+            "cam.follower.arm.pivot",
+            "no room for the arm's pivot at 50 mm",
+            "give a pivot at 51.69 mm",
+            "length: 35, pivot: 52",
+        ),
+        (
+            "roller on a stem",
+            "radius: 8",
+            "radius: 1.2",
+            "cam.follower.radius",
+            "rollers of radius 1.2 mm",
+            "give larger rollers",
+            "radius: 4",
+        ),
+        (
+            "roller on a stem",
+            "kind: roller, radius: 8",
+            "kind: knife-edge",
+            "cam.follower",
+            "a knife edge is not printed",
+            "give a roller or a shoe",
+            "kind: shoe, radius: 8",
+        ),
+        (
+            "roller on a stem",
+            "follower:",
+            "track: internal\n  follower:",
+            "cam.track",
+            "round a ring",
+            "leave track out",
+            "follower:",
+        ),
+        (
+            "face on an arm",
+            "face: 5",
+            "face: 25",
+            "cam.follower.arm.face",
+            "25 mm beside the pivot",
+            "give at most 12.1 mm",
+            "face: 12.1",
+        ),
+        (
+            "face on a leading arm",
+            "face: -2",
+            "face: -20",
+            "cam.follower.arm.face",
+            "20 mm beside the pivot",
+            "give 0 or more",
+            "face: 0",
+        ),
+        (
+            "roller yoke",
+            "base_radius: 30\n  roller_radius: 8",
+            "base_radius: 30\n  roller_radius: 4",
+            "cam.base_radius",
+            "leaves no wall",
+            "give a base radius larger by 0.8 mm or more",
+            "base_radius: 32\n  roller_radius: 4",
+        ),
+    ],
+)
+def test_what_is_not_made_of_a_disc_cam_is_refused_with_a_remedy_that_helps(  # noqa: PLR0917 - one row a case
+    name: str, old: str, new: str, field: str, part: str, remedy: str, mended: str
+) -> None:
+    text = SHAPES[name] + PART
+    if name == "roller yoke":
+        text = text.replace("bore: 8", "bore: 8, hub: {diameter: 56, height: 6, side: both}")
+    assert old in text
+    with pytest.raises(BodyError, match=part) as caught:
+        build(text.replace(old, new))
+    assert caught.value.field == field
+    assert caught.value.told()[1].startswith(remedy), caught.value.told()
+    build(text.replace(old, mended))

@@ -181,3 +181,34 @@ def test_a_cam_far_from_its_shaft_has_a_yoke_that_reaches_round_it(tmp_path: Pat
     text = "cam: {kind: support, fourier: {mean: 25}, shaft: [10, 0]}\n" + YOKE.split("\n", 1)[1]
     outcome = pipeline.export(load_text(text, "far.yaml"), tmp_path)
     assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+
+
+ROLLER = """\
+cam:
+  kind: disc
+  base_radius: 26
+  follower: {kind: roller, radius: 8, offset: 6}
+  motion: [{dwell: 60}, {rise: 14, over: 100, law: modified-sine}, {dwell: 60}, {return: 14, over: 140, law: cycloidal}]
+part: {thickness: 6, bore: {hexagon: 8}}
+export: {tolerance: 0.02, files: [{stl: {parts: all}}]}
+verify: {angles: 24}
+"""
+
+
+def test_the_set_of_a_roller_on_a_stem_is_complete_and_nothing_meets(tmp_path: Path) -> None:
+    outcome = pipeline.export(load_text(ROLLER, "roller.yaml"), tmp_path)
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    bodies = ["cam", "shaft", "retainer-shaft", "stem", "roller", "retainer-roller", "base", "cap-right"]
+    assert [file["path"] for file in outcome.report["files"]] == [f"roller-{body}.stl" for body in bodies]
+    (clearance,) = [check for check in outcome.report["checks"] if check["name"] == "clearance"]
+    assert "gravity or a spring holds the follower on the cam" in clearance["detail"]
+    pairs = {check["detail"] for check in outcome.report["checks"] if check["name"] == "collision"}
+    assert {"cam and stem", "stem and base", "roller and cap-right"} <= pairs
+    assert "cam and roller" not in pairs  # they touch: that is held against the cam's own file
+
+
+def test_a_disc_cam_whose_bodies_are_not_made_is_told_at_its_field() -> None:
+    (told,) = faults(ROLLER.replace("kind: roller, radius: 8", "kind: knife-edge"))
+    assert told == (
+        "set.yaml:4:13: cam.follower: a knife edge is not printed; give a roller or a shoe, or leave parts: all out"
+    )

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias, cast
 
 import numpy as np
 
 from camgeo.curve.ring import Ring, disc
-from camgeo.report.page import curves, outline
-from camgeo.report.page.followers import SHAFT, cam, double_roller, flat, flat_pair
+from camgeo.report.page import curves, guided, outline
+from camgeo.report.page.followers import SHAFT, cam, double_roller, edge_ahead, flat, flat_pair
 from camgeo.report.page.scene import Body, Scene, Shape, pivot
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from camgeo.cams.constant_diameter import ConstantDiameterCam
+    from camgeo.cams.disc import OscillatingFaceCam, OscillatingRoundCam, TranslatingFaceCam, TranslatingRoundCam
+    from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.law.support_function import Lift
@@ -24,6 +28,8 @@ if TYPE_CHECKING:
 
 JOINT = 0.045  # of the cam's reach: the size of a joint
 EXACT = "exact"
+RIM = 4.0  # sizes of a joint: thickness of a ring whose outer edge no file shows
+SIGN = "above 0 where the cam drives a rise"
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +65,8 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
     exact = outline.Exact.of(design, outline.Exact.looks(files))
     drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    plots.append(curves.curvature(recipe, design, exact))
+    touch = next((name for name in TOUCHES if design.follower.name.endswith(name)), "roller")
+    plots.append(curves.curvature(recipe, design, exact, touch))
     errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files]
     scene = scene.scaled(1.0 / recipe.mm)
     middle = slice(exact.per // 2, None, exact.per)
@@ -69,6 +76,12 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
         scene, point, normal = scene.mirrored(), point * flip, normal * flip
     rests = tuple(curves.rests(recipe, design))
     return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
+
+
+def _around(rings: tuple[Ring, ...]) -> bool:
+    """Whether a drawing shows the outer edge of a ring: one hole of it is then no bore."""
+    first, *holes = (float(np.ptp(ring.flattened(), axis=0).max()) for ring in rings)
+    return max(holes, default=0.0) > 0.5 * first
 
 
 def _on_face(design: Design) -> list[Shape]:
@@ -100,6 +113,10 @@ def _mechanism(
     reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contour is not None else "The cam is not made: a check of the exact contour fails."
+    if design.profile.roller_radius < 0.0 and not any(_around(rings) for _, rings in drawn):
+        bore, reach = 2.0 * edge_ahead(drawn[0][1][0]), reach + RIM * size
+        drawn = [(name, (disc(0.0, 0.0, reach), rings[0])) for name, rings in drawn]
+        note = f"The contour is the opening of a ring, whose outer edge is drawn here only. {note}".strip()
     on_it = _on_face(design)
     disk = cam(drawn, bore, size, -SHAFT, on_it)
     if design.driven is not None and design.driven.turns:
@@ -136,12 +153,88 @@ def _faces(_: Recipe, design: Design, reach: float, size: float) -> tuple[list[B
 
 def _two_rollers(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
     bodies, angles = double_roller(cast("Transmission", design.intent), recipe.cam.touch_radius, size)
-    return bodies, [curves.pressure(angles)]
+    return bodies, [curves.pressure(dict(zip(("roller A", "roller B"), angles, strict=True)))]
 
 
 def _two_faces(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
     bodies, lever = flat_pair(cast("Transmission", design.intent), size)
     return bodies, [curves.levers(recipe, lever)]
+
+
+_Touch: TypeAlias = "Callable[[float, Array, float], guided.Touch]"
+"""Radius, pressure angle at the page's steps and size of a joint to what touches the cam."""
+TOUCHES: dict[str, _Touch] = {
+    "roller": lambda radius, _, size: guided.roller(radius, size),
+    "knife edge": lambda _, __, size: guided.knife_edge(size),
+    "shoe": guided.shoe,
+}
+
+
+def _touching(design: Design) -> str:
+    """What touches the cam, without how it is led."""
+    return design.follower.name.partition(" ")[2]
+
+
+def _pressed(recipe: Recipe, design: Design, size: float) -> tuple[guided.Touch, Array, list[Body], list[curves.Plot]]:
+    """Return what touches a cam about a centre, the displacement at the page's steps, the contact and the plot."""
+    name = _touching(design)
+    s = design.position.rows(SHAFT, 0)[0]
+    angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
+    touch = TOUCHES[name](recipe.cam.touch_radius, angle, size)
+    return touch, s, [guided.touched(design.profile, size, touch.within)], [curves.pressure({name: angle}, SIGN)]
+
+
+def _on_stem(recipe: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    touch, s, found, plots = _pressed(recipe, design, size)
+    along = cast("TranslatingRoundCam", recipe.cam).guide
+    x, y = guided.centres(along, s)
+    return [*guided.on_stem(touch, x, float(y[0]), reach, size), *found], plots
+
+
+def _on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    touch, s, found, plots = _pressed(recipe, design, size)
+    arm = cast("OscillatingRoundCam", recipe.cam).guide
+    return [*guided.on_arm(touch, arm, s, (arm.length, 0.0), size), *found], plots
+
+
+def _faced(recipe: Recipe, design: Design, size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
+    """Return the displacement, the run of the contact along a face, the contact, and plots of both."""
+    s = design.position.rows(SHAFT, 0)[0]
+    place = recipe.cam.contact_place(design.intent, design.profile)(SHAFT)
+    angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
+    plots = [curves.pressure({_touching(design): angle}), curves.along(recipe, place)]
+    margin = guided.MARGIN * size
+    return s, float(place.min()) - margin, float(place.max()) + margin, [guided.touched(design.profile, size)], plots
+
+
+def _face_on_stem(recipe: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    s, low, high, found, plots = _faced(recipe, design, size)
+    cam = cast("TranslatingFaceCam", recipe.cam)
+    if cam.width is not None:
+        low, high = -0.5 * cam.width, 0.5 * cam.width
+    face = cam.face(cast("Displacement", design.intent))
+    x = face.level + s
+    return [*guided.on_stem(guided.face(cam.tilt, low, high, size), x, cam.offset, reach, size), *found], plots
+
+
+def _face_on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    s, low, high, found, plots = _faced(recipe, design, size)
+    face = cast("OscillatingFaceCam", recipe.cam).face(cast("Displacement", design.intent))
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    at = (middle, -face.side * face.face)
+    return [*guided.on_arm(guided.face(0.0, -half, half, size), face, s, at, size), *found], plots
+
+
+def _roller_frame(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
+    cam, s = cast("ConstantDiameterCam", recipe.cam), design.position.rows(SHAFT, 0)[0]
+    x, _y = guided.centres(cam.guide, s)
+    hole = 0.5 * (recipe.part.bore or 0.0)
+    bodies = guided.roller_frame(x, cam.apart(design.intent), cam.touch_radius, hole, size)
+    found, angles = [], {}
+    for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
+        found.append(guided.touched(design.profile, size, cam.touch_radius, on=on, name=f"contact of {name}"))
+        angles[name] = cam.pressure_angle(design.intent, design.profile)(SHAFT + on)
+    return [*bodies, *found], [curves.pressure(angles, SIGN)]
 
 
 DRAWN: dict[str, _Drawn] = {
@@ -150,4 +243,9 @@ DRAWN: dict[str, _Drawn] = {
     "square frame": _Drawn(_faces, ""),  # of a linkage that does not turn right round
     "double roller": _Drawn(_two_rollers, "O"),
     "flat pair": _Drawn(_two_faces, "O"),
+    "translating flat face": _Drawn(_face_on_stem, ""),
+    "oscillating flat face": _Drawn(_face_on_arm, "O"),
+    "roller yoke": _Drawn(_roller_frame, ""),
+    **{f"translating {name}": _Drawn(_on_stem, "") for name in TOUCHES},
+    **{f"oscillating {name}": _Drawn(_on_arm, "O") for name in TOUCHES},
 }

@@ -13,6 +13,8 @@ from camgeo.report.page.followers import SHAFT
 from camgeo.synthesis.design import intended
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
     from camgeo.report.page.outline import Exact
@@ -93,10 +95,10 @@ def output(recipe: Recipe, driven: Driven) -> list[Plot]:
     return found
 
 
-def pressure(angles: tuple[Array, Array]) -> Plot:
-    """Return the plot of a double roller's pressure angles, rad (STEPS + 1,) each."""
-    series = tuple(Series(f"roller {name}", DEGREES * row) for name, row in zip("AB", angles, strict=True))
-    return Plot("Pressure angle", "°", series, dwells=True)
+def pressure(angles: Mapping[str, Array], note: str = "") -> Plot:
+    """Return the plot of pressure angles, rad (STEPS + 1,) each, by the name of what touches."""
+    series = tuple(Series(name, DEGREES * row) for name, row in angles.items())
+    return Plot("Pressure angle", "°", series, dwells=True, note=note)
 
 
 def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
@@ -106,20 +108,30 @@ def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
     return Plot("Lever of the contacts", length_unit(recipe), series, dwells=True, note=note)
 
 
-def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
-    """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature."""
+def along(recipe: Recipe, place: Array) -> Plot:
+    """Return the plot of where a flat face is touched, mm (STEPS + 1,)."""
+    note = "along the face, from the axis of its stem or the pivot of its arm"
+    unit = length_unit(recipe)
+    return Plot("Contact on the face", unit, (Series("contact", place / recipe.mm),), dwells=True, note=note)
+
+
+def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller") -> Plot:
+    """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
+
+    `touch` names what follows the pitch curve. Of a ring, which is undercut where it is hollow, no margin is told.
+    """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
     found = next((check for check in design.checks if check.name == CURVATURE.name), None)
-    unit = length_unit(recipe)
+    unit, radius = length_unit(recipe), design.profile.roller_radius
     margin = ""
-    if found is not None and found.value is not None and math.isfinite(found.value):
-        room = (found.value - design.profile.roller_radius) / recipe.mm
+    if found is not None and found.value is not None and math.isfinite(found.value) and radius >= 0.0:
+        room = (found.value - radius) / recipe.mm
         margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {room:.5g} {unit} from undercut"
-    if design.profile.roller_radius:
+    if radius:
         values = closed(exact.curvature[:: exact.per]) * recipe.mm
-        limit = recipe.mm / design.profile.roller_radius
+        limit = recipe.mm / radius
         series = (Series("curvature of the pitch curve", values),)
-        return Plot("Curvature of the pitch curve", f"1/{unit}", series, over, ((limit, "roller"),), note=margin)
+        return Plot("Curvature of the pitch curve", f"1/{unit}", series, over, ((limit, touch),), note=margin)
     values = closed(exact.radius[:: exact.per]) / recipe.mm
     return Plot("Radius of curvature", unit, (Series("radius of curvature", values),), over, ((0.0, ""),), note=margin)
 

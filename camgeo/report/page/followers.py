@@ -37,15 +37,19 @@ def cam(
     """
     hole = 0.5 * bore if bore else 0.0
     shapes = [Shape("metal other" if index else "metal", rings, name) for index, (name, rings) in enumerate(drawn)]
-    beyond = drawn[0][1][0].flattened()
-    reach = np.abs(beyond).max()
-    ahead = beyond[beyond[:, 0] > 0.0]
-    edge = float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(reach)
+    edge = edge_ahead(drawn[0][1][0])
     first = max(hole, 1.2 * size)
     if edge - first > size and not any(shape.role == "timing mark" for shape in on_it):
         mark = Ring.through([(edge - 0.45 * (edge - first), 0.0), (edge, 0.0)], closed=False)
         shapes.append(Shape("mark", (mark,), "zero of the motion"))
     return Body("cam", "cam", (*shapes, *on_it), poses(0.0, 0.0, turned))
+
+
+def edge_ahead(ring: Ring) -> float:
+    """Where a contour about the shaft crosses the x axis ahead of it."""
+    beyond = ring.flattened()
+    ahead = beyond[beyond[:, 0] > 0.0]
+    return float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(np.abs(beyond).max())
 
 
 def touched(lift: Lift, theta: Array) -> tuple[Array, Array]:
@@ -63,9 +67,9 @@ def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[B
     """Return a flat face, or the yoke of two faces `breadth` apart, with guides and contacts; `reach` is the cam's."""
     p, slope = touched(lift, SHAFT)
     thick, half_stem, gap = 2.2 * size, 1.3 * size, 1.0 * size
-    guide = 4.5 * size
+    run = 4.5 * size
     first_guide = float(p.max()) + thick + gap
-    length = first_guide + guide + 2.0 * size - float(p.min())
+    length = first_guide + run + 2.0 * size - float(p.min())
     stem = box(thick, -half_stem, length, half_stem)
     moving = poses(p, 0.0, 0.0)
     if breadth is None:
@@ -77,7 +81,7 @@ def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[B
         outer = box(-breadth - thick, -tall - thick, thick, tall + thick)
         frame = Shape("follower", (outer, box(-breadth, -tall, 0.0, tall)), "yoke")
         found = [Body("yoke", "follower", (frame, Shape("follower", (stem,))), moving)]
-    found.append(_guide(first_guide, guide, half_stem, size))
+    found.append(guide(first_guide, run, half_stem, size))
     found.append(contact("contact on face 1", p, slope, 0.0, size))
     if breadth is not None:
         q, back = touched(lift, SHAFT + 0.5 * TURN)
@@ -85,10 +89,10 @@ def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[B
     return found
 
 
-def _guide(start: float, length: float, half: float, size: float) -> Body:
-    """Return a fixed guide of two blocks about a stem."""
+def guide(start: float, length: float, half: float, size: float, y: float = 0.0) -> Body:
+    """Return a fixed guide of two blocks about a stem on a line at y."""
     shapes = [
-        Shape("fixed", (box(start, side * half, start + length, side * (half + 1.3 * size)),), "guide")
+        Shape("fixed", (box(start, y + side * half, start + length, y + side * (half + 1.3 * size)),), "guide")
         for side in (-1.0, 1.0)
     ]
     return Body("guide", "ground", tuple(shapes), still())

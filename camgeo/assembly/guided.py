@@ -1,0 +1,198 @@
+"""Disc cams: a roller, a shoe or a flat face on a stem or an arm, and the frame of two opposite rollers.
+
+Stem, arm and frame lie between base and cam, rollers and shoes stand up into the plane of the cam; a flat face lies
+in that plane with all that leads it. The axes of what leads have their x along the travel of a stem, and from the
+pivot to the roller's centre on an arm, whose travel is `side` times y.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from camgeo.assembly.assembly import GROUND, Assembly, Fit, Member
+from camgeo.assembly.body import Plate
+from camgeo.assembly.guide import guide_length
+from camgeo.assembly.poses import Turning, lifted, swung
+from camgeo.assembly.roller import ARM_COLOUR, Foot, Levels, arm, covered, roller_fits, rolling
+from camgeo.assembly.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
+from camgeo.assembly.shapes import EXACT, bar, box, disc, eye, moved, pin, retainer
+from camgeo.assembly.sizes import THIN, BodyError
+from camgeo.assembly.yoke import LOOKS, guided
+from camgeo.fit.pieces import ArcSpline
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeAlias
+
+    from camgeo.assembly.assembly import Place
+    from camgeo.assembly.shaft import Drive
+    from camgeo.assembly.shapes import Point
+    from camgeo.curve.disc import SwingingFace
+    from camgeo.curve.moving_frame import Displacement, Oscillating, Translating
+    from kin.numeric.arrays import Array
+
+    Stand: TypeAlias = Callable[[Point, float, tuple[str, Place], Drive], Foot]
+    """A point of the carrier, the direction of travel there, the carrier's name and place: what stands there."""
+
+STEM = "stem"
+SPRING = "gravity or a spring holds the follower on the cam: it touches it from one side"
+SHAFT = TURN * np.arange(LOOKS) / LOOKS
+
+
+def roller(radius: float) -> Stand:
+    """Stand a roller of a radius up."""
+    return lambda centre, _, carrier, drive: rolling(centre, radius, carrier, drive)
+
+
+def shoe(radius: float, angle: Array) -> Stand:
+    """Stand a shoe up: the arc of a radius that pressure angles (n,) use, and as much beyond that a bar fits behind."""
+
+    def stand(centre: Point, ahead: float, carrier: tuple[str, Place], drive: Drive) -> Foot:
+        s, z = drive.sizes, Levels.of(drive)
+        most = 0.5 * math.pi
+        wide = math.asin(min(1.0, 0.5 * s.bar / radius))
+        beyond = s.space / radius
+        high = min(max(float(angle.max()) + beyond, wide), most)
+        low = max(min(float(angle.min()) - beyond, -wide), -most)
+        x = -radius * np.cos([high, low])
+        y = radius * np.sin([high, low])
+        back = float(x.max()) + s.bar
+        points = np.column_stack([np.append(x, [back, back]), np.append(y, [y[1], y[0]])])
+        outline = ArcSpline(points, np.array([math.tan(0.25 * (high - low)), 0.0, 0.0, 0.0]), EXACT)
+        foot = back - 0.5 * s.bar
+        at = (centre[0] + foot * math.cos(ahead), centre[1] + foot * math.sin(ahead))
+        return Foot(at, (Plate(moved(outline, *centre, ahead), (), z.high, z.cam_high),), carrier[0])
+
+    return stand
+
+
+def on_stem(motion: Displacement, line: Translating, stand: Stand, drive: Drive) -> Assembly:
+    """Return the mechanism of a roller or a shoe on a stem."""
+    s, z = drive.sizes, Levels.of(drive)
+    place = lifted(motion, line.foot, line.offset)
+    x = line.foot + motion.derivatives(SHAFT, 0)[0]
+    foot = stand((0.0, 0.0), 0.0, (STEM, place), drive)
+    first = max(float(x.max()) + _beyond(foot), drive.reach) + s.space
+    end = first + guide_length(s) + s.space - float(x.min())
+    stem = Plate(bar((foot.at[0], 0.0), (end, 0.0), s.bar), (), z.low, z.high)
+    members = [Member(STEM, (stem, *foot.plates), STEM, place, ARM_COLOUR), *foot.members]
+    return guided(
+        members,
+        [("right", first)],
+        (z.low, z.high),
+        z.cam_low,
+        drive,
+        fits=roller_fits([foot], drive) if foot.members else (),
+        touching=frozenset({frozenset({"cam", foot.touches})}),
+        remarks=(SPRING,),
+        line=line.offset,
+    )
+
+
+def _beyond(*feet: Foot) -> float:
+    """How far feet reach along x in their carrier's axes."""
+    plates = [plate for foot in feet for plate in (*foot.plates, *(p for m in foot.members for p in m.plates))]
+    return max(float(plate.outline.box()[2]) for plate in plates)
+
+
+def on_arm(motion: Displacement, lever: Oscillating, stand: Stand, drive: Drive) -> Assembly:
+    """Return the mechanism of a roller or a shoe on an arm. Raises BodyError where the cam reaches over the pivot."""
+    _clear(lever.pivot, drive)
+    place = swung(motion, lever.pivot, lever.rest, lever.side)
+    foot = stand((lever.length, 0.0), 0.5 * math.pi * lever.side, ("arm", place), drive)
+    return arm(place, lever.pivot, [foot], drive, (SPRING,))
+
+
+def _clear(pivot: float, drive: Drive) -> None:
+    over = covered(pivot, drive)
+    if over > 0.0:
+        message = "the cam reaches {reach} from the shaft: no room for the arm's pivot at {pivot}"
+        remedy = "give a pivot at {least} or more, with an arm to suit"
+        field = "cam.follower.arm.pivot"
+        raise BodyError(field, message, remedy, reach=drive.reach, pivot=pivot, least=pivot + over)
+
+
+def roller_frame(motion: Displacement, foot: float, apart: float, radius: float, drive: Drive) -> Assembly:
+    """Return the mechanism of two opposite rollers in one frame, the first at `foot` at displacement 0.
+
+    Raises BodyError where the slot round the shaft would run into their pins.
+    """
+    s, z, shaft = drive.sizes, Levels.of(drive), drive.shaft
+    place = lifted(motion, foot)
+    x = foot + motion.derivatives(SHAFT, 0)[0]
+    least, most = float(x.min()), float(x.max())
+    # the base's boss stands through the slot, and so does a hub below the disc
+    about = max(shaft.journal + s.play + s.wall, drive.disk.hub if drive.disk.bottom < 0.0 else 0.0)
+    half = about + s.space
+    room = least - half - s.boss
+    if room < THIN:
+        message = "the frame's slot round the shaft leaves no wall before the rollers' pins"
+        remedy = "give a base radius larger by {such} or more, or a smaller bore or hub"
+        raise BodyError("cam.base_radius", message, remedy, such=THIN - room)
+    ends = [(0.0, 0.0), (-apart, 0.0)]
+    feet = [
+        rolling(end, radius, ("frame", place), drive, names=(f"roller-{name}", name))
+        for end, name in zip(ends, ("a", "b"), strict=True)
+    ]
+    width = max(2.0 * (half + s.wall), s.bar)
+    beyond = max(_beyond(feet[0]), 0.5 * width)
+    first = max(most + beyond, drive.reach) + s.space
+    last = -max(apart - least + beyond, drive.reach) - s.space
+    run = guide_length(s) + s.space
+    slot = bar((-most, 0.0), (-least, 0.0), 2.0 * half)
+    frame = Plate(bar(ends[1], ends[0], width), (slot,), z.low, z.high)
+    # stems begin behind the rollers' pins, where the frame is still as wide as they are
+    rise = 0.5 * s.bar
+    stems = [
+        Plate(box(0.0, -rise, first + run - least, rise), (), z.low, z.high),
+        Plate(box(last - run - most, -rise, -apart, rise), (), z.low, z.high),
+    ]
+    plates = (frame, *stems, *(plate for one in feet for plate in one.plates))
+    members = [Member("frame", plates, "frame", place, ARM_COLOUR), *(m for one in feet for m in one.members)]
+    return guided(
+        members,
+        [("right", first), ("left", last - guide_length(s))],
+        (z.low, z.high),
+        z.cam_low,
+        drive,
+        fits=roller_fits(feet, drive),
+        touching=frozenset(frozenset({"cam", one.touches}) for one in feet),
+    )
+
+
+def face_on_arm(face: SwingingFace, contact: Array, drive: Drive) -> Assembly:
+    """Return the mechanism of a flat face on an arm, touched at places (n,) along it from the pivot.
+
+    Raises BodyError where the cam leaves the hub no room, or the face passes beside the hub.
+    """
+    s, disk = drive.sizes, drive.disk
+    _clear(face.pivot, drive)
+    low = s.plate + s.gap - disk.bottom
+    high = low + disk.thickness
+    hub, inner = 0.5 * s.hole + max(s.wall, THIN), 0.5 * s.hole + THIN
+    if not -0.5 * s.bar < face.face < hub + 0.6 * s.bar:
+        message = "the face passes {away} beside the pivot, and its bar beside the hub"
+        remedy = "give at most {most}" if face.face > 0.0 else "give 0 or more"
+        raise BodyError("cam.follower.arm.face", message, remedy, away=abs(face.face), most=hub + 0.5 * s.bar)
+    y0, y1 = sorted(face.side * (-face.face + y) for y in (0.0, s.bar))
+    plates = (
+        Plate(disc(hub), (eye(s),), low, high),
+        Plate(box(inner, y0, float(contact.max()) + s.bar, y1), (), low, high),
+    )
+    place, pivot = swung(face.motion, face.pivot, face.rest, face.side), (face.pivot, 0.0)
+    follower = Member("follower", plates, "follower", place, ARM_COLOUR)
+    width = max(2.0 * base_radius(drive), drive.reach)
+    stand = bearing(drive, [bar((0.0, 0.0), pivot, width)], low + disk.bottom - s.gap)
+    ground = base((*stand, *pin(s, pivot, s.plate, low, high)))
+    members = (follower, ground, Member("retainer-pivot", retainer(s, pivot, high), GROUND, colour=CLIP_COLOUR))
+    fits = (
+        *shaft_fits(drive),
+        Fit("follower on the pivot", s.clearance),
+        Fit("retainer on the pivot", s.press, pressed=True),
+    )
+    touching = frozenset({frozenset({"cam", follower.name})})
+    return Assembly((*turned(drive, low, Turning(), members), *members), fits, s, touching, (SPRING,))

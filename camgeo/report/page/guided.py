@@ -1,0 +1,167 @@
+"""Scenes of the followers that are led on a stem or an arm: roller, knife edge, shoe, flat face, frame of two rollers.
+
+What touches the cam stands in axes of its own: x along the travel, the origin at the roller's centre, or where a
+flat face meets the axis that leads it. What leads it is one body, what touches another.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from camgeo.curve.ring import Ring, bar, box, disc
+from camgeo.report.page.followers import SHAFT, contact, guide
+from camgeo.report.page.scene import Body, Shape, pin, pivot, poses
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from camgeo.cams.family import Profile
+    from camgeo.curve.moving_frame import Guide
+    from kin.numeric.arrays import Array
+
+WIDTH = 1.9  # of an arm, in sizes of a joint
+HALF_STEM = 1.3
+THICK = 2.2  # of a face or a shoe
+MARGIN = 2.0  # of a face or a shoe beyond the contact
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """What touches the cam: shapes, how far along the travel what leads it begins, and how far it reaches there.
+
+    `within` is how far the normal of the contact runs in it before it stands out.
+    """
+
+    name: str
+    shapes: tuple[Shape, ...]
+    foot: float = 0.0
+    ahead: float = 0.0
+    within: float = 0.0
+
+
+def roller(radius: float, size: float, name: str = "roller") -> Touch:
+    """Return a roller on its pin."""
+    shapes = (Shape("roller", (disc(0.0, 0.0, radius),), name), pin(min(size, 0.8 * radius)))
+    return Touch(name, shapes, ahead=radius, within=radius)
+
+
+def knife_edge(size: float) -> Touch:
+    """Return a stem's end as a wedge of 60 degrees."""
+    tall, half = math.sqrt(3.0) * HALF_STEM * size, HALF_STEM * size
+    wedge = Ring.through([(0.0, 0.0), (tall, -half), (1.4 * tall, -half), (1.4 * tall, half), (tall, half)])
+    return Touch("knife edge", (Shape("follower", (wedge,), "knife edge"),), 1.2 * tall, 1.4 * tall)
+
+
+def shoe(radius: float, angle: Array, size: float) -> Touch:
+    """Return a shoe: the arc that pressure angles (n,) use, and as much beyond that a stem stands on it."""
+    beyond = MARGIN * size / radius
+    most = 0.5 * math.pi
+    high = min(max(float(angle.max()), 0.0) + beyond, most)
+    low = max(min(float(angle.min()), 0.0) - beyond, -most)
+    # a pressure angle above 0 is touched ahead of the travel line
+    upper, lower = (complex(-math.cos(a), math.sin(a)) * radius for a in (high, low))
+    back = max(upper.real, lower.real) + THICK * size
+    points = np.array([(upper.real, upper.imag), (lower.real, lower.imag), (back, lower.imag), (back, upper.imag)])
+    outline = Ring(points, np.array([math.tan(0.25 * (high - low)), 0.0, 0.0, 0.0]))
+    return Touch("shoe", (Shape("follower", (outline,), "shoe"),), back - 0.5 * THICK * size, back)
+
+
+def face(tilt: float, low: float, high: float, size: float) -> Touch:
+    """Return a flat face whose normal is turned by `tilt`, from `low` to `high` along it."""
+    c, s = math.cos(tilt), math.sin(tilt)
+    corners = np.array([(0.0, low), (0.0, high), (THICK * size, high), (THICK * size, low)])
+    outline = Ring.through(corners @ np.array([[c, s], [-s, c]]))
+    foot = (HALF_STEM * abs(math.tan(tilt)) + 0.5 * THICK / c) * size
+    return Touch("flat face", (Shape("follower", (outline,), "flat face"),), foot, float(outline.points[:, 0].max()))
+
+
+def on_stem(touch: Touch, x: Array, y: float, reach: float, size: float) -> list[Body]:
+    """Return the follower on a stem at places x (n,) of a line at y, with its guide beyond the cam's `reach`."""
+    half, run = HALF_STEM * size, 4.5 * size
+    start = max(float(x.max()) + touch.ahead, reach) + size
+    length = start + run + 2.0 * size - float(x.min())
+    stem = Shape("follower", (box(touch.foot, -half, length, half),), "stem")
+    return [
+        Body("stem", "follower", (stem,), poses(x, y, 0.0)),
+        Body(touch.name, "follower", touch.shapes, poses(x, y, 0.0)),
+        guide(start, run, half, size, y),
+    ]
+
+
+class Arm(Protocol):
+    """An arm about a pivot at a distance from the shaft."""
+
+    @property
+    def pivot(self) -> float:
+        """Distance of the pivot from the shaft, mm."""
+        ...
+
+    @property
+    def rest(self) -> float:
+        """Angle between the line from pivot to shaft and the arm, at displacement 0, rad."""
+        ...
+
+    @property
+    def side(self) -> int:
+        """+1 trailing, -1 leading."""
+        ...
+
+
+def on_arm(touch: Touch, arm: Arm, s: Array, at: tuple[float, float], size: float) -> list[Body]:
+    """Return the follower on an arm at swings s (n,); `at` is where the touch's axes stand in the arm's.
+
+    The arm's own x leads from the pivot to what touches, its travel is `side` times y.
+    """
+    angle = math.pi + arm.side * (arm.rest + s)
+    (x, y), c, n = at, np.cos(angle), np.sin(angle)
+    end = (x, y + arm.side * touch.foot)
+    shape = Shape("follower", (bar((0.0, 0.0), end, WIDTH * size),), "arm")
+    placed = poses(arm.pivot + x * c - y * n, x * n + y * c, angle + 0.5 * math.pi * arm.side)
+    return [
+        Body("arm", "follower", (shape,), poses(arm.pivot, 0.0, angle)),
+        Body(touch.name, "follower", touch.shapes, placed),
+        pivot("pivot", arm.pivot, 0.0, size, "P", angle=0.0),
+    ]
+
+
+def touched(profile: Profile, size: float, within: float = 0.0, *, on: float = 0.0, name: str = "contact") -> Body:
+    """Return the contact at each shaft angle, with the direction in which the cam pushes.
+
+    The follower stands `on` rad ahead of the x axis; the arrow is longer by what it runs `within` it. A ring pushes
+    inwards.
+    """
+    frame = profile.curve.sample(np.mod(SHAFT + on, TURN))
+    back = np.exp(-1j * SHAFT)
+    point, normal = ((row[:, 0] + 1j * row[:, 1]) * back for row in (frame.point, frame.normal))
+    push = normal if profile.roller_radius >= 0.0 else -normal
+    direction = np.unwrap(np.angle(push))
+    return contact(name, point.real, point.imag, direction, size, within=within)
+
+
+def centres(guide_of: Guide, s: Array) -> tuple[Array, Array]:
+    """Return x and y (n,) of a roller's centre in the frame of the ground."""
+    place, _ = guide_of.place(np.zeros_like(s), s)
+    return place.real, place.imag
+
+
+def roller_frame(x: Array, apart: float, radius: float, hole: float, size: float) -> list[Body]:
+    """Return a frame with rollers at x (n,) and `apart` mm behind, slotted for a shaft of a radius `hole`."""
+    inner = max(hole, 1.2 * size) + 0.6 * size
+    width = 2.0 * (inner + HALF_STEM * size)
+    slot = bar((-float(x.max()), 0.0), (-float(x.min()), 0.0), 2.0 * inner)
+    frame = Shape("follower", (bar((-apart, 0.0), (0.0, 0.0), width), slot), "roller yoke")
+    half, run = HALF_STEM * size, 4.5 * size
+    beyond = max(radius, 0.5 * width)
+    start = float(x.max()) + beyond + size
+    stem = Shape("follower", (box(0.5 * width, -half, start + run + 2.0 * size - float(x.min()), half),), "stem")
+    moving = poses(x, 0.0, 0.0)
+    first, second = roller(radius, size, "roller A"), roller(radius, size, "roller B")
+    return [
+        Body("roller yoke", "follower", (frame, stem), moving),
+        Body(first.name, "follower", first.shapes, moving),
+        Body(second.name, "follower", second.shapes, poses(x - apart, 0.0, 0.0)),
+        guide(start, run, half, size),
+    ]
