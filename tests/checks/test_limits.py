@@ -22,6 +22,7 @@ from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.recipe.schema.json_schema import json_schema
 from camgeo.recipe.starter import KINDS, starter
+from camgeo.report.document import encoded
 from camgeo.report.failure import failure
 from camgeo.report.figures import of_design
 from camgeo.report.limits import limit_checks
@@ -223,7 +224,7 @@ def test_a_contour_without_a_hollow_keeps_any_least_radius_of_one() -> None:
     least, most = held(ellipse, "{hollow-radius: {at_least: 5, at_most: 6}}")
     assert least["ok"]
     assert not most["ok"]
-    assert json.loads(json.dumps(pipeline.encoded(report_of(ellipse, "{hollow-radius: {at_least: 5}}"))))
+    assert json.loads(json.dumps(encoded(report_of(ellipse, "{hollow-radius: {at_least: 5}}"))))
 
 
 def told(text: str, limits: str) -> list[str]:

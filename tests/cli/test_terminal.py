@@ -107,7 +107,7 @@ def test_json_stays_json_where_it_is_escaped(monkeypatch: pytest.MonkeyPatch) ->
         monkeypatch.setattr(sys, "stdout", stream)
         say_json(json.dumps(data, ensure_ascii=False, indent=2) + "\n")
         stream.flush()
-        text = stream.buffer.getvalue().decode(encoding)  # type: ignore[attr-defined]
+        text = stream.buffer.getvalue().decode(encoding)
         assert json.loads(text) == data
         assert "\x9b" not in text
         assert "\x7f" not in text

@@ -1,5 +1,7 @@
 """Greatest motion error of rollers: over all shaft angles, against brute force of another kind than the code's."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from support.camfiles import arcs_through, write_dxf
@@ -88,7 +90,7 @@ def proved(motion, reached, scale):
     assert motion.max == pytest.approx(scale * reached, rel=1e-4)
 
 
-GUIDES = {
+GUIDES: dict[str, tuple[Any, float, float]] = {
     "trailing arm": (Arm(50.0, 75.0, TRAILING), 0.5, np.radians(15.0)),
     "leading arm": (Arm(60.0, 60.0, LEADING), 0.8, np.radians(12.0)),
     "line of travel": (Translating(0.0), 35.0, 8.0),
