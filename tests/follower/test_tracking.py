@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.camfiles import arcs_through, write_dxf
+from support.cases import few
 
 import kin.follower.roller
 from kin.contour.arcs import unit
@@ -99,7 +100,7 @@ GUIDES: dict[str, tuple[Any, float, float]] = {
 }
 
 
-@pytest.mark.parametrize("count", [60, 140])
+@pytest.mark.parametrize("count", few([60, 140]))
 @pytest.mark.parametrize("name", GUIDES)
 def test_single_rollers_on_polygons_against_bisected_distances(name, count):
     guide, base, stroke = GUIDES[name]
@@ -264,7 +265,7 @@ def frame(radius=8.0):
     return RollerYoke(radius, lift_from_fourier(40.0, {3: 3.0}, {5: 0.4}).law, 80.0)
 
 
-@pytest.mark.parametrize("count", [50, 131])
+@pytest.mark.parametrize("count", few([50, 131]))
 def test_opposite_rollers_on_polygons_against_bisected_distances(count):
     yoke = frame()
     contour = through(yoke.envelope, count)
