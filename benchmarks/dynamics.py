@@ -19,18 +19,19 @@ import statistics
 import sys
 import time
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from support.places import ROOT
 
 from kin.dynamics.drive import drives
 from kin.dynamics.oscillator import Oscillator
 from kin.dynamics.response import Forcing, Samples, response
 
+ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
-from support.dynamics_oracle import Cycloid, Oracle
+from support.dynamics_oracle import Cycloid, Oracle  # noqa: E402
 
 SMALL = "--small" in sys.argv  # a run that only shows that it works
 RATIOS = (10.3,) if SMALL else (10.3, 100.3, 1000.3, 10_000.3, 100_000.3)

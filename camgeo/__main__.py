@@ -67,7 +67,10 @@ def main() -> NoReturn:
         interrupts.listen()
         status = _status()
         interrupts.quiet = True
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Exception) as end:
+        # a compiled library that is being imported turns an interrupt into an error of its own
+        if interrupts.first is None and not isinstance(end, KeyboardInterrupt):
+            raise
         interrupts.quiet = True
         status = 130
         _say("camgeo: interrupted\n")

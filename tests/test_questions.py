@@ -94,9 +94,14 @@ FAMILIES = {
 }
 
 
+LINED = ast.expr | ast.stmt | ast.pattern  # what has a line
+
+
 def questions(source: str, family: Family) -> list[int]:
     """Lines that ask for a kind: by isinstance, match, type(), a probe, a comparison, or a table of kinds."""
-    return sorted(node.lineno for node in ast.walk(ast.parse(source)) if _asks(node, family))
+    return sorted(
+        node.lineno for node in ast.walk(ast.parse(source)) if _asks(node, family) and isinstance(node, LINED)
+    )
 
 
 def _asks(node: ast.AST, family: Family) -> bool:

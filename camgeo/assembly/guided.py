@@ -126,7 +126,7 @@ def roller_frame(motion: Displacement, foot: float, apart: float, radius: float,
     x = foot + motion.derivatives(SHAFT, 0)[0]
     least, most = float(x.min()), float(x.max())
     # the base's boss stands through the slot, and so does a hub below the disc
-    about = max(shaft.journal + s.play + s.wall, drive.disk.hub if drive.disk.bottom < 0.0 else 0.0)
+    about = max(shaft.journal + s.gap_each_side + s.wall, drive.disk.hub if drive.disk.bottom < 0.0 else 0.0)
     half = about + s.space
     room = least - half - s.boss
     if room < THIN:

@@ -137,6 +137,7 @@ def _be_a_worker(run: Connection, inherited: Connection | None) -> None:
     if inherited is not None:
         inherited.close()
     signal.signal(signal.SIGINT, _interrupted)
+    sys.unraisablehook = _swallowed
 
     def watch() -> None:
         wait([run])
@@ -153,6 +154,20 @@ def _interrupted(_number: int, _frame: FrameType | None) -> None:
     if _State.over and _State.busy:
         _State.busy = False
         raise _OverError
+
+
+def _swallowed(what: sys.UnraisableHookArgs) -> None:
+    """Of a worker: stop again where that fell into a callback from which nothing can be raised, and tell nobody."""
+    if not isinstance(what.exc_value, _OverError):
+        sys.__unraisablehook__(what)
+        return
+    import threading
+    from _thread import interrupt_main
+
+    _State.busy = True
+    again = threading.Timer(0.01, interrupt_main)  # not here: it would fall into this same callback
+    again.daemon = True
+    again.start()
 
 
 def _called(function: Callable[[T], R], item: T) -> R | None:

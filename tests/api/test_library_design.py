@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 import pickle
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 import camgeo
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.change import Value
 
 ROOT = Path(__file__).parents[2]
 NAMES = ("shu-wu", "fourier", "w-law", "oscillating-yoke", "as-figure-1", "slider-crank", "reuleaux")
@@ -120,7 +124,7 @@ def test_polyline_and_spline() -> None:
 
 def test_figures_and_checks_are_in_the_recipe_s_unit() -> None:
     mm = camgeo.load(ROOT / "recipes" / "shu-wu.yaml").replace("limits", {"radius-of-curvature": {"at_least": 30}})
-    numbers = {
+    numbers: dict[str, Value] = {
         "cam.base_radius": 40 / 25.4,
         "cam.motion[0].rise": 20 / 25.4,
         "part": {"thickness": 8 / 25.4, "bore": 20 / 25.4},
@@ -166,7 +170,7 @@ def test_what_makes_no_sense_is_refused() -> None:
         (lambda: design.motion(0.0, derivative=7), "order 0 to 6"),
         (lambda: design.edges(0.0), "a length above 0"),
         (lambda: design.edges(math.nan), "a length above 0"),
-        (lambda: design.edges(0.01, "exact"), "arcs, spline, polyline"),  # type: ignore[arg-type]
+        (lambda: design.edges(0.01, "exact"), "arcs, spline, polyline"),
     ):
         with pytest.raises(camgeo.CallError, match=message):
             ask()

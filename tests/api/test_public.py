@@ -66,7 +66,7 @@ def test_no_public_function_takes_any_or_gives_a_bare_dict() -> None:
     functions = public_functions()
     assert {"load", "design", "verify", "Design.motion", "Report.explain", "Design.figures"} <= set(functions)
     for name, one in functions.items():
-        told = {where: str(note) for where, note in one.__annotations__.items()}  # type: ignore[attr-defined]
+        told = {where: str(note) for where, note in one.__annotations__.items()}
         assert "return" in told, name
         assert not any("Any" in note for note in told.values()), name
         assert not told["return"].startswith("dict"), name

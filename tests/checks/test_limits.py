@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import few
 
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
@@ -22,6 +23,7 @@ from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.recipe.schema.json_schema import json_schema
 from camgeo.recipe.starter import KINDS, starter
+from camgeo.report.document import encoded
 from camgeo.report.failure import failure
 from camgeo.report.figures import of_design
 from camgeo.report.limits import limit_checks
@@ -121,27 +123,29 @@ def test_every_figure_has_a_recipe_here() -> None:
     assert set(HAVE) == set(FIGURES)
 
 
-@pytest.mark.parametrize("text", sorted(set(HAVE.values())))
-def test_limits_hold_and_fail_at_the_figure_itself(text: str) -> None:
+@pytest.mark.parametrize(
+    ("text", "sign", "sense"),
+    few([(text, *side) for side in ((1.0, "at_most"), (-1.0, "at_least")) for text in sorted(set(HAVE.values()))], 4),
+)
+def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense: str) -> None:
     """A little either side of each figure's value, and at it; all figures of a recipe at once."""
     names = [name for name, own in HAVE.items() if own == text]
     values = {name: value_of(name)[0] for name in names}
     assert all(math.isfinite(value) for value in values.values())
-    for sign, sense in ((1.0, "at_most"), (-1.0, "at_least")):
-        for step, ok in ((-1e-6, False), (0.0, True), (1e-6, True)):
-            bounds = {name: value + sign * step * max(abs(value), 1e-9) for name, value in values.items()}
-            said = "{" + ", ".join(f"{name}: {{{sense}: {bound!r}}}" for name, bound in bounds.items()) + "}"
-            found = {check["name"]: [] for check in held(text, said)}
-            for check in held(text, said):
-                found[check["name"]].append(check)
-            for name, value in values.items():
-                checks = [one for one in found[LIMIT + name] if one["value"] == value]
-                assert checks, name
-                assert {one["ok"] for one in checks} == {ok}, (name, sense, step)
-                assert {one["sense"] for one in checks} == {sense}
-                assert all(one["limit"] == pytest.approx(bounds[name], rel=1e-12) for one in checks)
-            alone = len(held(text, said)) == len(names)  # not of several files or runs, of which others are farther off
-            assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
+    for step, ok in ((-1e-6, False), (0.0, True), (1e-6, True)):
+        bounds = {name: value + sign * step * max(abs(value), 1e-9) for name, value in values.items()}
+        said = "{" + ", ".join(f"{name}: {{{sense}: {bound!r}}}" for name, bound in bounds.items()) + "}"
+        found = {check["name"]: [] for check in held(text, said)}
+        for check in held(text, said):
+            found[check["name"]].append(check)
+        for name, value in values.items():
+            checks = [one for one in found[LIMIT + name] if one["value"] == value]
+            assert checks, name
+            assert {one["ok"] for one in checks} == {ok}, (name, sense, step)
+            assert {one["sense"] for one in checks} == {sense}
+            assert all(one["limit"] == pytest.approx(bounds[name], rel=1e-12) for one in checks)
+        alone = len(held(text, said)) == len(names)  # not of several files or runs, of which others are farther off
+        assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
@@ -243,7 +247,7 @@ def test_a_contour_without_a_hollow_keeps_any_least_radius_of_one() -> None:
     least, most = held(ellipse, "{hollow-radius: {at_least: 5, at_most: 6}}")
     assert least["ok"]
     assert not most["ok"]
-    assert json.loads(json.dumps(pipeline.encoded(report_of(ellipse, "{hollow-radius: {at_least: 5}}"))))
+    assert json.loads(json.dumps(encoded(report_of(ellipse, "{hollow-radius: {at_least: 5}}"))))
 
 
 def told(text: str, limits: str) -> list[str]:

@@ -45,6 +45,16 @@ def schema(_):
     return 0
 cli._schema = schema
 """
+TURNED = """
+import os, signal
+import camgeo.cli.main as cli
+def schema(_):
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    except KeyboardInterrupt:
+        raise ImportError("could not import module datetime") from None
+cli._schema = schema
+"""
 
 
 def recipes(folder: Path, count: int) -> list[str]:
@@ -110,14 +120,37 @@ def test_a_sweep(tmp_path: Path, jobs: str) -> None:
         "import atexit, os, signal; atexit.register(lambda: os.kill(os.getpid(), signal.SIGINT))",
         # swallowed by a callback, as those of compiled libraries do; the run would go on to its end
         SWALLOWED,
+        TURNED,  # into an error, as numpy does where its import is interrupted
     ],
 )
-def test_an_interrupt_that_python_would_swallow(late: str) -> None:
+def test_an_interrupt_that_would_be_lost(late: str) -> None:
     code = f"{late}\nfrom camgeo.__main__ import main\nmain()"
     done = subprocess.run(
         [sys.executable, "-c", code, "schema"], capture_output=True, text=True, encoding="utf-8", check=False
     )
     assert (done.returncode, done.stderr) == (130, "camgeo: interrupted\n")
+
+
+def test_a_worker_stops_where_that_falls_into_a_callback() -> None:
+    code = """
+import os, signal, time, weakref
+from multiprocessing import Pipe
+from camgeo.common import workers
+run = Pipe()
+workers._be_a_worker(run[0], None)
+def work(_):
+    class Gone: pass
+    gone = Gone()
+    said = weakref.ref(gone, lambda _: os.kill(os.getpid(), signal.SIGINT))
+    workers._State.over = True
+    del gone
+    for _ in range(600):
+        time.sleep(0.1)
+    return "went on"
+print(workers._called(work, 0))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "None\n", "")
 
 
 def test_ignored_interrupts_stay_ignored(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import mpmath as mp
 import numpy as np
@@ -216,6 +216,7 @@ def test_the_follower_touches_and_never_cuts(
     rows: tuple[tuple, ...], follower: str, stroke: float, aside: float, side: int
 ) -> None:
     """Against brute force: at each shaft angle the nearest of 40,000 points of the contour is where the follower is."""
+    shape: Any
     shape, line = made(rows, follower, stroke, aside, side)
     radius = line[1]
     curve = Curve.whole(shape)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -360,7 +361,11 @@ def on_spans(spline, count=24):
     return bezier.reshape(-1, 2)
 
 
-FITS = {"polygon": (fit_polygon, on_edges), "arcs": (fit_arcs, on_arcs), "spline": (fit_spline, on_spans)}
+FITS: dict[str, tuple[Any, Any]] = {
+    "polygon": (fit_polygon, on_edges),
+    "arcs": (fit_arcs, on_arcs),
+    "spline": (fit_spline, on_spans),
+}
 
 
 @pytest.mark.parametrize("form", few(FITS, 3))

@@ -20,6 +20,7 @@ from kin.dynamics.impacts import MOST_WORK, State, course, least_gap
 from kin.dynamics.separation import float_speed
 from kin.dynamics.separation_bounds import Look, Range
 from kin.dynamics.train import DynamicsError, Train, steady
+from kin.follower.follower import DoubleRoller
 
 TURN = 2.0 * math.pi
 
@@ -168,6 +169,7 @@ def test_as_many_meetings_as_another_integration_of_the_same_law(play, ratio, ze
     """
     recipe = load(ROOT / "recipes" / "w-law.yaml")
     follower = intended(recipe, designed(recipe)).follower
+    assert isinstance(follower, DoubleRoller)
     both = intended_faces(follower, play / follower.transmission.arm)
     lower, upper = drives([both.lower, both.upper])
     found = course(stiff(ratio, zeta, mass=2e-3), (lower, upper), 300.0, 1).turns[0]

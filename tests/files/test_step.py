@@ -275,12 +275,14 @@ def test_a_part_that_is_not_the_one_meant(tmp_path, busy, change, check):
         assert old in text
         text = text.replace(old, new)
     path = written(step_recipe(text), tmp_path)
-    assert check in failures(path, *busy, 0.001)
+    recipe, design = busy
+    assert check in failures(path, recipe, design, 0.001)
 
 
 @kernel
 def test_the_part_meant_is_sound(tmp_path, busy):
-    assert not failures(written(busy[0], tmp_path), *busy, 0.001)
+    recipe, design = busy
+    assert not failures(written(recipe, tmp_path), recipe, design, 0.001)
 
 
 # --- bounds and refusals --------------------------------------------------------------------------------------------

@@ -210,7 +210,7 @@ def test_a_curvature_that_is_off_breaks_the_bound() -> None:
 
     def kept(*given: object, **more: object) -> object:
         seen.append(given[1])
-        return chain_deviation(*given, **more)  # type: ignore[arg-type]  # handed on as it came
+        return chain_deviation(*given, **more)  # handed on as it came
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(free_arcs, "chain_deviation", kept)
@@ -229,7 +229,7 @@ def test_what_newton_claims_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> 
     solve, levels = free_arcs._levelled, []
 
     def boasting(*given: object) -> object:
-        joints, frame, level = solve(*given)  # type: ignore[arg-type]  # handed on as it came
+        joints, frame, level = solve(*given)  # handed on as it came
         levels.append(level)
         return joints, frame, np.zeros_like(level)
 

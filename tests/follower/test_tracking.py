@@ -1,8 +1,11 @@
 """Greatest motion error of rollers: over all shaft angles, against brute force of another kind than the code's."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from support.camfiles import arcs_through, write_dxf
+from support.cases import few
 
 import kin.follower.roller
 from kin.contour.arcs import unit
@@ -88,7 +91,7 @@ def proved(motion, reached, scale):
     assert motion.max == pytest.approx(scale * reached, rel=1e-4)
 
 
-GUIDES = {
+GUIDES: dict[str, tuple[Any, float, float]] = {
     "trailing arm": (Arm(50.0, 75.0, TRAILING), 0.5, np.radians(15.0)),
     "leading arm": (Arm(60.0, 60.0, LEADING), 0.8, np.radians(12.0)),
     "line of travel": (Translating(0.0), 35.0, 8.0),
@@ -97,7 +100,7 @@ GUIDES = {
 }
 
 
-@pytest.mark.parametrize("count", [60, 140])
+@pytest.mark.parametrize("count", few([60, 140]))
 @pytest.mark.parametrize("name", GUIDES)
 def test_single_rollers_on_polygons_against_bisected_distances(name, count):
     guide, base, stroke = GUIDES[name]
@@ -262,7 +265,7 @@ def frame(radius=8.0):
     return RollerYoke(radius, lift_from_fourier(40.0, {3: 3.0}, {5: 0.4}).law, 80.0)
 
 
-@pytest.mark.parametrize("count", [50, 131])
+@pytest.mark.parametrize("count", few([50, 131]))
 def test_opposite_rollers_on_polygons_against_bisected_distances(count):
     yoke = frame()
     contour = through(yoke.envelope, count)

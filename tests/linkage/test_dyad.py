@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -29,9 +30,10 @@ def lifts(order=ORDER):
     return [Jet(CAM.derivatives(THETA + turn, order) / factorials) for turn in (0, math.pi / 2)]
 
 
-FOUR_BAR = FourBar(80.0, 70.0, 105.0).solve(*lifts(), W)
+S, S1 = lifts()
+FOUR_BAR = FourBar(80.0, 70.0, 105.0).solve(S, S1, W)
 POINT = FourBar(80.0, 70.0, 105.0).output_link(FOUR_BAR).point(60.0, 20.0)
-DYADS = [
+DYADS: list[Any] = [
     *(RRR("output", (60.0, 20.0), (150.0, 0.0), (110.0, 160.0), assembly) for assembly in ASSEMBLIES),
     *(RRP("output", (60.0, 20.0), 140.0, (10.0, 60.0), 0.3, assembly) for assembly in ASSEMBLIES),
     *(RPR("output", (60.0, 20.0), (150.0, -20.0), offset) for offset in (0.0, 30.0, -30.0)),
@@ -109,7 +111,8 @@ def test_crossed_rrr_is_the_mirror_image():
 
 
 def test_crossed_rrp_is_the_open_one_along_the_line_reversed():
-    way, back = DYADS[2], RRP("output", (60.0, 20.0), 140.0, (10.0, 60.0), 0.3 + math.pi, "crossed")
+    way: Any = DYADS[2]
+    back = RRP("output", (60.0, 20.0), 140.0, (10.0, 60.0), 0.3 + math.pi, "crossed")
     assert way.solve(*POINT).output.c == pytest.approx(-back.solve(*POINT).output.c, rel=1e-12, abs=1e-12)
 
 
@@ -148,7 +151,7 @@ def test_direction_is_taken_about_the_middle():
 
 def test_points_of_links():
     s, s1 = lifts()
-    linkages = FourBar(80.0, 70.0, 105.0), InvertedSliderCrank(130.0, 70.0), SliderCrank(70.0, 12.0)
+    linkages: Any = FourBar(80.0, 70.0, 105.0), InvertedSliderCrank(130.0, 70.0), SliderCrank(70.0, 12.0)
     four, inverted, slider = (linkage.solve(s, s1, W) for linkage in linkages)
     for linkage, at in zip(linkages[:2], (four, inverted), strict=True):
         length = linkage.rocker
@@ -378,7 +381,7 @@ def test_joints_are_where_the_links_are(dyad):
 
 def test_a_chain_gives_the_link_that_carries_each_dyad():
     """Name and pose: the point of a dyad is a point of that link, whose distance to the link's joints is constant."""
-    hung = [
+    hung: list[Any] = [
         RRR("coupler", (20.0, 30.0), (150.0, 60.0), (110.0, 110.0), "open"),
         RPR("previous", (40.0, 5.0), (0, 0), 2),
     ]
@@ -396,7 +399,7 @@ def test_a_chain_gives_the_link_that_carries_each_dyad():
         assert [chain.carrier(k).name for k in range(4)] == names
         solved = chain.solve(s, s1, ())
         reached = solved._replace(dyads=(Reached(s, POINT),) * 3)
-        poses = [chain.carrier(k).pose(reached) for k in range(4)]
+        poses: list[Any] = [chain.carrier(k).pose(reached) for k in range(4)]
         assert poses[0].origin == solved.linkage.joint
         assert poses[0].direction is solved.linkage.frame
         assert (poses[1].origin[0].c[0] == 150).all()

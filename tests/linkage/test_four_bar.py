@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import mpmath as mp
 import numpy as np
@@ -19,7 +20,7 @@ W = 50.0
 CAM = lift_hypocycloid(3, 2.0, W, (18.0, 8.5))
 BROAD = lift_from_fourier(25.0, {3: 1.2, 5: -0.2}, {3: 0.7}, (12.0, 12.0))
 THETA = np.linspace(0, 2 * math.pi, 73)
-LINKAGES = [
+LINKAGES: list[Any] = [
     *(FourBar(80.0, 70.0, 105.0, assembly) for assembly in ("open", "crossed")),
     *(FourBar(70.0, 65.0, 90.0, assembly) for assembly in ("open", "crossed")),
     *(InvertedSliderCrank(130.0, 70.0, assembly) for assembly in ("open", "crossed")),

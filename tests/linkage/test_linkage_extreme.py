@@ -118,7 +118,7 @@ def test_discriminant_down_to_1e_15(assembly, power):
     """Over the relative angle nothing is lost near a limit, however ill-conditioned the figures are there."""
     rng = np.random.default_rng(4)
     e = 10.0**-power
-    cases = []
+    cases: list[tuple] = []
     for end in ("near", "far", "equal"):  # AD nearly |r1 - r4|, nearly r1 + r4, nearly 0 = r1 - r4
         for _ in range(2):
             r1, r4 = rng.uniform(30, 150, 2)

@@ -1,6 +1,7 @@
 """Mechanisms driven by a cam: against a polygon in a rigid frame, dense samples, and perturbed mechanisms."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ DEGREE = math.pi / 180
 CAM_2A = Formula("sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25")
 EVERY = np.linspace(0, TURN, 3001)
 
-LINKAGES = {
+LINKAGES: dict[str, Any] = {
     "four-bar": FourBar(80.0, 70.0, 105.0),
     "four-bar, crossed": FourBar(80.0, 70.0, 105.0, "crossed"),
     "inverted slider-crank": InvertedSliderCrank(130.0, 70.0),

@@ -12,6 +12,7 @@ from camgeo.output import pipeline
 from camgeo.recipe import read
 from camgeo.synthesis.design import designed, intended
 from kin.follower.envelope import FlatEnvelope, RollerEnvelope, TransmissionPitch
+from kin.follower.follower import FlatPair
 
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
 PAIR = "cam: {kind: flat-pair, ratio: 3, arm: 40, delta: {cos: {1: 200}}}\n"
@@ -92,7 +93,9 @@ def test_each_face_of_a_pair_passes_the_pivot():
         assert np.allclose(pair(table, f"{name}n"), units(theta), rtol=0.0, atol=1e-12)
         reach = np.sum(pair(table, name) * units(theta), axis=1)
         assert np.allclose(reach, np.sum(80.0 * units(phi) * units(theta), axis=1), rtol=0.0, atol=1e-11)
-        envelope = FlatEnvelope(intended(read(PAIR.encode(), "c.yaml"), design).follower.support)
+        follower = intended(read(PAIR.encode(), "c.yaml"), design).follower
+        assert isinstance(follower, FlatPair)
+        envelope = FlatEnvelope(follower.support)
         assert np.abs(envelope.feet(pair(table, name)).excess).max() < 1e-11
 
 

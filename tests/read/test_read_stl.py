@@ -163,7 +163,7 @@ def test_walls_with_corners_halfway_up_still_make_a_prism(tmp_path: Path) -> Non
 # --- planted faults: in the fields
 
 
-def fields(solid: Solid) -> tuple[bool, bool, tuple[int, int, int], int, int]:
+def fields(solid: Solid) -> tuple[bool, bool, tuple[int, ...], int, int]:
     return solid.closed, solid.oriented, tuple(solid.edges), solid.degenerate, solid.duplicate
 
 
@@ -311,7 +311,7 @@ def test_flipped_bytes_give_a_solid_or_a_read_error(
     st.booleans(),
 )
 def test_welding_numbers_distinct_points(points: list[tuple[int, int, int]], single: bool) -> None:
-    given_points = np.array(points, dtype=np.float32 if single else np.float64)
+    given_points: np.ndarray = np.array(points, dtype=np.float32 if single else np.float64)
     for columns in (given_points, given_points[:, :2]):
         distinct, numbers = weld(columns)
         np.testing.assert_array_equal(distinct[numbers], columns)

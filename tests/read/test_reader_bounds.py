@@ -80,7 +80,7 @@ def test_contours_far_from_each_other_are_not_compared(tmp_path, monkeypatch):
     contours = [Contour.from_vertices(90.0 * around)]
     contours += [Contour.from_vertices(0.3 * around + (k % 8, k // 8)) for k in range(64)]
     compared = []
-    near = intersections.nearest
+    near = vars(intersections)["nearest"]
     monkeypatch.setattr(
         intersections, "nearest", lambda chain, points: compared.append(len(points)) or near(chain, points)
     )

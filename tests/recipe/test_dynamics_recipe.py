@@ -170,9 +170,9 @@ def test_which_faces_bear(play: str, faces: list[str]) -> None:
 
 
 def test_a_course_that_cannot_be_followed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    from kin.dynamics import impacts
+    from kin.dynamics import events, impacts
 
-    class Little(impacts.Work):
+    class Little(events.Work):
         def __init__(self, most: int) -> None:
             super().__init__(min(most, 1000))
 

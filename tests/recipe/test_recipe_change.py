@@ -33,7 +33,7 @@ export:
 def test_a_value_is_changed_and_all_else_stays() -> None:
     recipe = load_text(TEXT, "cam.yaml").replace("cam.base_radius", 42)
     assert recipe.text == TEXT.replace("base_radius: 30  #", "base_radius: 42  #")
-    assert recipe.cam.base_radius == 42.0
+    assert vars(recipe.cam)["base_radius"] == 42.0
 
 
 def test_several_values_at_once_of_every_kind() -> None:
@@ -83,7 +83,7 @@ def test_a_field_without_a_value_gets_one() -> None:
 )
 def test_what_cannot_be_is_refused_by_its_path(path: str, value: object, message: str) -> None:
     with pytest.raises(RecipeErrors, match=message.replace("?", r"\?")) as caught:
-        load_text(TEXT, "cam.yaml").replace(path, value)  # type: ignore[call-overload]
+        load_text(TEXT, "cam.yaml").replace(path, value)
     assert path in str(caught.value)
 
 
@@ -129,6 +129,6 @@ def test_a_mapping_that_holds_itself_is_refused() -> None:
     loop: dict[str, object] = {}
     loop["a"] = loop
     with pytest.raises(RecipeErrors, match="nested more than"):
-        written(loop, "recipe")  # type: ignore[arg-type]
+        written(loop, "recipe")
     with pytest.raises(RecipeErrors, match="a key is a text"):
         written({1: 2}, "recipe")  # type: ignore[dict-item]

@@ -323,7 +323,7 @@ def test_two_rollers_keep_their_distance_from_the_cam() -> None:
         centre = np.column_stack([40.0 + 40.0 * np.cos(along), 40.0 * np.sin(along)])
         c, s = np.cos(-turned), np.sin(-turned)
         in_cam = np.column_stack([centre[:, 0] * c - centre[:, 1] * s, centre[:, 0] * s + centre[:, 1] * c])
-        assert np.abs(contour.distance(in_cam) - cam.roller_radius).max() < 2.5e-3
+        assert np.abs(contour.distance(in_cam) - cam.touch_radius).max() < 2.5e-3
     (check,) = (c for c in made.outcome.report["checks"] if c["name"] == "pressure-angle")
     worst = max(made.plot("Pressure angle", i).max() for i in (0, 1))
     assert worst <= check["value"] + 1e-3

@@ -87,7 +87,8 @@ def solve(bars, breadth, reach, near=None):
         roots = [optimize.brentq(miss, near - 0.03, near + 0.03, xtol=1e-15, rtol=1e-15)]
     found = []
     for th3 in roots:
-        joint = placed(bars, breadth, *reach(th3), th3)
+        lift, along = reach(th3)
+        joint = placed(bars, breadth, lift, along, th3)
         if bars.fits(joint, th3):
             found.append((th3, bars.output(joint, th3)))
     assert len(found) == 1, f"{len(found)} positions"

@@ -249,7 +249,13 @@ def test_a_search_goes_without_dear_figures_and_the_others_keep_their_bits(rank,
 
 def test_what_chunks_share_is_prepared_once(monkeypatch):
     calls = []
-    monkeypatch.setattr(evaluator.Evaluator, "of", lambda *a, of=Evaluator.of, **how: calls.append(a) or of(*a, **how))
+    of = Evaluator.of
+
+    def told(*given, **how):
+        calls.append(given)
+        return of(*given, **how)
+
+    monkeypatch.setattr(Evaluator, "of", told)
     asked = Ask.of(swept("force-angle: {at_least: 20.125}"))
     scenes = [asked.scene(asked.figures) for _ in range(3)]
     calls.clear()
@@ -278,13 +284,13 @@ def test_what_breaks_a_limit_is_computed_no_further():
     for name, column in whole.items():
         assert np.array_equal(screened[name][~broken], column[~broken]), name
     codes = evaluate(one, ("linkage.rocker",), values).reason
-    assert ([REASONS[code] == "limits" for code in codes] == broken).all()
+    assert [REASONS[code] == "limits" for code in codes] == broken.tolist()
 
 
 def test_a_limit_on_the_dwell_is_told_too():
     one = swept("dwell: {at_least: 37}")
     found = evaluate(one, ("linkage.rocker",), np.linspace(95, 115, 21)[:, None])
-    assert ([REASONS[code] == "limits" for code in found.reason] == (found.figures["dwell"] < 37)).all()
+    assert [REASONS[code] == "limits" for code in found.reason] == (found.figures["dwell"] < 37).tolist()
 
 
 def test_lengths_are_in_the_units_of_the_recipe_and_figures_in_mm():

@@ -6,7 +6,7 @@ import csv
 import io
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pytest
@@ -178,7 +178,7 @@ def test_the_best_are_whole_recipes_that_say_what_was_measured(swept: Path) -> N
         x, y = GRID.values(index, index + 1)[0]
         assert recipe.name == f"four-bar-best-{place}"
         assert recipe.sweep is None
-        assert recipe.cam.shaft == (x, 8.5)
+        assert vars(recipe.cam)["shaft"] == (x, 8.5)
         assert replace(recipe.linkage, rocker=0.0) == replace(ask().recipe.linkage, rocker=0.0)
         assert recipe.linkage.rocker == y
         origin = f"design {index} of 825 of the sweep of four-bar"
@@ -321,7 +321,7 @@ def test_recipes_are_written_in_the_way_of_the_users(text: str) -> None:
     best = Best(2, 1, polished=False, values={"cam.shaft[0]": 2.0}, figures={"size": 22.0})
     recipe = read(recipe_text(asked, best).encode(), "other.yaml")
     assert recipe.name == f"{asked.recipe.name}-best-2"
-    assert recipe.cam == replace(asked.recipe.cam, shaft=(2.0, 0.0))
+    assert recipe.cam == replace(cast("Any", asked.recipe.cam), shaft=(2.0, 0.0))
     assert recipe.about.startswith(f"design 1 of 2 of the sweep of {asked.recipe.name}: size 22 mm")
     assert recipe.about.endswith(asked.recipe.about)
 

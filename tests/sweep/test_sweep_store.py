@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from support.sweepers import GRID, ask, calls, fail, hills, job
 
+import camgeo
 from camgeo.recipe.loading import read
 from camgeo.sweep.search import job as jobs
 from camgeo.sweep.search.ask import Ask
@@ -137,7 +138,7 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
         Job(GRID, "another", hills),
         job(compute=fail),
     ]
-    for package in (jobs.camgeo, jobs.np):
+    for package in (camgeo, np):
         monkeypatch.setattr(package, "__version__", "99.0")
         others_key = job().key
         monkeypatch.undo()
@@ -149,7 +150,7 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
 
 
 def test_what_does_not_bear_on_the_figures_leaves_the_key() -> None:
-    def key(recipe: object) -> str:
+    def key(recipe: Ask) -> str:
         return Job(recipe.plan, recipe.scene(recipe.figures), hills).key
 
     plain = key(ask())

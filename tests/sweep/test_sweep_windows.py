@@ -136,7 +136,8 @@ def test_the_engine_is_the_compiled_one_where_there_is_numba(monkeypatch):
     windows.best_engine.cache_clear()
 
 
-def lengths_of(f, x, band):
+def lengths_of(wave, band):
+    f, x = wave
     samples = sampled(f, x)
     found = longest(samples, band)
     theta = np.broadcast_to(angles(f[0].shape[1]), f[0].shape)
@@ -165,13 +166,13 @@ def test_lengths_are_those_of_kin(band):
     m = 12
     wanted = [dwells(exact(3, m, row), [], band)[0].length for row in range(m)]
     for n, tolerance in ((360, 5e-7), (720, 3e-8), (1440, 2e-9)):
-        _, relative = lengths_of(*waves(3, m, n), band)
+        _, relative = lengths_of(waves(3, m, n), band)
         assert np.abs(relative - wanted).max() < tolerance
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_step():
     m = 40
-    coarse, fine, finest = (lengths_of(*waves(8, m, n), 0.02)[0] for n in (180, 360, 1440))
+    coarse, fine, finest = (lengths_of(waves(8, m, n), 0.02)[0] for n in (180, 360, 1440))
     ratio = np.median(np.abs(coarse - finest)) / np.median(np.abs(fine - finest))
     assert 8 < ratio < 32
 
@@ -196,7 +197,7 @@ def test_where_nothing_can_be_written_the_compiled_engine_is_not_kept(monkeypatc
 
 
 def test_a_window_over_the_shaft_is_not_the_one_over_the_relative_angle():
-    over_shaft, relative = lengths_of(*waves(2, 30, 360), 0.02)
+    over_shaft, relative = lengths_of(waves(2, 30, 360), 0.02)
     assert np.abs(over_shaft - relative).max() > 0.05
     assert ((over_shaft > 0) & (over_shaft < TURN)).all()
 

@@ -12,6 +12,7 @@ from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -86,7 +87,7 @@ def shown(mark):
 class Made:
     """A recipe exported to a folder, as its files give it."""
 
-    recipe: object
+    recipe: Any
     report: dict
     folder: Path
 

@@ -165,7 +165,8 @@ def as_8(_):
     t, shaft = np.linspace(0.1, 3.0, 400), (16.0, 7.5)
     lift = figure_2a(t, shaft)[0]
     printed, right, y_d = foot(t, shaft)
-    return off(*(np.hypot(x - shaft[0], y_d - shaft[1]) for x in (printed, right)), lift)
+    one, other = (np.hypot(x - shaft[0], y_d - shaft[1]) for x in (printed, right))
+    return off(one, other, lift)
 
 
 def as_10(_):
