@@ -7,13 +7,17 @@ import math
 import numpy as np
 import pytest
 
+from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.family import Profile
-from camgeo.checks.declared import CLOSING, PRESSURE, TRANSMISSION
+from camgeo.cams.pairs import DeltaRoute
+from camgeo.checks.declared import CLOSING, PRESSURE, RATIO
 from camgeo.curve.curve import Curve
 from camgeo.curve.wunderlich import PitchShape
 from camgeo.synthesis.checks import motion_checks
 from kin.law.programme import Segment, law, programme
 from kin.law.transmission import from_delta, from_law
+
+CAM = DoubleRollerCam(2, 1, 60.0, 1.0, DeltaRoute((), ()), "refuse")  # whose own law is not asked for
 
 
 def test_a_rise_between_two_looks_is_not_overlooked():
@@ -27,14 +31,14 @@ def test_a_rise_between_two_looks_is_not_overlooked():
     ]
     motion = from_law(7, 5, 60.0, programme(steps, math.pi / 7.0, "law"))
     pitch = Curve.whole(PitchShape(motion))
-    closing, steep = motion_checks(motion, Profile(pitch, pitch, 1.0), (CLOSING.name, TRANSMISSION.name))
+    closing, steep = motion_checks(CAM, motion, Profile(pitch, pitch, 1.0), (CLOSING.name, RATIO.name))
     assert steep.value == pytest.approx(2e-3, rel=2e-3)
     assert 0.0 < closing.value < 1e-13
     flat = from_law(7, 5, 60.0, programme([Segment("dwell", math.pi / 7.0)], math.pi / 7.0, "law"))
     worst = []
     for one in (motion, flat):
         pitch = Curve.whole(PitchShape(one))
-        worst += [check.value for check in motion_checks(one, Profile(pitch, pitch, 1.0), (PRESSURE.name,))]
+        worst += [check.value for check in motion_checks(CAM, one, Profile(pitch, pitch, 1.0), (PRESSURE.name,))]
     assert worst[0] > worst[1] + 0.1
 
 
@@ -43,7 +47,7 @@ def test_pressure_angle_at_its_very_maximum(lam, mu, arm, wave):
     """Against a fine grid of r and r' written out: the normal's slope to the ray, less the arm's."""
     motion = from_delta(lam, mu, arm, {1: wave}, {})
     pitch = Curve.whole(PitchShape(motion))
-    (found,) = (check.value for check in motion_checks(motion, Profile(pitch, pitch, 1.0), (PRESSURE.name,)))
+    (found,) = (check.value for check in motion_checks(CAM, motion, Profile(pitch, pitch, 1.0), (PRESSURE.name,)))
     t = np.linspace(0.0, 2.0 * np.pi / lam, 400_001)
     d, slope = wave * np.cos(lam * t), -lam * wave * np.sin(lam * t)
     psi, psi1 = -np.arcsin(d / arm**2), -slope / np.sqrt(arm**4 - d**2)
