@@ -291,6 +291,11 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
 
         return SwingingFace.on(motion, self.base_radius, self.pivot, self.nearer, self.sense)
 
+    def larger(self, by: float, unit: str = "") -> str:
+        """Say how radii of curvature grow: as the face stands farther out on its arm, at the same swing."""
+        more = f"{upward(by)} {unit}".rstrip()
+        return f"a base radius larger and follower.arm.face less, each by more than {more}"
+
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """A face on an arm."""
         from kin.follower import follower, guide

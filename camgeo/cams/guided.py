@@ -70,9 +70,11 @@ class GuidedCam(Cam):
         return {"slope": pitch.slope, "spin": lambda tau, side=1: pitch.spin(tau, side, radius, sense)}
 
     def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> str:
-        """The least base radius on this guide."""
+        """The least base radius on this stem; a cam with an arm has words of its own."""
         from camgeo.curve.sizing import least_stem
 
+        if self.unit != "mm":
+            return ""
         found = least_stem(cast("Displacement", intent), rising, falling, cast("Translating", self.guide).offset)
         base = (found.prime - self.metal * self.touch_radius) / mm
         return f"a base radius of {upward(base)}" if base > 0.0 else ""
@@ -95,7 +97,10 @@ class GuidedCam(Cam):
         """A smaller roller."""
         if not free_at / mm > 0.0:
             return f"no {self.roller_field} is proved to be free of it"
-        return f"a {self.roller_field} below {downward(free_at / mm)} would be free of it"
+        return (
+            f"a {self.roller_field} below {downward(free_at / mm)} on the same pitch curve, base radius and "
+            f"{self.roller_field} together being {self.guide.prime / mm:.9g}, would be free of it"
+        )
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
         """A smaller roller."""

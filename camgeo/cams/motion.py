@@ -212,7 +212,7 @@ def _segment(stroke: Kind, *, whole_turn: bool) -> Table:
 @cache
 def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     """The keys of a motion that is no list of segments."""
-    most = MOST if stroke is Kind.LENGTH else 180
+    most = 180 if stroke is Kind.ANGLE else MOST
     units = Field(
         "units", Kind.CHOICE, "unit of the table's displacements", default="the recipe's", choices=("mm", "inch")
     )

@@ -168,5 +168,5 @@ class Job:
         if slope is None or slope < STEEP:
             return check
         less = self.recipe.cam.less_swing(self.recipe.mm)
-        why = f"psi'(phi) reaches {slope:.9g}, so the roller moves almost along the contour; {less} would satisfy it"
+        why = f"psi'(phi) reaches {slope:.9g}, so the follower moves almost along the contour; {less} would satisfy it"
         return replace(check, detail=f"{check.detail}: {why}")

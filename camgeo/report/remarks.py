@@ -58,13 +58,14 @@ def _size_found(recipe: Recipe) -> Remark | None:
 
 
 def _pressure(recipe: Recipe, design: Design) -> Remark | None:
-    """Past the rule of thumb, unless the recipe has a limit of its own; with the size that keeps it, where known.
+    """Of a roller past the rule of thumb, unless the recipe has a limit of its own; with the size that keeps it, where known.
 
     On the return a follower that a spring holds may be steeper.
     """
-    if "cam.sizing.pressure-angle" in recipe.marks or any(
-        limit.figure in {PRESSURE.name, ON_RISE, ON_RETURN} and limit.at_most is not None for limit in recipe.limits
-    ):
+    if "roller" not in recipe.cam.offers or "cam.sizing.pressure-angle" in recipe.marks:
+        return None
+    bounded = (limit.figure for limit in recipe.limits if limit.at_most is not None)
+    if not {PRESSURE.name, ON_RISE, ON_RETURN}.isdisjoint(bounded):
         return None
     made = next((check for check in design.checks if check.name == PRESSURE.name), None)
     kind = "oscillating" if recipe.cam.unit == "deg" else "translating"

@@ -2,9 +2,25 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 
 class KinError(Exception):
     """Base of every error that kin and camgeo raise on purpose; the library knows it as `camgeo.CamgeoError`."""
+
+    def __reduce__(self) -> tuple[Callable[..., KinError], tuple[object, ...]]:
+        """Travel between processes as it is: what an error is made of is not what its text is."""
+        return _again, (type(self), self.args, self.__dict__)
+
+
+def _again(kind: type[KinError], args: tuple[object, ...], state: dict[str, object]) -> KinError:
+    error = kind.__new__(kind, *args)
+    error.args = args
+    error.__dict__.update(state)
+    return error
 
 
 class UnsettledError(KinError, ArithmeticError):

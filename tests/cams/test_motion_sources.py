@@ -177,8 +177,11 @@ def test_a_formula_of_a_whole_turn_stands_on_its_least():
                 "an angle may be a fraction such as 180/7"
             ),
         ),
-        ("{segments: [{dwell: 360}]}", "motion.repeat: missing beside segments; give a whole number from 1 to 100"),
-        ("{repeat: 2, formula: cos(t)}", "motion.repeat: cannot stand beside formula; leave it out"),
+        (
+            "{segments: [{dwell: 360}]}",
+            "motion.repeat: missing, needed with segments; give a whole number from 1 to 100",
+        ),
+        ("{repeat: 2, formula: cos(t)}", "motion.repeat: cannot be combined with formula; leave it out"),
         ("{formula: cos(t), reading: 1}", "motion.reading: cannot stand without a table; leave it out"),
     ],
 )
@@ -300,7 +303,7 @@ def with_step(rows):
 
 
 def with_word(rows):
-    return [*rows[:9], "17,none", *rows[10:]], r"lift\.csv, line 10: '17,none' is no row parted by commas"
+    return [*rows[:9], "17,none", *rows[10:]], r"lift\.csv, line 10: '17,none' is not a row separated by commas"
 
 
 def with_angle_twice(rows):
@@ -345,7 +348,7 @@ def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):
     where = f"{tmp_path}/case.yaml:2:64: cam.motion.table: "
     looked = "give its path as seen from the recipe's folder"
     assert found == {
-        "none.csv": f"{where}there is no such file, given 'none.csv'; {looked}",
+        "none.csv": f"{where}the file does not exist, given 'none.csv'; {looked}",
         ".": f"{where}cannot be read: Is a directory, given '.'; {looked}",
         "pipe": f"{where}a pipe or a device, not a file, given 'pipe'; save the table as a file",
         "bytes.csv": f"{where}not a text, given 'bytes.csv'; save the table as CSV",

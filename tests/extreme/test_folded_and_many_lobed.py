@@ -199,7 +199,7 @@ def needle(thin):
         yield Row(what, "file within 0.001 mm", files.used(), 1.0, "share of the tolerance")
     elif thin > 1e-7:
         said = "; ".join(check["detail"] for check in files.failed)
-        yield Row(what, "file", said, "extremes cannot be told", "psi'(phi) comes to 2e6, and rounding with it")
+        yield Row(what, "file", said, "extremes cannot be resolved", "psi'(phi) comes to 2e6, and rounding with it")
 
 
 def too_thin():

@@ -21,7 +21,7 @@ def bytes_of(path: str | PathLike[str], most: int, what: str) -> bytes:
             with Path(path).open("rb") as stream:
                 return stream.read(most + 1)
     except FileNotFoundError:
-        raise Complaint("there is no such file") from None
+        raise Complaint("the file does not exist") from None
     except OSError as error:
         raise Complaint(f"cannot be read: {error.strerror or error}") from None
     except ValueError:  # a null character
