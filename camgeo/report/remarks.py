@@ -58,7 +58,7 @@ def _size_found(recipe: Recipe) -> Remark | None:
 
 
 def _pressure(recipe: Recipe, design: Design) -> Remark | None:
-    """Of a roller past the rule of thumb, without a limit of the recipe's own; with the size that keeps it, where known.
+    """Of a roller past the rule of thumb, unless the recipe has a limit of its own; with the size that keeps it.
 
     On the return a follower that a spring holds may be steeper.
     """
