@@ -54,7 +54,7 @@ class GuidedCam(Cam):
             raise TypeError("a follower on a guide takes a displacement over the shaft angle")
         pitch = CentreShape(intent, self.guide)
         whole, radius = Curve.whole(pitch), self.metal * self.touch_radius
-        return Profile(whole, Curve.whole(Parallel(pitch, radius)) if radius else whole, radius)
+        return Profile(whole, Curve.whole(Parallel(pitch, radius)), radius)
 
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """Between the contact's normal and the way of the centre."""

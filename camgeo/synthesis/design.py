@@ -66,16 +66,18 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
 
     clock = clock or Clock()
     cam = recipe.cam
-    with clock.stage("motion"):
-        try:
+    try:
+        with clock.stage("motion"):
             intent = cam.intent()
-        except IntentError as error:
-            raise recipe.error(f"cam.{error.field}", error.message) from error
+    except IntentError as error:
+        raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
         with clock.stage("profile"):
             profile = cam.profile(intent)
         with clock.stage("undercut"):
             checks, contour = sound(recipe, profile, intent)
+    except IntentError as error:  # an arm that does not reach, a face that swings too far
+        raise recipe.error(f"cam.{error.field}", error.message) from error
     except CurveError as error:
         raise recipe.error("cam", _unproved(recipe, error, intent)) from error
     with clock.stage("figures"):

@@ -17,6 +17,14 @@ from hypothesis import strategies as st
 from support.places import SHIPPED
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
+from camgeo.cams.constant_diameter import ConstantDiameterCam
+from camgeo.cams.disc import (
+    OscillatingFaceCam,
+    OscillatingRollerCam,
+    TranslatingFaceCam,
+    TranslatingRollerCam,
+    TranslatingRoundCam,
+)
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.flat_pair import FlatPairCam
 from camgeo.cams.motion import SegmentsAsked
@@ -24,6 +32,7 @@ from camgeo.cams.pairs import ArcRoute, DeltaRoute, LawRoute, RosetteRoute
 from camgeo.cams.segments import MotionSegment, SccaLaw
 from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, ReuleauxShape, SupportCam
 from camgeo.recipe import Recipe, RecipeErrors, load, read
+from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import Export, FileRequest
 from camgeo.recipe.machining import Compensation, Manufacture
 from camgeo.recipe.part import Part
@@ -477,9 +486,24 @@ def test_starters_show_every_kind_of_cam() -> None:
     assert {type(text(starter(kind)).cam) for kind in KINDS} == {
         SupportCam,
         ConstantBreadthCam,
+        ConstantDiameterCam,
         DoubleRollerCam,
         FlatPairCam,
+        TranslatingRollerCam,
+        OscillatingRollerCam,
+        TranslatingRoundCam,
+        TranslatingFaceCam,
+        OscillatingFaceCam,
     }
+    assert {text(starter(kind)).cam.kind for kind in KINDS} == set(CAMS)
+
+
+def test_a_starter_of_an_arm_shows_no_field_of_a_stem() -> None:
+    stem, arm = starter("disc-roller"), starter("disc-arm")
+    assert "    offset: 8 " in stem
+    assert "    # arm: " in stem
+    assert "      pivot: 80 " in arm
+    assert "offset" not in arm
 
 
 def test_an_unknown_starter_names_a_near_one() -> None:
