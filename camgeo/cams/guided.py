@@ -47,7 +47,10 @@ class GuidedCam(Cam):
         return LiftPosition(law) if self.unit == "mm" else ArmPosition(law, arm=cast("Oscillating", self.guide).length)
 
     def profile(self, intent: Intent) -> Profile:
-        """The centre's path, and the contour within it by the radius (around it, of a ring)."""
+        """The centre's path, and the contour within it by the radius (around it, of a ring).
+
+        A knife edge's contour is the parallel at 0: it may be hollow, which a flat face's own contour may not.
+        """
         from camgeo.curve.moving_frame import CentreShape, Displacement
 
         if not isinstance(intent, Displacement):
