@@ -13,7 +13,7 @@ from camgeo.recipe.schema.errors import suggestion
 from camgeo.recipe.schema.fields import Field, Kind, Table, either
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
 _COMMENT = 40  # column at which comments stand
 
@@ -23,16 +23,34 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 
 @dataclass(frozen=True)
 class _Starter:
-    """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides."""
+    """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides.
+
+    `unfit` are fields of its follower that do not go with the others, and are not shown.
+    """
 
     title: str
     kind: str
     cam: Given
     more: Given = field(default_factory=dict)
+    unfit: tuple[str, ...] = ()
 
 
 def _roller(title: str, ratio: str, route: str, given: str | Given) -> _Starter:
     return _Starter(title, "double-roller", {"ratio": ratio, "arm": "60", "roller_radius": "8", route: given})
+
+
+_DWELLS = (
+    "\n    - {{rise: {0}, over: 110, law: modified-sine}}"
+    "\n    - {{dwell: 50}}"
+    "\n    - {{return: {0}, over: 120, law: cycloidal}}"
+    "\n    - {{dwell: 80}}"
+)
+
+
+def _disc(title: str, base: str, stroke: str, follower: Given) -> _Starter:
+    unfit = ("offset", "tilt", "width") if "arm" in follower else ()
+    cam: Given = {"base_radius": base, "follower": follower, "motion": _DWELLS.format(stroke)}
+    return _Starter(f"A disc cam for {title}.", "disc", cam, unfit=unfit)
 
 
 _SHAFT: Given = {"shaft": "[10, 4]"}
@@ -67,6 +85,33 @@ _STARTERS = {
         {
             "base_radius": "40",
             "motion": "\n    - {rise: 20, over: 120, law: modified-sine}\n    - {dwell: 60}",
+        },
+    ),
+    "disc-roller": _disc(
+        "a roller on a stem, the stem's line beside the shaft",
+        "36",
+        "20",
+        {"kind": "roller", "radius": "9", "offset": "8"},
+    ),
+    "disc-arm": _disc(
+        "a roller on an arm, which swings",
+        "34",
+        "20",
+        {"kind": "roller", "radius": "8", "arm": {"length": "65", "pivot": "80"}},
+    ),
+    "disc-flat": _disc("a flat tappet", "30", "12", {"kind": "flat", "width": "34"}),
+    "disc-arm-flat": _disc(
+        "a flat face on an arm, which swings", "36", "10", {"kind": "flat", "arm": {"pivot": "90", "face": "10"}}
+    ),
+    "disc-shoe": _disc("a curved shoe on a stem", "30", "10", {"kind": "shoe", "radius": "60"}),
+    "disc-knife-edge": _disc("a knife edge on a stem", "30", "12", {"kind": "knife-edge"}),
+    "constant-diameter": _Starter(
+        "A cam between two opposite rollers of one frame, from its motion over one half turn.",
+        "constant-diameter",
+        {
+            "base_radius": "28",
+            "roller_radius": "8",
+            "motion": "\n    - {rise: 12, over: 80, law: modified-sine}\n    - {dwell: 100}",
         },
     ),
     "double-roller": _roller(
@@ -160,7 +205,7 @@ def starter(kind: str) -> str:
 def _recipe(chosen: _Starter) -> Table:
     """Make the table of a recipe with this kind of cam and of linkage; if there is none, without what needs one."""
     linkage = chosen.more.get("linkage")
-    kinds = {"cam": _kinded("the kind of cam", CAMS, chosen.kind)}
+    kinds = {"cam": _with_forms(_kinded("the kind of cam", CAMS, chosen.kind), chosen)}
     if isinstance(linkage, dict):
         kinds["linkage"] = _kinded("the kind of linkage", LINKAGES, str(linkage["kind"]))
     fields = (replace(item, table=kinds.get(item.name, item.table)) for item in RECIPE.fields)
@@ -170,13 +215,27 @@ def _recipe(chosen: _Starter) -> Table:
     return Table(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
 
 
+def _with_forms(table: Table, chosen: _Starter) -> Table:
+    """Give each field that has kinds of its own the table of the kind that is given."""
+
+    def shown(item: Field) -> Field:
+        value = chosen.cam.get(item.name)
+        if not isinstance(value, dict) or item.form is None or not item.form.tables:
+            return item
+        found = _kinded(f"the kind of {item.name}", item.form.tables, str(value["kind"]))
+        fields = tuple(one for one in found.fields if one.name not in chosen.unfit)
+        return replace(item, table=replace(found, fields=fields))
+
+    return replace(table, fields=tuple(map(shown, table.fields)))
+
+
 def _leave_out(item: Field, unfit: set[str]) -> Field:
     if item.name != "verify" or item.table is None:
         return item
     return replace(item, table=Table(tuple(one for one in item.table.fields if one.name not in unfit)))
 
 
-def _kinded(about: str, tables: dict[str, Table], kind: str) -> Table:
+def _kinded(about: str, tables: Mapping[str, Table], kind: str) -> Table:
     """Make the table of one kind with the field `kind` before the others."""
     first = Field("kind", Kind.CHOICE, f"{about}: {either(tuple(tables))}")
     return replace(tables[kind], fields=(first, *tables[kind].fields))

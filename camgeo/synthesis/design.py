@@ -66,11 +66,11 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
 
     clock = clock or Clock()
     cam = recipe.cam
-    with clock.stage("motion"):
-        try:
+    try:
+        with clock.stage("motion"):
             intent = cam.intent()
-        except IntentError as error:
-            raise recipe.error(f"cam.{error.field}", error.message) from error
+    except IntentError as error:
+        raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
         with clock.stage("profile"):
             profile = cam.profile(intent)

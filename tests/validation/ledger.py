@@ -34,6 +34,7 @@ TOPICS = (
     "test_least_polygon",
     "test_motion_laws",
     "test_shu_wu",
+    "test_disc_formulas",
     "test_wunderlich",
     "test_linkages",
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from camgeo.cams.disc import FOLLOWERS
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import FILES
 from camgeo.recipe.figures import FIGURES, NEEDS, bounds
@@ -24,6 +25,7 @@ UNITS = {
     Kind.ANGLE: "deg",
     Kind.ERROR: "length; deg",
     Kind.OUTPUT: "deg; length",
+    Kind.STROKE: "length; deg",
     Kind.MOTION: "deg; length",
     Kind.BACKLASH: "length; deg",
 }
@@ -73,7 +75,7 @@ def tables():
     """Every table of the schema, written out, by the name that marks its place in the page."""
     found = {"recipe": RECIPE, **dict(below(RECIPE, "")), "sweep.vary": RANGE}
     found["limits"] = bounds(next(iter(FIGURES.values())))
-    for noun, kinds in (("cam", CAMS), ("linkage", LINKAGES), ("dyad", DYADS)):
+    for noun, kinds in (("cam", CAMS), ("follower", FOLLOWERS), ("linkage", LINKAGES), ("dyad", DYADS)):
         for kind, one in kinds.items():
             found[f"{noun} {kind}"] = one
             found.update(below(one, f"{noun} {kind}"))
