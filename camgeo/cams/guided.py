@@ -47,14 +47,17 @@ class GuidedCam(Cam):
         return LiftPosition(law) if self.unit == "mm" else ArmPosition(law, arm=cast("Oscillating", self.guide).length)
 
     def profile(self, intent: Intent) -> Profile:
-        """The centre's path, and the contour within it by the radius (around it, of a ring)."""
+        """The centre's path, and the contour within it by the radius (around it, of a ring).
+
+        A knife edge's contour is the parallel at 0: it may be hollow, which a flat face's own contour may not.
+        """
         from camgeo.curve.moving_frame import CentreShape, Displacement
 
         if not isinstance(intent, Displacement):
             raise TypeError("a follower on a guide takes a displacement over the shaft angle")
         pitch = CentreShape(intent, self.guide)
         whole, radius = Curve.whole(pitch), self.metal * self.touch_radius
-        return Profile(whole, Curve.whole(Parallel(pitch, radius)) if radius else whole, radius)
+        return Profile(whole, Curve.whole(Parallel(pitch, radius)), radius)
 
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """Between the contact's normal and the way of the centre."""
