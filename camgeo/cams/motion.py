@@ -212,7 +212,7 @@ def _segment(stroke: Kind, *, whole_turn: bool) -> Table:
 @cache
 def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
     """The keys of a motion that is no list of segments."""
-    most = MOST if stroke is Kind.LENGTH else 180
+    most = 180 if stroke is Kind.ANGLE else MOST
     units = Field(
         "units", Kind.CHOICE, "unit of the table's displacements", default="the recipe's", choices=("mm", "inch")
     )
@@ -221,7 +221,7 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         Field("formula", Kind.FORMULA, "displacement at t, the motion's angle in radians", unit=stroke),
         Field("table", Kind.OWN, "file with a row for each angle, its path as seen from the recipe", form=FILE),
         Field("angle", Kind.CHOICE, "whose angle the table has", default="cam", choices=("cam", "crank")),
-        *((units,) if stroke is Kind.LENGTH else ()),
+        *(() if stroke is Kind.ANGLE else (units,)),
         Field(
             "reading",
             stroke,
@@ -260,6 +260,8 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
     for key in ("angle", "units", "reading"):
         if key in values and f"{path}.table" not in reader.marks:
             reader.fault_at(f"{path}.{key}", "cannot stand without a table", None, "leave it out")
+    if "units" in values and stroke in reader.angular:
+        reader.fault_at(f"{path}.units", "the follower swings: its table is in degrees", None, "leave it out")
     if len(reader.errors) > found:
         return None
     scale = reader.scale(stroke)
@@ -282,7 +284,7 @@ def _read_list(stroke: Kind, reader: Reader, field: Field, node: Node, path: str
 
 def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAsked | None:
     """Read the rows of a table now, so that the recipe needs no file any more."""
-    unit: Unit = values.get("units", reader.units) if stroke is Kind.LENGTH else "degrees"
+    unit: Unit = "degrees" if stroke in reader.angular else values.get("units", reader.units)
     found = read_rows(reader, values["table"], path, angles=values.get("angle", "cam"), unit=unit)
     if found is None:
         return None

@@ -171,7 +171,7 @@ LAW = Form("a motion law", "a motion law", read_law, _law_schema)
 
 def segment_table(stroke: Kind, over: int = 180) -> Table:
     """Make the table of a segment whose stroke is a length or an angle; `over` degrees are the longest."""
-    most = MOST if stroke is Kind.LENGTH else 180
+    most = 180 if stroke is Kind.ANGLE else MOST
     strokes = [Field(key, stroke, f"stroke of the {key}", above=0, at_most=most) for key in ("rise", "return")]
     angle = Field("over", Kind.ANGLE, "shaft angle of the segment", above=0, at_most=over)
     return Table(
