@@ -1,0 +1,112 @@
+"""Random motions of random followers, from the recipe's text to where the follower rests on the drawing.
+
+The drawing is read by ezdxf and touched by brute force; laws and followers are written here again, so that recipe,
+motion, curve, file and judge are all held against something that knows none of them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+from support.brute_disc import LAWS, Touching, motion, polygon
+from support.cases import examples
+
+from camgeo.output import pipeline
+from camgeo.recipe.loading import load_text
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+TOLERANCE = 1e-4
+BASE = 40.0
+ANGLES = np.arange(0.0, 360.0, 7.5)
+# vertices 0.01 mm apart stand back from their arc by 0.01^2/8 over its radius, and roller and arc add up
+STEP = 0.01
+
+
+@st.composite
+def followers(draw: st.DrawFn) -> Touching:
+    kind = draw(st.sampled_from(["roller", "knife-edge", "shoe", "flat"]))
+    sense = draw(st.sampled_from([0, 0, 1, -1]))
+    ring = kind == "roller" and draw(st.booleans())
+    radius = {"roller": draw(st.sampled_from([4.0, 10.0])), "shoe": draw(st.sampled_from([50.0, 120.0]))}.get(kind, 0.0)
+    if kind == "flat":
+        if sense:
+            return Touching(kind, offset=draw(st.sampled_from([-5.0, 0.0, 12.0])), pivot=110.0, sense=sense)
+        return Touching(kind, tilt=math.radians(draw(st.sampled_from([0.0, 6.0, -15.0]))))
+    if sense:
+        prime = BASE - radius if ring else BASE + radius
+        pivot = draw(st.floats(1.3, 2.0)) * prime
+        return Touching(kind, radius, pivot=pivot, length=pivot * draw(st.floats(0.8, 1.1)), sense=sense, ring=ring)
+    return Touching(kind, radius, draw(st.floats(-20.0, 20.0)), ring=ring)
+
+
+@st.composite
+def motions(draw: st.DrawFn, stroke: float) -> list[tuple[float, float, str]]:
+    """Up and down, perhaps twice, with dwells; the strokes are parts of the greatest."""
+    times = draw(st.sampled_from([1, 1, 2]))
+    rows = []
+    for _ in range(times):
+        by, law = stroke * draw(st.floats(0.1, 1.0)), st.sampled_from(sorted(LAWS))
+        up, rest, down = (draw(st.integers(*ends)) / times for ends in ((80, 130), (1, 40), (80, 130)))
+        rows += [
+            (by, up, draw(law)),
+            (0.0, rest, ""),
+            (-by, down, draw(law)),
+            (0.0, 360 / times - up - rest - down, ""),
+        ]
+    return rows
+
+
+def text(touching: Touching, rows: list[tuple[float, float, str]], drawn_as: str, rotation: str) -> str:
+    keys = {"kind": touching.kind}
+    if touching.radius:
+        keys["radius"] = repr(touching.radius)
+    if touching.sense:
+        held = f"face: {touching.offset!r}" if touching.kind == "flat" else f"length: {touching.length!r}"
+        side = "trailing" if touching.sense > 0 else "leading"
+        keys["arm"] = f"{{pivot: {touching.pivot!r}, {held}, side: {side}}}"
+    elif touching.kind == "flat":
+        keys["tilt"] = repr(math.degrees(touching.tilt))
+    else:
+        keys["offset"] = repr(touching.offset)
+    steps = [
+        f"{{{'rise' if by > 0 else 'return'}: {abs(by)!r}, over: {over!r}, law: {law}}}"
+        if law
+        else f"{{dwell: {over!r}}}"
+        for by, over, law in rows
+    ]
+    follower = ", ".join(f"{key}: {value}" for key, value in keys.items())
+    track = "internal" if touching.ring else "external"
+    return (
+        f"cam: {{kind: disc, base_radius: {BASE}, track: {track}, follower: {{{follower}}}, motion: [{', '.join(steps)}]}}\n"
+        f"rotation: {rotation}\nexport: {{tolerance: {TOLERANCE}, files: [dxf: {{as: {drawn_as}}}]}}\n"
+    )
+
+
+@settings(max_examples=examples(60), suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.data())
+def test_the_follower_rests_on_the_drawing_where_it_is_meant_to(tmp_path: Path, data: st.DataObject) -> None:
+    touching = data.draw(followers())
+    swings = bool(touching.sense)
+    rows = data.draw(motions(12.0))  # mm, or degrees
+    rotation = data.draw(st.sampled_from(["cw", "ccw"]))
+    recipe = load_text(text(touching, rows, data.draw(st.sampled_from(["arcs", "spline"])), rotation), "cam.yaml")
+    outcome = pipeline.export(recipe, tmp_path)
+    assume(outcome.ok or not outcome.report["files"])  # undercut is refused before a file is made
+    if not outcome.ok:
+        return
+    vertices = polygon(tmp_path / "cam" / "cam.dxf", STEP)
+    if rotation == "ccw":
+        vertices = np.conj(vertices)
+    meant = motion(rows, ANGLES)
+    found = np.array([touching.place(vertices, theta) for theta in np.radians(ANGLES)]) - touching.rest(BASE)
+    off = np.abs((np.degrees(found) if swings else found) - meant).max()
+    file = outcome.report["files"][0]
+    apart = STEP**2 / 8 * (1 / 4 + 1 / 4)  # at the least radii, of roller and contour
+    ratio = file["motion"]["max"] / file["measured_error"] if file["measured_error"] else 1.0
+    assert off <= file["motion"]["max"] + file["motion"]["remainder"] + max(ratio, 2.0) * apart
