@@ -76,6 +76,8 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
             profile = cam.profile(intent)
         with clock.stage("undercut"):
             checks, contour = sound(recipe, profile, intent)
+    except IntentError as error:  # of a guide or a face that cannot follow the motion
+        raise recipe.error(f"cam.{error.field}", error.message) from error
     except CurveError as error:
         raise recipe.error("cam", _unproved(recipe, error, intent)) from error
     with clock.stage("figures"):

@@ -45,8 +45,11 @@ class Touching:
             return math.acos(triangle / (2 * self.pivot * self.length))
         return math.sqrt(prime**2 - self.offset**2)
 
-    def place(self, polygon: np.ndarray, theta: float) -> float:
-        """Where it is held by the vertices (n,), complex, of the cam turned by theta; a knife edge by its sides."""
+    def place(self, polygon: np.ndarray, theta: float, base: float) -> float:
+        """Where it is held by the vertices (n,), complex, of the cam turned by theta; a knife edge by its sides.
+
+        In a ring it is held by what lies before it.
+        """
         turned = polygon * np.exp(-1j * theta)
         if self.kind == "flat":
             return self._face(turned)
@@ -58,13 +61,13 @@ class Touching:
             cosine = (self.length**2 + far**2 - self.radius**2) / (2 * self.length * far)
             near = np.abs(cosine) <= 1.0
             apart, beta = np.arccos(cosine[near]), beta[near]
-            return float((beta - apart)[turned[near].real > 0].min() if self.ring else (beta + apart).max())
+            return float((beta - apart)[beta > self.rest(base)].min() if self.ring else (beta + apart).max())
         across = turned.imag - self.offset
         if self.kind == "knife-edge":
             return _outermost(turned.real, across)
         near = np.abs(across) <= self.radius
         along, reach = turned.real[near], np.sqrt(self.radius**2 - across[near] ** 2)
-        return float((along - reach)[along > 0].min() if self.ring else (along + reach).max())
+        return float((along - reach)[along > self.rest(base)].min() if self.ring else (along + reach).max())
 
     def _face(self, turned: np.ndarray) -> float:
         if not self.sense:
