@@ -33,6 +33,30 @@ class Touching:
     sense: int = 0  # +1 a trailing arm, -1 a leading one, 0 a stem
     ring: bool = False
 
+    def recipe(self, base: float, rows: list[tuple[float, float, str]], more: str) -> str:
+        """Text of a recipe with this follower and motion (see `motion`), and `more` topics."""
+        keys = {"kind": self.kind}
+        if self.radius:
+            keys["radius"] = repr(self.radius)
+        if self.sense:
+            held = f"face: {self.offset!r}" if self.kind == "flat" else f"length: {self.length!r}"
+            side = "trailing" if self.sense > 0 else "leading"
+            keys["arm"] = f"{{pivot: {self.pivot!r}, {held}, side: {side}}}"
+        elif self.kind == "flat":
+            keys["tilt"] = repr(math.degrees(self.tilt))
+        else:
+            keys["offset"] = repr(self.offset)
+        follower = ", ".join(f"{key}: {value}" for key, value in keys.items())
+        steps = [
+            f"{{{'rise' if by > 0 else 'return'}: {abs(by)!r}, over: {over!r}, law: {law}}}"
+            if law
+            else f"{{dwell: {over!r}}}"
+            for by, over, law in rows
+        ]
+        track = "track: internal, " if self.ring else ""
+        cam = f"kind: disc, base_radius: {base!r}, {track}follower: {{{follower}}}, motion: [{', '.join(steps)}]"
+        return f"cam: {{{cam}}}\n{more}"
+
     def rest(self, base: float) -> float:
         """Place at displacement 0, from the base radius."""
         prime = base - self.radius if self.ring else base + self.radius
