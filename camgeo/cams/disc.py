@@ -443,7 +443,8 @@ def _size(cam: Values, reader: Reader) -> None:
         demand_kept(found, asked)
     except IntentError as error:
         path = f"cam.{error.field}"
-        reader.fault_at(path if path in reader.marks else "cam.sizing", error.message, None, "give base_radius instead")
+        remedy = "" if error.field.startswith("motion") else "give base_radius instead"  # no size mends a motion
+        reader.fault_at(path if path in reader.marks else "cam.sizing", error.message, None, remedy)
         return
     cam["sized"] = replace(found, sizing=asked)
 

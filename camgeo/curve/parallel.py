@@ -70,8 +70,9 @@ class Parallel:
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
-        b = self.base.bounds(low, high)
-        d = self.distance
+        b, d = self.base.bounds(low, high), self.distance
+        if d == 0.0:
+            return b  # a bound that is infinite stays one
         near, far = (b.turn_low, b.turn_high) if d >= 0 else (b.turn_high, b.turn_low)
         return Bounds(
             b.speed_low - d * far,

@@ -153,3 +153,12 @@ def test_d_by_a_formula_passes_for_rollers_and_flats():
     plain = "kind: double-roller, ratio: 4/3, arm: 2, roller_radius: 0.3, delta: {cos: {1: 0.6}}"
     first, second = (recipe(cam, "inch").cam.intent().psi_of_shaft(1.1, 1) for cam in (inch, plain))
     assert first == pytest.approx(second, abs=1e-13)
+
+
+def test_rounding_at_the_ends_of_a_short_rise_is_no_jump():
+    """A rise over a hundredth of a degree has accelerations of 1e9: what rounding leaves of them at its ends is 0."""
+    rows = "[{rise: 27, over: 0.01, law: cycloidal}, {dwell: 50}, {return: 27, over: 1, law: polynomial-4567}, "
+    made = recipe(
+        f"kind: disc, base_radius: 50, follower: {{kind: roller, radius: 5}}, motion: {rows}{{dwell: 308.99}}]"
+    )
+    assert [[order for order, _, _ in joint.jumps] for joint in designed(made).joints] == [[3], [3]]

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _JOIN = 1e-9  # of the greatest derivative: what differs less over the seam is rounding
 _CLOSED = 1e-11  # of the greatest of S, S', S'': a jump of S or S' below this is rounding, as for a lift
 _LOOKS = 64  # places at which the size of a derivative is looked at, besides the knots
+_INSIDE = (np.arange(8) + 0.5) / 8  # and in shares of each part
 _SEAM_ORDER = 6  # derivatives that agree where a function runs on over the seam
 
 
@@ -84,7 +85,9 @@ class Motion(Programme):
         knots = self.motion.knots
         right, left = self.motion.derivatives(knots[:-1], ORDERS, 1), self.motion.derivatives(knots[1:], ORDERS, -1)
         size = np.maximum(np.abs(right).max(axis=1), np.abs(left).max(axis=1))
-        between = self.motion.derivatives(np.linspace(knots[0], knots[-1], _LOOKS), ORDERS)
+        # within each part too: a short one, whose derivatives are the greatest, is easily stepped over
+        inside = (knots[:-1, None] + np.diff(knots)[:, None] * _INSIDE).ravel()
+        between = self.motion.derivatives(np.append(np.linspace(knots[0], knots[-1], _LOOKS), inside), ORDERS)
         size = np.maximum(size, np.abs(between).max(axis=1))
         found = []
         if self.around is not None:
