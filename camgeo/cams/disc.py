@@ -113,6 +113,11 @@ class RoundCam(DiscCam, GuidedCam):
         return self.radius
 
     @property
+    def roller_field(self) -> str:
+        """A curved shoe is no roller."""
+        return "shoe radius" if self.touch == "shoe" else super().roller_field
+
+    @property
     def metal(self) -> int:
         """-1 where the cam is the opening of a ring."""
         return 1 if self.track == "external" else -1
@@ -131,9 +136,9 @@ class RoundCam(DiscCam, GuidedCam):
 
     def _resized(self, out: float, scale: float) -> dict[str, Any]:
         """Base radius and radius for a smaller roller on the same pitch curve, scaled."""
-        if not self.radius > self.metal * out:
+        if not self.radius > out:
             raise GrownError("the roller's radius", self.radius)
-        base, radius = self.base_radius + self.metal * out, self.radius - self.metal * out
+        base, radius = self.base_radius + self.metal * out, self.radius - out
         return {"base_radius": scale * base, "radius": scale * radius}
 
 

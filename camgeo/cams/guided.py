@@ -32,9 +32,12 @@ class GuidedCam(Cam):
 
     less_steep: ClassVar[str] = LARGER_BASE
     offers: ClassVar[frozenset[str]] = frozenset({"roller", "guided"})
-    roller_field: ClassVar[str] = "roller radius"
-    """What its radius is called in a recipe."""
     base_radius: float
+
+    @property
+    def roller_field(self) -> str:
+        """What the radius of what touches the cam is called in advice."""
+        return "roller radius"
 
     @property
     @abstractmethod

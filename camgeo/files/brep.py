@@ -50,14 +50,16 @@ def need_kernel() -> None:
 
 
 def solid_shape(outline: Outline, solid: Solid) -> Shape:
-    """Return the kernel's solid: a disc round an outline, with its hub, openings, chamfers and set screw.
+    """Return the kernel's solid: a disc in an outline or a ring about it, with hub, openings, chamfers and set screw.
 
     Raises RegionError where a piece is too short for the kernel, an arc is sharper than the chamfer, or the kernel
     finds the solid unsound; TypeError for a chamfer along anything but arcs.
     """
     stack = _Stack()
     top = solid.thickness
-    first, last = _contour(stack, outline, solid)
+    first, last = (
+        _contour(stack, outline, solid) if solid.outer is None else stack.wall(_disc(0.5 * solid.outer), 0.0, top)
+    )
     through = [cut for cut in solid.cuts if cut.low <= solid.low]
     within = [cut for cut in through if solid.hub is not None and _is_within(cut.outline, solid.hub)]
     low_hub, high_hub = solid.low < 0.0, solid.high > top
@@ -66,6 +68,10 @@ def solid_shape(outline: Outline, solid: Solid) -> Shape:
     above: list[Shape] = []
     inner_low: list[Shape] = []
     inner_high: list[Shape] = []
+    if solid.outer is not None:
+        foot, head = stack.wall(outline, 0.0, top)
+        under.append(foot.wire)
+        above.append(head.wire)
     for cut in solid.cuts:
         inside = any(cut is one for one in within)
         if not any(cut is one for one in through):

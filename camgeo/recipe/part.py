@@ -111,10 +111,12 @@ class Part:
 
     `thickness` of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or 6) are
     given; `bore_at` is then the direction of one flat's normal. `wall` is the least that may be left between any two
-    edges; without it what is left is told and must be above 0.
+    edges; without it what is left is told and must be above 0. `outer` is the diameter of a ring, whose opening is the
+    cam.
     """
 
     thickness: float | None = None
+    outer: float | None = None
     bore: float | None = None
     sides: int = 0
     bore_at: float = 0.0
@@ -132,7 +134,17 @@ class Part:
     @property
     def plain(self) -> bool:
         """Whether there is nothing but a round bore or none."""
-        shaped = (self.keyway, self.flat, self.hub, self.bolts, self.dowel, self.lightening, self.chamfer, self.mark)
+        shaped = (
+            self.outer,
+            self.keyway,
+            self.flat,
+            self.hub,
+            self.bolts,
+            self.dowel,
+            self.lightening,
+            self.chamfer,
+            self.mark,
+        )
         return not self.sides and all(feature is None for feature in shaped)
 
 
@@ -278,6 +290,7 @@ PART = mapping(
     "part",
     "the part round the contour",
     length("thickness", "thickness of the disc along the shaft; solids need it"),
+    length("outer", "diameter of the outline of a ring, with `track: internal`", default="none"),
     Field(
         "bore",
         Kind.OWN,
@@ -327,6 +340,34 @@ def check_part(part: Values, reader: Reader) -> None:
                 reader.fault_at(f"part.{name}", "needs a round bore", None, "give the bore's diameter, or leave it out")
     _disc(part, reader)
     _holes(part, reader)
+
+
+_OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
+
+
+def check_ring(values: Values, reader: Reader) -> None:
+    """Note a ring without its outline, an outline without its ring, and what a ring cannot have."""
+    cam = values.get("cam", {})
+    if "follower" not in cam and "part.outer" not in reader.marks:
+        return
+    if not is_ring(values):
+        if "cam.track" not in reader.marks or "track" in cam:
+            remedy = "give a disc cam with `track: internal`, or leave it out"
+            reader.fault_at("part.outer", "belongs to a ring", None, remedy) if "part.outer" in reader.marks else None
+        return
+    if "part.outer" not in reader.marks:
+        remedy = "give part.outer, or leave track out"
+        reader.fault_at("cam.track", "a ring needs part.outer, the diameter of its outline", "internal", remedy)
+    for name in _OF_A_DISC:
+        if f"part.{name}" in reader.marks:
+            reader.fault_at(f"part.{name}", "belongs to a disc on a shaft, not to a ring", None, "leave it out")
+    if "manufacture.layer" in reader.marks:
+        reader.fault_at("manufacture.layer", "the cutter's path in a ring is not made", None, "leave it out")
+
+
+def is_ring(values: Values) -> bool:
+    """Whether the values of a recipe are of a ring."""
+    return bool(values.get("cam", {}).get("track") == "internal")
 
 
 def _needs(reader: Reader, name: str, other: str, why: str) -> None:
@@ -403,6 +444,7 @@ def build_part(values: Values) -> Part:
     mark = values.get("mark")
     return Part(
         thickness=values.get("thickness"),
+        outer=values.get("outer"),
         bore=width,
         sides=SIDES.get(name, 0),
         bore_at=form.get("at", 0.0),
