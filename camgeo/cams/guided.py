@@ -35,11 +35,6 @@ class GuidedCam(Cam):
     base_radius: float
 
     @property
-    def roller_field(self) -> str:
-        """What the radius of what touches the cam is called in advice."""
-        return "roller radius"
-
-    @property
     @abstractmethod
     def guide(self) -> Translating | Oscillating:
         """How the centre is led; raises IntentError where the guide does not reach the prime circle."""

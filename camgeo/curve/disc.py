@@ -102,7 +102,8 @@ class SwingingFace(_Face):
     """A face on an arm about a pivot at distance C, `face` mm nearer the cam than its parallel through the pivot.
 
     psi = rest + S is its angle to the line from pivot to shaft; `side` is +1 trailing, -1 leading. IntentError where
-    the face would reach the line or the contact the pivot, at psi = 90 degrees, or swing as fast as the cam turns: k = 1 + s psi' must stay above 0.
+    the face would reach the line, or the contact the pivot (psi = 90 degrees), or the face swing as fast as the cam
+    turns: k = 1 + s psi' must stay above 0.
     """
 
     pivot: float

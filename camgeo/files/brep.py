@@ -57,9 +57,7 @@ def solid_shape(outline: Outline, solid: Solid) -> Shape:
     """
     stack = _Stack()
     top = solid.thickness
-    first, last = (
-        _contour(stack, outline, solid) if solid.outer is None else stack.wall(_disc(0.5 * solid.outer), 0.0, top)
-    )
+    first, last = _contour(stack, outline, solid)
     through = [cut for cut in solid.cuts if cut.low <= solid.low]
     within = [cut for cut in through if solid.hub is not None and _is_within(cut.outline, solid.hub)]
     low_hub, high_hub = solid.low < 0.0, solid.high > top
@@ -99,7 +97,9 @@ def solid_shape(outline: Outline, solid: Solid) -> Shape:
 
 
 def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Loop, Loop]:
-    """Walls round the disc; its lowest and its highest loop."""
+    """Walls round the disc or ring; its lowest and its highest loop."""
+    if solid.outer is not None:
+        return stack.wall(_disc(0.5 * solid.outer), 0.0, solid.thickness)
     if solid.chamfer is None:
         return stack.wall(outline, 0.0, solid.thickness)
     if not isinstance(outline, ArcSpline):

@@ -56,8 +56,14 @@ def part_mesh(polygon: Polygon, body: Body, *, tolerance: float, precision: Prec
         from camgeo.files.prism import extruded
 
         outlines = [opening.outline for opening in body.openings]
-        sizes = {"thickness": body.thickness, "outer": body.outer, "tolerance": tolerance}
-        return extruded(polygon, holes=outlines, **sizes, precision=precision)
+        return extruded(
+            polygon,
+            holes=outlines,
+            thickness=body.thickness,
+            outer=body.outer,
+            tolerance=tolerance,
+            precision=precision,
+        )
     from camgeo.files.solid import joined
 
     return joined(polygon, solid_of(body), tolerance=tolerance, precision=precision)

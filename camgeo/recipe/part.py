@@ -134,17 +134,8 @@ class Part:
     @property
     def plain(self) -> bool:
         """Whether there is nothing but a round bore or none."""
-        shaped = (
-            self.outer,
-            self.keyway,
-            self.flat,
-            self.hub,
-            self.bolts,
-            self.dowel,
-            self.lightening,
-            self.chamfer,
-            self.mark,
-        )
+        holes = (self.bolts, self.dowel, self.lightening)
+        shaped = (self.outer, self.keyway, self.flat, self.hub, *holes, self.chamfer, self.mark)
         return not self.sides and all(feature is None for feature in shaped)
 
 
@@ -340,34 +331,6 @@ def check_part(part: Values, reader: Reader) -> None:
                 reader.fault_at(f"part.{name}", "needs a round bore", None, "give the bore's diameter, or leave it out")
     _disc(part, reader)
     _holes(part, reader)
-
-
-_OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
-
-
-def check_ring(values: Values, reader: Reader) -> None:
-    """Note a ring without its outline, an outline without its ring, and what a ring cannot have."""
-    cam = values.get("cam", {})
-    if "follower" not in cam and "part.outer" not in reader.marks:
-        return
-    if not is_ring(values):
-        if "cam.track" not in reader.marks or "track" in cam:
-            remedy = "give a disc cam with `track: internal`, or leave it out"
-            reader.fault_at("part.outer", "belongs to a ring", None, remedy) if "part.outer" in reader.marks else None
-        return
-    if "part.outer" not in reader.marks:
-        remedy = "give part.outer, or leave track out"
-        reader.fault_at("cam.track", "a ring needs part.outer, the diameter of its outline", "internal", remedy)
-    for name in _OF_A_DISC:
-        if f"part.{name}" in reader.marks:
-            reader.fault_at(f"part.{name}", "belongs to a disc on a shaft, not to a ring", None, "leave it out")
-    if "manufacture.layer" in reader.marks:
-        reader.fault_at("manufacture.layer", "the cutter's path in a ring is not made", None, "leave it out")
-
-
-def is_ring(values: Values) -> bool:
-    """Whether the values of a recipe are of a ring."""
-    return bool(values.get("cam", {}).get("track") == "internal")
 
 
 def _needs(reader: Reader, name: str, other: str, why: str) -> None:

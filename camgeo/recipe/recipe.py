@@ -18,7 +18,8 @@ from camgeo.recipe.export import EXPORT, build_export, check_files
 from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, DwellAsked, build_linkage, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
-from camgeo.recipe.part import PART, build_part, check_part, check_ring
+from camgeo.recipe.part import PART, build_part, check_part
+from camgeo.recipe.ring import check_ring
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
 from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, mapping, present

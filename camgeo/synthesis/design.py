@@ -74,7 +74,10 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
             raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
         with clock.stage("profile"):
-            profile = cam.profile(intent)
+            try:
+                profile = cam.profile(intent)
+            except IntentError as error:
+                raise recipe.error(f"cam.{error.field}", error.message) from error
         with clock.stage("undercut"):
             checks, contour = sound(recipe, profile, intent)
     except CurveError as error:
@@ -203,8 +206,8 @@ def _unproved(recipe: Recipe, error: CurveError, intent: Intent) -> str:
     most, least = error.most / recipe.mm, error.least / recipe.mm
     half = f"lies between {least:.9g} and {most:.9g}" if error.seen else f"is at least {least:.9g}"
     return (
-        f"whether a {recipe.cam.roller_field} of {most:.9g} has no undercut between {first:.6g} and {second:.6g} deg cannot be "
-        f"proved: half the width of the neck there {half}; "
+        f"whether a {recipe.cam.roller_field} of {most:.9g} has no undercut between {first:.6g} and {second:.6g} deg "
+        f"cannot be proved: half the width of the neck there {half}; "
         f"{f'one below {downward(least)}' if least > 0.0 else 'none'} is proved to have no undercut"
     )
 
