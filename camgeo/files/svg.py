@@ -96,8 +96,8 @@ def _box(shape: Circle | Outline) -> Box:
 def _page(boxes: Sequence[Box], mm: float) -> tuple[str, str, str, str]:
     """Left, top, width and height of the page in drawing units, y downwards, as the viewBox has it."""
     margin = _MARGIN / mm
-    low, high_ends = zip(*((box[:2], box[2:]) for box in boxes), strict=True)
-    x_min, y_min, x_max, y_max = (value / mm for value in (*map(min, *low), *map(max, *high_ends)))
+    x_low, y_low, x_high, y_high = zip(*boxes, strict=True)
+    x_min, y_min, x_max, y_max = (value / mm for value in (min(x_low), min(y_low), max(x_high), max(y_high)))
     left, right = math.floor(_PLACES * (x_min - margin)), math.ceil(_PLACES * (x_max + margin))
     top, bottom = math.floor(_PLACES * (-y_max - margin)), math.ceil(_PLACES * (-y_min + margin))
     x, y, wide, high = (number(value / _PLACES) for value in (left, top, right - left, bottom - top))
