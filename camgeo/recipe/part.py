@@ -116,7 +116,6 @@ class Part:
     """
 
     thickness: float | None = None
-    outer: float | None = None
     bore: float | None = None
     sides: int = 0
     bore_at: float = 0.0
@@ -130,6 +129,7 @@ class Part:
     chamfer: float | None = None
     mark: Mark | None = None
     wall: float | None = None
+    outer: float | None = None
 
     @property
     def plain(self) -> bool:
@@ -281,7 +281,6 @@ PART = mapping(
     "part",
     "the part round the contour",
     length("thickness", "thickness of the disc along the shaft; solids need it"),
-    length("outer", "diameter of the outline of a ring, with `track: internal`", default="none"),
     Field(
         "bore",
         Kind.OWN,
@@ -305,6 +304,7 @@ PART = mapping(
     _LIGHTENING,
     length("chamfer", "chamfer of 45 degrees along both edges of the contour, its height", default="none"),
     _optional("mark", "timing mark on the ray where the shaft angle is 0", *_MARK),
+    length("outer", "diameter of the outline of a ring, with `track: internal`", default="none"),
     length("wall", "least wall between any two edges", default="reported, and above 0"),
     later=("follower",),
 )

@@ -47,9 +47,12 @@ def test_a_drawing_shows_outline_opening_and_holes(tmp_path, form, rotation):
     assert round_ones == [("CUT", 65.0)] + 5 * [("HOLES", 2.5)]
     assert [one.dxf.layer for one in entities if one.dxftype() != "CIRCLE"] == ["CUT"]
     for _, checks in made.values():
-        assert checks["outer"].value < 1e-9 and checks["holes"].ok and checks["motion"].ok
+        assert checks["outer"].value < 1e-9
+        assert checks["holes"].ok
+        assert checks["motion"].ok
     text = made["svg"][0].read_text()
-    assert text.count("<circle") == 6 and 'viewBox="-66 -66 132 132"' in text
+    assert text.count("<circle") == 6
+    assert 'viewBox="-66 -66 132 132"' in text
 
 
 def test_solids_have_the_volume_of_the_ring(tmp_path):
@@ -58,7 +61,8 @@ def test_solids_have_the_volume_of_the_ring(tmp_path):
     design, made = files_of(recipe, tmp_path)
     meant = volume(recipe, design)
     mesh = trimesh.load(made["stl"][0])
-    assert mesh.is_watertight and mesh.volume == pytest.approx(meant, rel=3e-4)
+    assert mesh.is_watertight
+    assert mesh.volume == pytest.approx(meant, rel=3e-4)
     assert mesh.euler_number == 2 - 2 * 6  # an opening and five holes
     for _, checks in made.values():
         assert {"outer", "holes", "thickness", "volume", "contour", "motion"} <= set(checks)
@@ -79,7 +83,8 @@ def test_a_step_file_has_the_volume_of_the_ring(tmp_path, form):
     reader.TransferRoots()
     BRepGProp.VolumeProperties_s(reader.OneShape(), properties)
     assert properties.Mass() == pytest.approx(volume(recipe, design), rel=3e-4)
-    assert checks["outer"].ok and checks["volume"].ok
+    assert checks["outer"].ok
+    assert checks["volume"].ok
 
 
 def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
@@ -92,17 +97,20 @@ def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
     assert np.hypot(*(point - inner).T) == pytest.approx(np.full(9, 0.2))
     path, checks = files_of(recipe, tmp_path)[1]["dxf"]
     outline = max(one.dxf.radius for one in ezdxf.readfile(path).modelspace().query('CIRCLE[layer=="CUT"]'))
-    assert outline == pytest.approx(65.2) and checks["motion"].ok
+    assert outline == pytest.approx(65.2)
+    assert checks["motion"].ok
 
 
 def test_a_trimmed_ring_tells_the_motion_that_is_lost(tmp_path):
     recipe = ring("{outer: 130}", CAM.format("  undercut: trim\n", 40, 160).replace("36\n", "30\n"), files="dxf")
     _, checks = found(recipe)
     lost = checks["undercut-local"].value
-    assert checks["undercut-local"].detail.endswith("trimmed") and lost > 0.05
+    assert checks["undercut-local"].detail.endswith("trimmed")
+    assert lost > 0.05
     design, made = files_of(recipe, tmp_path)
     verdict = verify(made["dxf"][0], intended(recipe, design), 360, Limits(0.01))
-    assert verdict.ok and verdict.motion.max == pytest.approx(lost, rel=0.2)
+    assert verdict.ok
+    assert verdict.motion.max == pytest.approx(lost, rel=0.2)
 
 
 # --- spoilt rings -----------------------------------------------------------------------------------------------------
