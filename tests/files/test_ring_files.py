@@ -92,7 +92,7 @@ def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
     recipe = ring(files="{dxf: {kerf: 0.4}}")
     design, _ = found(recipe)
     made = compensated(recipe, design, Compensation(kerf=0.4), "export.files[0]")
-    assert made.recipe.cam.prime == pytest.approx(recipe.cam.prime)
+    assert made.design.profile.base.size == pytest.approx(design.profile.base.size)
     point, inner = (one.sample(np.linspace(0.0, 6.0, 9)).point for one in (design.contour, made.design.contour))
     assert np.hypot(*(point - inner).T) == pytest.approx(np.full(9, 0.2))
     path, checks = files_of(recipe, tmp_path)[1]["dxf"]

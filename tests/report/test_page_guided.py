@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from support.heavy import shapely
 
+from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.report.page import curves
 from camgeo.report.page.content import DRAWN, content
@@ -22,6 +23,8 @@ from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from camgeo.report.page.content import Content
     from camgeo.report.page.scene import Body
 
@@ -201,6 +204,20 @@ def test_a_ring_has_its_metal_outside_up_to_its_outline() -> None:
     assert mark[:, 0].min() > 0.5 * opening.points[:, 0].max()
     guide = body(found, "guide").shapes[0].rings[0].points
     assert guide[:, 0].min() > outer.points[:, 0].max()
+
+
+def test_a_ring_s_file_is_held_against_its_opening(tmp_path: Path) -> None:
+    text = "cam:\n  kind: disc\n  base_radius: 36\n  track: internal\n  follower: {kind: roller, radius: 9}\n"
+    text += MOTION % (12, 12)
+    text += "name: ring\npart: {outer: 140, bolts: {count: 3, circle: 120, hole: 6}}\nexport: {files: [dxf]}\n"
+    recipe = load_text(text, "ring.yaml")
+    pipeline.export(recipe, tmp_path)
+    found = content(recipe, designed(recipe), list(tmp_path.rglob("*.dxf")))
+    (error,) = found.errors
+    assert max(-error.low.min(), error.high.max()) < 0.001
+    rings = body(found, "cam").shapes[0].rings
+    assert len(rings) == 5
+    assert np.hypot(*rings[0].points.T) == pytest.approx(70.0)
 
 
 @pytest.mark.parametrize(
