@@ -422,6 +422,10 @@ def check(cam: Values, reader: Reader) -> None:
             reader.fault_at(f"cam.follower.{key}", "belongs to a stem, not to an arm", None, "leave it out")
     if cam.get("track") == "internal" and follower.get("kind") in {"knife-edge", "shoe", "flat"}:
         reader.fault_at("cam.track", "a ring is followed by a roller", "internal", "give a roller, or leave track out")
+    if cam.get("track") == "internal" and "radius-of-curvature" in cam.get("sizing", {}):
+        # it is that of the pitch curve's convex places, where the metal of a ring is hollow
+        remedy = "give pressure-angle alone, or base_radius in place of sizing"
+        reader.fault_at("cam.sizing.radius-of-curvature", "does not size a ring", None, remedy)
     if arm is not None and "pivot" not in arm and "sizing" not in cam and "cam.follower.arm.pivot" not in reader.marks:
         wanted = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
         reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)

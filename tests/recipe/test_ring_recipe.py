@@ -58,6 +58,15 @@ def test_files_that_are_not_made_of_a_ring():
     ]
 
 
+def test_a_ring_is_sized_by_its_pressure_angle_alone():
+    """The roller touches where the metal is hollow: convex places of the pitch curve say nothing of the metal's."""
+    said = "sizing: {pressure-angle: {at_most: 25}, radius-of-curvature: {at_least: 3}}"
+    text = INTERNAL.replace("base_radius: 36", said) + OUTER.replace("130", "300")
+    assert faults(text) == [("cam.sizing.radius-of-curvature", "does not size a ring")]
+    alone = load_text(text.replace(", radius-of-curvature: {at_least: 3}", ""), "ring.yaml")
+    assert all(check.ok for check in designed(alone).checks)
+
+
 def test_a_face_that_swings_to_its_pivot_is_a_fault_of_its_arm():
     text = (
         "cam: {kind: disc, base_radius: 40, follower: {kind: flat, arm: {pivot: 45}}, motion: [{rise: 40, over: 180, "
