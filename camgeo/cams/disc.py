@@ -113,6 +113,11 @@ class RoundCam(DiscCam, GuidedCam):
         return self.radius
 
     @property
+    def roller_field(self) -> str:
+        """A curved shoe is no roller."""
+        return "shoe radius" if self.touch == "shoe" else super().roller_field
+
+    @property
     def metal(self) -> int:
         """-1 where the cam is the opening of a ring."""
         return 1 if self.track == "external" else -1
@@ -131,9 +136,9 @@ class RoundCam(DiscCam, GuidedCam):
 
     def _resized(self, out: float, scale: float) -> dict[str, Any]:
         """Base radius and radius for a smaller roller on the same pitch curve, scaled."""
-        if not self.radius > self.metal * out:
+        if not self.radius > out:
             raise GrownError("the roller's radius", self.radius)
-        base, radius = self.base_radius + self.metal * out, self.radius - self.metal * out
+        base, radius = self.base_radius + self.metal * out, self.radius - out
         return {"base_radius": scale * base, "radius": scale * radius}
 
 
@@ -422,6 +427,10 @@ def check(cam: Values, reader: Reader) -> None:
             reader.fault_at(f"cam.follower.{key}", "belongs to a stem, not to an arm", None, "leave it out")
     if cam.get("track") == "internal" and follower.get("kind") in {"knife-edge", "shoe", "flat"}:
         reader.fault_at("cam.track", "a ring is followed by a roller", "internal", "give a roller, or leave track out")
+    if cam.get("track") == "internal" and "radius-of-curvature" in cam.get("sizing", {}):
+        # it is that of the pitch curve's convex places, where the metal of a ring is hollow
+        remedy = "give pressure-angle alone, or base_radius in place of sizing"
+        reader.fault_at("cam.sizing.radius-of-curvature", "does not size a ring", None, remedy)
     if arm is not None and "pivot" not in arm and "sizing" not in cam and "cam.follower.arm.pivot" not in reader.marks:
         wanted = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
         reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)

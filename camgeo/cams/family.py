@@ -114,6 +114,11 @@ class Cam(ABC):
         return 0.0
 
     @property
+    def roller_field(self) -> str:
+        """What that radius is called in advice."""
+        return "roller radius"
+
+    @property
     def metal(self) -> int:
         """On which side of the contour the metal lies: 1 inside, -1 outside, as of a ring."""
         return 1

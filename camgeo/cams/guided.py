@@ -32,8 +32,6 @@ class GuidedCam(Cam):
 
     less_steep: ClassVar[str] = LARGER_BASE
     offers: ClassVar[frozenset[str]] = frozenset({"roller", "guided"})
-    roller_field: ClassVar[str] = "roller radius"
-    """What its radius is called in a recipe."""
     base_radius: float
 
     @property

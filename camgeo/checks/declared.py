@@ -140,7 +140,7 @@ def _ground(scene: Scene) -> bool:
 def _walled(scene: Scene) -> bool:
     part = scene.recipe.part
     drilled = part.bolts is not None or part.dowel is not None or part.lightening is not None
-    return part.bore is not None or part.hub is not None or drilled or part.mark is not None
+    return part.bore is not None or part.outer is not None or part.hub is not None or drilled or part.mark is not None
 
 
 def _contour(_: Scene, file: FileRequest) -> bool:
@@ -167,6 +167,10 @@ def _reached(scene: Scene, file: FileRequest) -> bool:
     asked = scene.recipe.manufacture
     drawn = file.kind == "dxf" and file.compensation is None and asked is not None and asked.layer
     return drawn or file.kind == "gcode"
+
+
+def _ringed(scene: Scene, file: FileRequest) -> bool:
+    return scene.recipe.part.outer is not None and _contour(scene, file)
 
 
 def _bored(scene: Scene, file: FileRequest) -> bool:
@@ -332,6 +336,7 @@ DIRECTION = Declared("direction", ("", "faults"), of_file=_program)
 ENTRY = Declared("entry", ("deg",), of_file=_program)
 GOUGE = Declared("gouge", ("mm",), of_file=_program)
 BORE = Declared("bore", ("mm",), of_file=_bored, why_not=_no_bore, field="part.bore")
+OUTER = Declared("outer", ("mm",), of_file=_ringed, field="part.outer")
 HOLES = Declared("holes", ("mm",), of_file=_drilled, field="part")
 MARK = Declared("mark", ("mm",), of_file=_marked, field="part.mark")
 THICKNESS = Declared("thickness", ("mm",), of_file=_solid, field="part.thickness")

@@ -45,12 +45,22 @@ def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Rec
 NO_CHAMFER = "no chamfer, or a contour without corners"
 
 
+def lone_ring(recipe: Recipe) -> bool:
+    """Whether the part is a ring without holes: its one wall is that between opening and outline."""
+    part = recipe.part
+    return part.outer is not None and part.bolts is None and part.dowel is None
+
+
 def smaller_bore(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
-    """Tell which bore leaves the wall; where the part has more than a bore the check itself names the edges."""
+    """Tell which bore, or outline of a ring, leaves the wall; of a part with more the check itself names the edges."""
     value, limit, part = check["value"], check["limit"], recipe.part
-    if value is None or limit is None or not part.plain or part.bore is None:
+    if value is None or limit is None or not (part.plain or lone_ring(recipe)):
         return ""
     less = 2.0 * (limit - value)
+    if lone_ring(recipe):
+        return f"a part.outer larger by more than {upward(less)} {check['unit']}"
+    if part.bore is None:
+        return ""
     return f"a bore smaller by more than {upward(less)} {check['unit']}" if less * recipe.mm < part.bore else ""
 
 
@@ -121,9 +131,11 @@ def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
         roller, hollow = recipe.cam.touch_radius / recipe.mm, figure == HOLLOW_RADIUS
         if hollow or by < roller:
-            own = f"a roller radius of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
+            own = f"a {recipe.cam.roller_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
     elif figure == RADIUS:
         own = recipe.cam.rounder(0.0, by, unit)
+    elif figure == LEAST_WALL and lone_ring(recipe):
+        own = f"a part.outer larger by more than {upward(2.0 * by)} {unit}"
     elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
         own = (
             f"a bore smaller by more than {upward(2.0 * by)} {unit}" if 2.0 * by * recipe.mm < recipe.part.bore else ""

@@ -102,7 +102,8 @@ class SwingingFace(_Face):
     """A face on an arm about a pivot at distance C, `face` mm nearer the cam than its parallel through the pivot.
 
     psi = rest + S is its angle to the line from pivot to shaft; `side` is +1 trailing, -1 leading. IntentError where
-    the face would reach the line, or swing as fast as the cam turns: k = 1 + s psi' must stay above 0.
+    the face would reach the line, or the contact the pivot (psi = 90 degrees), or the face swing as fast as the cam
+    turns: k = 1 + s psi' must stay above 0.
     """
 
     pivot: float
@@ -123,10 +124,10 @@ class SwingingFace(_Face):
 
     def __post_init__(self) -> None:
         low, high = (self.rest + s for s in self.motion.range)
-        if not (low > 0.0 and high < math.pi):
+        if not (low > 0.0 and high < 0.5 * math.pi):
             raise IntentError(
                 f"the face swings from {math.degrees(low):.6g} to {math.degrees(high):.6g} degrees to the line from "
-                "pivot to shaft; only angles between 0 and 180 can be driven",
+                "pivot to shaft; at 90 the contact reaches the pivot, and only angles between 0 and 90 can be driven",
                 "follower.arm",
             )
         slowest = least(self._rate, stretches(self.motion))

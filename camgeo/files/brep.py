@@ -50,7 +50,7 @@ def need_kernel() -> None:
 
 
 def solid_shape(outline: Outline, solid: Solid) -> Shape:
-    """Return the kernel's solid: a disc round an outline, with its hub, openings, chamfers and set screw.
+    """Return the kernel's solid: a disc in an outline or a ring about it, with hub, openings, chamfers and set screw.
 
     Raises RegionError where a piece is too short for the kernel, an arc is sharper than the chamfer, or the kernel
     finds the solid unsound; TypeError for a chamfer along anything but arcs.
@@ -66,6 +66,10 @@ def solid_shape(outline: Outline, solid: Solid) -> Shape:
     above: list[Shape] = []
     inner_low: list[Shape] = []
     inner_high: list[Shape] = []
+    if solid.outer is not None:
+        foot, head = stack.wall(outline, 0.0, top)
+        under.append(foot.wire)
+        above.append(head.wire)
     for cut in solid.cuts:
         inside = any(cut is one for one in within)
         if not any(cut is one for one in through):
@@ -93,7 +97,9 @@ def solid_shape(outline: Outline, solid: Solid) -> Shape:
 
 
 def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Loop, Loop]:
-    """Walls round the disc; its lowest and its highest loop."""
+    """Walls round the disc or ring; its lowest and its highest loop."""
+    if solid.outer is not None:
+        return stack.wall(_disc(0.5 * solid.outer), 0.0, solid.thickness)
     if solid.chamfer is None:
         return stack.wall(outline, 0.0, solid.thickness)
     if not isinstance(outline, ArcSpline):

@@ -30,10 +30,13 @@ def extruded(
     bore: float | None = None,
     holes: Sequence[ArcSpline] = (),
     thickness: float,
+    outer: float | None = None,
     tolerance: float,
     precision: Precision,
 ) -> tuple[Mesh, MeshFacts]:
     """Closed solid over a polygon with a round bore of this diameter about the origin or with holes; in mm.
+
+    With `outer` it is a ring of that diameter, and the polygon its opening.
 
     The bore is a polygon that straddles its circle, and so is each round hole; arcs of other holes are chords between
     points of them. All loops keep within `tolerance` of what is meant after their rounding to `precision`. Every edge
@@ -43,35 +46,45 @@ def extruded(
     Raises ToleranceError where the tolerance cannot be held, RegionError where the contour is not simple or the bore
     reaches it, ValueError for a bore or thickness that is not positive.
     """
-    for what, value in (("bore", bore), ("thickness", thickness)):
+    for what, value in (("bore", bore), ("outer", outer), ("thickness", thickness)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise ValueError(f"{what} must be > 0, not {value!r}")
-    outer, moved, dropped = rounded_contour(polygon, precision)
+    contour, moved, dropped = rounded_contour(polygon, precision)
     bound = polygon.bound.widened(moved)
     precision.within("the contour", bound.worst, tolerance)
     precision.within("the thickness", abs(precision.number(thickness) - thickness), tolerance)
 
-    if holes:
-        if bore is not None:
-            raise ValueError("a bore beside other holes is one of them")
-        loops, triangles, off, hole_moved = _with_holes(outer, holes, tolerance, precision)
+    if bore is not None and (holes or outer is not None):
+        raise ValueError("a bore beside other holes is one of them")
+    if outer is not None:
+        rim, off, rim_moved = _circle("the outline", outer, tolerance, precision)
+        loops, triangles, hole_off, hole_moved = _with_holes(rim, holes, tolerance, precision, opening=contour)
+        off = max(off, hole_off)
+        moved, bore_bound = max(moved, rim_moved, hole_moved), Bound(off, off)
+    elif holes:
+        loops, triangles, off, hole_moved = _with_holes(contour, holes, tolerance, precision)
         moved, bore_bound = max(moved, hole_moved), Bound(off, off)
     elif bore is None:
-        loops, triangles, bore_bound = [outer], disc(outer), None
+        loops, triangles, bore_bound = [contour], disc(contour), None
     else:
-        circle, straddle = bore_polygon(bore, precision.fit_tolerance(tolerance, 0.5 * bore))
-        inner, inner_moved = precision.rounded(circle)
-        moved = max(moved, inner_moved)
-        bore_bound = Bound(straddle, straddle).widened(inner_moved)
-        precision.within("the bore", bore_bound.worst, tolerance)
-        loops, triangles = [outer, inner[::-1]], ring(outer, inner)
+        inner, off, inner_moved = _circle("the bore", bore, tolerance, precision)
+        moved, bore_bound = max(moved, inner_moved), Bound(off, off)
+        loops, triangles = [contour, inner[::-1]], ring(contour, inner)
         # the hole's loop as its wall runs, clockwise, has its vertices numbered from the last
-        n, m = len(outer), len(inner)
+        n, m = len(contour), len(inner)
         triangles = np.where(triangles < n, triangles, 2 * n + m - 1 - triangles)
 
     mesh = _standing(loops, triangles, precision.number(thickness))
     inner_count = len(loops[1]) if len(loops) > 1 else 0
-    return mesh, MeshFacts(len(mesh.triangles), len(outer), inner_count, dropped, moved, bound, bore_bound)
+    return mesh, MeshFacts(len(mesh.triangles), len(contour), inner_count, dropped, moved, bound, bore_bound)
+
+
+def _circle(what: str, diameter: float, tolerance: float, precision: Precision) -> tuple[Array, float, float]:
+    """Vertices (n, 2) as written of a circle's polygon, how far it is off in all, and how far a vertex moved."""
+    circle, straddle = bore_polygon(diameter, precision.fit_tolerance(tolerance, 0.5 * diameter))
+    rounded, moved = precision.rounded(circle)
+    precision.within(what, straddle + moved, tolerance)
+    return rounded, straddle + moved, moved
 
 
 def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, float, int]:
@@ -82,10 +95,17 @@ def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, floa
 
 
 def _with_holes(
-    outer: Array, holes: Sequence[ArcSpline], tolerance: float, precision: Precision
+    outer: Array,
+    holes: Sequence[ArcSpline],
+    tolerance: float,
+    precision: Precision,
+    opening: Array | None = None,
 ) -> tuple[list[Array], Triangles, float, float]:
-    """Loops and triangles of a rounded loop with holes, how far the holes are off, and the farthest a vertex moved."""
-    inners, off, moved = [], 0.0, 0.0
+    """Loops and triangles of a rounded loop with holes, how far the holes are off, and the farthest a vertex moved.
+
+    `opening` is a rounded hole besides, the first.
+    """
+    inners, off, moved = [] if opening is None else [opening], 0.0, 0.0
     for hole in holes:
         inner, inner_off, inner_moved = rounded_loop(hole, tolerance, precision)
         inners.append(inner)

@@ -56,7 +56,10 @@ class Drill:
 
 @dataclass(frozen=True)
 class Solid:
-    """A disc from z = 0 to `thickness` with a round hub from `low` to `high` and what is cut out of both; mm."""
+    """A disc from z = 0 to `thickness` with a round hub from `low` to `high` and what is cut out of both; mm.
+
+    A ring of diameter `outer` has neither hub nor chamfer, and the contour is cut out of it.
+    """
 
     thickness: float
     low: float
@@ -65,6 +68,7 @@ class Solid:
     chamfer: float | None
     cuts: Sequence[Cut]
     drill: Drill | None
+    outer: float | None = None
 
 
 def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:

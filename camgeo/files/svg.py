@@ -66,7 +66,7 @@ def write_svg(
         shape = cutout.shape
         text = _circle(shape, mm) if isinstance(shape, Circle) else _path(shape, mm)
         drawn.setdefault(cutout.layer, []).append(text)
-    low_x, low_y, wide, high = _page(outline.box(), mm)
+    low_x, low_y, wide, high = _page([outline.box(), *(_box(cutout.shape) for cutout in cutouts)], mm)
     size = _PAGE_UNIT[unit]
     description = "; ".join(filter(None, (f"camgeo units: {unit}", about, *remarks)))
     lines = [
@@ -85,10 +85,19 @@ def write_svg(
     path.write_bytes("\n".join(lines).encode("utf-8"))
 
 
-def _page(box: Box, mm: float) -> tuple[str, str, str, str]:
+def _box(shape: Circle | Outline) -> Box:
+    """Extremes of a shape, mm."""
+    if not isinstance(shape, Circle):
+        return shape.box()
+    (x, y), r = shape.centre, shape.radius
+    return x - r, y - r, x + r, y + r
+
+
+def _page(boxes: Sequence[Box], mm: float) -> tuple[str, str, str, str]:
     """Left, top, width and height of the page in drawing units, y downwards, as the viewBox has it."""
     margin = _MARGIN / mm
-    x_min, y_min, x_max, y_max = (value / mm for value in box)
+    x_low, y_low, x_high, y_high = zip(*boxes, strict=True)
+    x_min, y_min, x_max, y_max = (value / mm for value in (min(x_low), min(y_low), max(x_high), max(y_high)))
     left, right = math.floor(_PLACES * (x_min - margin)), math.ceil(_PLACES * (x_max + margin))
     top, bottom = math.floor(_PLACES * (-y_max - margin)), math.ceil(_PLACES * (-y_min + margin))
     x, y, wide, high = (number(value / _PLACES) for value in (left, top, right - left, bottom - top))

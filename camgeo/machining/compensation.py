@@ -110,6 +110,7 @@ def _part(part: Part, out: float, scale: float) -> Part:
     return replace(
         part,
         bore=None if part.bore is None else _across(part.bore, out, scale),
+        outer=None if part.outer is None else scale * (part.outer + 2.0 * out),
         thickness=None if part.thickness is None else scale * part.thickness,
         hub=hub,
     )
@@ -134,6 +135,7 @@ def _body(body: Body, out: float, scale: float) -> Body:
         thickness=None if body.thickness is None else scale * body.thickness,
         openings=tuple(_opening(opening, out, scale) for opening in body.openings),
         bore=None if body.bore is None else _across(body.bore, out, scale),
+        outer=None if body.outer is None else scale * (body.outer + 2.0 * out),
         hub=hub,
         screw=screw,
         chamfer=None if body.chamfer is None else scale * body.chamfer,

@@ -48,7 +48,8 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
 def _contact(recipe: Recipe, contour: Curve, parameter: Array, name: str, unit: str) -> dict[str, Array]:
     """Columns of one contact, in the drawn axes and the recipe's unit."""
     frame = contour.sample(parameter)
-    normal = np.where(np.abs(frame.normal) < NOTHING, 0.0, frame.normal)
+    outward = recipe.cam.metal * frame.normal  # of the metal: in a ring towards the follower within
+    normal = np.where(np.abs(outward) < NOTHING, 0.0, outward)
     point = np.where(np.abs(frame.point) < NOTHING * contour.size, 0.0, frame.point)
     columns = _place(recipe, point, name, unit)
     x, y = _drawn(recipe, normal).T

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 
 
 def cutouts(body: Body) -> list[Cutout]:
-    """What a drawing cuts or engraves besides the contour, each on its layer."""
-    return [
+    """What a drawing cuts or engraves besides the contour, each on its layer; the outline of a ring first."""
+    outer = [] if body.outer is None else [Cutout("CUT", Circle("outline", (0.0, 0.0), 0.5 * body.outer))]
+    return outer + [
         Cutout(
             opening.layer,
             opening.outline if opening.circle is None else Circle(opening.name, *opening.circle),
@@ -55,7 +56,14 @@ def part_mesh(polygon: Polygon, body: Body, *, tolerance: float, precision: Prec
         from camgeo.files.prism import extruded
 
         outlines = [opening.outline for opening in body.openings]
-        return extruded(polygon, holes=outlines, thickness=body.thickness, tolerance=tolerance, precision=precision)
+        return extruded(
+            polygon,
+            holes=outlines,
+            thickness=body.thickness,
+            outer=body.outer,
+            tolerance=tolerance,
+            precision=precision,
+        )
     from camgeo.files.solid import joined
 
     return joined(polygon, solid_of(body), tolerance=tolerance, precision=precision)
@@ -78,4 +86,4 @@ def solid_of(body: Body) -> Solid:
         slope = math.sqrt(1.0 - min(body.screw.diameter / body.bore, 1.0) ** 2) if body.bore else 1.0
         drill = Drill(body.screw.at, body.screw.diameter, body.screw_height, 0.5 * body.hub.diameter + 1.0, slope)
     hub = None if body.hub is None else body.hub.diameter
-    return Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill)
+    return Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill, body.outer)

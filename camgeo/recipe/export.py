@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
+from camgeo.recipe.ring import is_ring
 from camgeo.recipe.schema.errors import shown
 from camgeo.recipe.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.recipe.schema.json_schema import table_schema
@@ -227,7 +228,8 @@ def check_files(values: Values, reader: Reader) -> None:
     files: list[Values] = values.get("export", {}).get("files", [])
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
-    if any(request.kind == "gcode" for request in listed):
+    ring = is_ring(values)
+    if not ring and any(request.kind == "gcode" for request in listed):
         check_slight(values, reader)
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
         path = file["path"]
@@ -237,10 +239,14 @@ def check_files(values: Values, reader: Reader) -> None:
         if request.parts == "all" and request.compensation is not None:
             remedy = "give mechanism.clearance, which sets how the bodies fit, or leave `parts: all` out"
             reader.fault_at(path, "compensation of a whole mechanism", None, remedy)
-        if request.parts == "all" and "part.bore" not in reader.marks:
+        if request.parts == "all" and ring:
+            reader.fault_at(path, "the bodies round a ring are not made", None, "leave `parts: all` out")
+        elif request.parts == "all" and "part.bore" not in reader.marks:
             remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
-        if request.kind == "gcode":
+        if request.kind == "gcode" and ring:
+            reader.fault_at(path, "a program for a ring is not made", None, "leave gcode out")
+        elif request.kind == "gcode":
             check_milling(path, reader)
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
             remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"

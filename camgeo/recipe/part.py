@@ -111,7 +111,8 @@ class Part:
 
     `thickness` of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or 6) are
     given; `bore_at` is then the direction of one flat's normal. `wall` is the least that may be left between any two
-    edges; without it what is left is told and must be above 0.
+    edges; without it what is left is told and must be above 0. `outer` is the diameter of a ring, whose opening is the
+    cam.
     """
 
     thickness: float | None = None
@@ -128,11 +129,13 @@ class Part:
     chamfer: float | None = None
     mark: Mark | None = None
     wall: float | None = None
+    outer: float | None = None
 
     @property
     def plain(self) -> bool:
         """Whether there is nothing but a round bore or none."""
-        shaped = (self.keyway, self.flat, self.hub, self.bolts, self.dowel, self.lightening, self.chamfer, self.mark)
+        holes = (self.bolts, self.dowel, self.lightening)
+        shaped = (self.outer, self.keyway, self.flat, self.hub, *holes, self.chamfer, self.mark)
         return not self.sides and all(feature is None for feature in shaped)
 
 
@@ -301,6 +304,7 @@ PART = mapping(
     _LIGHTENING,
     length("chamfer", "chamfer of 45 degrees along both edges of the contour, its height", default="none"),
     _optional("mark", "timing mark on the ray where the shaft angle is 0", *_MARK),
+    length("outer", "diameter of the outline of a ring, with `track: internal`", default="none"),
     length("wall", "least wall between any two edges", default="reported, and above 0"),
     later=("follower",),
 )
@@ -403,6 +407,7 @@ def build_part(values: Values) -> Part:
     mark = values.get("mark")
     return Part(
         thickness=values.get("thickness"),
+        outer=values.get("outer"),
         bore=width,
         sides=SIDES.get(name, 0),
         bore_at=form.get("at", 0.0),

@@ -19,6 +19,7 @@ from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
 from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, DwellAsked, build_linkage, check_linkage
 from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
 from camgeo.recipe.part import PART, build_part, check_part
+from camgeo.recipe.ring import check_ring
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
 from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, mapping, present
@@ -260,6 +261,7 @@ def _check(values: Values, reader: Reader) -> None:
     check_cam(values.get("cam", {}), reader)
     check_linkage(values, reader)
     check_part(values.get("part", {}), reader)
+    check_ring(values, reader)
     check_files(values, reader)
     check_train(values.get("dynamics", {}), reader)
     check_allowance(values.get("manufacture", {}), reader)

@@ -115,22 +115,21 @@ def _of_check(check: Check) -> Measured:
 # --- of the curve -----------------------------------------------------------------------------------------------------
 
 
-def _radius(recipe: Recipe, design: Design) -> Measured:
+def _radius(_: Recipe, design: Design) -> Measured:
     """Of the metal, not of the roller's way, which is bent less by the roller's radius."""
     bent = next(check for check in design.checks if check.name == CURVATURE.name)
-    if recipe.cam.metal > 0 or bent.value is None or design.contour is None:
-        value = None if bent.value is None else bent.value - design.profile.roller_radius
-        return Measured(value, "mm", bent.at_deg, bent.detail)
-    from camgeo.curve.backwards import least_hollow
+    value = None if bent.value is None else bent.value - abs(design.profile.roller_radius)
+    return Measured(value, "mm", bent.at_deg, bent.detail)
 
-    radius, at = least_hollow(design.contour)  # the metal of a ring bulges where its opening is hollow
-    if math.isinf(radius):
-        return Measured(radius, "mm", detail="the metal is convex nowhere")
+
+def _pitch_radius(recipe: Recipe, design: Design) -> Measured:
+    """Of its convex places; the check of a ring is of its hollows."""
+    if recipe.cam.metal > 0:
+        return _of_check(next(check for check in design.checks if check.name == CURVATURE.name))
+    from camgeo.curve.curvature import least_radius
+
+    radius, at = least_radius(design.profile.base)
     return Measured(radius, "mm", design.position.shaft_deg(at))
-
-
-def _pitch_radius(_: Recipe, design: Design) -> Measured:
-    return _of_check(next(check for check in design.checks if check.name == CURVATURE.name))
 
 
 def _hollow_radius(recipe: Recipe, design: Design) -> Measured:

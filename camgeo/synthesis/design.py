@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from camgeo.cams.family import Follower, Intent, Profile
     from camgeo.cams.position import Position
+    from camgeo.curve.curvature import Least
     from camgeo.curve.curve import Curve
     from camgeo.curve.undercut.undercut import Undercut
     from camgeo.recipe.recipe import Recipe
@@ -73,7 +74,10 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
         with clock.stage("profile"):
-            profile = cam.profile(intent)
+            try:
+                profile = cam.profile(intent)
+            except IntentError as error:
+                raise recipe.error(f"cam.{error.field}", error.message) from error
         with clock.stage("undercut"):
             checks, contour = sound(recipe, profile, intent)
     except IntentError as error:  # of a guide or a face that cannot follow the motion
@@ -120,18 +124,19 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
 
 def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check], Curve | None]:
     """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
-    from camgeo.curve.curvature import enclosed_least_radius
     from camgeo.curve.undercut.causes import UndercutError
     from camgeo.curve.undercut.undercut import undercuts
 
     trim = recipe.cam.undercut == "trim"
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
-    least = enclosed_least_radius(profile.curve)
-    radius = least.radius + profile.roller_radius
+    least, roller = _bent_most(profile), abs(profile.roller_radius)
+    radius = least.radius + roller
     shaft_deg = recipe.cam.position(intent).shaft_deg
-    roomy, at_deg = radius > profile.roller_radius, shaft_deg(least.at)
-    bent = Check(CURVATURE.name, roomy, radius, profile.roller_radius, "mm", at_deg, "at_least")
+    roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
+    bent = Check(CURVATURE.name, roomy, radius, roller, "mm", at_deg, "at_least")
+    if math.isinf(radius):
+        bent = replace(bent, detail="the pitch curve of the ring has no hollow")
     if least.room and roomy:
         lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
         bent = replace(bent, detail=lower)
@@ -170,6 +175,22 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
     return checks, contour
 
 
+def _bent_most(profile: Profile) -> Least:
+    """Where the contour bends most on the side where it may undercut: least radius there, and the place.
+
+    In a ring that is a hollow of the pitch curve, where the metal bulges inward; the opening's own hollows are wider
+    than the roller by their pitch curve's radius, however small it is.
+    """
+    from camgeo.curve.curvature import enclosed_least_radius
+
+    if profile.roller_radius >= 0.0:
+        return enclosed_least_radius(profile.curve)
+    from camgeo.curve.backwards import backwards
+
+    least = enclosed_least_radius(backwards(profile.curve))
+    return replace(least, at=-least.at % profile.curve.shape.period)
+
+
 def _extent(profile: Profile, shaft_deg: Callable[[float], float], cut: Undercut) -> str:
     """Say from where to where contact is lost, in shaft angles."""
     if cut.end - cut.start >= profile.curve.shape.period:
@@ -187,8 +208,8 @@ def _unproved(recipe: Recipe, error: CurveError, intent: Intent) -> str:
     most, least = error.most / recipe.mm, error.least / recipe.mm
     half = f"lies between {least:.9g} and {most:.9g}" if error.seen else f"is at least {least:.9g}"
     return (
-        f"whether a roller radius of {most:.9g} has no undercut between {first:.6g} and {second:.6g} deg cannot be "
-        f"proved: half the width of the neck there {half}; "
+        f"whether a {recipe.cam.roller_field} of {most:.9g} has no undercut between {first:.6g} and {second:.6g} deg "
+        f"cannot be proved: half the width of the neck there {half}; "
         f"{f'one below {downward(least)}' if least > 0.0 else 'none'} is proved to have no undercut"
     )
 
@@ -242,6 +263,7 @@ def intended(recipe: Recipe, design: Design) -> Judged:
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,
         thickness=recipe.part.thickness,
+        outer=recipe.part.outer,
         trimmed=design.trimmed,
         mechanism=driven.mechanism if driven is not None and turns else None,
         dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,

@@ -103,6 +103,17 @@ part:
 export: {tolerance: 0.01, files: [dxf, stl]}
 verify: {angles: 60}
 """,
+    "a ring": """\
+cam:
+  kind: disc
+  base_radius: 36
+  follower: {kind: roller, radius: 9}
+  track: internal
+  motion: [{rise: 12, over: 110, law: modified-sine}, {dwell: 60}, {return: 12, over: 100, law: cycloidal}, {dwell: 90}]
+part: {thickness: 5, outer: 130, bolts: {count: 3, circle: 118, hole: 5}}
+export: {tolerance: 0.01, files: [dxf, stl]}
+verify: {angles: 60}
+""",
     "milled": """\
 cam: {kind: support, p: 30 + 2*cos(2*t)}
 part: {thickness: 5, bore: 10}

@@ -381,7 +381,11 @@ def test_signs() -> None:
         (lambda: Oscillating.on(10.0, 80.0, 65.0, 1), "does not reach a prime circle of 10 mm: it reaches 15 to 145"),
         (lambda: CentreShape(motion(3.0), Oscillating.on(42.0, 80.0, 65.0, 1)), "swings from 31.568 to 203.455"),
         (lambda: SwingingFace.on(motion(0.1), 90.0, 90.0, 5.0, 1), "must lie between 0 and the pivot's distance"),
-        (lambda: SwingingFace.on(motion(2.0), 10.0, 90.0, 5.0, -1), "times as fast as the cam turns"),
+        (lambda: SwingingFace.on(motion(1.2), 10.0, 90.0, 5.0, -1), "times as fast as the cam turns"),
+        (
+            lambda: SwingingFace.on(motion(1.5), 10.0, 90.0, 5.0, 1),
+            "at 90 the contact reaches the pivot",
+        ),
         (lambda: StraightFace(motion(20.0), 30.0, 1.6), "below 90 it is"),
         (lambda: least_stem(motion(20.0), 0.0, 1.0), "lies between 0 and 90 degrees, not 0"),
     ],

@@ -19,7 +19,7 @@ KEYS = (
     "name, about, units, rotation, cam, linkage, part, export, verify, limits, mechanism, dwell, sweep, dynamics "
     "and manufacture"
 )
-PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark and wall"
+PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer and wall"
 BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10} in mm"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
 LENGTH = "give a length above 0 in mm"

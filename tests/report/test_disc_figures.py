@@ -38,7 +38,8 @@ FLAT += "{dwell: 120}]"
 def disc(follower: str, motion: str = MOTION, base: float = 36.0, more: str = "") -> str:
     track = "" if ";" not in follower else "track: internal, "
     said = f"kind: disc, base_radius: {base}, follower: {{{follower.strip(';')}}}, {track}motion: {motion}"
-    return f"cam: {{{said}}}\n{more}"
+    ring = "part: {outer: 400}\n" if track else ""
+    return f"cam: {{{said}}}\n{ring}{more}"
 
 
 def figures(text: str, *names: str) -> dict[str, Measured]:

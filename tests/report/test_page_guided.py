@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from support.heavy import shapely
 
+from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.report.page import curves
 from camgeo.report.page.content import DRAWN, content
@@ -22,6 +23,8 @@ from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from camgeo.report.page.content import Content
     from camgeo.report.page.scene import Body
 
@@ -59,6 +62,7 @@ def drawn(name: str, rotation: str) -> tuple[Any, Content]:
     follower, stroke = {**ROUND, **FLAT}.get(name, ("", 0))[:2]
     text = f"cam:\n  kind: disc\n  base_radius: 36\n  follower: {{{follower}}}\n{MOTION % (stroke, stroke)}"
     text = YOKE if name == "yoke" else text.replace("\n  x: {}", "")
+    text += "part: {outer: 140}\n" if name == "ring" else ""
     recipe = load_text(f"rotation: {rotation}\n{text}", "guided.yaml")
     # dwells are told by what judges the files
     with patch.object(curves, "rests", return_value=[]):
@@ -190,15 +194,30 @@ def test_both_rollers_of_a_frame_stay_on_the_cam(rotation: str) -> None:
     assert np.abs(a[: STEPS // 2] - b[STEPS // 2 : STEPS]).max() < 1e-9
 
 
-def test_a_ring_has_its_metal_outside_and_says_where_its_edge_is_from() -> None:
+def test_a_ring_has_its_metal_outside_up_to_its_outline() -> None:
     _, found = drawn("ring", "cw")
     outer, opening = body(found, "cam").shapes[0].rings
-    assert np.hypot(*outer.points.T).min() > np.hypot(*opening.points.T).max()
-    assert "opening of a ring" in found.scene.note
+    assert np.hypot(*outer.points.T) == pytest.approx(70.0)
+    assert np.hypot(*opening.points.T).max() == pytest.approx(48.0, abs=1e-3)
+    assert not found.scene.note
     mark = next(s for s in body(found, "cam").shapes if s.role == "mark").rings[0].points
     assert mark[:, 0].min() > 0.5 * opening.points[:, 0].max()
     guide = body(found, "guide").shapes[0].rings[0].points
     assert guide[:, 0].min() > outer.points[:, 0].max()
+
+
+def test_a_ring_s_file_is_held_against_its_opening(tmp_path: Path) -> None:
+    text = "cam:\n  kind: disc\n  base_radius: 36\n  track: internal\n  follower: {kind: roller, radius: 9}\n"
+    text += MOTION % (12, 12)
+    text += "name: ring\npart: {outer: 140, bolts: {count: 3, circle: 120, hole: 6}}\nexport: {files: [dxf]}\n"
+    recipe = load_text(text, "ring.yaml")
+    pipeline.export(recipe, tmp_path)
+    found = content(recipe, designed(recipe), list(tmp_path.rglob("*.dxf")))
+    (error,) = found.errors
+    assert max(-error.low.min(), error.high.max()) < 0.001
+    rings = body(found, "cam").shapes[0].rings
+    assert len(rings) == 5
+    assert np.hypot(*rings[0].points.T) == pytest.approx(70.0)
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,8 @@ SWING = MOTION.replace("18", "12")
 DISC = "cam: {kind: disc, base_radius: 36, follower: {%s}, motion: %s}\n"
 KINDS = {
     "roller": DISC % ("kind: roller, radius: 9, offset: 8", MOTION),
-    "ring": DISC.replace("follower", "track: internal, follower") % ("kind: roller, radius: 9", SWING),
+    "ring": DISC.replace("follower", "track: internal, follower") % ("kind: roller, radius: 9", SWING)
+    + "part: {outer: 140}\n",
     "shoe": DISC % ("kind: shoe, radius: 60", MOTION),
     "knife edge": DISC % ("kind: knife-edge", MOTION),
     "flat": DISC % ("kind: flat, tilt: 8, offset: 5", SWING),
@@ -74,7 +75,7 @@ def test_contacts_of_every_kind(name: str, tmp_path: Path) -> None:
         )
         with np.errstate(divide="ignore", invalid="ignore"):
             between = way / np.diff(turned)
-        radius = contacts[f"{mark}radius_of_curvature_mm"] * (-1.0 if name == "ring" else 1.0)
+        radius = contacts[f"{mark}radius_of_curvature_mm"]
         low, high = np.minimum(radius[:-1], radius[1:]), np.maximum(radius[:-1], radius[1:])
         smooth = (np.abs(high - low) < 0.1 * np.abs(low)) & (low * high > 0) & (np.abs(way) > 1e-6)
         assert smooth.sum() > 300

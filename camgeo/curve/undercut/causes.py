@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curvature import least_radius, reversals
+from camgeo.curve.moving_frame import CentreShape
 from camgeo.curve.parallel import Parallel
 from kin.numeric.errors import KinError
 
@@ -58,6 +59,8 @@ def follower_radius(curve: Curve) -> float:
 
     Raises ValueError for an outer parallel.
     """
+    if isinstance(curve.shape, CentreShape):
+        return 0.0
     if not isinstance(curve.shape, Parallel):
         return math.inf
     if not curve.shape.distance >= 0.0:
@@ -79,6 +82,8 @@ def causes(curve: Curve) -> Causes:
             raise ValueError(
                 f"a flat face cannot touch the concave part near parameter {curve.cells.low[hollow][0]:.9g}"
             )
+        return Causes(found, ())
+    if radius == 0.0:  # a point passes every neck
         return Causes(found, ())
     from camgeo.curve.undercut.bottleneck import OpenNeckError, narrowest_necks, neck_from
     from camgeo.curve.undercut.pairs import Pitch

@@ -9,7 +9,7 @@ import numpy as np
 
 from camgeo.curve.ring import Ring, disc
 from camgeo.report.page import curves, guided, outline
-from camgeo.report.page.followers import SHAFT, cam, double_roller, edge_ahead, flat, flat_pair
+from camgeo.report.page.followers import SHAFT, cam, double_roller, flat, flat_pair
 from camgeo.report.page.scene import Body, Scene, Shape, pivot
 from kin.numeric.angles import TURN
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 JOINT = 0.045  # of the cam's reach: the size of a joint
 EXACT = "exact"
-RIM = 4.0  # sizes of a joint: thickness of a ring whose outer edge no file shows
 SIGN = "above 0 where the cam drives a rise"
 
 
@@ -78,12 +77,6 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
     return Content(scene, tuple(plots), rests, relative, point, normal, tuple(errors))
 
 
-def _around(rings: tuple[Ring, ...]) -> bool:
-    """Whether a drawing shows the outer edge of a ring: one hole of it is then no bore."""
-    first, *holes = (float(np.ptp(ring.flattened(), axis=0).max()) for ring in rings)
-    return max(holes, default=0.0) > 0.5 * first
-
-
 def _on_face(design: Design) -> list[Shape]:
     """Hub and timing mark of a part; a file's outline shows neither, or does not tell which hole is the mark."""
     if design.body is None:
@@ -101,9 +94,10 @@ def _on_face(design: Design) -> list[Shape]:
 def _exact_rings(recipe: Recipe, design: Design) -> tuple[Ring, ...]:
     bore = recipe.part.bore
     holes = (disc(0.0, 0.0, 0.5 * bore),) if bore else ()
+    rim = (disc(0.0, 0.0, 0.5 * recipe.part.outer),) if recipe.part.outer else ()
     if design.contour is None:
-        return (outline.exact(design.profile.curve, whole=True), *holes)
-    return (outline.exact(design.contour), *holes)
+        return (*rim, outline.exact(design.profile.curve, whole=True), *holes)
+    return (*rim, outline.exact(design.contour), *holes)
 
 
 def _mechanism(
@@ -113,10 +107,8 @@ def _mechanism(
     reach = float(np.hypot(*drawn[0][1][0].flattened().T).max())
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contour is not None else "The cam is not made: a check of the exact contour fails."
-    if design.profile.roller_radius < 0.0 and not any(_around(rings) for _, rings in drawn):
-        bore, reach = 2.0 * edge_ahead(drawn[0][1][0]), reach + RIM * size
-        drawn = [(name, (disc(0.0, 0.0, reach), rings[0])) for name, rings in drawn]
-        note = f"The contour is the opening of a ring, whose outer edge is drawn here only. {note}".strip()
+    if recipe.part.outer:
+        bore = 2.0 * float(np.hypot(*design.profile.curve.sample(np.zeros(1)).point[0]))
     on_it = _on_face(design)
     disk = cam(drawn, bore, size, -SHAFT, on_it)
     if design.driven is not None and design.driven.turns:

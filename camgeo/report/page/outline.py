@@ -50,7 +50,7 @@ def exact(curve: Curve, *, whole: bool = False) -> Ring:
 class Read:
     """A file's contour as it was read, mm and as if the shaft turned clockwise: `arcs` throughout, `pieces` in number.
 
-    `rings` are for drawing: the contour and its holes.
+    `rings` are for drawing: the outline and its holes, of a ring the contour among them.
     """
 
     name: str
@@ -61,6 +61,7 @@ class Read:
 
 def read(recipe: Recipe, path: Path) -> Read | None:
     """Read a drawing or a solid; None where no contour can be read from it, which a check of it tells."""
+    from kin.judge.ring import faced
     from kin.read.errors import ReadError
     from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
 
@@ -74,10 +75,16 @@ def read(recipe: Recipe, path: Path) -> Read | None:
     except ReadError:
         return None
     scaled = [each.scaled(unit) for each in (found.contour, *found.holes)]
-    contour, *holes = [each.mirrored() for each in scaled] if recipe.rotation == "ccw" else scaled
+    shown = [each.mirrored() for each in scaled] if recipe.rotation == "ccw" else scaled
+    contour = shown[0]
+    if recipe.part.outer is not None:
+        try:
+            contour = faced(contour, shown[1:], recipe.part.outer, math.inf, path).contour
+        except ReadError:
+            return None
     size = float(np.abs(contour.vertices).max())
     arcs, _ = contour.as_arcs(max(MEASURED * recipe.export.tolerance, ROUNDING * size))
-    rings = tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in (contour, *holes))
+    rings = tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in shown)
     return Read(path.name, arcs, len(contour), rings)
 
 

@@ -28,7 +28,7 @@ class Body:
 
     `openings` from the bore outward; `bore` is its diameter or width; `hub` and `screw` as the recipe has them, None
     without. `placed` says how many lightening holes were asked for and found. `least_radius` is the contour's, mm,
-    where it is convex.
+    where it is convex. `outer` is the diameter of a ring, of which the contour is an opening too; None for a disc.
     """
 
     thickness: float | None
@@ -39,6 +39,7 @@ class Body:
     chamfer: float | None = None
     placed: Placed | None = None
     least_radius: float = math.inf
+    outer: float | None = None
 
     @property
     def fineness(self) -> float:
@@ -98,7 +99,8 @@ def body_of(part: Part, contour: Curve) -> Body:
         found, placed = lightened(part.lightening, contour, there, edge)
         openings += found
     radius = math.inf if part.chamfer is None else least_radius(contour)[0]
-    return Body(part.thickness, tuple(openings), part.bore, part.hub, part.set_screw, part.chamfer, placed, radius)
+    shaft = (part.bore, part.hub, part.set_screw)
+    return Body(part.thickness, tuple(openings), *shaft, part.chamfer, placed, radius, part.outer)
 
 
 def _shaft(part: Part) -> list[Opening]:

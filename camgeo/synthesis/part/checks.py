@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from camgeo.checks.declared import CHAMFER, LIGHTENING, WALL
 from camgeo.curve.curvature import least_radius
+from camgeo.curve.measures import farthest
+from camgeo.synthesis.checks import slack
 from camgeo.synthesis.part.shapes import Opening, disc, strip
 from camgeo.synthesis.part.walls import Gap, contour_gap, inside_gap, outside_gap
 from kin.judge.check import Check
@@ -84,8 +88,9 @@ def _holds(wall: float, least: float | None) -> bool:
 def walls(body: Body, contour: Curve) -> Iterator[Pair]:
     """Walls between all pairs of edges; those of openings far apart are left out."""
     edge, other = body.chamfer or 0.0, "contour" if body.chamfer is None else "chamfer"
+    yield from _ring_walls(body, contour)
     for opening in body.openings:
-        gap = contour_gap(contour, opening.chain)
+        gap = contour_gap(contour, opening.chain, ring=body.outer is not None)
         yield Pair(opening.name, other, gap._replace(wall=gap.wall - edge))
     for i, one in enumerate(body.openings):
         for two in body.openings[:i]:
@@ -96,6 +101,18 @@ def walls(body: Body, contour: Curve) -> Iterator[Pair]:
     for opening in body.openings:
         if opening.depth is not None and body.thickness is not None:
             yield Pair(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
+
+
+def _ring_walls(body: Body, contour: Curve) -> Iterator[Pair]:
+    """Walls between the outline of a ring and its openings, the contour first of them."""
+    if body.outer is None:
+        return
+    radius, far = 0.5 * body.outer, farthest(contour)
+    x, y = contour.sample(np.array([far.at])).point[0].tolist()
+    yield Pair("opening", "outline", Gap(radius - far.value - slack(far), (x, y), far.at))
+    outline = disc("outline", "HOLES", (0.0, 0.0), radius)
+    for opening in body.openings:
+        yield Pair(opening.name, outline.name, inside_gap(opening.chain, outline.chain))
 
 
 def _hub_walls(body: Body, contour: Curve, edge: float) -> Iterator[Pair]:

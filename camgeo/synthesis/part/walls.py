@@ -64,8 +64,8 @@ def distance_inside(contour: Curve, place: tuple[float, float]) -> tuple[float, 
     return side * float(distance[nearest_node]), float(nodes[nearest_node])
 
 
-def contour_gap(contour: Curve, chain: Arcs) -> Gap:
-    """Wall between a closed chain inside a contour and that contour; negative where they cross or it lies outside."""
+def contour_gap(contour: Curve, chain: Arcs, *, ring: bool = False) -> Gap:
+    """Wall between a closed chain inside a contour, outside that of a ring, and that contour; negative elsewhere."""
     low, high, first, last = _looked_at(contour)
     falls, rises = _from_chain(chain, first.point, first.tangent), _from_chain(chain, last.point, last.tangent)
     turning = (falls < 0.0) & (rises > 0.0)
@@ -80,7 +80,7 @@ def contour_gap(contour: Curve, chain: Arcs) -> Gap:
     distance = signed_distance(chain, point)
     least = int(np.argmin(distance))
     wall = float(distance[least])
-    if wall > 0.0 and not winds(first.point - chain.start[0]):
+    if wall > 0.0 and winds(first.point - chain.start[0]) is ring:
         wall = -wall
     return Gap(wall, _place(point[least]), float(nodes[least]))
 

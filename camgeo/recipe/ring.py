@@ -1,0 +1,33 @@
+"""Rings: a cam whose opening is followed from within; what its recipe needs, and what it cannot have."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from camgeo.recipe.schema.reader import Reader, Values
+
+_OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
+
+
+def check_ring(values: Values, reader: Reader) -> None:
+    """Note a ring without its outline, an outline without its ring, and what a ring cannot have."""
+    cam, given = values.get("cam"), "part.outer" in reader.marks
+    if not is_ring(values):
+        if given and cam is not None and ("track" in cam or "cam.track" not in reader.marks):
+            remedy = "give a disc cam with `track: internal`, or leave it out"
+            reader.fault_at("part.outer", "belongs to a ring", None, remedy)
+        return
+    if not given:
+        remedy = "give part.outer, or leave track out"
+        reader.fault_at("cam.track", "a ring needs part.outer, the diameter of its outline", "internal", remedy)
+    for name in _OF_A_DISC:
+        if f"part.{name}" in reader.marks:
+            reader.fault_at(f"part.{name}", "belongs to a disc on a shaft, not to a ring", None, "leave it out")
+    if "manufacture.layer" in reader.marks:
+        reader.fault_at("manufacture.layer", "the cutter's path in a ring is not made", None, "leave it out")
+
+
+def is_ring(values: Values) -> bool:
+    """Whether the values of a recipe are of a ring."""
+    return bool(values.get("cam", {}).get("track") == "internal")
