@@ -17,6 +17,7 @@ SWING = "[{rise: 20, over: 180, law: cycloidal}, {return: 20, over: 180, law: cy
 
 def recipe(motion, follower, folder, *, units="mm"):
     text = f"units: {units}\ncam: {{kind: disc, base_radius: 36, follower: {follower}, motion: {motion}}}\n"
+    text += "part: {outer: 200}\n" if "internal" in follower else ""
     return load_text(text, folder / "case.yaml")
 
 
