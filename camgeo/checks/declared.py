@@ -313,7 +313,7 @@ WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel")
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
 DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")
-WALL = Declared(LEAST_WALL, ("mm",), _walled, field="part.bore", remedy=remedies.smaller_bore)
+WALL = Declared(LEAST_WALL, ("mm",), _walled, field="part.bore", own_field="part.outer", remedy=remedies.smaller_bore)
 LIGHTENING = Declared(
     "lightening", ("holes",), lambda scene: scene.recipe.part.lightening is not None, field="part.lightening"
 )

@@ -130,7 +130,7 @@ def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
     if figure in {RADIUS, HOLLOW_RADIUS} and recipe.cam.touch_radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
         roller, hollow = recipe.cam.touch_radius / recipe.mm, figure == HOLLOW_RADIUS
-        if hollow or by < roller:
+        if recipe.cam.metal > 0 if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
             own = f"a {recipe.cam.roller_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
     elif figure == RADIUS:
         own = recipe.cam.rounder(0.0, by, unit)

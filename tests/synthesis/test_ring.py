@@ -110,6 +110,7 @@ def test_walls_of_a_ring(part, wall, pair):
 
 @pytest.mark.parametrize("part", ["{outer: 83}", "{outer: 90, wall: 4}"])
 def test_the_outline_that_would_do_does(part):
+    from camgeo.checks.declared import WALL
     from camgeo.checks.remedies import smaller_bore
 
     recipe = ring(9.0, rise=100, part=part)
@@ -120,8 +121,21 @@ def test_the_outline_that_would_do_does(part):
         smaller_bore({"value": check.value, "limit": check.limit, "unit": "mm"}, {}, recipe),
     )
     assert said
+    assert WALL.place(recipe, None) == "part.outer"
     larger = recipe.part.outer + float(said[1]) + 1e-6
     assert all(one.ok for one in designed(recipe.replace("part.outer", larger)).checks)
+
+
+def test_no_roller_is_told_for_the_hollows_of_an_opening():
+    """With the base radius a wider roller leaves the opening as wide as it is."""
+    from camgeo.output import pipeline
+
+    text = ring(9.0, rise=100).text + "limits: {hollow-radius: {at_least: 60}}\nexport: {files: [csv]}\n"
+    checks = pipeline.check(load_text(text, "ring.yaml")).report["checks"]
+    (check,) = (one for one in checks if one["name"] == "limit:hollow-radius")
+    assert not check["ok"]
+    assert "roller" not in check["detail"]
+    assert "limits.hollow-radius.at_least of" in check["detail"]
 
 
 # --- siblings ---------------------------------------------------------------------------------------------------------
