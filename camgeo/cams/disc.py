@@ -281,6 +281,10 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
     offers: ClassVar[frozenset[str]] = FacedCam.offers | {"arm"}
     nearer: float = 0.0
 
+    def larger(self, by: float, unit: str = "") -> str:
+        """A larger base radius about the same rest: the face moves out with it."""
+        return f"{super().larger(by, unit)} with arm.face smaller by as much"
+
     def position(self, intent: Intent) -> Position:
         """The swing."""
         return ArmPosition(cast("Displacement", intent), arm=self.pivot)

@@ -122,6 +122,7 @@ def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
         roller, hollow = recipe.cam.touch_radius / recipe.mm, figure == HOLLOW_RADIUS
         if hollow or by < roller:
             own = f"a roller radius of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
+            own += recipe.cam.same_pitch(recipe.mm)
     elif figure == RADIUS:
         own = recipe.cam.rounder(0.0, by, unit)
     elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:
