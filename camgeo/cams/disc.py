@@ -286,6 +286,10 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
     offers: ClassVar[frozenset[str]] = FacedCam.offers | {"arm"}
     nearer: float = 0.0
 
+    def larger(self, by: float, unit: str = "") -> str:
+        """A larger base radius about the same rest: the face moves out with it."""
+        return f"{super().larger(by, unit)} with arm.face smaller by as much"
+
     def position(self, intent: Intent) -> Position:
         """The swing."""
         return ArmPosition(cast("Displacement", intent), arm=self.pivot)
@@ -295,11 +299,6 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
         from camgeo.curve.disc import SwingingFace
 
         return SwingingFace.on(motion, self.base_radius, self.pivot, self.nearer, self.sense)
-
-    def larger(self, by: float, unit: str = "") -> str:
-        """Say how radii of curvature grow: as the face stands farther out on its arm, at the same swing."""
-        more = f"{upward(by)} {unit}".rstrip()
-        return f"a base radius larger and follower.arm.face less, each by more than {more}"
 
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
         """A face on an arm."""

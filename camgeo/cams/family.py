@@ -189,6 +189,10 @@ class Cam(ABC):
     def rounder(self, value: float, limit: float, unit: str) -> str:
         """Say what would raise the least radius of curvature from a value to a limit, in the recipe's unit."""
 
+    def same_pitch(self, mm: float) -> str:  # noqa: ARG002
+        """Say what else changes with the roller's radius, so that the pitch curve stays; empty where nothing does."""
+        return ""
+
     def found(self, mm: float) -> str:  # noqa: ARG002
         """What was found in place of a size that the recipe leaves open, in words; `mm` is the recipe's unit."""
         return ""

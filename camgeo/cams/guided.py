@@ -95,17 +95,19 @@ class GuidedCam(Cam):
         return f"a base radius of {upward((prime - self.metal * self.touch_radius) / mm)}"
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A smaller roller."""
+        """A smaller roller on the same pitch curve."""
         if not free_at / mm > 0.0:
             return f"no {self.roller_field} is proved to be free of it"
-        return (
-            f"a {self.roller_field} below {downward(free_at / mm)} on the same pitch curve, base radius and "
-            f"{self.roller_field} together being {self.guide.prime / mm:.9g}, would be free of it"
-        )
+        return f"a {self.roller_field} below {downward(free_at / mm)}{self.same_pitch(mm)} would be free of it"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """A smaller roller."""
-        return f"a {self.roller_field} below {downward(value)} {unit}" if value > 0.0 else ""
+        """A smaller roller on the same pitch curve."""
+        mm = 25.4 if unit == "in" else 1.0
+        return f"a {self.roller_field} below {downward(value)} {unit}{self.same_pitch(mm)}" if value > 0.0 else ""
+
+    def same_pitch(self, mm: float) -> str:
+        """The base radius that leaves the prime circle as it is."""
+        return f" with a base radius of {self.guide.prime / mm:.12g} {'less' if self.metal > 0 else 'and'} that radius"
 
     def circles(self) -> tuple[Circle, ...]:
         """The base circle, and the prime circle."""

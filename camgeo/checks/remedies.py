@@ -132,6 +132,7 @@ def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
         roller, hollow = recipe.cam.touch_radius / recipe.mm, figure == HOLLOW_RADIUS
         if recipe.cam.metal > 0 if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
             own = f"a {recipe.cam.roller_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
+            own += recipe.cam.same_pitch(recipe.mm)
     elif figure == RADIUS:
         own = recipe.cam.rounder(0.0, by, unit)
     elif figure == LEAST_WALL and lone_ring(recipe):

@@ -44,6 +44,18 @@ def arc(radius: float, side: str, ratio: str = "4") -> str:
     return roller(f"arc: {{radius: {radius!r}, side: {side}}}", ratio=ratio)
 
 
+SHARP = "[{rise: 20, over: 60, law: cycloidal}, {dwell: 10}, {return: 20, over: 60, law: cycloidal}, {dwell: 230}]"
+
+
+def disc(base: float, follower: str, more: str = "", track: str = "") -> str:
+    return f"cam: {{kind: disc, base_radius: {base!r}, follower: {{{follower}}}, {track}motion: {SHARP}}}{more}{FILES}"
+
+
+def diameter(base: float, radius: float) -> str:
+    lift = "motion: [{rise: 20, over: 60, law: cycloidal}, {dwell: 120}]"
+    return f"cam: {{kind: constant-diameter, base_radius: {base!r}, roller_radius: {radius!r}, {lift}}}{FILES}"
+
+
 def said(text: str) -> str:
     """What a design of the recipe is told, empty if nothing; its files are not made."""
     try:
@@ -167,6 +179,43 @@ DESIGNS: list[tuple[str, str, Follow]] = [
         )
         for ratio in ("5/3", "7/3", "8/3")
     ),
+    *(
+        (
+            disc(prime - radius, f"kind: {kind}, radius: {radius!r}{more}"),
+            rf"a roller radius below (\S+) with a base radius of {prime:g} less that radius",
+            lambda below, prime=prime, kind=kind, more=more: disc(
+                prime - 0.9999 * below, f"kind: {kind}, radius: {0.9999 * below!r}{more}"
+            ),
+        )
+        for kind, prime, radius, more in (
+            ("roller", 26.0, 18.0, ""),
+            ("roller", 26.0, 18.0, ", offset: 7"),
+            ("shoe", 40.0, 38.0, ""),
+            ("roller", 26.0, 20.0, ", arm: {pivot: 60, length: 52}"),
+        )
+    ),
+    (
+        disc(80.0, "kind: roller, radius: 50", track="track: internal, "),
+        r"a roller radius below (\S+) with a base radius of 30 and that radius",
+        lambda below: disc(
+            50.0 + 0.9999 * below, f"kind: roller, radius: {0.9999 * below!r}", track="track: internal, "
+        ),
+    ),
+    (
+        diameter(10.0, 18.0),
+        r"a roller radius below (\S+) with a base radius of 28 less that radius",
+        lambda below: diameter(28.0 - 0.9999 * below, 0.9999 * below),
+    ),
+    (
+        disc(20.0, "kind: flat"),
+        r"a base radius larger by more than (\S+) ",
+        lambda by: disc(20.0 + 1.001 * by, "kind: flat"),
+    ),
+    (
+        disc(20.0, "kind: flat, arm: {pivot: 60}"),
+        r"a base radius larger by more than (\S+) with arm\.face smaller by as much",
+        lambda by: disc(20.0 + 1.001 * by, f"kind: flat, arm: {{pivot: 60, face: {-1.001 * by!r}}}"),
+    ),
     (
         support("p: 25, shaft: [40, 0]", "\npart: {bore: 10}"),
         "the shaft lies outside the contour",
@@ -207,6 +256,13 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
         support("p: 25", BORED.format(45.0)),
         r"a bore smaller by more than (\S+) mm",
         lambda by: support("p: 25", BORED.format(45.0 - 1.001 * by)),
+    ),
+    (
+        disc(26.0, "kind: roller, radius: 8", "\nlimits: {radius-of-curvature: {at_least: 14}}"),
+        r"a roller radius of (\S+) mm with a base radius of 34 less that radius",
+        lambda radius: disc(
+            34.0 - radius, f"kind: roller, radius: {radius!r}", "\nlimits: {radius-of-curvature: {at_least: 14}}"
+        ),
     ),
     (
         support("p: 25 + 2*cos(3*t)", LIMITED).replace("0.001,", "0.002,"),
