@@ -48,7 +48,10 @@ SHARP = "[{rise: 20, over: 60, law: cycloidal}, {dwell: 10}, {return: 20, over: 
 
 
 def disc(base: float, follower: str, more: str = "", track: str = "") -> str:
-    return f"cam: {{kind: disc, base_radius: {base!r}, follower: {{{follower}}}, {track}motion: {SHARP}}}{more}{FILES}"
+    return (
+        f"cam: {{kind: disc, base_radius: {base!r}, follower: {{{follower}}}, {track}motion: {SHARP}}}{more}{FILES}"
+        + ("\npart: {outer: 400}\n" if track else "")
+    )
 
 
 def diameter(base: float, radius: float) -> str:
@@ -182,7 +185,7 @@ DESIGNS: list[tuple[str, str, Follow]] = [
     *(
         (
             disc(prime - radius, f"kind: {kind}, radius: {radius!r}{more}"),
-            rf"a roller radius below (\S+) with a base radius of {prime:g} less that radius",
+            rf"a {kind} radius below (\S+) with a base radius of {prime:g} less that radius",
             lambda below, prime=prime, kind=kind, more=more: disc(
                 prime - 0.9999 * below, f"kind: {kind}, radius: {0.9999 * below!r}{more}"
             ),
