@@ -252,8 +252,7 @@ def test_what_is_not_asked_for_is_skipped() -> None:
         ),
         (
             TRAIN.replace("preload: 150", "backlash: 0.02"),
-            "cam: {kind: constant-diameter, base_radius: 40, roller_radius: 8, "
-            "motion: [{rise: 5, over: 180, law: cycloidal}]}\n",
+            "cam: {kind: constant-diameter, base_radius: 40, roller_radius: 8, motion: {formula: 5*sin(t)**2}}\n",
             "that of a roller yoke is not computed",
         ),
     ],
