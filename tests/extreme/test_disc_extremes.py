@@ -77,7 +77,9 @@ FAILING = {
     ),
     "roller, a rise over 0.01 degree": (*stem(0.0, 5.0), short(1e-3), "undercut-local"),
     "flat, a rise over 0.01 degree": (Touching("flat"), 40.0, short(1e-3), "undercut-local"),
-    "face on an arm, a rise over 0.01 degree": (Touching("flat", pivot=80.0, sense=1), 40.0, short(1e-3), "undercut-local"),
+    "face on an arm, a rise over 0.01 degree": (
+        Touching("flat", pivot=80.0, sense=1), 40.0, short(1e-3), "undercut-local",
+    ),
 }  # fmt: skip
 
 
