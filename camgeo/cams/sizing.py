@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.schema.reader import Values
 
+_SMALL = 1e-3  # of the radius of curvature that is asked for
 SLACK = 1e-9  # degrees, and of a radius: within this a limit is kept
 
 SIZING = mapping(
@@ -146,7 +147,8 @@ def _rounder(cam: RoundCam, asked: Sizing, prime: float, low: float, shape: obje
 
     if asked.radius is None:
         return prime
-    start = max(prime, low * (1.0 + 1e-9), cam.touch_radius)
+    # where nothing else sets a least size there is some size below which no cam is looked for
+    start = max(prime, low * (1.0 + 1e-9), cam.touch_radius, _SMALL * asked.radius)
     return least_prime(shape, asked.radius + cam.touch_radius, start)  # type: ignore[arg-type]
 
 

@@ -131,7 +131,10 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn
         swings = design.driven.mechanism.unit == "deg"
         found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
     if asked.backlash is not None and design.yoke_breadth is None and not swings:
-        raise recipe.error("dynamics.backlash", "a single flat face has no backlash", None, "give preload")
+        kind = design.follower
+        held = kind.closure == "form-closure"
+        why = f"that of a {kind.name} is not computed" if held else f"a single {kind.name} has no backlash"
+        raise recipe.error("dynamics.backlash", why, None, "give preload")
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
     return _Scene(recipe, asked, train, purse, found, unit, name, drawn)

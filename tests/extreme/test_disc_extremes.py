@@ -77,7 +77,9 @@ FAILING = {
     ),
     "roller, a rise over 0.01 degree": (*stem(0.0, 5.0), short(1e-3), "undercut-local"),
     "flat, a rise over 0.01 degree": (Touching("flat"), 40.0, short(1e-3), "undercut-local"),
-    "face on an arm, a rise over 0.01 degree": (Touching("flat", pivot=80.0, sense=1), 40.0, short(1e-3), "undercut-local"),
+    "face on an arm, a rise over 0.01 degree": (
+        Touching("flat", pivot=80.0, sense=1), 40.0, short(1e-3), "undercut-local",
+    ),
 }  # fmt: skip
 
 
@@ -126,3 +128,23 @@ def test_a_knife_edge_that_is_thrown_over_half_a_turn() -> None:
     touching = Touching("knife-edge", pivot=50.0, length=55.0, sense=1)
     rows = [(150.0, 0.001, "cycloidal"), (0.0, 50.0, ""), (-150.0, 1.0, "polynomial-345"), (0.0, 308.999, "")]
     pipeline.check(recipe(touching, 20.0, rows))
+
+
+def test_a_size_that_only_a_radius_of_curvature_bounds() -> None:
+    """A knife edge on a line through the shaft sets no least size of its own."""
+    text = (
+        Touching("knife-edge")
+        .recipe(1.0, PLATE, "")
+        .replace("base_radius: 1.0", "sizing: {radius-of-curvature: {at_least: 0.1}}")
+    )
+    made = load_text(text, "cam.yaml")
+    (bent,) = (check for check in pipeline.check(made).report["checks"] if check["name"] == "radius-of-curvature")
+    assert bent["value"] == pytest.approx(0.1, rel=1e-6)
+
+
+def test_a_motion_that_no_size_mends() -> None:
+    rows = [(5.0, 180.0, "parabolic"), (-5.0, 179.0, "parabolic"), (0.0, 1.0, "")]
+    text = Touching("roller", 5.0).recipe(1.0, rows, "").replace("parabolic", "constant-velocity")
+    with pytest.raises(RecipeErrors, match="does not join") as caught:
+        load_text(text.replace("base_radius: 1.0", "sizing: {pressure-angle: {at_most: 30}}"), "cam.yaml")
+    assert "base_radius" not in str(caught.value)

@@ -250,6 +250,11 @@ def test_what_is_not_asked_for_is_skipped() -> None:
             "cam: {kind: support, p: 25 + 2*cos(2*t)}\n",
             "a single flat face has no backlash",
         ),
+        (
+            TRAIN.replace("preload: 150", "backlash: 0.02"),
+            "cam: {kind: constant-diameter, base_radius: 40, roller_radius: 8, motion: {formula: 5*sin(t)**2}}\n",
+            "that of a roller yoke is not computed",
+        ),
     ],
 )
 def test_what_has_no_dynamics_is_refused_at_its_field(train: str, cam: str, message: str) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import ezdxf
 import numpy as np
@@ -122,18 +123,18 @@ def motion(rows: list[tuple[float, float, str]], degrees: np.ndarray) -> np.ndar
     return found - low.min()
 
 
-def polygon(path: object, step: float = 0.01) -> np.ndarray:
+def polygon(path: Any, step: float = 0.01) -> np.ndarray:
     """The outermost contour of a drawing as complex vertices (n,), its arcs in steps of that length."""
-    outlines = [_vertices(entity, step) for entity in ezdxf.readfile(path).modelspace()]  # type: ignore[arg-type]
+    outlines = [_vertices(entity, step) for entity in ezdxf.readfile(path).modelspace()]
     return max((outline for outline in outlines if len(outline)), key=lambda outline: np.abs(outline).max())
 
 
-def _vertices(entity: object, step: float) -> np.ndarray:
-    if entity.dxftype() == "SPLINE":  # type: ignore[attr-defined]
-        return np.array([complex(v.x, v.y) for v in entity.construction_tool().approximate(40_000)])  # type: ignore[attr-defined]
-    if entity.dxftype() != "LWPOLYLINE":  # type: ignore[attr-defined]
+def _vertices(entity: Any, step: float) -> np.ndarray:
+    if entity.dxftype() == "SPLINE":
+        return np.array([complex(v.x, v.y) for v in entity.construction_tool().approximate(40_000)])
+    if entity.dxftype() != "LWPOLYLINE":
         return np.empty(0, complex)
-    rows = list(entity.get_points("xyb"))  # type: ignore[attr-defined]
+    rows = list(entity.get_points("xyb"))
     parts = []
     for (x, y, bulge), (u, v, _) in zip(rows, rows[1:] + rows[:1], strict=True):
         start, chord, angle = complex(x, y), complex(u - x, v - y), 4 * math.atan(bulge)

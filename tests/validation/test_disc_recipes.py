@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from support.discs import DEGREE
+from support.discs import AREAS, DEGREE, POINTS
 
 from camgeo.curve.backwards import least_hollow
 from camgeo.curve.curvature import least_radius
@@ -35,8 +35,11 @@ NINE = 1.01e-9
 TOLERANCE = 1e-4
 FILES = "export: {tolerance: 0.0001, files: [dxf, {dxf: {as: spline}}]}\n"
 
-M02 = "[{rise: 24, over: 100, law: modified-sine}, {dwell: 40}, {return: 24, over: 140, law: modified-trapezoid}, {dwell: 80}]"
-M03 = "[{rise: 12, over: 100, law: cycloidal}, {dwell: 40}, {return: 12, over: 100, law: modified-trapezoid}, {dwell: 120}]"
+M01 = "[{rise: 20, over: 120, law: cycloidal}, {dwell: 60}, {return: 20, over: 120, law: polynomial-345}, {dwell: 60}]"
+M02 = "[{rise: 24, over: 100, law: modified-sine}, {dwell: 40}, {return: 24, over: 140, law: modified-trapezoid}, "
+M02 += "{dwell: 80}]"
+M03 = "[{rise: 12, over: 100, law: cycloidal}, {dwell: 40}, {return: 12, over: 100, law: modified-trapezoid}, "
+M03 += "{dwell: 120}]"
 M07 = "[{rise: 20, over: 110, law: modified-sine}, {dwell: 50}, {return: 20, over: 120, law: cycloidal}, {dwell: 80}]"
 
 
@@ -54,7 +57,7 @@ def angle(found):
     return math.degrees(math.atan(found.value)), math.degrees(found.at) % 360
 
 
-def made(cam: str, more: str = "") -> tuple[Recipe, Design]:
+def made(cam: str, more: str = "") -> tuple[Any, Design]:
     """A recipe of a disc cam with its files, and its exact design."""
     recipe = load_text(f"cam: {{kind: disc, {cam}}}\n{FILES}{more}", "cam.yaml")
     return recipe, designed(recipe)
@@ -116,27 +119,16 @@ def moments(shape):
     return area, (x * swept).sum() / 3 / area, (y * swept).sum() / 3 / area, ((x * x + y * y) * swept).sum() / 4
 
 
-M01 = "[{rise: 20, over: 120, law: cycloidal}, {dwell: 60}, {return: 20, over: 120, law: polynomial-345}, {dwell: 60}]"
-
-
 def test_d01_roller_inline():
     recipe, design = made(f"base_radius: 40, follower: {{kind: roller, radius: 10}}, motion: {M01}")
     contour, pitch = contour_of(design), pitch_of(design)
-    passes(
-        contour,
-        {
-            0: (40.0, 0.0),
-            40: (32.243284932, 30.407499400),
-            75: (11.890638728, 53.809381760),
-            200: (-56.016149448, -19.542165705),
-        },
-    )
+    passes(contour, POINTS["roller"])
     leans(pitch, (17.846591833, 55.91628), (-16.811156327, 244.71652))
     bends(pitch, 47.774145953, 85.31561)
     convex(pitch)
     assert moments(contour)[:3] == pytest.approx((8033.402512156, -10.105583694, 5.851681657), abs=NINE)
     assert moments(contour)[3] == pytest.approx(11404218.772426, abs=1.01e-6)
-    assert proved(recipe, design)["contour"]["area"] == pytest.approx(8033.402512156, abs=NINE)
+    assert proved(recipe, design)["contour"]["area"] == pytest.approx(AREAS["roller"], abs=NINE)
 
 
 D02 = {
@@ -180,22 +172,14 @@ def test_d02_roller_offset(eccentricity):
 def test_d03_flat():
     recipe, design = made(f"base_radius: 30, follower: {{kind: flat}}, motion: {M03}")
     shape = contour_of(design)
-    passes(
-        shape,
-        {
-            0: (30.0, 0.0),
-            30: (23.025349806, 23.686155976),
-            75: (3.947033943, 41.295398337),
-            200: (-35.751394420, -0.345556400),
-        },
-    )
+    passes(shape, POINTS["flat"])
     bends(shape, 16.078192337, 73.66772)
     most = greatest(lambda tau, side=1: rho(shape, tau, side), stretches(shape))
     assert most.value == pytest.approx(55.921807663, abs=NINE)
     assert math.degrees(most.at) == pytest.approx(26.33228, abs=1e-5)
     contact_within(shape, -13.750987083, 13.750987083)
     assert moments(shape)[:3] == pytest.approx((3735.255254814, -3.417610329, 5.881369194), abs=NINE)
-    assert proved(recipe, design)["contour"]["area"] == pytest.approx(3735.255254814, abs=NINE)
+    assert proved(recipe, design)["contour"]["area"] == pytest.approx(AREAS["flat"], abs=NINE)
     sized, _ = made(
         f"sizing: {{radius-of-curvature: {{at_least: 5}}}}, follower: {{kind: flat}}, motion: {M03}",
     )
@@ -215,15 +199,7 @@ def contact_within(shape, low, high):
 def test_d04_flat_tilted():
     recipe, design = made(f"base_radius: 32, follower: {{kind: flat, tilt: 8, offset: 5}}, motion: {M03}")
     shape = contour_of(design)
-    passes(
-        shape,
-        {
-            0: (31.688578200, 4.453539231),
-            30: (21.121061105, 27.811768694),
-            75: (-1.541374551, 43.314390519),
-            200: (-37.034974844, -6.342082253),
-        },
-    )
+    passes(shape, POINTS["flat, tilted"])
     bends(shape, 18.213678412, 73.66772)
     contact_within(shape, -13.347296574, 13.921113620)
     proved(recipe, design)
@@ -233,12 +209,12 @@ def test_d05_knife_edge():
     motion = "[{rise: 25, over: 180, law: harmonic}, {return: 25, over: 180, law: harmonic}]"
     recipe, design = made(f"base_radius: 30, follower: {{kind: knife-edge}}, motion: {motion}")
     pitch = pitch_of(design)
-    passes(contour_of(design), {0: (30.0, 0.0), 60: (18.125, 31.393420887), 150: (-46.181079661, 26.662658774)})
+    passes(contour_of(design), POINTS["knife edge"])
     leans(pitch, (17.104635177, 72.89536), (-17.104635177, 287.10463))
     bends(pitch, 40.620192023)
     convex(pitch)
     area = proved(recipe, design)["contour"]["area"]
-    assert area == pytest.approx(5919.938656608, abs=NINE)
+    assert area == pytest.approx(AREAS["knife edge"], abs=NINE)
     assert area == pytest.approx(math.pi * (42.5**2 + 12.5**2 / 2), rel=1e-13)
 
 
@@ -246,7 +222,7 @@ def test_d06_shoe():
     motion = "[{rise: 10, over: 90, law: polynomial-4567}, {dwell: 30}, {return: 10, over: 90, law: polynomial-4567}, "
     recipe, design = made(f"base_radius: 25, follower: {{kind: shoe, radius: 60}}, motion: {motion}{{dwell: 150}}]")
     contour, pitch = contour_of(design), pitch_of(design)
-    passes(contour, {0: (25.0, 0.0), 45: (15.224559802, 28.199761484), 100: (-6.077686218, 34.468271355)})
+    passes(contour, POINTS["shoe"])
     leans(pitch, (8.806525542, 44.08779), (-8.806525542, 165.91221))
     bends(pitch, 70.950026472, 63.92119)
     convex(pitch)
@@ -259,15 +235,11 @@ def test_d06_shoe():
 SIDES = {1: "trailing", -1: "leading"}
 D07 = {
     1: (
-        [(19.929464286, -27.546623265), (45.778830200, 3.626315467), (2.098936374, 56.463058726),
-         (-41.908102248, 6.193082243)],
         (26.412053026, 61.43970),
         (-20.131074515, 233.47143),
         (39.474535506, 195.65896),
     ),
     -1: (
-        [(19.929464286, 27.546623265), (-17.753770919, 42.444185068), (-55.240781516, -11.871756067),
-         (7.522189541, -41.644236643)],
         (19.736540186, 38.91812),
         (-27.072856175, 215.14439),
         (40.590983394, 86.38714),
@@ -277,12 +249,12 @@ D07 = {
 
 @pytest.mark.parametrize("side", D07)
 def test_d07_arm(side):
-    points, most, fewest, radius = D07[side]
+    most, fewest, radius = D07[side]
     arm = f"{{length: 65, pivot: 80, side: {SIDES[side]}}}"
     recipe, design = made(f"base_radius: 34, follower: {{kind: roller, radius: 8, arm: {arm}}}, motion: {M07}")
     pitch = pitch_of(design)
     assert math.degrees(pitch.guide.rest) == pytest.approx(31.568024019, abs=NINE)
-    passes(contour_of(design), dict(zip((0, 55, 140, 230), points, strict=True)))
+    passes(contour_of(design), POINTS[f"{SIDES[side]} arm"])
     leans(pitch, most, fewest)
     bends(pitch, *radius)
     convex(pitch)
@@ -291,16 +263,12 @@ def test_d07_arm(side):
 
 D08 = {
     1: (
-        [(18.4, -30.942527369), (41.284472259, 5.821538215), (16.076865482, 46.005775068),
-         (-31.907080462, 35.804798487)],
         (25.986558731, 194.90677),
         (61.897303035, 87.342340440),
         9.177290294,
         12.013441269,
     ),
     -1: (
-        [(18.4, 30.942527369), (-24.277854745, 35.165235268), (-47.880602671, 9.079913614),
-         (-28.391595394, -38.480361552)],
         (22.452191379, 81.60162),
         (62.354139715, 88.329867246),
         9.111184849,
@@ -311,13 +279,13 @@ D08 = {
 
 @pytest.mark.parametrize("side", D08)
 def test_d08_arm_flat(side):
-    points, radius, reach, lean, base = D08[side]
+    radius, reach, lean, base = D08[side]
     motion = "[{rise: 10, over: 120, law: cycloidal}, {dwell: 40}, {return: 10, over: 120, law: polynomial-345}, "
     arm = f"{{pivot: 90, face: 10, side: {SIDES[side]}}}"
     recipe, design = made(f"base_radius: 36, follower: {{kind: flat, arm: {arm}}}, motion: {motion}{{dwell: 80}}]")
     shape = contour_of(design)
     assert math.degrees(shape.law.rest) == pytest.approx(30.737868672, abs=NINE)
-    passes(shape, dict(zip((0, 50, 120, 190), points, strict=True)))
+    passes(shape, POINTS[f"{SIDES[side]} face"])
     bends(shape, *radius)
     contact_within(shape, *reach)
     assert angle(greatest(shape.law.slope, stretches(shape)))[0] == pytest.approx(lean, abs=NINE)
@@ -327,8 +295,8 @@ def test_d08_arm_flat(side):
 
 def test_d10_internal():
     recipe, design = made(f"base_radius: 60, track: internal, follower: {{kind: roller, radius: 10}}, motion: {M01}")
-    passes(contour_of(design), {0: (60.0, 0.0), 40: (50.351660922, 38.897889203), 200: (-74.206685964, -27.855070207)})
-    assert proved(recipe, design)["contour"]["area"] == pytest.approx(15665.460508015, abs=NINE)
+    passes(contour_of(design), POINTS["ring"])
+    assert proved(recipe, design)["contour"]["area"] == pytest.approx(AREAS["ring"], abs=NINE)
 
 
 def test_d13_matched():
@@ -463,7 +431,7 @@ def lost_lift(motion, corner, theta):
     return lost.max(), theta[np.argmax(lost)]
 
 
-def sized(up: int, down: int, follower: str, motion: str) -> tuple[Recipe, Design]:
+def sized(up: int, down: int, follower: str, motion: str) -> tuple[Any, Design]:
     asked = f"sizing: {{pressure-angle: {{at_most: {up}, on_return: {down}}}}}"
     return made(f"{asked}, follower: {{kind: knife-edge{follower}}}, motion: {motion}")
 
@@ -508,7 +476,7 @@ def test_d19_table(tmp_path: Path):
     (tmp_path / "valve.yaml").write_text(
         "cam: {kind: disc, base_radius: 18, follower: {kind: roller, radius: 9}, motion: {table: lift.csv}}\n" + FILES
     )
-    recipe = load(tmp_path / "valve.yaml")
+    recipe: Any = load(tmp_path / "valve.yaml")
     design = designed(recipe)
     dense = np.linspace(0.0, 360.0, 36_001) * DEGREE
     off = np.abs(design.intent.derivatives(dense, 2) - true.intent.derivatives(dense, 2)).max(axis=1)
