@@ -36,8 +36,6 @@ def assembly_of(recipe: Recipe, design: Design, contour: ArcSpline) -> Assembly:
     part = recipe.part
     reach = _reach_of(contour)
     made = MADE[design.follower.name]
-    if design.profile.roller_radius < 0.0:
-        raise BodyError("cam.track", "bodies round a ring are not made", "leave track out, or parts: all")
     roller = recipe.cam.touch_radius if made.rollers else None
     s = sizes_of(recipe.mechanism or MechanismAsked(), reach, part.bore or 0.0, roller, made.rollers)
     drive = Drive(disk_of(part, design.body, contour), reach, shaft_of(part, s), s)

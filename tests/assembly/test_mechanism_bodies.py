@@ -538,15 +538,6 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
             "kind: shoe, radius: 8",
         ),
         (
-            "roller on a stem",
-            "follower:",
-            "track: internal\n  follower:",
-            "cam.track",
-            "round a ring",
-            "leave track out",
-            "follower:",
-        ),
-        (
             "face on an arm",
             "face: 5",
             "face: 25",

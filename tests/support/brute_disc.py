@@ -56,7 +56,8 @@ class Touching:
         ]
         track = "track: internal, " if self.ring else ""
         cam = f"kind: disc, base_radius: {base!r}, {track}follower: {{{follower}}}, motion: [{', '.join(steps)}]"
-        return f"cam: {{{cam}}}\n{more}"
+        part = f"part: {{outer: {4.0 * base + 100.0!r}}}\n" if self.ring else ""
+        return f"cam: {{{cam}}}\n{part}{more}"
 
     def rest(self, base: float) -> float:
         """Place at displacement 0, from the base radius."""
