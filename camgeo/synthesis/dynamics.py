@@ -132,7 +132,7 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn
         found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
     if asked.backlash is not None and design.yoke_breadth is None and not swings:
         kind = design.follower
-        held = kind.closure == "form-closure"
+        held = bool(kind.closure)
         why = f"that of a {kind.name} is not computed" if held else f"a single {kind.name} has no backlash"
         raise recipe.error("dynamics.backlash", why, None, "give preload")
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
