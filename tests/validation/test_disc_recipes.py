@@ -294,7 +294,10 @@ def test_d08_arm_flat(side):
 
 
 def test_d10_internal():
-    recipe, design = made(f"base_radius: 60, track: internal, follower: {{kind: roller, radius: 10}}, motion: {M01}", "part: {outer: 180}\n")
+    recipe, design = made(
+        f"base_radius: 60, track: internal, follower: {{kind: roller, radius: 10}}, motion: {M01}",
+        "part: {outer: 180}\n",
+    )
     passes(contour_of(design), POINTS["ring"])
     assert proved(recipe, design)["contour"]["area"] == pytest.approx(AREAS["ring"], abs=NINE)
 
