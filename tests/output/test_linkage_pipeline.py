@@ -194,7 +194,7 @@ def test_an_error_lost_in_rounding_fails_the_file_and_says_so(tmp_path: Path) ->
     outcome = pipeline.export(recipe("rocker: 105", point, text), tmp_path)
     assert failed(outcome.report) == {("linkage-error", "four-bar.dxf")}
     check = next(check for check in outcome.report["checks"] if check["name"] == "linkage-error")
-    assert "the error of the output cannot be told" in check["detail"]
+    assert "the error of the output cannot be determined" in check["detail"]
 
 
 def test_an_output_that_stands_still_but_for_rounding_is_one_long_dwell(tmp_path: Path) -> None:

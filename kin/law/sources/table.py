@@ -66,9 +66,9 @@ def from_table(
 
     TableError, with the line, for angles that do not rise, gaps, steps, rows that scatter by more than the reading.
     """
+    _demand_rows(rows, total, field)
     if not (math.isfinite(reading) and reading > 0):
         raise IntentError(f"the reading error must be above 0, not {reading:.6g}", f"{field}.reading")
-    _demand_rows(rows, total, field)
     rows, event = _one_turn(rows, total, around, reading, field)
     demand_whole(rows, total, around, field)
     task = _Task(rows, reading, total, around)
