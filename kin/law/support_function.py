@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ import numpy as np
 from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError, Programme, first_harmonic
+from kin.law.reuleaux import closed_angles, corners
 from kin.law.segment import Affine, Constant, Harmonics, Round, Series, Stretch
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, cos, sin
@@ -288,12 +290,21 @@ def lift_hypocycloid(cusps: int, size: float, breadth: float, pivot: tuple[float
     return joined([0.0, _TURN], [function], "hypocycloid", smooth_seam=True)
 
 
-def lift_reuleaux(sides: int, breadth: float, rounding: float, pivot: tuple[float, float] = (0.0, 0.0)) -> Lift:
-    """Make the regular Reuleaux polygon of odd `sides`, its corners rounded by `rounding`, mm.
+def lift_reuleaux(
+    sides: int,
+    breadth: float,
+    rounding: float,
+    pivot: tuple[float, float] = (0.0, 0.0),
+    angles: Sequence[float] = (),
+) -> Lift:
+    """Make the Reuleaux polygon of odd `sides`, its corners rounded by `rounding`, mm, or sharp at 0.
 
-    It is the curve at distance `rounding` outside the sharp one of breadth w - 2 rounding, whose corners lie on a
-    circle of radius (w - 2 rounding)/(2 cos(pi/2n)) about the origin, the first one on the +x axis. rho is the rounding
-    over each corner and w - rounding opposite. IntentError for an even count or a rounding outside 0 to w/2.
+    It is the curve at distance `rounding` outside the sharp one of breadth w - 2 rounding. Without `angles` that is the
+    regular one, whose corners lie on a circle of radius (w - 2 rounding)/(2 cos(pi/2n)) about the origin, the first one
+    on the +x axis. `angles`, rad, are those of the first n - 3 corners in the order in which the cam turns about them;
+    see `kin.law.reuleaux`, which finds the others. The origin is Steiner's point then, and the first corner bears
+    evenly about +x, which of a regular polygon comes to the same. rho is the rounding over each corner and w - rounding
+    opposite. IntentError for an even count, a rounding outside 0 to w/2, or angles of no polygon.
     """
     if sides < 3 or sides % 2 == 0:
         raise IntentError(f"a Reuleaux polygon has an odd number of sides, 3 or more, not {sides}", "reuleaux.sides")
@@ -302,15 +313,21 @@ def lift_reuleaux(sides: int, breadth: float, rounding: float, pivot: tuple[floa
             f"the rounding must lie between 0 and half the breadth, {breadth / 2:.6g} mm; it is {rounding:.6g} mm",
             "reuleaux.rounding",
         )
-    half = math.pi / (2 * sides)
-    circumradius = (breadth - 2 * rounding) / (2 * math.cos(half))
-    functions = []
-    for i in range(2 * sides):  # normals within `half` of i pi/n: about the corner there, or about the one opposite
-        corner = (2 * i if i % 2 == 0 else 2 * (i + sides)) * half
-        arc = Circle(breadth - rounding if i % 2 else rounding, *_polar(circumradius, corner))
-        functions.append(about(arc, pivot))
-    knots = [(2 * i - 1) * half for i in range(2 * sides)] + [_TURN - half]
-    return joined(knots, functions, "reuleaux")
+    half, size = math.pi / (2 * sides), breadth - 2 * rounding
+    if angles:
+        own = closed_angles(sides, angles)
+        centres = [(size * one.real, size * one.imag) for one in corners(own)]
+        centres += centres
+        knots = list(accumulate((*own, *own[:-1]), initial=-0.5 * own[0]))
+    else:
+        # normals within `half` of i pi/n: about the corner there, or about the one opposite
+        places = ((2 * i if i % 2 == 0 else 2 * (i + sides)) * half for i in range(2 * sides))
+        centres = [_polar(size / (2 * math.cos(half)), place) for place in places]
+        knots = [(2 * i - 1) * half for i in range(2 * sides)]
+    functions = [
+        about(Circle(breadth - rounding if i % 2 else rounding, *centre), pivot) for i, centre in enumerate(centres)
+    ]
+    return joined([*knots, knots[0] + _TURN], functions, "reuleaux")
 
 
 def _polar(radius: float, angle: float) -> tuple[float, float]:

@@ -109,8 +109,9 @@ class Field:
     choices: tuple[str, ...] = ()
     variable: str = "t"
     table: Table | None = None  # of a mapping, or of each segment of a motion
-    unit: Kind | None = None  # of the coefficients of harmonics, or of a form of its own
+    unit: Kind | None = None  # of the coefficients of harmonics, of a list of numbers, or of a form of its own
     form: Form | None = None  # of a field of Kind.OWN
+    most: int = MOST_COEFFICIENTS  # entries of a list of numbers
     formerly: str = ""
     former_choices: tuple[tuple[str, str], ...] = ()
 
@@ -118,6 +119,13 @@ class Field:
     def noun(self) -> str:
         """What the field holds, for messages: `a length`."""
         return self.form.noun if self.form else self.kind.value
+
+    @property
+    def entry(self) -> Field:
+        """The field of one entry of a list of numbers: coefficients, unless the list has bounds of its own."""
+        unit, bounded = self.unit or Kind.NUMBER, self.at_least is not None
+        least, most = (self.at_least, self.at_most) if bounded else (-MOST_COEFFICIENT, MOST_COEFFICIENT)
+        return Field("", unit, "", at_least=least, at_most=most)
 
     @property
     def inner(self) -> Table:

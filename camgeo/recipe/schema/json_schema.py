@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from camgeo.recipe.schema.fields import (
     MOST,
-    MOST_COEFFICIENTS,
     MOST_TEXT,
     Field,
     Kind,
@@ -101,7 +100,8 @@ def _kind(field: Field) -> Schema:
         case Kind.TRUTH:
             return {"type": "boolean"}
         case Kind.NUMBERS:
-            return {"type": "array", "items": number_schema(), "minItems": 1, "maxItems": MOST_COEFFICIENTS}
+            items = number_schema(None if field.at_least is None else field.entry)
+            return {"type": "array", "items": items, "minItems": 1, "maxItems": field.most}
         case Kind.HARMONICS:
             return {"type": "object", "additionalProperties": number_schema()}
         case Kind.TABLE:
