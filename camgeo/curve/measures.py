@@ -20,6 +20,7 @@ import numpy as np
 from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
 from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme
+from camgeo.curve.support import is_sharp
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,20 +79,12 @@ def _integrals(curve: Curve, low: Array, high: Array) -> Array:
 
 
 def touched(contour: Curve, parameter: Array) -> Mask:
-    """Whether the contour has a point of each parameter (n,), or was trimmed away there.
-
-    An arc of radius 0 at the end of a run is a corner, and is touched all along.
-    """
-    if contour.closed:
+    """Whether the contour has a point of each parameter (n,), a sharp corner or not, or was trimmed away there."""
+    if contour.closed or is_sharp(contour):
         return np.ones(parameter.shape, dtype=bool)
     period = contour.shape.period
     kept = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]
     found: Mask = np.any(kept, axis=0)
-    still = np.flatnonzero(~found & (contour.shape.radii[contour.stretch_of(parameter)] == 0.0))
-    if still.size:
-        ends = contour.sample(np.array([run.high for run in contour.runs]), -1).point
-        apart = np.abs(contour.sample(parameter[still]).point[:, None] - ends).max(axis=2).min(axis=1)
-        found[still] = apart <= EXACT * contour.size
     return found
 
 

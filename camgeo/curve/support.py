@@ -85,3 +85,8 @@ def with_corners(curve: Curve) -> Curve:
     if len(kept) in {0, len(stretches)}:
         return curve
     return Curve(curve.shape, tuple(Run(low, high, (), closed=False) for low, high in kept))
+
+
+def is_sharp(contour: Curve) -> bool:
+    """Whether a contour has corners, and these are all its shape's arcs of radius 0: nothing of it is cut off."""
+    return not contour.closed and contour == with_corners(Curve.whole(contour.shape))
