@@ -484,10 +484,10 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
             ],
         ),
         (
-            "cam: {kind: support, reuleaux: {sides: 1, breadth: 50, rounding: 0}}",
+            "cam: {kind: support, reuleaux: {sides: 1, breadth: 50, rounding: -1}}",
             [
                 f"1:40: cam.reuleaux.sides: below 3, given 1; {ODD}",
-                f"1:66: cam.reuleaux.rounding: not above 0, given 0; {LENGTH}",
+                "1:66: cam.reuleaux.rounding: below 0, given -1; give a length of at least 0 in mm",
             ],
         ),
         (
