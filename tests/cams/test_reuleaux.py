@@ -35,12 +35,11 @@ def recipe_of(text):
 def points_of(text):
     """Corners in order round the contour, mm, from the shaft, and the order of a star's points there."""
     if text == TRIANGLE:
-        own, shaft = closed_angles(3, ()), 0.0
+        own, shaft = closed_angles(3, ()), 0j
     else:
         own, shaft = closed_angles(5, np.radians([50.0, 30.0])), 3.0 + 1.0j
-    z = 50.0 * np.array(corners(own))
-    order = np.argsort(np.mod(np.angle(z), 2 * np.pi))
-    z = z[order] - shaft
+    star = 50.0 * np.array(corners(own))
+    z = star[np.argsort(np.mod(np.angle(star), 2 * np.pi))] - shaft
     return np.column_stack([z.real, z.imag])
 
 
@@ -66,9 +65,8 @@ def test_every_format_holds_its_corners(text, tmp_path):
     files = "dxf, svg, step, stl, 3mf, glb, gcode, html, csv, {csv: {as: contacts}}, {csv: {as: polar}}"
     files += ", {csv: {as: inspection}}, {dxf: {as: polyline}}, {dxf: {as: spline}}"
     milled = "{cutter: 6, feed: 400, plunge: 100, spindle: 6000, depth_of_cut: 5, safe_height: 5}"
-    recipe = recipe_of(
-        f"{text}part: {{thickness: 8, bore: 8}}\nmanufacture: {milled}\nexport: {{tolerance: 0.001, files: [{files}]}}\n"
-    )
+    more = f"part: {{thickness: 8, bore: 8}}\nmanufacture: {milled}\n"
+    recipe = recipe_of(f"{text}{more}export: {{tolerance: 0.001, files: [{files}]}}\n")
     report = export(recipe, tmp_path)
     assert report.ok
     folder = tmp_path / "cam"

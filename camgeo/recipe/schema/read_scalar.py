@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.schema.errors import NEAR, NEARER, shown, suggestion
-from camgeo.recipe.schema.fields import Kind
+from camgeo.recipe.schema.fields import Kind, not_yet
 from camgeo.recipe.schema.scalars import Complaint, read_name, read_number, read_paragraph, read_ratio, read_whole
-from camgeo.recipe.schema.yaml_source import Scalar, described, written
+from camgeo.recipe.schema.yaml_source import Mapping, Scalar, described, entries, written
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,6 +36,11 @@ def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:
 
 def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | None:
     """Read one of a few words."""
+    asked = (node.text,) if isinstance(node, Scalar) else entries(node) if isinstance(node, Mapping) else ()
+    for word, made in field.later_choices:
+        if word in asked:
+            reader.fault(node.mark, path, not_yet(made), None, reader.wanted(field))
+            return None
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in field.choices:
         return None if scalar is None else scalar.text
