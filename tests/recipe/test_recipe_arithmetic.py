@@ -13,7 +13,7 @@ from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.recipe.schema.json_schema import json_schema
-from camgeo.recipe.schema.scalars import Complaint, read_number, read_whole
+from camgeo.recipe.schema.scalars import Complaint, read_number, whole
 
 TEXT = (
     "cam: {{kind: constant-breadth, base_radius: {0}, "
@@ -41,9 +41,9 @@ def test_what_it_comes_to(text: str, value: float) -> None:
 
 
 def test_a_whole_number() -> None:
-    assert read_whole("2*3 + 1") == 7
+    assert whole(read_number("2*3 + 1")) == 7
     with pytest.raises(Complaint, match="not a whole number"):
-        read_whole("7/2.0")
+        whole(read_number("7/2.0"))
 
 
 @pytest.mark.parametrize(
