@@ -59,7 +59,7 @@ def test_a_whole_number() -> None:
         ("sin(1)", "not a number, given 'sin(1)'; give a length above 0 in mm"),
         ("e*2", "not a number, given 'e*2'"),
         ("2 3", "not a number, given '2 3'"),
-        ("15 mm", "not a number, given '15 mm'; write the number without its unit"),
+        ("2 1/2", "not a number, given '2 1/2'; a mixed number takes a plus, such as 1+1/2"),
     ],
 )
 def test_what_is_refused_and_where(text: str, said: str) -> None:

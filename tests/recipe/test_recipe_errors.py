@@ -43,7 +43,7 @@ cam:
   roller_radius: -8
   delta: {cos: {2: 625}}
 dynamics: {mass: 1, stiffness: 1e5, rpm: 100}
-part: {bore: 10mm, follower: 3}
+part: {bore: 10mil, follower: 3}
 export: {files: [dxf, {dxf: {as: spline, version: R12}}, stl, stp]}
 verify: {angles: 010}
 tolerance: 4
@@ -58,7 +58,7 @@ tolerance: 4
         "cams/a.yaml:7:18: cam.roller_radius: not above 0, given -8; give a length above 0 in inch",
         "cams/a.yaml:8:17: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199",
         "cams/a.yaml:9:11: dynamics: needs preload or backlash; give exactly one of them",
-        "cams/a.yaml:10:14: part.bore: not a number, given '10mm'; write the number without its unit",
+        "cams/a.yaml:10:14: part.bore: 'mil' is no unit of a length, given '10mil'; give mm, cm, in or inch, or a number alone, which is in inch",
         f"cams/a.yaml:10:20: part.follower: not available in this version; leave it out; the keys here are {PART}",
         (
             "cams/a.yaml:11:34: export.files[1].dxf.as: R12 has no splines, given 'spline'; "
@@ -308,7 +308,10 @@ def test_keys(body: str, message: str) -> None:
         ("0x1F", "not a number, given '0x1F'; write it in decimal"),
         ("1_000", "not a number, given '1_000'; write it without underscores"),
         ("1,5", "not a number, given '1,5'; a decimal takes a point, not a comma"),
-        ("10 mm", "not a number, given '10 mm'; write the number without its unit"),
+        (
+            "10 m",
+            "'m' is no unit of a length, given '10 m'; give mm, cm, in or inch, or a number alone, which is in mm",
+        ),
         ("on", "not a number, given 'on'; this is a truth value"),
         ("2020-01-01", "not a number, given '2020-01-01'; this is a date"),
         ("1/0", f"divides by zero, given 1/0; {LENGTH}"),

@@ -13,6 +13,7 @@ ANGLES = {"deg": Fraction(1)}
 """The units that an angle may carry, in degrees."""
 
 _QUANTITY = re.compile(r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³]*(?:\^[0-9])?)")
+_WITHIN = re.compile(rf"[0-9.)] *(?:{'|'.join((*LENGTHS, *ANGLES))})\b")
 _MOST = 80  # characters; a number of them has fewer
 _RATIONAL = re.compile(r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)")
 _TAKEN = {"degrees": (ANGLES, "deg"), "mm": (LENGTHS, "mm"), "inch": (LENGTHS, "inch")}  # with the own one's name
@@ -21,6 +22,11 @@ _TAKEN = {"degrees": (ANGLES, "deg"), "mm": (LENGTHS, "mm"), "inch": (LENGTHS, "
 def units_for(own: str) -> tuple[str, ...]:
     """Name the units that a number may carry where the field's own is `degrees`, `mm` or `inch`; none elsewhere."""
     return tuple(_TAKEN[own][0]) if own in _TAKEN else ()
+
+
+def holds_unit(text: str) -> bool:
+    """Tell whether a known unit stands behind a number anywhere in a text."""
+    return _WITHIN.search(text) is not None
 
 
 def parted(text: str) -> tuple[str, str]:

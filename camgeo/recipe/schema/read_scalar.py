@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.recipe.schema.errors import NEAR, NEARER, shown, suggestion
 from camgeo.recipe.schema.fields import Kind, either
-from camgeo.recipe.schema.quantity import UnitComplaint, read_quantity, units_for
+from camgeo.recipe.schema.quantity import UnitComplaint, holds_unit, read_quantity, units_for
 from camgeo.recipe.schema.scalars import Complaint, read_name, read_paragraph, read_ratio, whole
 from camgeo.recipe.schema.yaml_source import Scalar, described, written
 
@@ -105,8 +105,11 @@ def read_formula(reader: Reader, field: Field, node: Node, path: str) -> str | N
         remedy = reader.wanted(field)
         if _behind(reader, scalar) == "," and text.count("(") > text.count(")"):
             remedy = "a formula with a comma in it needs quotes inside braces"
-        mark = _inside(reader, scalar, error.column)
-        reader.fault(mark, path, error.message, shown(text), remedy)
+        mark, problem = _inside(reader, scalar, error.column), error.message
+        if holds_unit(text):
+            own = reader.unit(field.unit or Kind.LENGTH)
+            problem, remedy = "a formula carries no units", f"give its numbers alone, in {own}"
+        reader.fault(mark, path, problem, shown(text), remedy)
         return None
     return text
 
