@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.assembly.interference import slabs
 from camgeo.assembly.meshes import body_mesh, flat, laid_out, mirrored, standing
+from camgeo.common.units import UNIT_MM
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import Bound
 from camgeo.output.job import Made
@@ -139,7 +140,7 @@ def _glb(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> M
         mesh = replace(part.mesh, points=part.mesh.points + np.array([0.0, 0.0, part.raised]))
         actors.append(Actor(part.body.name, mesh, part.body.pose, part.body.colour))
     write_glb(path, actors, title=job.recipe.name)
-    return Made((FileResult(path, request, None, None, None, None, None),))
+    return Made((FileResult(path, request, None, None, None, None, None, units=UNIT_MM["m"]),))
 
 
 def _judged_cam(job: Job, request: FileRequest, path: Path, part: Part) -> Made:

@@ -227,7 +227,10 @@ def _of_solid(path: Path, intent: Intent, limits: Limits, units: float | None) -
         solid = read_solid(path, levels(intent), units)
         _demand_same(solid.units_mm, units, path)
         if not solid.sections:
-            raise ReadError("empty", "the solid has no section where the part has its layers", path)
+            told = "the solid has no section where the part has its layers"
+            if solid.units_mm is None:
+                told += f"; it states no unit and is read in one of {units or 1.0:.9g} mm, another is given by --units"
+            raise ReadError("empty", told, path)
         at = [_faced_section(one, intent, limits.tolerance, path) for one in solid.sections]
         sections = [Section(one.height, f.contour, f.holes) for one, f in zip(solid.sections, at, strict=True)]
         checks = [_watertight_check(solid, at[0].contour), *(less_sure(one, solid.uneven) for one in at[0].checks)]
