@@ -92,9 +92,10 @@ def converted(outline: Outline) -> float:
     """Farthest in mm that writing an outline in another unit, and reading it back, moves one of its points.
 
     A quotient and a product of each coordinate, each of which rounds by half a unit in the last place, and a factor
-    that is no double itself.
+    that is no double itself: two and a half in all, sqrt(2) times as much in the plane, and twice that for the control
+    points of a spline, which lie outside.
     """
-    return 4.0 * float(np.spacing(np.abs(outline.box()).max()))
+    return 8.0 * float(np.spacing(np.abs(outline.box()).max()))
 
 
 def _single(values: Array) -> Array:
