@@ -146,6 +146,15 @@ def test_a_formula_takes_none() -> None:
     assert said.endswith("a formula carries no units, given '1 in + 2*cos(3*t)'; give its numbers alone, in inch")
 
 
+@pytest.mark.parametrize("bore", [8, 10, 12, 17, 22, 30, 38, 44, 50, 58])
+def test_a_metric_length_in_inches_is_what_a_standard_takes(bore: int) -> None:
+    """A keyway's range ends at these bores; one in the last place more would have the next."""
+    text = "units: {}\ncam: {{kind: support, p: 60}}\npart: {{thickness: 8 mm, bore: {} mm, keyway: din6885}}"
+    metric, inches = (load_text(text.format(units, bore), "a.yaml").part for units in ("mm", "inch"))
+    assert inches == metric
+    assert inches.bore == bore
+
+
 def test_strokes_are_lengths_or_angles_as_the_follower_moves() -> None:
     swings = (
         "cam: {{kind: disc, base_radius: 34, follower: {{kind: roller, radius: 8, arm: {{length: 65, pivot: 80}}}}, "

@@ -29,6 +29,11 @@ def holds_unit(text: str) -> bool:
     return _WITHIN.search(text) is not None
 
 
+def is_metric(text: str) -> bool:
+    """Tell whether a number carries a metric unit of length."""
+    return parted(text)[1] in {"mm", "cm"}
+
+
 def parted(text: str) -> tuple[str, str]:
     """Part a text into its number and the unit behind it, which is empty where there is none.
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.recipe.schema.errors import NEAR, NEARER, shown, suggestion
 from camgeo.recipe.schema.fields import Kind, either
-from camgeo.recipe.schema.quantity import UnitComplaint, holds_unit, read_quantity, units_for
+from camgeo.recipe.schema.quantity import UnitComplaint, holds_unit, is_metric, read_quantity, units_for
 from camgeo.recipe.schema.scalars import Complaint, read_name, read_paragraph, read_ratio, whole
 from camgeo.recipe.schema.yaml_source import Scalar, described, written
 
@@ -76,7 +76,12 @@ def read_numeric(reader: Reader, field: Field, node: Node, path: str) -> float |
         reader.fault(node.mark, path, problem, written(scalar), reader.wanted(field))
         return None
     reader.numbers[path] = field
-    return value if field.kind is Kind.INTEGER else value * reader.scale(field.kind)
+    if field.kind is Kind.INTEGER:
+        return value
+    scale = reader.scale(field.kind)
+    if scale == reader.mm != 1.0 and is_metric(scalar.text):
+        return read_quantity(scalar.text, "mm")  # 12 mm are 12 mm, which standards count on, and not 12/25.4 * 25.4
+    return value * scale
 
 
 def _refuse_unit(reader: Reader, field: Field, scalar: Scalar, path: str, unit: str) -> None:
