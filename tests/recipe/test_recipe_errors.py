@@ -684,7 +684,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             "[{dxf: }]",
             [
                 (
-                    "23: export.files[0].dxf: nothing given; give a mapping with as, version, tolerance, kerf, "
+                    "23: export.files[0].dxf: nothing given; give a mapping with as, version, units, tolerance, kerf, "
                     "clearance and shrinkage, or leave the key out"
                 )
             ],
