@@ -178,7 +178,7 @@ RECIPE = Table(
     (
         Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
         Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
-        Field("units", Kind.CHOICE, "unit of every length", default="mm", choices=("mm", "inch")),
+        Field("units", Kind.CHOICE, "unit of lengths that carry none", default="mm", choices=("mm", "inch")),
         Field(
             "rotation",
             Kind.CHOICE,
