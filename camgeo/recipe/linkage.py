@@ -95,6 +95,7 @@ class FourBarLinkage:
     rocker: float
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
+    joint_offset: float = 0.0
 
     kind: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
@@ -103,7 +104,7 @@ class FourBarLinkage:
         """Make the linkage of the recipe."""
         from kin.linkage.four_bar import FourBar
 
-        return FourBar(self.ground, self.coupler, self.rocker, self.assembly)
+        return FourBar(self.ground, self.coupler, self.rocker, self.assembly, self.joint_offset)
 
 
 @dataclass(frozen=True)
@@ -114,6 +115,7 @@ class InvertedSliderCrankLinkage:
     rocker: float
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
+    joint_offset: float = 0.0
 
     kind: ClassVar[str] = "inverted-slider-crank"
     slides: ClassVar[bool] = False
@@ -122,7 +124,7 @@ class InvertedSliderCrankLinkage:
         """Make the linkage of the recipe."""
         from kin.linkage.four_bar import InvertedSliderCrank
 
-        return InvertedSliderCrank(self.ground, self.rocker, self.assembly)
+        return InvertedSliderCrank(self.ground, self.rocker, self.assembly, self.joint_offset)
 
 
 @dataclass(frozen=True)
@@ -133,6 +135,7 @@ class SliderCrankLinkage:
     offset: float
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
+    joint_offset: float = 0.0
 
     kind: ClassVar[str] = "slider-crank"
     slides: ClassVar[bool] = True
@@ -141,7 +144,7 @@ class SliderCrankLinkage:
         """Make the linkage of the recipe."""
         from kin.linkage.four_bar import SliderCrank
 
-        return SliderCrank(self.coupler, self.offset, self.assembly)
+        return SliderCrank(self.coupler, self.offset, self.assembly, self.joint_offset)
 
 
 Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage
@@ -261,9 +264,23 @@ _GROUND = length("ground", "distance r1 of the fixed pivot from the shaft, along
 _COUPLER = length("coupler", "length r3 from the middle of the frame's side to the joint", required=True)
 
 
+_JOINT_OFFSET = coordinate(
+    "joint_offset",
+    "distance of the joint from the frame's mid-line, positive towards the face whose lift the cam's law gives",
+    default="0",
+)
+
+
 LINKAGES: dict[str, Table] = {
     "four-bar": Table(
-        (_GROUND, _COUPLER, length("rocker", "length r4 of the rocker", required=True), _ASSEMBLY, _DYADS)
+        (
+            _GROUND,
+            _COUPLER,
+            length("rocker", "length r4 of the rocker", required=True),
+            _JOINT_OFFSET,
+            _ASSEMBLY,
+            _DYADS,
+        )
     ),
     "inverted-slider-crank": Table(
         (
@@ -276,6 +293,7 @@ LINKAGES: dict[str, Table] = {
                 at_least=0,
                 at_most=MOST,
             ),
+            replace(_JOINT_OFFSET, about=_JOINT_OFFSET.about.replace("the joint", "the slide's line")),
             _ASSEMBLY,
             _DYADS,
         )
@@ -284,6 +302,7 @@ LINKAGES: dict[str, Table] = {
         (
             _COUPLER,
             coordinate("offset", "distance of the slide's line from the shaft, along +y", required=True),
+            _JOINT_OFFSET,
             _ASSEMBLY,
             _DYADS,
         )

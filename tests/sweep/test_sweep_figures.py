@@ -92,6 +92,15 @@ def test_figures_are_those_of_the_mechanism(linkage, shape, assembly):
     assert_like(found.figures, exact(one))
 
 
+@pytest.mark.parametrize("linkage", list(PATHS))
+def test_a_joint_off_the_mid_line(linkage):
+    one, path = recipe(linkage=linkage, more=", joint_offset: 0", pivot="[12, 6]"), ("linkage.joint_offset",)
+    found = evaluate(one, path, np.array([[9.0], [-9.0]]), samples=720)
+    for row, value in enumerate([9.0, -9.0]):
+        assert_like(found.figures, exact(recipe_with(one, path, [value])), row)
+    assert found.figures["swing"][0] != pytest.approx(found.figures["swing"][1], rel=1e-4)
+
+
 def test_the_papers_dwell():
     found = compute_one(recipe(), {})
     assert found["dwell-relative"] == pytest.approx(45.174019358, abs=2e-6)
@@ -385,7 +394,7 @@ def test_the_margin_of_a_linkage_that_binds_is_negative(linkage, lengths):
     n = 48
     p = 25 + 200 * np.cos(angles(n))[None]
     cams = Support(np.array([[50.0]]), p, 0 * p, 0 * p)
-    loop = engine(linkage).of(1.0, cams, Lengths(*(np.array([[float(length)]]) for length in lengths)))
+    loop = engine(linkage).of(1.0, cams, Lengths(*(np.array([[float(length)]]) for length in (*lengths, 0))))
     margin = loop.margin(lambda rows: rows.min(axis=1))
     s1 = np.roll(p[0], -n // 4)
     wanted = linkage.margin(p[0], s1, 50.0).min()
