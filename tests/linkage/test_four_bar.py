@@ -263,9 +263,9 @@ def test_lengths_that_are_none(bad):
     if not math.isfinite(bad):
         with pytest.raises(ValueError, match="must be finite"):
             SliderCrank(1.0, bad)
-        for make in (FourBar(1.0, 1.0, 1.0), InvertedSliderCrank(1.0, 1.0), SliderCrank(1.0, 1.0)):
+        for linkage in (FourBar(1.0, 1.0, 1.0), InvertedSliderCrank(1.0, 1.0), SliderCrank(1.0, 1.0)):
             with pytest.raises(ValueError, match="joint's offset must be finite"):
-                replace(make, joint_offset=bad)
+                replace(linkage, joint_offset=bad)
 
 
 def test_assembly_by_name_only():
