@@ -12,6 +12,7 @@ from camgeo.recipe.schema.yaml_source import join
 if TYPE_CHECKING:
     import kin.linkage.dyad
     import kin.linkage.four_bar
+    from camgeo.cams.family import Cam
     from camgeo.recipe.schema.fields import Schema
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
@@ -148,6 +149,15 @@ class SliderCrankLinkage:
 
 
 Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage
+
+
+def carried(cam: Cam, linkage: Linkage | None) -> Cam:
+    """Tell a cam of the links that its frame slides on, if it does."""
+    if not isinstance(linkage, InvertedSliderCrankLinkage):
+        return cam
+    return cam.in_frame(
+        linkage.ground, linkage.rocker - linkage.joint_offset, 1.0 if linkage.assembly == "open" else -1.0
+    )
 
 
 def output_slides(linkage: Linkage) -> bool:
@@ -345,6 +355,9 @@ DWELL = (
 
 def check_linkage(values: Values, reader: Reader) -> None:
     """Note the faults between a linkage, its dwells and the cam that drives it."""
+    if "cam.swing" in reader.marks and reader.kinds["linkage"] != "inverted-slider-crank":
+        remedy = "give linkage: {kind: inverted-slider-crank, ground: 80, rocker: 0}, or motion in its place"
+        reader.fault_at("cam.swing", "needs a linkage of kind inverted-slider-crank", None, remedy)
     if "linkage" not in reader.marks:
         for path in ("dwell", "verify.output_error"):
             if path in reader.marks:
