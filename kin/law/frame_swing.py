@@ -236,8 +236,8 @@ def frame_swing(motion: Motion, ground: float, rocker: float, side: float, field
     span, covered = math.degrees(math.pi + law.rise), math.degrees(motion.total)
     if abs(motion.total - (math.pi + law.rise)) > _SAME:
         raise IntentError(
-            f"the motion covers {covered:.10g} degrees of the shaft; with its net rise of {rise:.9g} it fills half a "
-            f"turn of the cam against the frame where it covers 180 and that, {span:.10g}: what follows is its image",
+            f"the motion covers {covered:.10g} degrees of the shaft; let it cover {span:.10g}, 180 and its net "
+            f"rise of {rise:.9g}: half a turn of the cam against the frame, the other half is its image",
             field,
         )
     try:
@@ -299,7 +299,7 @@ def _demand_meeting(law: FrameSwing, field: str) -> None:
     begin = law.start
     # over the relative angle the lift's slopes are opposite: k r1 cos psi psi'/(1 - psi')
     slope = -math.cos(begin) / math.cos(begin + law.rise) * first / (1.0 - first)
-    wanted = slope / (1.0 + slope)
+    wanted = slope / (1.0 + slope) + 0.0  # no -0 in a message
     if abs(last - wanted) > _JOIN * (1.0 + abs(first)):
         end = math.degrees(law.motion.total)
         raise IntentError(
