@@ -406,3 +406,18 @@ def test_the_margin_of_a_linkage_that_binds_is_negative(linkage, lengths):
 def test_screening_leaves_the_recipe_alone():
     one = swept("size: {at_most: 40}")
     assert replace(one, sweep=None) == replace(swept(""), sweep=None)
+
+
+def test_links_that_shape_the_cam_make_it_anew():
+    """Where the swing of the frame is given, the lift hangs on the lengths of the linkage."""
+    swing = "swing: [{rise: 20, over: 140, law: cycloidal}, {dwell: 60}]"
+    shape = f"kind: constant-breadth\n  base_radius: 80\n  {swing}"
+    one = recipe(shape, "kind: inverted-slider-crank, ground: 80, rocker: 12", more=", joint_offset: 2", pivot="")
+    paths = ("linkage.ground", "linkage.joint_offset", "cam.base_radius")
+    values = np.array([[80.0, 2.0, 80.0], [95.0, 2.0, 80.0], [80.0, 20.0, 80.0], [80.0, 2.0, 84.0]])
+    found = evaluate(one, paths, values, samples=7200)
+    for row, given in enumerate(values):
+        wanted = exact(recipe_with(one, paths, given))
+        assert_like(found.figures, wanted, row, tolerance=3e-5)
+        assert found.figures["swing"][row] == pytest.approx(20.0, abs=1e-6)
+    assert np.ptp(found.figures["radius-of-curvature"]) > 1.0
