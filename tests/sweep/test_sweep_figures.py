@@ -416,8 +416,8 @@ def test_links_that_shape_the_cam_make_it_anew():
     paths = ("linkage.ground", "linkage.joint_offset", "cam.base_radius")
     values = np.array([[80.0, 2.0, 80.0], [95.0, 2.0, 80.0], [80.0, 20.0, 80.0], [80.0, 2.0, 84.0]])
     found = evaluate(one, paths, values, samples=7200)
-    for row, given in enumerate(values):
-        wanted = exact(recipe_with(one, paths, given))
+    for row, numbers in enumerate(values):
+        wanted = exact(recipe_with(one, paths, numbers))
         assert_like(found.figures, wanted, row, tolerance=3e-5)
         assert found.figures["swing"][row] == pytest.approx(20.0, abs=1e-6)
     assert np.ptp(found.figures["radius-of-curvature"]) > 1.0
