@@ -51,11 +51,11 @@ class Case:
     def law(self):
         return frame_swing(self.motion(), self.ground, self.rocker - self.offset, self.side)
 
-    def lift(self):
-        return lift_constant_breadth(RADIUS, self.law().half_turn, "swing")
+    def lift(self, radius=RADIUS):
+        return lift_constant_breadth(radius, self.law().half_turn, "swing")
 
-    def mechanism(self, dyads=()):
-        lift = self.lift()
+    def mechanism(self, dyads=(), radius=RADIUS):
+        lift = self.lift(radius)
         breadth = float(lift.derivatives(np.array([0.0, math.pi]), 0)[0].sum())
         linkage = InvertedSliderCrank(self.ground, self.rocker, self.assembly, self.offset)
         return Mechanism(linkage, lift, breadth, dyads)
@@ -185,6 +185,25 @@ def test_enclosures_hold_the_derivatives(rise, over, links, interval):
     at = 0.5 * (begin + end)
     mid, rad = half.enclosure(at, at, 2)
     assert (rad < 1e-9 * (1 + np.abs(mid))).all()
+
+
+@given(
+    st.floats(-40, 40).filter(lambda h: abs(h) > 1),
+    st.floats(60, 150),
+    st.tuples(st.floats(40, 200), st.floats(-15, 15), st.sampled_from(["open", "crossed"])),
+)
+def test_any_swing_that_is_accepted_is_made(rise, over, links):
+    ground, rocker, assembly = links
+    case = Case(rise, over, ground, 20.0 + rocker, 20.0, assembly)
+    try:
+        law = case.law()
+    except IntentError:
+        assume(False)
+    mechanism = case.mechanism(radius=1000.0)
+    assert mechanism.mobility().turns
+    phi = np.linspace(0.0, 2 * math.pi, 37)
+    found = mechanism.at(mechanism.relative(phi), 0).output[0]
+    assert found == pytest.approx(law.output(phi, 0).c[0], abs=1e-9)
 
 
 def test_rests_stay_exact():
