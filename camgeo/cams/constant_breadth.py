@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked
     from camgeo.recipe.schema.reader import Reader, Values
     from kin.law.frame_swing import FrameSwing
+    from kin.law.joints import Joint
     from kin.law.sources.motion import Motion
 
 ROUNDED = 1e-9  # rad, by which segments may miss their angle (as in kin.law.sources.programme)
@@ -56,6 +57,11 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         """The lift over the half turn, of a swing over that of the relative angle."""
         swing = self.frame_swing()
         return super().half_turn() if swing is None else swing.half_turn
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:
+        """Those of the half turn, or of the swing over the shaft angle, rad."""
+        swing = self.frame_swing()
+        return super().joints(intent) if swing is None else swing.joints
 
     @property
     def by_linkage(self) -> bool:

@@ -28,6 +28,7 @@ import numpy as np
 from kin.law.bounds import undecided
 from kin.law.formula.expression import FormulaError
 from kin.law.formula.formula import Formula
+from kin.law.joints import ORDERS, Joint, joints_of
 from kin.law.programme import IntentError
 from kin.law.segment import Constant, Series, Stretch
 from kin.law.sources.motion import Motion, joined
@@ -45,6 +46,7 @@ _SAME = 1e-9  # rad, within which a law fills its angle, as segments do
 _JOIN = 1e-9  # of velocities that meet
 _ULPS = 4.0  # by which an enclosure of a shaft angle begins
 _DOUBLINGS = 60
+_LOOKS = 64  # shaft angles at which the size of a derivative is looked at
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +114,15 @@ class FrameSwing:
         swing = self._swing(at)
         found = self.image(swing)
         return _by(found, at + math.pi + found - swing)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Shaft angles of the law at which psi - psi_0 or its derivatives jump; at 0 it follows its own image."""
+        looks = self.output(np.linspace(0.0, TURN, _LOOKS, endpoint=False), ORDERS).derivatives()
+        before = Jet(self._later(np.array([TURN]), ORDERS)).derivatives()[:, 0]
+        before[0] -= self.start
+        size = np.abs(looks).max(axis=1)
+        return (*joints_of([(0.0, before, self.motion.at_start(ORDERS))], size), *self.motion.joints)
 
     @cached_property
     def half_turn(self) -> Motion:
