@@ -107,6 +107,10 @@ class FourBarLinkage:
 
         return FourBar(self.ground, self.coupler, self.rocker, self.assembly, self.joint_offset)
 
+    def shaped(self, cam: Cam) -> Cam:
+        """The cam, which these links do not shape."""
+        return cam
+
 
 @dataclass(frozen=True)
 class InvertedSliderCrankLinkage:
@@ -126,6 +130,10 @@ class InvertedSliderCrankLinkage:
         from kin.linkage.four_bar import InvertedSliderCrank
 
         return InvertedSliderCrank(self.ground, self.rocker, self.assembly, self.joint_offset)
+
+    def shaped(self, cam: Cam) -> Cam:
+        """The cam told of these links, which shape it where a recipe gives the swing of the frame."""
+        return cam.in_frame(self.ground, self.rocker - self.joint_offset, 1.0 if self.assembly == "open" else -1.0)
 
 
 @dataclass(frozen=True)
@@ -147,17 +155,12 @@ class SliderCrankLinkage:
 
         return SliderCrank(self.coupler, self.offset, self.assembly, self.joint_offset)
 
+    def shaped(self, cam: Cam) -> Cam:
+        """The cam, which these links do not shape."""
+        return cam
+
 
 Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage
-
-
-def carried(cam: Cam, linkage: Linkage | None) -> Cam:
-    """Tell a cam of the links that its frame slides on, if it does."""
-    if not isinstance(linkage, InvertedSliderCrankLinkage):
-        return cam
-    return cam.in_frame(
-        linkage.ground, linkage.rocker - linkage.joint_offset, 1.0 if linkage.assembly == "open" else -1.0
-    )
 
 
 def output_slides(linkage: Linkage) -> bool:
@@ -320,6 +323,7 @@ LINKAGES: dict[str, Table] = {
 }
 
 
+TURNING = ("inverted-slider-crank",)  # whose frame may be given a swing: the lift follows from it
 SLIDING = ("slider-crank", "rrp")  # kinds of linkage and of dyad whose output is a length
 
 
@@ -355,7 +359,7 @@ DWELL = (
 
 def check_linkage(values: Values, reader: Reader) -> None:
     """Note the faults between a linkage, its dwells and the cam that drives it."""
-    if "cam.swing" in reader.marks and reader.kinds["linkage"] != "inverted-slider-crank":
+    if "cam.swing" in reader.marks and reader.kinds["linkage"] not in TURNING:
         remedy = "give linkage: {kind: inverted-slider-crank, ground: 80, rocker: 0}, or motion in its place"
         reader.fault_at("cam.swing", "needs a linkage of kind inverted-slider-crank", None, remedy)
     if "linkage" not in reader.marks:

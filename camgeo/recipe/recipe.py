@@ -24,7 +24,6 @@ from camgeo.recipe.linkage import (
     SLIDING,
     DwellAsked,
     build_linkage,
-    carried,
     check_linkage,
 )
 from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
@@ -306,13 +305,14 @@ def _check(values: Values, reader: Reader) -> None:
 def build(values: Values, path: Path, marks: collections.abc.Mapping[str, Mark], text: str) -> Recipe:
     """Make the recipe of values in which there is no fault."""
     linkage = build_linkage(values["linkage"]) if "linkage" in values else None
+    cam = build_cam(values["cam"], values["mm"])
     return Recipe(
         name=values["name"],
         about=values.get("about", ""),
         units=values.get("units", "mm"),
         mm=values["mm"],
         rotation=values.get("rotation", "cw"),
-        cam=carried(build_cam(values["cam"], values["mm"]), linkage),
+        cam=cam if linkage is None else linkage.shaped(cam),
         part=build_part(values.get("part", {})),
         export=build_export(values.get("export", {})),
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
