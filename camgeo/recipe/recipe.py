@@ -16,7 +16,16 @@ from camgeo.recipe.cam import CAM, CAMS, build_cam, check_cam
 from camgeo.recipe.dynamics import DYNAMICS, Dynamics, build_train, check_train
 from camgeo.recipe.export import EXPORT, build_export, check_files
 from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
-from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, DwellAsked, build_linkage, check_linkage
+from camgeo.recipe.linkage import (
+    DWELL,
+    DYADS,
+    LINKAGE,
+    LINKAGES,
+    SLIDING,
+    DwellAsked,
+    build_linkage,
+    check_linkage,
+)
 from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
 from camgeo.recipe.part import PART, build_part, check_part
 from camgeo.recipe.ring import check_ring
@@ -296,18 +305,20 @@ def _check(values: Values, reader: Reader) -> None:
 
 def build(values: Values, path: Path, marks: collections.abc.Mapping[str, Mark], text: str) -> Recipe:
     """Make the recipe of values in which there is no fault."""
+    linkage = build_linkage(values["linkage"]) if "linkage" in values else None
+    cam = build_cam(values["cam"], values["mm"])
     return Recipe(
         name=values["name"],
         about=values.get("about", ""),
         units=values.get("units", "mm"),
         mm=values["mm"],
         rotation=values.get("rotation", "cw"),
-        cam=build_cam(values["cam"], values["mm"]),
+        cam=cam if linkage is None else linkage.shaped(cam),
         part=build_part(values.get("part", {})),
         export=build_export(values.get("export", {})),
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
         path=path,
-        linkage=build_linkage(values["linkage"]) if "linkage" in values else None,
+        linkage=linkage,
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         sweep=build_sweep(values["sweep"]) if "sweep" in values else None,
         dynamics=build_train(values["dynamics"]) if "dynamics" in values else None,

@@ -279,6 +279,7 @@ def intended(recipe: Recipe, design: Design) -> Judged:
         outer=recipe.part.outer,
         trimmed=design.trimmed,
         mechanism=driven.mechanism if driven is not None and turns else None,
+        swing=recipe.cam.frame_swing() if turns else None,
         dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
     )
     if design.body is None:

@@ -334,8 +334,8 @@ def _polar(radius: float, angle: float) -> tuple[float, float]:
     return radius * math.cos(angle), radius * math.sin(angle)
 
 
-def lift_constant_breadth(base_radius: float, programme: Programme) -> Lift:
-    """Make the constant-breadth cam of a motion S over the half turn (SW eqs. 1-6).
+def lift_constant_breadth(base_radius: float, programme: Programme, field: str = "motion") -> Lift:
+    """Make the constant-breadth cam of a motion S, given as `field`, over the half turn (SW eqs. 1-6).
 
     p = r_b + S on [0, pi] and p(t + pi) = d - p(t), with breadth d = 2 r_b + h. Closing needs S(pi) = h whatever h is:
     h is the displacement at the end of the programme, not its maximum. So a programme that comes back to 0 has h = 0,
@@ -353,14 +353,14 @@ def lift_constant_breadth(base_radius: float, programme: Programme) -> Lift:
     stroke = float(end[0])
     breadth = 2 * base_radius + stroke
     if breadth <= 0:
-        raise IntentError(f"the motion ends at {stroke:.6g} mm: no breadth is left beside 2 r_b", "motion")
+        raise IntentError(f"the motion ends at {stroke:.6g} mm: no breadth is left beside 2 r_b", field)
     size = base_radius + float(np.abs(programme.motion.derivatives(programme.motion.knots, 2)).max())
     if abs(end[1] + start[1]) > _JOIN * size:
         raise IntentError(
             f"the motion does not join over the half turn: S' is {start[1]:.9g} mm/rad at 0 degrees, so it must be "
             f"{-start[1]:.9g} at 180, where it is {end[1]:.9g}; "
             f"the contour would tear open by {abs(end[1] + start[1]):.6g} mm",
-            "motion",
+            field,
             180.0,
         )
     halves: list[Stretch] = []
@@ -368,7 +368,7 @@ def lift_constant_breadth(base_radius: float, programme: Programme) -> Lift:
         halves += [_raised(f, offset, sense, begin) for f in programme.motion.functions]
     first = programme.motion.knots
     knots = [*first[:-1], *(first + math.pi)]
-    return joined(knots, halves, "motion", datum=base_radius)
+    return joined(knots, halves, field, datum=base_radius)
 
 
 def _raised(function: Stretch, offset: float, sense: float, start: float) -> Stretch:
