@@ -172,7 +172,7 @@ class Run:
     def _run(self) -> None:
         from camgeo import check, export
         from camgeo.api.log import unsaid
-        from camgeo.output.output_folder import SurroundingsError
+        from camgeo.common.errors import SurroundingsError
         from camgeo.recipe import RecipeErrors
 
         assert self.recipe is not None

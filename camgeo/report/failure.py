@@ -18,6 +18,7 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
     """Tell a failed check of a report over several lines; `shown` names the recipe's file in place of its path."""
     field = _field(check, recipe)
     line, column = recipe.locate(field)
+    place = recipe.unplaced or f"{shown or recipe.path}:{line}:{column}"
     rows = [
         ("value", _value(check)),
         ("limit", _limit(check)),
@@ -25,7 +26,7 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
         ("file", check.get("file", "")),
         ("found", check.get("detail", "")),
         ("remedy", remedy(check, report, recipe)),
-        ("recipe", f"{shown or recipe.path}:{line}:{column} {recipe.written(field)}"),
+        ("recipe", f"{place} {recipe.written(field)}"),
     ]
     return headline(check) + "".join(f"{INDENT}{name:<9}{text}" for name, text in rows if text)
 
