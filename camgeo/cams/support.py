@@ -175,7 +175,9 @@ def _formula(shape: FormulaShape, shaft: tuple[float, float]) -> Lift:
     largest = int(np.argmax(size))
     if size[largest] > MOST:  # other lengths are bounded as they are read
         at = math.degrees(t[largest])
-        raise IntentError(f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}", "p", at)
+        raise IntentError(
+            f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}; give a p of smaller values", "p", at
+        )
     return lift
 
 

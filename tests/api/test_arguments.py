@@ -143,7 +143,7 @@ def test_every_public_function_is_held_to_the_rule(
         for argument in given:
             for value in WRONG:
                 error = refusal(function, {**given, argument: value})
-                said = f"{name}({argument}={value!r:.60}): {type(error).__name__}: {error!s:.200}"
+                said = f"{name}({argument}={spelled(value)}): {type(error).__name__}: {str(error)[:200]}"
                 if isinstance(error, TypeError):
                     assert re.match(rf"{argument}\b.* must be |value must be left out", str(error)), said
                 else:

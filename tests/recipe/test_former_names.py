@@ -212,3 +212,17 @@ def test_no_former_name_is_a_present_one() -> None:
     assert not FORMER.keys() & PRESENT.keys()
     assert FORMER.keys() <= FIGURES.keys()
     assert not PRESENT.keys() & FIGURES.keys()
+
+
+@pytest.mark.parametrize("keys", [("pivot", "shaft"), ("shaft", "pivot")])
+@pytest.mark.parametrize("written", [SHAFT, PIVOT])
+def test_a_sweep_varies_a_number_by_one_of_its_names_alone(written: str, keys: tuple[str, str]) -> None:
+    text = written + SWEEP.replace("KEY", keys[0]).replace("FIGURE", "size")
+    second = f"}}, 'cam.{keys[1]}[0]': [1, 2]}}\n  limits"
+    (one,) = told(text.replace("}}\n  limits", second))
+    assert one.endswith(
+        f"sweep.vary.'cam.{keys[1]}[0]': varies the same number as cam.{keys[0]}[0]; leave one of the two out"
+    )
+    assert not any("varies" in str(notice) for notice in load_text(text, "cam.yaml").notices)
+    other = second.replace("[0]", "[1]")
+    assert len(load_text(text.replace("}}\n  limits", other), "cam.yaml").sweep.vary) == 2
