@@ -18,7 +18,7 @@ from camgeo.cams.family import (
     Undercut,
 )
 from camgeo.cams.flat_faced import FlatFacedCam
-from camgeo.common.rounding import upward
+from camgeo.common.rounding import NOISE, upward
 from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 LOOKS = 72  # places at which the size of a formula's values is looked at
 LEAST_PART = 1e-9  # of its farthest point from the shaft: a cam with a smaller mean radius is lost in rounding
 ROUNDING = 1e-15  # of the same: a mean radius below it is 0
+LEAST_PIECE = 1e-5  # mm: chord of an arc that every file holds; the kernel of STEP takes points within 1e-7 mm as one
 
 
 @dataclass(frozen=True)
@@ -232,12 +233,18 @@ TABLE = Table(
 
 
 def check(cam: Values, reader: Reader) -> None:
-    """Note corners that leave no side."""
+    """Note corners that leave no side, and those that are nearly none."""
     reuleaux = cam.get("reuleaux", {})
     if {"breadth", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] >= reuleaux["breadth"] / 2:
         remedy = f"give less than {reuleaux['breadth'] / 2 / reader.mm:g} {reader.units}"
         value = f"{reuleaux['rounding'] / reader.mm:g}"
         reader.fault_at("cam.reuleaux.rounding", "not below half the breadth", value, remedy)
+    if {"sides", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] > 0.0:
+        arc = 2.0 * math.sin(0.5 * math.pi / reuleaux["sides"])  # chord of a corner's arc of radius 1
+        if arc * reuleaux["rounding"] < LEAST_PIECE * (1.0 - NOISE):
+            remedy = f"give at least {upward(LEAST_PIECE / arc / reader.mm)} {reader.units}"
+            value = f"{reuleaux['rounding'] / reader.mm:g}"
+            reader.fault_at("cam.reuleaux.rounding", "a corner smaller than a file can hold", value, remedy)
 
 
 def build(cam: Values, mm: float) -> Cam:
