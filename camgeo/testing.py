@@ -15,10 +15,10 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.checks.declared import (
+    BENT,
     CHECKS,
     CLOSED,
     CONTOUR,
-    CURVATURE,
     MOTION,
     READABLE,
     UNDERCUT_GLOBAL,
@@ -266,10 +266,10 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     recipe = replace(recipe, cam=recipe.cam.refusing())
     design = designed(recipe)
     report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.joints))
-    names = {CURVATURE.name, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
+    names = {*BENT, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
     checks = [check for check in report["checks"] if check["name"] in names]
     _all_hold(checks, report, recipe, recipe.name)
-    radius: float = next(check["value"] for check in checks if check["name"] == CURVATURE.name)
+    radius: float = next(check["value"] for check in checks if check["name"] in BENT)
     return radius
 
 

@@ -19,6 +19,7 @@ from camgeo.recipe.figures import (
     FIGURES,
     FORMER,
     LEAST_WALL,
+    PITCH_RADIUS,
     PRESSURE_ANGLE,
     RADIUS,
     VELOCITY_RATIO,
@@ -281,7 +282,9 @@ def _motion_lost(scene: Scene) -> str:
 
 # --- the checks: of the motion and the curve --------------------------------------------------------------------------
 
-CURVATURE = Declared(RADIUS, ("mm",), _always, remedy=remedies.rounder)
+CURVATURE = Declared(RADIUS, ("mm",), lambda scene: not scene.roller, remedy=remedies.rounder)
+PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder, formerly=RADIUS)
+BENT = frozenset({CURVATURE.name, PITCH.name})  # of a cam the one or the other: the curve that undercut hangs on
 UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), _always)
 UNDERCUT_GLOBAL = Declared(
     "undercut-global", ("mm",), lambda scene: scene.roller, why_not=_convex, field="cam.roller_radius"

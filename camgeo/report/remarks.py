@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import CURVATURE, PRESSURE
+from camgeo.checks.declared import BENT, PRESSURE
 from camgeo.common.rounding import downward
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
@@ -92,7 +92,7 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
     """A roller above half the pitch curve's least convex radius, where the recipe limits no radius."""
     if any(limit.figure in {RADIUS, PITCH_RADIUS} and limit.at_least is not None for limit in recipe.limits):
         return None
-    bent = next(check for check in design.checks if check.name == CURVATURE.name)
+    bent = next(check for check in design.checks if check.name in BENT)
     roller, radius = recipe.cam.touch_radius, bent.value
     if design.contour is None or radius is None or recipe.cam.metal < 0 or not HALF * radius < roller:
         return None

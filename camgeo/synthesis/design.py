@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from camgeo.checks.declared import CURVATURE, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
+from camgeo.checks.declared import CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
@@ -134,7 +134,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
     radius = least.radius + roller
     shaft_deg = recipe.cam.position(intent).shaft_deg
     roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
-    bent = Check(CURVATURE.name, roomy, radius, roller, "mm", at_deg, "at_least")
+    bent = Check((PITCH if roller else CURVATURE).name, roomy, radius, roller, "mm", at_deg, "at_least")
     if math.isinf(radius):
         bent = replace(bent, detail="the pitch curve of the ring has no hollow")
     if least.room and roomy:
