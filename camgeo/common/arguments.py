@@ -36,6 +36,8 @@ def path_of(name: str, value: object) -> Path:
     is_a(name, value, (str, PathLike), "a str or a path")
     text = os.fspath(value)  # type: ignore[call-overload]
     is_a(name, text, str, "a str or a path of a str")
+    if not text:
+        raise CallError(f"{name} is no path: it is empty")
     if "\0" in text:
         raise CallError(f"{name} is no path: {escaped(text)} has a null character in it")
     try:

@@ -38,6 +38,8 @@ def announced(recipe: Recipe) -> Recipe:
 
 def load_silent(path: str | PathLike[str]) -> Recipe:
     """Read a recipe from a file, whose `notices` are left to the caller; raises RecipeErrors as `load` does."""
+    if not str(path):
+        raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
     try:
         data = bytes_of(path, MAX_BYTES, "recipe")
     except Complaint as complaint:

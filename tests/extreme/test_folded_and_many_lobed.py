@@ -275,7 +275,7 @@ def tightest():
         if off < 0:
             yield Row(what, "file within 0.001 mm", found.used(), 1.0, "share of the tolerance; free of undercut")
             continue
-        told = found.check("radius-of-curvature")["value"]
+        told = found.check("pitch-radius")["value"]
         yield Row(
             what,
             "least radius, undercut told",

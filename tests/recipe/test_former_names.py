@@ -177,6 +177,22 @@ def test_renamed_checks_say_their_former_names() -> None:
     assert not {"face-length", "limit:face-length"} & checks.keys()
 
 
+def test_the_check_of_a_pitch_curve_has_the_name_of_its_figure() -> None:
+    motion = "[{rise: 8, over: 180, law: cycloidal}, {return: 8, over: 180, law: cycloidal}]"
+    for follower, name in (("roller, radius: 5", "pitch-radius"), ("knife-edge", "radius-of-curvature")):
+        text = f"cam: {{kind: disc, base_radius: 30, follower: {{kind: {follower}}}, motion: {motion}}}\n"
+        design = camgeo.design(camgeo.load(text))
+        report = camgeo.check(camgeo.load(text + "export: {tolerance: 0.01, files: [csv]}\nverify: {angles: 60}\n"))
+        (told,) = (one for one in report["checks"] if one["name"] in {"pitch-radius", "radius-of-curvature"})
+        assert told["name"] == name
+        assert told.get("formerly") == ("radius-of-curvature" if name == "pitch-radius" else None)
+        checks = {check.name: check.value for check in design.checks}
+        metal = design.figures["radius-of-curvature"].value
+        pitch = design.figures["pitch-radius"].value if name == "pitch-radius" else metal
+        assert checks[name] == pitch
+        assert (checks[name] == metal) is (name == "radius-of-curvature")
+
+
 def test_a_sweep_writes_both_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "swept.yaml"
     path.write_text(PIVOT + SWEEP.replace("KEY", "pivot").replace("FIGURE", "face-length"))
