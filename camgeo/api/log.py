@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from kin.judge.check import Check
 
 LOG = logging.getLogger("camgeo")
-LOG.addHandler(logging.NullHandler())  # whoever sets no logging up is told nothing
+LOG.addHandler(logging.NullHandler())  # without logging set up nothing is written
 
 
 @contextmanager
 def unsaid() -> Iterator[None]:
-    """Tell nothing meanwhile, where all of it is told in another way."""
+    """Tell nothing meanwhile, where all of it is reported in another way."""
     before, LOG.disabled = LOG.disabled, True
     try:
         yield

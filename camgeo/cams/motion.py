@@ -45,7 +45,7 @@ class MotionAsked(ABC):
     def motion(self, total: float, field: str, around: int | None) -> Motion:
         """Make the motion over `total` rad, or with `around` 1 over an equal part of it that repeats.
 
-        Raises kin's IntentError with the field of what does not fit. How its parts join is told by its `joints`.
+        Raises kin's IntentError with the field of what does not fit. How its parts join is said by its `joints`.
         """
         found = self._made(total, field, around)
         self._demand_within(found, f"{field}{self.source}")

@@ -71,7 +71,7 @@ def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Res
 
 
 def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Result:
-    """Run one recipe; a wrong recipe, the disk and a missing package are told in the result, not raised."""
+    """Run one recipe; a wrong recipe, the disk and a missing package are reported in the result, not raised."""
     from camgeo.api import run
     from camgeo.common.errors import SurroundingsError
     from camgeo.recipe.schema.errors import RecipeErrors

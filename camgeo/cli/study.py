@@ -100,7 +100,7 @@ def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, prog
 
 
 def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> None:
-    """Write study.json and its picture beside the recipe's files, both or neither; a missing package is told.
+    """Write study.json and its picture beside the recipe's files, both or neither; a missing package is reported.
 
     A study in which a check does not hold, of the exact cam or of a file, leaves the last good one and goes to
     `out`/<name>.rejected. That a ladder ends, at a tolerance that is refused or for want of time, is an ordinary end.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 CELLS = 16  # of each stretch, at first
 PARTS = 4  # into which an undecided interval is divided
 LEVELS = 24
-MOST = 20_000  # undecided intervals; then the rest is told as room
+MOST = 20_000  # undecided intervals; then the rest is reported as room
 SHARPNESS = 1e-13  # of the figure's size: how far the proof goes
 NEWTON = 5
 ORDER = 4  # of the variable: a figure may use up two derivatives and still tell two

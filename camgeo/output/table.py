@@ -66,4 +66,4 @@ def _inspection(job: Job, _: FileRequest) -> Columns:
 
 _TABLES = {"motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection}
 _STAGES = {"motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection"}
-_GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be told
+_GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be reported

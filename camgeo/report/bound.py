@@ -1,4 +1,4 @@
-"""How a check's limit is told: whether the limit itself is allowed, in words and as a sign."""
+"""How a check's limit is reported: whether the limit itself is allowed, in words and as a sign."""
 
 from __future__ import annotations
 

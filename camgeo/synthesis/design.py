@@ -154,7 +154,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
             outcome = f"; trimming is not possible: {error}"
     if not (roomy or found):
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
-    # of a trimmed contour the radius that was asked for is told, and held against nothing
+    # of a trimmed contour the radius that was asked for is reported, and held against nothing
     cut_off = bool(found and contour)
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
@@ -251,7 +251,7 @@ def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, 
 
 
 def intended(recipe: Recipe, design: Design) -> Judged:
-    """What kin is told of the part: the follower with its law, and how the part is drawn."""
+    """What kin is given of the part: the follower with its law, and how the part is drawn."""
     from kin.judge.contour_checks import DwellAsked
     from kin.judge.verify import Intent
 

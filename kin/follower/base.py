@@ -94,7 +94,7 @@ class Closure:
     limit    greatest play or interference of a contour within a tolerance of the exact one
     name     of the check on both, play and interference
     tight    name of a check on interference alone; None for none
-    breadth  of a frame, mm: what is told is how broad the contour is; None where play is told
+    breadth  of a frame, mm: what is reported is how broad the contour is; None where play is reported
     """
 
     limit: Callable[[float], float]

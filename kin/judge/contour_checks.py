@@ -54,7 +54,7 @@ class Intent:
     bore        diameter, mm; None for no hole at all
     outer       diameter of a ring, mm, whose follower runs in the opening; None for a cam that it runs round
     thickness   of a solid, mm, z from 0; None where only contours are judged
-    trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
+    trimmed     an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
     mechanism   that the yoke's frame drives as a coupler; None for a plain follower
     dwell       of the mechanism's output, which is found in each file and, if it must last, judged
     holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
@@ -101,7 +101,7 @@ class Limits:
 class Findings:
     """What was found on a contour; motion is None where the follower finds no contact.
 
-    `deviation` is None where it could not be told.
+    `deviation` is None where it could not be found.
     `linkage` is None without a mechanism, or where the contour does not drive it all round.
     """
 

@@ -77,7 +77,7 @@ def case(text, oracle, why):
     lift = designed(asked).intent
     found, exact = lift.derivatives(ANGLES, 1), [oracle.derivatives(mp.mpf(float(t))) for t in ANGLES]
     off = max(worst(found[k], [[row[k]] for row in exact]) for k in (0, 1))
-    yield Row(what, "p and p' as a share of the rounding that is told", off / lift.rounding, 1.0, why)
+    yield Row(what, "p and p' as a share of the rounding that is reported", off / lift.rounding, 1.0, why)
     room = 1e-14 + lift.rounding
     yield Row(
         what, "profile, as a share of the size", off_profile(asked, oracle), 4e-13 + 40.0 * room, f"told: {room:.0e} mm"

@@ -1,4 +1,4 @@
-"""New files beside an old report are told by `verify` and `check`: after a kill, or by hand."""
+"""New files beside an old report are reported by `verify` and `check`: after a kill, or by hand."""
 
 from __future__ import annotations
 

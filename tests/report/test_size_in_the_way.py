@@ -56,7 +56,7 @@ def test_a_ring_that_needs_more_metal_says_how_much() -> None:
     text = recipe(60.0, "radius: 5", 20, 60, ring=True, more="part: {outer: OUTER}\n")
     size = re.search(r"which a base radius of (\S+) keeps$", remark(text.replace("OUTER", "600")))
     assert size
-    told = remark(text.replace("OUTER", "175"))
+    told = remark(text.replace("OUTER", "162"))
     found = re.search(r"; a base radius of (\S+) would keep it, but needs a part\.outer above (\S+)$", told)
     assert found
     assert found[1] == size[1]

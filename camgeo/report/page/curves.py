@@ -118,7 +118,7 @@ def along(recipe: Recipe, place: Array) -> Plot:
 def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller") -> Plot:
     """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
 
-    `touch` names what follows the pitch curve. Of a ring, which is undercut where it is hollow, no margin is told.
+    `touch` names what follows the pitch curve. Of a ring, which is undercut where it is hollow, no margin is reported.
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
     found = next((check for check in design.checks if check.name in BENT), None)
