@@ -2,7 +2,7 @@
 
     python docs/make_outside.py
 
-Each program is run without its window, on the same files; one that is not installed is reported as such. Areas and volumes
+Each program is run without its window, on the same files; one that is not installed is reported so. Areas and volumes
 are held against those of the exact cam with its openings, so a row shows what a program makes of a file, its own
 rounding included.
 """
@@ -251,7 +251,7 @@ def slicing_of_sets(work: Path) -> list[str]:
 def inkscape(made: list[Sample], _: Path) -> list[Row]:
     """Width and height of the layer CUT in mm, the breadth of its line taken off.
 
-    Inkscape tells to six digits what is seen of a layer.
+    Inkscape gives to six digits what is seen of a layer.
     """
     rows = []
     for one in made:

@@ -1,4 +1,4 @@
-"""What the library tells by `logging`: stages at debug, files and verdicts at info, checks that fail at warning."""
+"""What the library reports by `logging`: stages at debug, files and verdicts at info, checks that fail at warning."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def unsaid() -> Iterator[None]:
 
 
 def staged(recipe: Recipe, progress: Callable[[str], None] | None = None) -> Callable[[str], None]:
-    """Give what a clock tells of each stage as it begins: the log hears of it, and who wants to know."""
+    """Give what a clock reports of each stage as it begins: the log hears of it, and who wants to know."""
 
     def tell(stage: str) -> None:
         LOG.debug("%s: %s", recipe.name, stage)

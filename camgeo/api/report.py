@@ -188,5 +188,5 @@ class Report(Mapping[str, JSON]):
 
 
 def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
-    """Leave out what an entry of the report tells beyond the fields of its class."""
+    """Leave out what an entry of the report has beyond the fields of its class."""
     return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}

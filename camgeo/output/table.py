@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def make_table(job: Job, request: FileRequest, path: Path) -> Made:
-    """Write one table; that of a mechanism that does not turn is left out, as the report tells."""
+    """Write one table; that of a mechanism that does not turn is left out, as the report says."""
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())

@@ -112,8 +112,8 @@ class Part:
 
     `thickness` of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or 6) are
     given; `bore_at` is then the direction of one flat's normal. `wall` is the least that may be left between any two
-    edges; without it what is left is reported and must be above 0. `outer` is the diameter of a ring, whose opening is the
-    cam.
+    edges; without it what is left is reported and must be above 0. `outer` is the diameter of a ring, whose opening is
+    the cam.
     """
 
     thickness: float | None = None

@@ -337,7 +337,7 @@ def table(report: dict[str, Any]) -> str:
 
 
 def verdict(report: dict[str, Any]) -> str:
-    """What `summary` tells with the verdict's line last, so that it stays in sight under a table."""
+    """What `summary` says with the verdict's line last, so that it stays in sight under a table."""
     first, *failed = summary(report).split("\n")
     return "\n".join([*failed, first])
 

@@ -44,7 +44,7 @@ def headline(check: dict[str, Any]) -> str:
 
 
 def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
-    """Tell what would let the check hold; empty where nothing would, or where the check itself tells it."""
+    """Tell what would let the check hold; empty where nothing would, or where the check itself says it."""
     declared = EVERY.get(check["name"])
     return "" if declared is None or declared.remedy is None else declared.remedy(check, report, recipe)
 

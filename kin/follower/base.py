@@ -103,7 +103,7 @@ class Closure:
     breadth: float | None = None
 
     def detail(self, play: Play) -> str:
-        """What the check tells of a play that was found."""
+        """What the check says of a play that was found."""
         if self.breadth is not None:
             return f"breadth {self.breadth - play.most:.9g} to {self.breadth - play.least:.9g} mm"
         sampled = ", sampled" if play.extremes == "sampled" else ""

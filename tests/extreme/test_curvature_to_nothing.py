@@ -67,7 +67,7 @@ def undercut(share):
     text = cut["detail"].split(" would")[0].rsplit(" ", 1)[1]
     start, end = (float(cut["detail"].split(word)[1].split()[0]) for word in ("from ", "to "))
     off = max(abs(radius["value"] / exact - 1.0), abs(float(text) / -exact - 1.0))
-    why = "the rounding of 25, as a share of the radius; told with six digits"
+    why = "the rounding of 25, as a share of the radius; reported with six digits"
     yield Row(what, "radius, and the base radius that would be free", off, 1e-6 + 1e-14 / share, why)
     # rho = 36 a x^2 - |rho_min| about its least value, and a swallowtail reaches sqrt 3 times its half width
     width = 2.0 * math.sqrt(3.0) * math.degrees(math.sqrt(-exact / (36.0 * a)))

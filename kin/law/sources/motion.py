@@ -39,7 +39,7 @@ class Rest(NamedTuple):
 
 @dataclass(frozen=True)
 class Motion(Programme):
-    """Displacement S over [0, total] rad, mm or rad; `around` tells how the end is followed by the beginning.
+    """Displacement S over [0, total] rad, mm or rad; `around` says how the end is followed by the beginning.
 
     With 1 the motion repeats. With -1 it goes on as S(total) - S(t - total), as a constant-breadth cam does after its
     half turn. With None nothing is said.
