@@ -349,7 +349,7 @@ def _read_points(
 
 
 def _points(_: Field) -> Schema:
-    point = {"type": "array", "items": number_schema(), "minItems": 2, "maxItems": 2}
+    point = {"type": "array", "items": number_schema(unit=Kind.MOTION), "minItems": 2, "maxItems": 2}
     return {"type": "array", "items": point, "minItems": 1, "maxItems": MOST_POINTS}
 
 

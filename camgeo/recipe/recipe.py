@@ -8,7 +8,7 @@ one: its keys, how they are read and published, what they are checked for and wh
 from __future__ import annotations
 
 import collections.abc
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal, overload
 
 from camgeo.cams.families import FAMILIES
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.cams.family import Cam
-    from camgeo.recipe.export import Export
+    from camgeo.recipe.export import Export, FileRequest, Length
     from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.part import Part
     from camgeo.recipe.schema.change import Value
@@ -71,7 +71,7 @@ class Recipe:
 
     name: str
     about: str
-    units: Literal["mm", "inch"]
+    units: Length
     mm: float
     rotation: Literal["cw", "ccw"]
     cam: Cam
@@ -130,6 +130,29 @@ class Recipe:
             text = changed(source, there, new)
         return load_text(text, self.path, f"{self.path} (replaced)")
 
+    def told_in(self, units: Length) -> Recipe:
+        """Give the recipe as one that tells its lengths in another unit; what it asks for stays."""
+        return replace(self, units=units, mm=_MM[units])
+
+    def told_for(self, request: FileRequest) -> Recipe:
+        """Give the recipe as one in the unit of a file."""
+        return self.told_in(request.told_in(self.units))
+
+    def field_of(self, request: FileRequest | None) -> str:
+        """Give the path of a request; that of the list for one that does not stand there."""
+        files = self.export.files
+        return f"export.files[{files.index(request)}]" if request in files else "export.files"
+
+    def request_of(self, filename: str) -> FileRequest | None:
+        """Give the request whose file has this name, the first of all bodies' files, or None."""
+        files = self.export.files
+        return next((request for request in files if request.filename(self.name, files) == filename), None)
+
+    def unstated(self, path: Path) -> float | None:
+        """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""
+        request = self.request_of(path.name) if path.suffix == ".stl" else None
+        return None if request is None else self.told_for(request).mm
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write the recipe's text to a file, in place of what is there.
 
@@ -181,7 +204,7 @@ RECIPE = Table(
     (
         Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
         Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
-        Field("units", Kind.CHOICE, "unit of every length", default="mm", choices=("mm", "inch")),
+        Field("units", Kind.CHOICE, "unit of lengths that carry none", default="mm", choices=("mm", "inch")),
         Field(
             "rotation",
             Kind.CHOICE,

@@ -22,6 +22,7 @@ KEYS = (
 PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer and wall"
 BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10} in mm"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
+TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
 LENGTH = "give a length above 0 in mm"
 FORMATS = "give dxf, svg, stl, 3mf, step, glb, csv, html or gcode"
 
@@ -43,7 +44,7 @@ cam:
   roller_radius: -8
   delta: {cos: {2: 625}}
 dynamics: {mass: 1, stiffness: 1e5, rpm: 100}
-part: {bore: 10mm, follower: 3}
+part: {bore: 10um, follower: 3}
 export: {files: [dxf, {dxf: {as: spline, version: R12}}, stl, stp]}
 verify: {angles: 010}
 tolerance: 4
@@ -58,7 +59,7 @@ tolerance: 4
         "cams/a.yaml:7:18: cam.roller_radius: not above 0, given -8; give a length above 0 in inch",
         "cams/a.yaml:8:17: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199",
         "cams/a.yaml:9:11: dynamics: needs preload or backlash; give exactly one of them",
-        "cams/a.yaml:10:14: part.bore: not a number, given '10mm'; write the number without its unit",
+        f"cams/a.yaml:10:14: part.bore: 'um' is no unit of a length, given '10um'; {TAKEN} inch",
         f"cams/a.yaml:10:20: part.follower: not available in this version; leave it out; the keys here are {PART}",
         (
             "cams/a.yaml:11:34: export.files[1].dxf.as: R12 has no splines, given 'spline'; "
@@ -308,7 +309,10 @@ def test_keys(body: str, message: str) -> None:
         ("0x1F", "not a number, given '0x1F'; write it in decimal"),
         ("1_000", "not a number, given '1_000'; write it without underscores"),
         ("1,5", "not a number, given '1,5'; a decimal takes a point, not a comma"),
-        ("10 mm", "not a number, given '10 mm'; write the number without its unit"),
+        (
+            "10 m",
+            "'m' is no unit of a length, given '10 m'; give mm, cm, in or inch, or a number alone, which is in mm",
+        ),
         ("on", "not a number, given 'on'; this is a truth value"),
         ("2020-01-01", "not a number, given '2020-01-01'; this is a date"),
         ("1/0", f"divides by zero, given 1/0; {LENGTH}"),
@@ -680,7 +684,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             "[{dxf: }]",
             [
                 (
-                    "23: export.files[0].dxf: nothing given; give a mapping with as, version, tolerance, kerf, "
+                    "23: export.files[0].dxf: nothing given; give a mapping with as, version, units, tolerance, kerf, "
                     "clearance and shrinkage, or leave the key out"
                 )
             ],
