@@ -8,6 +8,7 @@ import pickle
 import re
 from fractions import Fraction
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,6 @@ from camgeo.common.errors import SurroundingsError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
     from typing import TypeAlias
 
     Functions: TypeAlias = dict[str, tuple[Callable[..., object], dict[str, object]]]
@@ -91,8 +91,8 @@ def surface() -> Functions:
 
 
 def public() -> set[str]:
-    """Names of all public functions and methods that take an argument."""
-    found = set()
+    """Names of all public functions and methods that take an argument; of a recipe those that the page describes."""
+    found, page = set(), (Path(__file__).parents[2] / "docs" / "library.md").read_text(encoding="utf-8")
     for name in camgeo.__all__:
         one = getattr(camgeo, name)
         if inspect.isfunction(one):
@@ -100,7 +100,7 @@ def public() -> set[str]:
         elif inspect.isclass(one) and not issubclass(one, Exception):
             methods = {at: f for at, f in inspect.getmembers(one, inspect.isfunction) if not at.startswith("_")}
             found |= {f"{name}.{at}" for at, f in methods.items() if len(inspect.signature(f).parameters) > 1}
-    return found
+    return {name for name in found if not name.startswith("Recipe.") or f"`{name.lower()}(" in page}
 
 
 @pytest.fixture
@@ -135,7 +135,7 @@ def refusal(function: Callable[..., object], given: dict[str, object]) -> Except
 def test_every_public_function_is_held_to_the_rule(
     functions: Functions,
 ) -> None:
-    assert public() - OWN == set(functions)
+    assert {"load", "verify", "Recipe.replace", "Recipe.save", "Report.explain"} <= public() - OWN <= set(functions)
     refused = types = 0
     for name, (function, given) in functions.items():
         if name != "verify":
