@@ -3,7 +3,7 @@
 Every peer (`benchmarks/peer.py`) and camgeo make the same two cams at a ladder of point counts or tolerances, and every
 file is judged by the same judge, `kin.judge.verify`, in the same run. Warm seconds are the least of repeats within one
 process, cold seconds those of the whole process. PYTHON runs the peers, and may have CadQuery; a peer that cannot run
-is told. Writes docs/pictures/peers.png (matplotlib) and prints the tables of docs/performance.md.
+is reported. Writes docs/pictures/peers.png (matplotlib) and prints the tables of docs/performance.md.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
     python docs/make_outside.py
 
-Each program is run without its window, on the same files; one that is not installed is told as such. Areas and volumes
+Each program is run without its window, on the same files; one that is not installed is reported so. Areas and volumes
 are held against those of the exact cam with its openings, so a row shows what a program makes of a file, its own
 rounding included.
 """
@@ -142,7 +142,7 @@ def _sample(recipe: Recipe, path: Path, file: dict[str, object]) -> Sample:
 
 
 def run(*command: object, folder: Path | None = None) -> str:
-    """Run a program and return all it says; its failure is told in the words it leaves."""
+    """Run a program and return all it says; its failure is reported in the words it leaves."""
     try:
         done = subprocess.run(
             [str(word) for word in command], capture_output=True, text=True, timeout=PATIENCE, cwd=folder, check=False
@@ -251,7 +251,7 @@ def slicing_of_sets(work: Path) -> list[str]:
 def inkscape(made: list[Sample], _: Path) -> list[Row]:
     """Width and height of the layer CUT in mm, the breadth of its line taken off.
 
-    Inkscape tells to six digits what is seen of a layer.
+    Inkscape gives to six digits what is seen of a layer.
     """
     rows = []
     for one in made:
@@ -310,7 +310,7 @@ rounding.
 In short: FreeCAD, LibreCAD and Inkscape take the drawings with their arcs, FreeCAD splines too. OpenSCAD takes meshes
 and polylines; of a DXF's arcs it draws the chords, of an SVG's coarse polygons, and it fills an SVG's openings.
 PrusaSlicer slices every solid. (FreeCAD's area of a face within one long spline is out by up to four percent; taken
-span by span it is right, and that is what is told.)
+span by span it is right, and that is what is reported.)
 """
 
 

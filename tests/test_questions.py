@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[1]
 
 @dataclass(frozen=True)
 class Family:
-    """Kinds that nobody asks for: their classes, their names in recipes, and what variables that hold one are called.
+    """Kinds that are asked for nowhere: their classes, their names in recipes, and what variables with one are called.
 
     `exempt` are the files that may ask, each with its number of questions; `home` is the room that may ask anything.
     """

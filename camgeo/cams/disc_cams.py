@@ -198,7 +198,7 @@ class OscillatingRoundCam(_Arm, RoundCam):
         side = guide.TRAILING if self.sense > 0 else guide.LEADING
         return follower.Roller(guide.Arm(self.length, self.pivot, side), self.radius, law, self.metal < 0)
 
-    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> str:
+    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius for this length of arm, with the pivot's distance."""
         from camgeo.curve.sizing import least_arm
         from kin.law.programme import IntentError
@@ -207,9 +207,13 @@ class OscillatingRoundCam(_Arm, RoundCam):
         try:
             found = least_arm(law, self.length, self.sense, rising - _MARGIN, falling - _MARGIN)
         except IntentError:
-            return ""
+            return None
         base = (found.prime - self.metal * self.radius) / mm
-        return f"a base radius of {upward(base)} with a pivot at {found.pivot / mm:.6g}" if base > 0.0 else ""
+        if base <= 0.0:
+            return None
+        size, pivot = upward(base), f"{found.pivot / mm:.6g}"
+        other = replace(self, base_radius=float(size) * mm, pivot=float(pivot) * mm)
+        return f"a base radius of {size} with a pivot at {pivot}", other
 
     def grown(self, out: float, scale: float) -> Cam:
         """A smaller roller on the same pitch curve."""

@@ -215,9 +215,9 @@ class Cam(ABC):
         """Say how the follower comes to swing less; `mm` is the recipe's unit."""
         return "a smaller swing"
 
-    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> str:  # noqa: ARG002
-        """Say which size keeps the pressure angle below two angles, rad; empty where none is known."""
-        return ""
+    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:  # noqa: ARG002
+        """Say which size keeps the pressure angle below two angles, rad, with the cam; None where none is known."""
+        return None
 
     def rounder_pitch(self, intent: Intent, radius: float, mm: float) -> str:  # noqa: ARG002
         """Say what makes the roller half the pitch curve's least convex radius (mm); empty where nothing rolls."""

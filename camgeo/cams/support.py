@@ -19,7 +19,7 @@ from camgeo.cams.family import (
     Undercut,
 )
 from camgeo.cams.flat_faced import FlatFacedCam
-from camgeo.common.rounding import upward
+from camgeo.common.rounding import NOISE, upward
 from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ LOOKS = 72  # places at which the size of a formula's values is looked at
 LEAST_PART = 1e-9  # of its farthest point from the shaft: a cam with a smaller mean radius is lost in rounding
 LEAST_ANGLE = 0.1  # degrees: on a cam of 50 mm an arc of 0.09 mm
 ROUNDING = 1e-15  # of the same: a mean radius below it is 0
+LEAST_PIECE = 1e-5  # mm: chord of an arc that every file holds; the kernel of STEP takes points within 1e-7 mm as one
 
 
 @dataclass(frozen=True)
@@ -193,7 +194,9 @@ def _formula(shape: FormulaShape, shaft: tuple[float, float]) -> Lift:
     largest = int(np.argmax(size))
     if size[largest] > MOST:  # other lengths are bounded as they are read
         at = math.degrees(t[largest])
-        raise IntentError(f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}", "p", at)
+        raise IntentError(
+            f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}; give a p of smaller values", "p", at
+        )
     return lift
 
 
@@ -265,7 +268,7 @@ TABLE = Table(
 
 
 def check(cam: Values, reader: Reader) -> None:
-    """Note corners that leave no side, and too few or too many angles."""
+    """Note corners that leave no side or are nearly none, and too few or too many angles."""
     reuleaux = cam.get("reuleaux", {})
     if {"sides", "angles"} <= reuleaux.keys():
         sides, given = reuleaux["sides"], len(reuleaux["angles"])
@@ -276,6 +279,23 @@ def check(cam: Values, reader: Reader) -> None:
         remedy = f"give less than {reuleaux['breadth'] / 2 / reader.mm:g} {reader.units}"
         value = f"{reuleaux['rounding'] / reader.mm:g}"
         reader.fault_at("cam.reuleaux.rounding", "not below half the breadth", value, remedy)
+    if {"sides", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] > 0.0:
+        arc = 2.0 * math.sin(0.5 * _least_angle(**reuleaux))  # chord of a corner's arc of radius 1
+        if arc * reuleaux["rounding"] < LEAST_PIECE * (1.0 - NOISE):
+            remedy = f"give at least {upward(LEAST_PIECE / arc / reader.mm)} {reader.units}"
+            value = f"{reuleaux['rounding'] / reader.mm:g}"
+            reader.fault_at("cam.reuleaux.rounding", "a corner smaller than a file can hold", value, remedy)
+
+
+def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> float:
+    """Least of the angles, rad, for which the cam turns about a corner; the regular one where none has those given."""
+    from kin.law.programme import IntentError
+    from kin.law.reuleaux import closed_angles
+
+    try:
+        return min(closed_angles(sides, angles)) if angles else math.pi / sides
+    except IntentError:
+        return math.pi / sides
 
 
 def build(cam: Values, mm: float) -> Cam:

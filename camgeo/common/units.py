@@ -1,4 +1,4 @@
-"""Units of length that a file may be told to be in."""
+"""Units of length that a file may be stated to be in."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ FINE_ORDER = 9
 
 
 class Source(Protocol):
-    """What every motion tells of its stretches."""
+    """What every motion gives of its stretches."""
 
     @property
     def breaks(self) -> Array:

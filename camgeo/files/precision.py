@@ -112,5 +112,5 @@ def _nine_decimals(values: Array) -> Array:
 
 
 SINGLE = Precision("an STL", "single precision", _single, lambda size: float(np.spacing(np.float32(size))))
-# the product above is rounded too, which tells beyond 4.5 km
+# the product above is rounded too, which shows beyond 4.5 km
 DECIMALS = Precision("a 3MF", "nine decimals", _nine_decimals, lambda size: 1.0 / _UNIT + 2.0 * float(np.spacing(size)))

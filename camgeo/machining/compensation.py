@@ -2,7 +2,7 @@
 
 Moved is the intent: a flat face farther out, a smaller roller on the same pitch curve, faces of a pair beside their
 pivot's lines. The contour follows from it by the same formulas and is proved by the same proofs; openings are moved the
-other way, as exact parallels. So what kin is told differs from the nominal part by a number, and nothing is sampled.
+other way, as exact parallels. So what kin is given differs from the nominal part by a number, and nothing is sampled.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
 
 
 def _part(part: Part, out: float, scale: float) -> Part:
-    """Lengths of the part that the files are told directly."""
+    """Lengths of the part that the files are given directly."""
     hub = part.hub
     if hub is not None:
         hub = replace(hub, diameter=scale * (hub.diameter + 2.0 * out), height=scale * hub.height)

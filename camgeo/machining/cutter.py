@@ -34,7 +34,7 @@ class CutterPath:
     """The path of a cutter's centre, counter-clockwise.
 
     `curve` is the contour's parallel, in runs that meet where something is not reached; `corners` says that they are
-    those of a trimmed contour instead, about whose corners the cutter swings. `lost` tells what is not reached, by the
+    those of a trimmed contour instead, about whose corners the cutter swings. `lost` says what is not reached, by the
     contour's own parameters.
     """
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from kin.judge.verify import Intent
 
 MOST_PASSES = 2000  # through the part
-ALIKE = 1e-9  # share by which hollows of a regular cam differ through rounding: the first of them is told
+ALIKE = 1e-9  # share by which hollows of a regular cam differ through rounding: the first of them is reported
 
 
 class RoundHole(NamedTuple):
@@ -133,7 +133,7 @@ def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[
 
 
 def milling_intent(recipe: Recipe, design: Design) -> Intent:
-    """What kin is told of a program: the part as `intended`, but for what is not milled, and the machine's side."""
+    """What kin is given of a program: the part as `intended`, but for what is not milled, and the machine's side."""
     from kin.judge.milling import Milling
 
     _, asked = _milled(recipe, design)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import MOTION, RATIO
 from camgeo.common.clock import Clock
+from camgeo.common.errors import SurroundingsError
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError
 from camgeo.files.triangulate import RegionError
@@ -15,7 +16,6 @@ from camgeo.fit.bound import FormError
 from camgeo.fit.cache import Outlines, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.output.file_intent import intent_of_file
-from camgeo.output.output_folder import SurroundingsError
 from camgeo.report.document import FileResult
 from camgeo.synthesis.design import permitted
 

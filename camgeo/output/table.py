@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def make_table(job: Job, request: FileRequest, path: Path) -> Made:
-    """Write one table; that of a mechanism that does not turn is left out, as the report tells."""
+    """Write one table; that of a mechanism that does not turn is left out, as the report says."""
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())
@@ -68,4 +68,4 @@ def _inspection(job: Job, request: FileRequest) -> Columns:
 
 _TABLES = {"motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection}
 _STAGES = {"motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection"}
-_GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be told
+_GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be reported

@@ -197,8 +197,13 @@ def check_sweep(sweep: Values, reader: Reader) -> None:
     design = [reader.written(path) for path in reader.numbers if path.startswith(_VARIED)]
     counts = Counter(id(scalar) for _, scalar in scalars(reader.source.root))
     shared = {path for path, scalar in scalars(reader.source.root) if counts[id(scalar)] > 1}
+    varied: dict[str, str] = {}
     for axis in axes:
         path = _as_written(axis, reader)
+        if path in varied:  # a former key and the present one lead to the same number
+            reader.fault_at(axis["at"], f"varies the same number as {varied[path]}", None, "leave one of the two out")
+            continue
+        varied[path] = axis["path"]
         if path not in design:
             _no_number(axis, design, reader)
         elif path in shared:

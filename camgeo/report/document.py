@@ -134,7 +134,7 @@ def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | No
 
 
 def of_displacements(recipe: Recipe) -> tuple[float, str]:
-    """Factor and unit in which a recipe's displacements are told: the recipe's, or degrees."""
+    """Factor and unit in which the follower's displacements are reported: the recipe's, or degrees."""
     swings = recipe.cam.unit == "deg" or recipe.cam.by_linkage
     return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
 
@@ -343,7 +343,7 @@ def table(report: dict[str, Any]) -> str:
 
 
 def verdict(report: dict[str, Any]) -> str:
-    """What `summary` tells with the verdict's line last, so that it stays in sight under a table."""
+    """What `summary` says with the verdict's line last, so that it stays in sight under a table."""
     first, *failed = summary(report).split("\n")
     return "\n".join([*failed, first])
 

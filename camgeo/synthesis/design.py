@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from camgeo.checks.declared import CURVATURE, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
+from camgeo.checks.declared import CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
@@ -133,7 +133,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
     radius = least.radius + roller
     shaft_deg = recipe.cam.position(intent).shaft_deg
     roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
-    bent = Check(CURVATURE.name, roomy, radius, roller, "mm", at_deg, "at_least")
+    bent = Check((PITCH if roller else CURVATURE).name, roomy, radius, roller, "mm", at_deg, "at_least")
     if math.isinf(radius):
         bent = replace(bent, detail="the pitch curve of the ring has no hollow")
     if least.room and roomy:
@@ -155,7 +155,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
     if not profile.curve.closed:
         bent = _sharp(profile, shaft_deg)
-    # of a trimmed contour the radius that was asked for is told, and held against nothing
+    # of a trimmed contour the radius that was asked for is reported, and held against nothing
     cut_off = bool(found and contour)
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
@@ -182,7 +182,7 @@ def is_trimmed(contour: Curve | None, profile: Profile) -> bool:
 
 
 def _sharp(profile: Profile, shaft_deg: Callable[[float], float]) -> Check:
-    """The check of curvature of a contour whose corners are asked for: told, and held against nothing."""
+    """The check of curvature of a contour whose corners are asked for: reported, and held against nothing."""
     runs = profile.curve.runs
     detail = f"{len(runs)} sharp corners, as the recipe asks"
     return Check(CURVATURE.name, True, 0.0, None, "mm", shaft_deg(runs[0].high), "at_least", detail=detail)
@@ -264,7 +264,7 @@ def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, 
 
 
 def intended(recipe: Recipe, design: Design) -> Judged:
-    """What kin is told of the part: the follower with its law, and how the part is drawn."""
+    """What kin is given of the part: the follower with its law, and how the part is drawn."""
     from kin.judge.contour_checks import DwellAsked
     from kin.judge.verify import Intent
 

@@ -55,7 +55,7 @@ class Intent:
     bore        diameter, mm; None for no hole at all
     outer       diameter of a ring, mm, whose follower runs in the opening; None for a cam that it runs round
     thickness   of a solid, mm, z from 0; None where only contours are judged
-    trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
+    trimmed     an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
     mechanism   that the yoke's frame drives as a coupler; None for a plain follower
     swing       law that the mechanism's frame has to follow; its lift's is the law if None
     dwell       of the mechanism's output, which is found in each file and, if it must last, judged
@@ -104,7 +104,7 @@ class Limits:
 class Findings:
     """What was found on a contour; motion is None where the follower finds no contact.
 
-    `deviation` is None where it could not be told.
+    `deviation` is None where it could not be found.
     `linkage` is None without a mechanism, or where the contour does not drive it all round.
     """
 

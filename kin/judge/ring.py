@@ -21,7 +21,7 @@ LOOKS = 16  # on each piece: an arc of a whole turn is seen to go round
 
 
 class Faced(NamedTuple):
-    """The contour that the follower touches, the holes besides, and what is told of a ring's outline."""
+    """The contour that the follower touches, the holes besides, and what is reported of a ring's outline."""
 
     contour: Contour
     holes: tuple[Contour, ...]

@@ -207,7 +207,7 @@ def joined(
 ) -> Lift:
     """Join stretches round the turn, stretch i between knots i and i + 1 (rad): arcs of one circle become one.
 
-    Raises IntentError at `field` where p or p' jumps. `smooth_seam` tells that the last runs on in the first.
+    Raises IntentError at `field` where p or p' jumps. `smooth_seam` says that the last runs on in the first.
     """
     knots, functions = list(knots), list(functions)
     i = 1

@@ -9,7 +9,7 @@ to BD, clockwise as in AS Figure 7. Each loop is a triangle or a right triangle,
 differentiated implicitly (`kin.linkage.loop`); AS 34 is 0/0 at theta_3 = theta_4 and theta_4 + pi, the forms here are
 not.
 
-A linkage tells all that others ask of it, at positions that it has solved: `output_link` is the link that it drives,
+A linkage gives all that others ask of it, at positions that it has solved: `output_link` is the link that it drives,
 `driven` its name, and `joined` the name of the link that D is fixed in and whose axes are the frame's: the frame, or a
 block in it. `joints` are D and the pivot B. `transmission` is the sine and cosine (n,) of the angle from the frame's
 line u to the rocker BD, or to the slide's normal; `force` those of the force angle, the sine of the sign of phi'

@@ -77,7 +77,7 @@ def diameter(base: float, radius: float) -> str:
 
 
 def said(text: str) -> str:
-    """What a design of the recipe is told, empty if nothing; its files are not made."""
+    """What a design of the recipe is advised, empty if nothing; its files are not made."""
     try:
         design = designed(load_text(text, "tried.yaml"))
     except RecipeErrors as errors:
@@ -365,7 +365,7 @@ def unwritten(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def said_of_set(text: str) -> str:
-    """What a set is told of its bodies."""
+    """What a set is advised of its bodies."""
     recipe = load_text(text, "set.yaml")
     try:
         check(recipe)

@@ -363,7 +363,7 @@ def test_a_smooth_function_is_met_closer_by_more_points():
             [0, 90, 360],
             [0, 1, 2],
             [],
-            "the motion does not close: it is 0 at the first point, 2 a turn later",
+            "the motion does not close: it is 0 at the first point, 2 a turn later; give both the same displacement",
             "motion.points[2]",
         ),
         ([0, 90, 180], [0, 1, 2], [(90, 170)], "no point stands at 170 degrees, where a dwell ends", "motion.points"),

@@ -1,4 +1,4 @@
-"""What a faulty recipe is told: whole messages, with file, line, column, field, fault, value and remedy."""
+"""What a faulty recipe is answered: whole messages, with file, line, column, field, fault, value and remedy."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ def test_designs_anywhere_have_the_figures_of_their_mechanism_or_none(linkage, x
     if min(wanted["margin"] / 50, wanted["shaft-rate"]) < 0.2:
         return  # near a limit position the motion is too sharp for the samples
     for name, over in (("dwell", "shaft"), ("dwell-relative", "relative")):
-        # of dwells as long as each other to half the angle between samples, any may be told
+        # of dwells as long as each other to half the angle between samples, any may be reported
         alike = [dwell for dwell in dwells(made, over) if dwell > wanted[name] - 180 / 720]
         wanted[name] = min(alike, key=lambda dwell: abs(dwell - found.figures[name][0]))
     assert_like(found.figures, wanted, tolerance=2e-4)

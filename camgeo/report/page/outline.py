@@ -60,7 +60,7 @@ class Read:
 
 
 def read(recipe: Recipe, path: Path) -> Read | None:
-    """Read a drawing or a solid; None where no contour can be read from it, which a check of it tells."""
+    """Read a drawing or a solid; None where no contour can be read from it, which a check of it says."""
     from kin.judge.ring import faced
     from kin.read.errors import ReadError
     from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
@@ -100,7 +100,7 @@ class Exact:
     """The exact contour at equal steps of the angle at which it is touched, `per` for each of `STEPS` steps.
 
     `point`, `normal` (STEPS * per, 2), `radius` of curvature and `curvature` (STEPS * per,) of the base curve, which is
-    the pitch curve of a roller; `kept` tells which points belong to the contour that is made.
+    the pitch curve of a roller; `kept` says which points belong to the contour that is made.
     """
 
     per: int

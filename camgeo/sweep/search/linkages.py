@@ -85,7 +85,7 @@ class Loop:
     """What the loops of a kind come down to, (m, n) each.
 
     `side` is -1 for crossed. `x`, `y` are D in the frame's axes, `q` their squares' sum AD^2. `near` and `far` are
-    positive where the loop closes, and vanish at its limits. Each kind tells `output`, `frame` (theta_3 but for a
+    positive where the loop closes, and vanish at its limits. Each kind gives `output`, `frame` (theta_3 but for a
     constant, continuous round the turn) and their derivatives by the relative angle, the signed sine of the
     `transmission` angle at D, None where that is always a right angle, and the sine of the `force` angle, at least 0
     (`kin.linkage.forces`).
