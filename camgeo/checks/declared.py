@@ -170,7 +170,7 @@ def _reached(scene: Scene, file: FileRequest) -> bool:
 
 
 def _ringed(scene: Scene, file: FileRequest) -> bool:
-    return scene.recipe.part.outer is not None and _contour(scene, file)
+    return scene.recipe.part.outer is not None and _contour(scene, file) and file.kind != "gcode"
 
 
 def _bored(scene: Scene, file: FileRequest) -> bool:

@@ -24,8 +24,6 @@ def check_ring(values: Values, reader: Reader) -> None:
     for name in _OF_A_DISC:
         if f"part.{name}" in reader.marks:
             reader.fault_at(f"part.{name}", "belongs to a disc on a shaft, not to a ring", None, "leave it out")
-    if "manufacture.layer" in reader.marks:
-        reader.fault_at("manufacture.layer", "the cutter's path in a ring is not made", None, "leave it out")
 
 
 def is_ring(values: Values) -> bool:
