@@ -7,7 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import LEAST_ROOM, REACH
+from camgeo.curve.curve import CurveError
 from camgeo.curve.undercut.causes import UndercutError
+from camgeo.fit.arcs import fit_arcs
 from camgeo.machining.cutter import cutter_path, no_hollow
 from camgeo.synthesis.checks import hollow_radius
 from camgeo.synthesis.design import intended
@@ -16,7 +18,8 @@ from kin.judge.check import Check, failed
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
-    from camgeo.machining.cutter import CutterPath
+    from camgeo.fit.pieces import ArcSpline
+    from camgeo.machining.cutter import CutterPath, Fit
     from camgeo.recipe.machining import Manufacture
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
@@ -44,6 +47,19 @@ def _milled(recipe: Recipe, design: Design) -> tuple[Curve, Manufacture]:
     if design.contour is None or recipe.manufacture is None:
         raise ValueError(f"{recipe.name}: there is nothing to mill")
     return design.contour, recipe.manufacture
+
+
+def path_arcs(recipe: Recipe, path: CutterPath, tolerance: float, fitted: Fit = fit_arcs) -> ArcSpline:
+    """Arcs within a tolerance of the cutter's path; raises RecipeErrors where it stays in a point.
+
+    So it does in a hollow arc of the cutter's own radius.
+    """
+    try:
+        return path.within(tolerance, fitted)
+    except CurveError as error:
+        given = f"{2.0 * path.radius / recipe.mm:.6g} {recipe.units}"
+        remedy = "give one a little larger or smaller"
+        raise recipe.error("manufacture.cutter", f"the path of its centre: {error}", given, remedy) from error
 
 
 def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | None]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from camgeo.fit.cache import Outlines
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.gcode import Cutting, places, plain, rounding, write_gcode
-from camgeo.machining.milling import clear_of_hub, few_passes, milled_holes, path_of, reach_check, unmilled
+from camgeo.machining.milling import clear_of_hub, few_passes, milled_holes, path_arcs, path_of, reach_check, unmilled
 from camgeo.machining.toolpath import begun_at, bend_at_begin, circle, depths, led, passes
 from camgeo.output.job import Made
 from kin.judge.check import about
@@ -71,7 +71,7 @@ def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
             raise TypeError("a path is made of arcs")
         return outline
 
-    return path.within(tolerance, fitted)
+    return path_arcs(job.recipe, path, tolerance, fitted)
 
 
 def _round(job: Job, asked: Manufacture, rough: ArcSpline | None, fine: ArcSpline) -> list[Pass]:
