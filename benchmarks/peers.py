@@ -3,7 +3,8 @@
 Every peer (`benchmarks/peer.py`) and camgeo make the same cams at a ladder of point counts or tolerances, and every
 file is judged by the same judge, `kin.judge.verify`, in the same run. Warm seconds are the least of repeats within one
 process, cold seconds the processor time of the whole process. PYTHON runs the peers, and may have
-CadQuery; a peer that cannot run is told. Writes docs/pictures/peers.png (matplotlib) and prints the tables of docs/performance.md.
+CadQuery; a peer that cannot run is told. Writes docs/pictures/peers.png (matplotlib) and prints the tables of
+docs/performance.md.
 """
 
 from __future__ import annotations
@@ -31,7 +32,10 @@ from kin.judge.verify import Limits, verify
 
 ROOT = Path(__file__).parents[1]
 SHIPPED = {"yoke": "as-figure-2a", "roller": "w-figure-9"}
-MOTION = "[{{rise: {0}, over: 120, law: cycloidal}}, {{dwell: 60}}, {{return: {0}, over: 120, law: cycloidal}}, {{dwell: 60}}]"
+MOTION = (
+    "[{{rise: {0}, over: 120, law: cycloidal}}, {{dwell: 60}}, "
+    "{{return: {0}, over: 120, law: cycloidal}}, {{dwell: 60}}]"
+)
 DISCS = {
     "disc-roller": ("36", "24", "{kind: roller, radius: 9, offset: 10}"),
     "disc-arm": ("34", "20", "{kind: roller, radius: 8, arm: {length: 65, pivot: 80}}"),
@@ -138,7 +142,7 @@ def of_ours(cam: str, folder: Path) -> list[Point]:
 def design_seconds(recipe: object) -> float:
     """Least seconds to make the exact curve with its checks, which every export begins with."""
     seconds = []
-    for _ in range(3):
+    for _ in range(9):
         start = time.perf_counter()
         designed(recipe)
         seconds.append(time.perf_counter() - start)
