@@ -65,14 +65,14 @@ class Point:
     bytes: int
 
 
-def of_peer(name: str, cam: str, python: str, folder: Path) -> list[Point]:
-    """Climb one peer's ladder until it is fine enough, too slow, gets no better or fails."""
+def of_peer(name: str, cam: str, python: str, folder: Path, thin: int = 1) -> list[Point]:
+    """Climb one peer's ladder, each `thin`-th rung, until it is fine enough, too slow, gets no better or fails."""
     recipe = load_text(yaml.safe_dump(bare_recipe(cam)), f"{cam}.yaml")
     intent, limits = intended(recipe, designed(recipe)), Limits(1.0)
     suffix = PEERS[name][1]
     path = folder / f"peer{suffix}"
     found: list[Point] = []
-    for count in COUNTS[:1] if SMALL else COUNTS:
+    for count in COUNTS[:1] if SMALL else COUNTS[::thin]:
         command = [python, str(ROOT / "benchmarks" / "peer.py"), name, cam, str(count), str(path), "5"]
         path.unlink(missing_ok=True)
         ran = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -236,6 +236,8 @@ def main() -> None:
     parser.add_argument(
         "--small", action="store_true", help="one file of each kind and no picture, to see that it works"
     )
+    parser.add_argument("--peer", action="append", choices=tuple(PEERS), help="only this one; repeatable")
+    parser.add_argument("--thin", type=int, default=1, help="only every so many point counts")
     arguments = parser.parse_args()
     print(f"{platform.machine()}, Python {platform.python_version()}, numpy {np.__version__}")
     found = {}
@@ -243,11 +245,11 @@ def main() -> None:
         folder = Path(name)
         for cam in arguments.cam or CAMS:
             points = of_ours(cam, folder)
-            for peer in PEERS:
+            for peer in arguments.peer or PEERS:
                 if peer == "OpenSCAD" and shutil.which("openscad") is None:
                     print("  OpenSCAD is not installed")
                     continue
-                points += of_peer(peer, cam, arguments.python, folder)
+                points += of_peer(peer, cam, arguments.python, folder, arguments.thin)
             found[cam] = points
             print(tables(cam, points), flush=True)
         picture(found, folder / "peers.png" if SMALL else arguments.picture)
