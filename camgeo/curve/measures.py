@@ -19,7 +19,7 @@ import numpy as np
 
 from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
-from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme
+from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme, divided
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -153,9 +153,7 @@ def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bou
         low, high, reach = low[open_], high[open_], reach[open_]
         if low.size > MOST:
             break
-        share = np.linspace(0.0, 1.0, PARTS + 1)
-        knots = low[:, None] * (1.0 - share) + high[:, None] * share
-        low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
+        low, high = divided(low, high, PARTS)
     return Extreme(best, at, float(reach.max()) - best)
 
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
-from camgeo.curve.rates import OfLaw, bounds_of, cut, series_of, steady_rates
+from camgeo.curve.rates import OfLaw, bounds_of, cut, series_of
 from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError, first_harmonic
@@ -289,17 +289,6 @@ class CentreShape(OfLaw[Displacement]):
 
     def __post_init__(self) -> None:
         self.guide.demand(*self.law.range)
-
-    @property
-    def steady(self) -> Array:
-        """Speed and turn (m, 2) where the follower dwells and the curve is a circle about the shaft."""
-        return steady_rates(self, self.law.steady)
-
-    @property
-    def radii(self) -> Array:
-        """Radii of the stretches that are circular arcs (m,): dwells."""
-        steady = self.steady
-        return steady[:, 0] / steady[:, 1]
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at shaft angles t (n,)."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
 from camgeo.curve.face import FaceShape
-from camgeo.curve.rates import OfLaw, bounds_of, cut, series_of, steady_rates
+from camgeo.curve.rates import OfLaw, bounds_of, cut, series_of
 from kin.law.transmission_law import Transmission
 from kin.numeric import elementary
 
@@ -36,11 +36,6 @@ class PitchShape(OfLaw[Transmission]):
 
     sums in which nothing cancels: a and b are positive where the cam can be turned through.
     """
-
-    @property
-    def steady(self) -> Array:
-        """Speed and turn (m, 2) where the follower rests and the pitch curve is a circle about the shaft."""
-        return steady_rates(self, self.law.steady)
 
     @property
     def radii(self) -> Array:

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Any
 
-    from camgeo.cams.disc import OscillatingRoundCam
+    from camgeo.cams.disc_cams import OscillatingRoundCam
     from camgeo.curve.extremes import Extreme
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.document import FileResult

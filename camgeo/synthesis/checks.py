@@ -16,7 +16,7 @@ from kin.numeric.angles import degrees
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.cams.disc import TranslatingFaceCam, TranslatingRoundCam
+    from camgeo.cams.disc_cams import TranslatingFaceCam, TranslatingRoundCam
     from camgeo.cams.family import Cam, Intent, Profile
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme

@@ -18,7 +18,7 @@ from support.places import SHIPPED
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.cams.constant_diameter import ConstantDiameterCam
-from camgeo.cams.disc import (
+from camgeo.cams.disc_cams import (
     DiscCam,
     OscillatingFaceCam,
     OscillatingRollerCam,

@@ -20,7 +20,7 @@ from camgeo.report.remarks import remarks_of
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
-    from camgeo.cams.disc import RoundCam
+    from camgeo.cams.disc_cams import RoundCam
     from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.document import Remark
