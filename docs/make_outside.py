@@ -94,7 +94,6 @@ class Sample:
     cut: float
     volume: float
     box: tuple[float, float]
-    mm: float
 
 
 @dataclass(frozen=True)
@@ -153,7 +152,7 @@ def _sample(recipe: Recipe, path: Path, file: dict[str, object]) -> Sample:
     solid = volume(intent.layers, intent.cross_holes, area, perimeter) if intent.layers else cut * thickness
     x0, y0, x1, y1 = contour.box
     form = f"{path.suffix[1:]}" + (f" ({file['as']})" if file.get("as") else "")
-    return Sample(recipe.name, path, form, int(file["pieces"]), touched, cut, solid, (x1 - x0, y1 - y0), recipe.mm)  # type: ignore[call-overload,arg-type] # plain JSON
+    return Sample(recipe.name, path, form, int(file["pieces"]), touched, cut, solid, (x1 - x0, y1 - y0))  # type: ignore[call-overload,arg-type] # plain JSON
 
 
 def run(*command: object, folder: Path | None = None) -> str:
@@ -275,8 +274,8 @@ def slicing_of_sets(work: Path) -> list[str]:
     return rows
 
 
-def inkscape(made: list[Sample], _: Path) -> list[Row]:
-    """Width and height of the layer CUT in mm, the breadth of its line taken off.
+def inkscape(made: list[Sample], work: Path) -> list[Row]:
+    """Width and height of the layer CUT in mm, in a copy that is filled, as the outline of a line is rounded.
 
     Inkscape tells to six digits what is seen of a layer.
     """
@@ -284,10 +283,12 @@ def inkscape(made: list[Sample], _: Path) -> list[Row]:
     for one in made:
         if one.path.suffix != ".svg":
             continue
-        said = run("inkscape", "--query-all", one.path)
+        copy = work / one.path.name
+        drawn = one.path.read_text(encoding="utf-8")
+        copy.write_text(re.sub(r"fill:none;stroke:[^;]*;stroke-width:[\d.]+", "fill:#000", drawn), encoding="utf-8")
+        said = run("inkscape", "--query-all", copy)
         found = re.search(r"^CUT,[^,]+,[^,]+,([\d.]+),([\d.]+)", said, re.MULTILINE)
-        line = float(re.findall(r"stroke-width:([\d.]+)", one.path.read_text())[0]) * one.mm
-        width, height = (float(value) / PX - line for value in found.groups()) if found else (math.nan, math.nan)
+        width, height = (float(value) / PX for value in found.groups()) if found else (math.nan, math.nan)
         meant = one.box[0]
         note = f"height {height:.6g}, {height / one.box[1] - 1.0:+.1e}" if found else "not opened"
         rows.append(Row("Inkscape", one, "width", width if found else None, meant, note))

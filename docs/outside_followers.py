@@ -26,9 +26,7 @@ MOTION = (
 MADE = {
     "knife-edge-arm": "base_radius: 35, follower: {kind: knife-edge, arm: {length: 70, pivot: 85}}",
     "shoe-arm": "base_radius: 35, follower: {kind: shoe, radius: 40, arm: {length: 70, pivot: 90}}",
-    "ring-arm": (
-        "base_radius: 60, track: internal, follower: {kind: roller, radius: 9, arm: {length: 80, pivot: 95}}"
-    ),
+    "ring-arm": ("base_radius: 60, track: internal, follower: {kind: roller, radius: 9, arm: {length: 80, pivot: 95}}"),
 }
 """Followers of which no recipe is shipped."""
 DRAWINGS = (("dxf", "arcs"), ("svg", "arcs"))
