@@ -53,8 +53,9 @@ def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Rec
 
 def other_entry(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
     """Tell where else the cutter may come to the path; nothing of a hub that is cut into, or of no milling."""
-    hub = check["name"] == "gouge" and check["value"] is None
-    return "" if hub or recipe.manufacture is None else "another manufacture.start, or a smaller manufacture.lead_in"
+    if check["value"] is None or recipe.manufacture is None:
+        return ""
+    return "another manufacture.start, or a smaller manufacture.lead_in"
 
 
 NO_CHAMFER = "no chamfer, or a contour without corners"
