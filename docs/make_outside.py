@@ -362,7 +362,8 @@ def main() -> None:
             text.append("| recipe | file | what | measured | off | it says |\n| --- | --- | --- | --- | --- | --- |")
             text += [row.cells() for row in rows]
             if program == "PrusaSlicer":
-                text += ["\nThe sets to print, all bodies in one 3MF, sliced with the settings that the program brings (volumes in mm^3):\n", *slicing_of_sets(work)]
+                told = "The sets to print, all bodies in one 3MF, sliced with the settings that the program brings"
+                text += [f"\n{told} (volumes in mm^3):\n", *slicing_of_sets(work)]
         text += section(work)
     (ROOT / "docs" / "outside.md").write_text("\n".join(text) + "\n", encoding="utf-8")
 
