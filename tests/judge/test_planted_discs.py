@@ -3,7 +3,6 @@
 The sound files are fits of curves that know nothing of the judge. A ring is drawn as its opening in a circle.
 """
 
-
 import numpy as np
 import pytest
 from support.camfiles import arcs_through, solid_triangles, write_dxf, write_stl
