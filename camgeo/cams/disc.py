@@ -101,12 +101,13 @@ TABLE = Table(
             "which side of the metal is followed: internal is the opening of a ring",
             default="external",
             choices=("external", "internal"),
+            later_choices=(("groove", "grooves"),),
         ),
         motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees", whole_turn=True, required=True),
         UNDERCUT,
     ),
     alternatives=(("base_radius", ()), ("sizing", ())),
-    later=("conjugate", "groove"),
+    later=(("conjugate", "conjugate cams"), ("groove", "grooves")),
 )
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
     from kin.follower.follower import Follower as Judged
+    from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
@@ -144,6 +145,19 @@ class Cam(ABC):
     @abstractmethod
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:
         """What kin judges files by: the follower with its law; `breadth` is a yoke's, `face` that of a pair."""
+
+    @property
+    def by_linkage(self) -> bool:
+        """Whether the lengths of the linkage shape the cam."""
+        return False
+
+    def in_frame(self, ground: float, rocker: float, side: float) -> Cam:  # noqa: ARG002
+        """The cam told of the links that its square frame slides on (`kin.law.frame_swing`), mm."""
+        return self
+
+    def frame_swing(self) -> FrameSwing | None:
+        """The law by which a recipe lets the frame swing over the shaft angle, if it gives one."""
+        return None
 
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """Angle between the contact's normal and the follower's way, rad, over parameters of the contour (n,).

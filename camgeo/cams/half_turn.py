@@ -21,6 +21,12 @@ if TYPE_CHECKING:
 MOTION = motion_field(
     "motion", Kind.LENGTH, "motion over one half turn, 180 degrees; the other half follows from it", required=True
 )
+SWING = motion_field(
+    "swing",
+    Kind.ANGLE,
+    "swing of the frame over the shaft angle, in its sense, under a linkage of kind inverted-slider-crank",
+    longest=360,
+)
 
 
 class HalfTurnCam(Cam):

@@ -49,6 +49,11 @@ class MotionAsked(ABC):
         return None
 
     @property
+    def last(self) -> float | None:
+        """Last angle in rad of a source that tells one; None of one that goes on."""
+        return self.covered
+
+    @property
     def repeats(self) -> int:
         """How often it stands in its angle."""
         return 1
@@ -109,6 +114,11 @@ class TableAsked(MotionAsked):
     reading: float
     scale: float
 
+    @property
+    def last(self) -> float | None:
+        """That of the last row."""
+        return self.rows.theta[-1] if self.rows.theta else None
+
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         return _smoothed(self, total, field, around)
 
@@ -134,6 +144,11 @@ class PointsAsked(MotionAsked):
 
     points: tuple[tuple[float, float], ...]
     scale: float
+
+    @property
+    def last(self) -> float | None:
+        """That of the last point."""
+        return self.points[-1][0]
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         from kin.law.sources.points import from_points
@@ -191,8 +206,13 @@ def _demand_zero(value: float, within: float, scale: float, field: str, where: s
 # --- in a recipe ------------------------------------------------------------------------------------------------------
 
 
-def motion_field(name: str, stroke: Kind, about: str, *, whole_turn: bool = False, required: bool = False) -> Field:
-    """Make the field of a motion whose strokes are lengths or angles; one over a `whole_turn` may repeat itself."""
+def motion_field(
+    name: str, stroke: Kind, about: str, *, whole_turn: bool = False, longest: int = 180, required: bool = False
+) -> Field:
+    """Make the field of a motion whose strokes are lengths or angles; one over a `whole_turn` may repeat itself.
+
+    `longest` degrees are those of a segment, where it is not over a whole turn.
+    """
     sources = _sources(stroke, whole_turn=whole_turn)
     form = Form(
         "a list of motion segments",
@@ -201,12 +221,12 @@ def motion_field(name: str, stroke: Kind, about: str, *, whole_turn: bool = Fals
         lambda field: {"anyOf": [segments_schema(field), table_schema(sources)]},
         instead=sources,
     )
-    return Field(name, Kind.OWN, about, required, table=_segment(stroke, whole_turn=whole_turn), form=form)
+    return Field(name, Kind.OWN, about, required, table=_segment(stroke, 360 if whole_turn else longest), form=form)
 
 
 @cache
-def _segment(stroke: Kind, *, whole_turn: bool) -> Table:
-    return segment_table(stroke, 360 if whole_turn else 180)
+def _segment(stroke: Kind, longest: int) -> Table:
+    return segment_table(stroke, longest)
 
 
 @cache
@@ -244,7 +264,7 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         return Table(fields, alternatives)
     repeat = Field("repeat", Kind.INTEGER, "how often the segments fill a turn", at_least=1, at_most=MOST_REPEATS)
     form = Form("a list of motion segments", "a list of segments", partial(_read_list, stroke), segments_schema)
-    inner = _segment(stroke, whole_turn=True)
+    inner = _segment(stroke, 360)
     segments = Field("segments", Kind.OWN, "the segments of 360/repeat degrees", table=inner, form=form)
     return Table((repeat, segments, *fields), (("segments", ("repeat",)), *alternatives))
 
@@ -316,7 +336,7 @@ def _read_points(
 
 
 def _points(_: Field) -> Schema:
-    point = {"type": "array", "items": number_schema(), "minItems": 2, "maxItems": 2}
+    point = {"type": "array", "items": number_schema(unit=Kind.MOTION), "minItems": 2, "maxItems": 2}
     return {"type": "array", "items": point, "minItems": 1, "maxItems": MOST_POINTS}
 
 

@@ -20,6 +20,7 @@ from camgeo.common.terminal import complain, escaped, open_streams, say, say_jso
 from camgeo.common.units import UNIT_MM
 from camgeo.output.mixture import mixtures
 from camgeo.recipe.export import KINDS
+from camgeo.recipe.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -111,7 +112,7 @@ def _parser() -> argparse.ArgumentParser:
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
-    _add_options(verify, "for all the files, in the recipe's unit")
+    _add_options(verify, "for all the files, in the recipe's unit or with its own: 0.0005in")
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
     sweep_command.add_arguments(sweep, _jobs)
@@ -131,7 +132,7 @@ def _parser() -> argparse.ArgumentParser:
 def _add_recipes(command: argparse.ArgumentParser) -> None:
     """Give a command of several recipes what all such take."""
     command.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
-    _add_options(command, "in place of export.tolerance, in the recipe's unit")
+    _add_options(command, "in place of export.tolerance, in the recipe's unit or with its own: 0.0005in")
     command.add_argument(
         "--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as are worthwhile)"
     )
@@ -144,16 +145,18 @@ def _add_options(command: argparse.ArgumentParser, tolerance: str) -> None:
     command.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
 
 
-def _length(text: str) -> float:
+def _length(text: str) -> str:
+    """Give a length as written, which may carry its unit; that of one that does not is the recipe's."""
     from camgeo.recipe.schema.fields import MOST
+    from camgeo.recipe.schema.scalars import Complaint
 
     try:
-        value = float(text)
-    except ValueError:
+        value = read_quantity(text, "mm")
+    except Complaint:
         value = 0.0
     if not 0.0 < value <= MOST:
         raise argparse.ArgumentTypeError(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {text}")
-    return value
+    return text
 
 
 def _jobs(text: str) -> int:
@@ -222,7 +225,7 @@ def _watch(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) -> tuple[list[Recipe], int]:
+def _loaded(paths: Sequence[str], tolerance: str | None, only: Sequence[str]) -> tuple[list[Recipe], int]:
     """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong."""
     from camgeo.cli.recipes import load
     from camgeo.recipe.schema.errors import RecipeErrors
@@ -244,11 +247,12 @@ def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) 
     return recipes, OK if len(recipes) == len(paths) else WRONG
 
 
-def _at(recipe: Recipe, tolerance: float | None) -> Recipe:
-    """Give the recipe with the tolerance of the call, in its own unit, if there is one."""
+def _at(recipe: Recipe, tolerance: str | None) -> Recipe:
+    """Give the recipe with the tolerance of the call, in its own unit or the recipe's, if there is one."""
     if tolerance is None:
         return recipe
-    return replace(recipe, export=replace(recipe.export, tolerance=tolerance * recipe.mm))
+    within = read_quantity(tolerance, recipe.units) * recipe.mm
+    return replace(recipe, export=replace(recipe.export, tolerance=within))
 
 
 def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> int:
@@ -304,7 +308,8 @@ def _verify(arguments: argparse.Namespace) -> int:
     try:
         recipe = _at(load(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
-        report = dict(verify(recipe, *paths, tolerance=arguments.tolerance, units=arguments.units))
+        within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
+        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units))
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:

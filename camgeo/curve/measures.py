@@ -20,6 +20,7 @@ import numpy as np
 from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
 from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme, divided
+from camgeo.curve.support import is_sharp
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,8 +79,8 @@ def _integrals(curve: Curve, low: Array, high: Array) -> Array:
 
 
 def touched(contour: Curve, parameter: Array) -> Mask:
-    """Whether the contour has a point of each parameter (n,), or was trimmed away there."""
-    if contour.closed:
+    """Whether the contour has a point of each parameter (n,), a sharp corner or not, or was trimmed away there."""
+    if contour.closed or is_sharp(contour):
         return np.ones(parameter.shape, dtype=bool)
     period = contour.shape.period
     kept = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]

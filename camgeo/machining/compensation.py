@@ -17,7 +17,7 @@ from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.fit.pieces import ArcSpline
-from camgeo.synthesis.design import sound
+from camgeo.synthesis.design import is_trimmed, sound
 from camgeo.synthesis.part.shapes import EXACT
 from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
@@ -94,7 +94,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         contour=contour,
         position=made.cam.position(intent),
         follower=replace(design.follower, breadth=breadth),
-        trimmed=contour is not None and not contour.closed,
+        trimmed=is_trimmed(contour, profile),
         driven=None,
         body=body,
         face=face,

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.curve.backwards import Backwards, runs_backwards
-from camgeo.curve.curve import Curve
+from camgeo.curve.curve import Curve, Run
 from camgeo.curve.parallel import Parallel
+from camgeo.curve.support import is_sharp
 from camgeo.curve.undercut.causes import UndercutError, causes, in_ring
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.bound import Bound
@@ -47,7 +48,7 @@ class CutterPath:
         """Arcs within `tolerance` mm of the path, as `fitted` makes them of a curve; raises as that does."""
         if not self.corners:
             return fitted(self.curve, tolerance)
-        fits = [fitted(Curve(self.curve.shape, (run,)), tolerance) for run in self.curve.runs]
+        fits = [fitted(Curve(self.curve.shape, (self._in_two(run),)), tolerance) for run in self.curve.runs]
         run_ends = np.array([run.high for run in self.curve.runs])
         leave = self.curve.sample(run_ends, -1)
         enter = self.curve.sample(np.array([run.low for run in self.curve.runs]))
@@ -60,6 +61,12 @@ class CutterPath:
         bound = Bound(max(fit.bound.outward for fit in fits), max(fit.bound.inward for fit in fits))
         return ArcSpline(np.concatenate(points), np.concatenate(turns), bound)
 
+    def _in_two(self, run: Run) -> Run:
+        """A run that is one circular arc in two halves: a chain of arcs has two at least."""
+        if run.breaks or self.curve.radius((run.low, run.high)) is None:
+            return run
+        return replace(run, breaks=(0.5 * (run.low + run.high),))
+
 
 def cutter_path(contour: Curve, radius: float) -> CutterPath:
     """Path of the centre of a cutter of `radius`, mm, about a contour, and what it does not reach.
@@ -71,6 +78,8 @@ def cutter_path(contour: Curve, radius: float) -> CutterPath:
     beside = Parallel(contour.shape, inward)
     if isinstance(contour.shape, Parallel):  # one parallel in place of two: nothing is added up and taken off again
         beside = Parallel(contour.shape.base, contour.shape.distance + inward)
+    if is_sharp(contour):  # about a corner the parallel is an arc
+        return CutterPath(Curve.whole(beside), radius)
     whole = CutterPath(Curve(beside, contour.runs), radius, corners=not contour.closed)
     if no_hollow(contour) or radius <= rolled_by(contour):
         return whole

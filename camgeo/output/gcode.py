@@ -40,16 +40,17 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     check = about(check, path.name)
     if not check.ok:
         return Made((), (check,))
-    count = places(job.tolerance(request), recipe.mm, _told_apart(job, asked))
+    mm = recipe.told_for(request).mm
+    count = places(job.tolerance(request), mm, _told_apart(job, asked))
     with job.refusals(request):
-        fine = _outline(job, path_of(recipe, job.design), job.tolerance(request) - rounding(count, recipe.mm))
+        fine = _outline(job, path_of(recipe, job.design), job.tolerance(request) - rounding(count, mm))
         rough = None
         if asked.allowance is not None:
             rough = _outline(job, path_of(recipe, job.design, asked.allowance), ROUGH * asked.allowance)
         with job.clock.stage("write gcode"):
             features = [*_holes(job, asked), (FEATURE, _round(job, asked, rough, fine))]
             _write(job, request, path, features, count)
-    bound = fine.bound.widened(rounding(count, recipe.mm))
+    bound = fine.bound.widened(rounding(count, mm))
     made = job.judged(request, path, bound, fine.count)
     return Made(made.files, (check, *made.checks))
 
@@ -113,12 +114,13 @@ def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str,
     recipe, asked = job.recipe, job.recipe.manufacture
     if asked is None or not (asked.feed and asked.plunge and asked.spindle and asked.safe_height):
         raise recipe.error("manufacture", "gcode needs feed, plunge, spindle, depth_of_cut and safe_height")
-    mm = recipe.mm
+    told = recipe.told_for(request)
+    mm = told.mm
     top = "top of the stock" if recipe.part.hub is None else "upper face of the disc"
     remarks = [
         recipe.name,
         recipe.about,
-        f"units: {'inch' if recipe.units == 'inch' else 'mm'}",
+        f"units: {told.units}",
         f"cutter: diameter {plain(asked.cutter / mm)}",
         f"tolerance: {plain(job.tolerance(request) / mm)}",
         f"zero: the shaft, {top}; thickness {plain((recipe.part.thickness or 0.0) / mm)}",

@@ -306,7 +306,7 @@ PART = mapping(
     _optional("mark", "timing mark on the ray where the shaft angle is 0", *_MARK),
     length("outer", "diameter of the outline of a ring, with `track: internal`", default="none"),
     length("wall", "least wall between any two edges", default="reported, and above 0"),
-    later=("follower",),
+    later=(("follower", ""),),
 )
 
 

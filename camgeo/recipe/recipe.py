@@ -7,7 +7,7 @@ one: its keys, how they are read and published, what they are checked for and wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal, overload
 
 from camgeo.cams.families import FAMILIES
@@ -16,7 +16,16 @@ from camgeo.recipe.cam import CAM, CAMS, build_cam, check_cam
 from camgeo.recipe.dynamics import DYNAMICS, Dynamics, build_train, check_train
 from camgeo.recipe.export import EXPORT, build_export, check_files
 from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
-from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, DwellAsked, build_linkage, check_linkage
+from camgeo.recipe.linkage import (
+    DWELL,
+    DYADS,
+    LINKAGE,
+    LINKAGES,
+    SLIDING,
+    DwellAsked,
+    build_linkage,
+    check_linkage,
+)
 from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
 from camgeo.recipe.part import PART, build_part, check_part
 from camgeo.recipe.ring import check_ring
@@ -33,7 +42,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.cams.family import Cam
-    from camgeo.recipe.export import Export
+    from camgeo.recipe.export import Export, FileRequest, Length
     from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.part import Part
     from camgeo.recipe.schema.change import Value
@@ -68,7 +77,7 @@ class Recipe:
 
     name: str
     about: str
-    units: Literal["mm", "inch"]
+    units: Length
     mm: float
     rotation: Literal["cw", "ccw"]
     cam: Cam
@@ -116,6 +125,29 @@ class Recipe:
             text = changed(source, self.written(self.present(at)), new)
         return load_text(text, self.path)
 
+    def told_in(self, units: Length) -> Recipe:
+        """Give the recipe as one that tells its lengths in another unit; what it asks for stays."""
+        return replace(self, units=units, mm=_MM[units])
+
+    def told_for(self, request: FileRequest) -> Recipe:
+        """Give the recipe as one in the unit of a file."""
+        return self.told_in(request.told_in(self.units))
+
+    def field_of(self, request: FileRequest | None) -> str:
+        """Give the path of a request; that of the list for one that does not stand there."""
+        files = self.export.files
+        return f"export.files[{files.index(request)}]" if request in files else "export.files"
+
+    def request_of(self, filename: str) -> FileRequest | None:
+        """Give the request whose file has this name, the first of all bodies' files, or None."""
+        files = self.export.files
+        return next((request for request in files if request.filename(self.name, files) == filename), None)
+
+    def unstated(self, path: Path) -> float | None:
+        """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""
+        request = self.request_of(path.name) if path.suffix == ".stl" else None
+        return None if request is None else self.told_for(request).mm
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write the recipe's text to a file, in place of what is there; raises OSError as the file system does."""
         from pathlib import Path
@@ -155,7 +187,7 @@ RECIPE = Table(
     (
         Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
         Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
-        Field("units", Kind.CHOICE, "unit of every length", default="mm", choices=("mm", "inch")),
+        Field("units", Kind.CHOICE, "unit of lengths that carry none", default="mm", choices=("mm", "inch")),
         Field(
             "rotation",
             Kind.CHOICE,
@@ -214,6 +246,7 @@ RECIPE = Table(
         ),
         Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
     ),
+    later=(("camshaft", "camshafts"),),
 )
 
 
@@ -272,18 +305,20 @@ def _check(values: Values, reader: Reader) -> None:
 
 def build(values: Values, path: Path, marks: collections.abc.Mapping[str, Mark], text: str) -> Recipe:
     """Make the recipe of values in which there is no fault."""
+    linkage = build_linkage(values["linkage"]) if "linkage" in values else None
+    cam = build_cam(values["cam"], values["mm"])
     return Recipe(
         name=values["name"],
         about=values.get("about", ""),
         units=values.get("units", "mm"),
         mm=values["mm"],
         rotation=values.get("rotation", "cw"),
-        cam=build_cam(values["cam"], values["mm"]),
+        cam=cam if linkage is None else linkage.shaped(cam),
         part=build_part(values.get("part", {})),
         export=build_export(values.get("export", {})),
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
         path=path,
-        linkage=build_linkage(values["linkage"]) if "linkage" in values else None,
+        linkage=linkage,
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         sweep=build_sweep(values["sweep"]) if "sweep" in values else None,
         dynamics=build_train(values["dynamics"]) if "dynamics" in values else None,

@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.checks.declared import CURVATURE, PRESSURE
 from camgeo.common.rounding import downward
+from camgeo.curve.support import is_sharp
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
 from camgeo.report.document import Remark, of_displacements
@@ -39,6 +40,7 @@ def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
         _size_found(recipe),
         _pressure(recipe, design),
         _roller(recipe, design),
+        _corner(recipe, design),
         _cutter(recipe, design),
         _pivot(recipe, design),
         *_motion(recipe, design),
@@ -104,6 +106,24 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
         f"convex radius; up to half is the rule, which {size} keeps"
     )
     return Remark("large-roller", roller, HALF * radius, "mm", told, bent.at_deg)
+
+
+def _corner(recipe: Recipe, design: Design) -> Remark | None:
+    """Sharp corners that the recipe asks for, where it limits no radius."""
+    if design.contour is None or not is_sharp(design.contour):
+        return None
+    if any(limit.figure == RADIUS and limit.at_least is not None for limit in recipe.limits):
+        return None
+    runs = design.contour.runs
+    after = [*runs[1:], runs[0]]
+    turns = [(two.low - one.high) % design.contour.shape.period for one, two in zip(runs, after, strict=True)]
+    longest = max(range(len(runs)), key=turns.__getitem__)
+    told = (
+        f"the contact stays on a sharp corner for {math.degrees(turns[longest]):.4g} degrees: its edge wears, the "
+        "contact pressure has no bound; a reuleaux.rounding above 0 rounds it"
+    )
+    at_deg = design.position.shaft_deg(runs[longest].high)
+    return Remark("sharp-corner", math.degrees(turns[longest]), 0.0, "deg", told, at_deg)
 
 
 def _cutter(recipe: Recipe, design: Design) -> Remark | None:

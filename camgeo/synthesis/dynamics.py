@@ -153,9 +153,8 @@ def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
         play = intent.follower.moved_by(play)
     if path is None:
         return intended_faces(intent.follower, play)
-    return measured_faces(
-        intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored, units=scene.drawn), play
-    )
+    units = scene.recipe.unstated(path) if scene.drawn is None else scene.drawn
+    return measured_faces(intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored, units=units), play)
 
 
 def contour_of(path: Path, mm: float, *, mirrored: bool, units: float | None = None) -> Contour:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
     from kin.judge.milling import Milling
+    from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array, Indices
 
@@ -56,6 +57,7 @@ class Intent:
     thickness   of a solid, mm, z from 0; None where only contours are judged
     trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
     mechanism   that the yoke's frame drives as a coupler; None for a plain follower
+    swing       law that the mechanism's frame has to follow; its lift's is the law if None
     dwell       of the mechanism's output, which is found in each file and, if it must last, judged
     holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
     layers      of its solid, from below, and radial holes through layers with an outline of their own
@@ -69,6 +71,7 @@ class Intent:
     thickness: float | None = None
     trimmed: bool = False
     mechanism: Mechanism | None = None
+    swing: FrameSwing | None = None
     dwell: DwellAsked | None = None
     holes: tuple[Hole, ...] = ()
     layers: tuple[Layer, ...] = ()
@@ -232,10 +235,12 @@ def _judge_linkage(
     try:
         off = _output_less_sure(mechanism, uneven)
         if asked is None:
-            found = judge_frame(contour, mechanism, phi, limits.tolerance)
+            found = judge_frame(contour, mechanism, phi, limits.tolerance, swing=intent.swing)
         else:
             band = _band_less_sure(asked, mechanism, off)
-            found = judge_frame(contour, mechanism, phi, limits.tolerance, band=band, over=asked.over)
+            found = judge_frame(
+                contour, mechanism, phi, limits.tolerance, swing=intent.swing, band=band, over=asked.over
+            )
         if uneven:
             found = replace(
                 found,

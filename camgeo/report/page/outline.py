@@ -67,7 +67,7 @@ def read(recipe: Recipe, path: Path) -> Read | None:
 
     try:
         if kind_of(path) in SOLIDS:
-            found: Drawing | AnySolid = read_solid(path)
+            found: Drawing | AnySolid = read_solid(path, (), recipe.unstated(path))
             unit = 1.0
         else:
             found = drawing = read_drawing(path)
