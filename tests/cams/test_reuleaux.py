@@ -156,7 +156,12 @@ def test_no_chamfer_runs_along_corners():
     made = designed(recipe_of(TRIANGLE + "part: {thickness: 8, chamfer: 0.5}\n"))
     check = next(one for one in made.checks if one.name == "chamfer")
     assert not check.ok
-    assert check.detail == "a sharp contour has corners, along which no chamfer runs"
+    assert check.detail == (
+        "a sharp contour has corners, along which no chamfer runs; leave it out, or give a reuleaux.rounding above 0.5 mm"
+    )
+    rounded = TRIANGLE.replace("breadth", "rounding: 0.51, breadth")
+    made = designed(recipe_of(rounded + "part: {thickness: 8, chamfer: 0.5}\n"))
+    assert next(one for one in made.checks if one.name == "chamfer").ok
 
 
 def test_corners_are_no_exact_spline(tmp_path):
