@@ -105,4 +105,6 @@ def _rows(text: str, angles: Angles, unit: Unit) -> tuple[Rows, float]:
     from kin.law.sources.table_text import read_table
 
     samples, place = read_table(text, angles=angles, unit=unit, field=_FIELD)
-    return Rows(tuple(samples.theta.tolist()), tuple(samples.s.tolist()), tuple(samples.lines.tolist()), samples.unit), place
+    return Rows(
+        tuple(samples.theta.tolist()), tuple(samples.s.tolist()), tuple(samples.lines.tolist()), samples.unit
+    ), place

@@ -232,6 +232,18 @@ def test_the_curvature_is_held_against_that_of_what_touches(name: str, limit: tu
     assert ("from undercut" in plot.note) == margin
 
 
+@pytest.mark.parametrize(
+    ("rounding", "note"), [("", "radius 0 about sharp corners"), (", rounding: 4", "from undercut")]
+)
+def test_a_sharp_corner_is_no_undercut(rounding: str, note: str) -> None:
+    recipe = load_text(f"cam: {{kind: support, reuleaux: {{sides: 3, breadth: 40{rounding}}}}}\n", "corners.yaml")
+    with patch.object(curves, "rests", return_value=[]):
+        found = content(recipe, designed(recipe), [])
+    (plot,) = (p for p in found.plots if p.title == "Radius of curvature")
+    assert note in plot.note
+    assert ("undercut" in plot.note) == bool(rounding)
+
+
 @pytest.mark.parametrize("name", ["roller", "shoe", "tilted face", "ring", "yoke"])
 def test_a_guide_stands_clear_of_what_it_guides(name: str) -> None:
     _, found = drawn(name, "cw")
