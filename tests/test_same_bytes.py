@@ -42,6 +42,7 @@ def compared(old, new, recipe):
     return done.returncode, done.stdout.splitlines()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="no commits here")
 def test_a_commit_and_itself_are_alike(recipe):
     status, lines = compared("HEAD", "HEAD", recipe)

@@ -87,6 +87,7 @@ def recipe(touching, base, rows):
     return load_text(touching.recipe(base, rows, f"export: {{tolerance: {TOLERANCE}, files: [dxf]}}\n"), "cam.yaml")
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("name", PASSING)
 def test_it_passes(name: str, tmp_path: Path) -> None:
     touching, base, rows = PASSING[name]
@@ -115,6 +116,7 @@ def test_it_is_refused(name: str) -> None:
     assert error.line > 0
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", FAILING)
 def test_it_fails_before_a_file_is_made(name: str) -> None:
     touching, base, rows, check = FAILING[name]

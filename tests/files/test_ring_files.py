@@ -2,9 +2,9 @@
 
 import math
 
-import ezdxf
 import numpy as np
 import pytest
+from support.heavy import ezdxf
 from support.parts import files_of, found, recipe_of
 
 from camgeo.curve.curve import Curve
@@ -39,6 +39,7 @@ def volume(recipe, design):
     return 8 * (math.pi * 65**2 - area - HOLES)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 @pytest.mark.parametrize("form", ["arcs", "spline", "polyline"])
 def test_a_drawing_shows_outline_opening_and_holes(tmp_path, form, rotation):
@@ -70,6 +71,7 @@ def test_solids_have_the_volume_of_the_ring(tmp_path):
         assert {"outer", "holes", "thickness", "volume", "contour", "motion"} <= set(checks)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_step_file_has_the_volume_of_the_ring(tmp_path, form):
     pytest.importorskip("OCP")

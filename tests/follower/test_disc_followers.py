@@ -87,6 +87,7 @@ GUIDES = {
 }
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", GUIDES)
 def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
@@ -98,6 +99,7 @@ def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
         assert found == pytest.approx(expected, abs=1e-6 if radius else 1e-9)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", GUIDES)
 def test_knife_edge_and_shoe_contact_on_the_way_in(name, seed):
@@ -157,6 +159,7 @@ def spoilt(follower, seed, count=160, size=2e-3):
     return points + size * rng.uniform(-1.0, 1.0, points.shape)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", [name for name in FOLLOWERS if name != "shoe, trailing arm"])
 def test_the_greatest_error_is_proved_over_all_angles(name, seed):
@@ -177,6 +180,7 @@ def test_the_greatest_error_is_proved_over_all_angles(name, seed):
     assert there == pytest.approx(judged.max, rel=1e-6)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("distance", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_the_limit_holds_on_parallel_contours_and_is_sharp(name, distance):
@@ -191,6 +195,7 @@ def test_the_limit_holds_on_parallel_contours_and_is_sharp(name, distance):
     assert found.worst[0] == pytest.approx(1e-3, rel=1e-4)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_dwells_are_told_and_how_flat_they_are(name):
     follower = FOLLOWERS[name]
@@ -286,6 +291,7 @@ def proved(follower, made, tolerance):
     assert deviation(made.as_arcs()[0], follower.envelope).worst[0] <= tolerance
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("width", [1.0, 0.1, 0.01])
 def test_a_rise_of_a_hundredth_of_a_degree_is_measured_as_any_other(width):
     """A wall almost along the line of travel: contact is found everywhere, limit and deviation are still right."""

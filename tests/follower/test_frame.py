@@ -67,6 +67,7 @@ def laid(mechanism, vertices, rest=WAYS[0]):
 # --- against plain geometry -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 def test_outputs_by_vertices(pair):
     """In every way of resting, at given shaft angles: the same output as of the turned vertices in a rigid frame."""
     mechanism, bench = pair
@@ -77,6 +78,7 @@ def test_outputs_by_vertices(pair):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * max(1.0, np.abs(expected).max()))
 
 
+@pytest.mark.thin(3)
 def test_the_verdict_by_vertices(pair):
     """Greatest error, rms, increment and play: nothing that dense sampling finds is missed, and nothing made up."""
     mechanism, bench = pair
@@ -128,6 +130,7 @@ def test_a_linkage_of_a_micrometre_and_of_a_kilometre(size):
         assert (play.least / size, play.most / size) == pytest.approx((other.least, other.most), abs=1e-11)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [-0.01, 0.004])
 def test_play_of_a_cam_that_is_smaller_or_larger_all_round(offset):
     vertices, bulges = arcs_through(cam(6000, 25.0 + offset))
@@ -222,6 +225,7 @@ def test_the_limit_is_the_sensitivity_times_the_tolerance(pair, tolerance):
     assert implied_limit(mechanism, tolerance) == pytest.approx(first_order, rel=max(0.2 * tolerance, 1e-6))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("tolerance", few([1e-3, 0.1], 2))
 def test_a_parallel_cam_uses_the_whole_limit_and_no_more(pair, tolerance):
     """All round outside by the tolerance: the four ways of resting are the four combinations of signs."""
@@ -280,6 +284,7 @@ def test_a_contour_that_turns_the_shaft_back():
 # --- dwells -----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("over", ["shaft", "relative"])
 def test_the_dwell_of_the_paper_from_a_file(over):
     """AS Figure 9: about 45 degrees of the relative angle around 3 pi/2; less over the shaft angle."""
@@ -297,6 +302,7 @@ def test_the_dwell_of_the_paper_from_a_file(over):
     assert verdict.error.dwell_flatness == pytest.approx(0.1, abs=2 * verdict.error.max)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", few(["shaft", "relative"], 2))
 def test_a_dwell_by_sampling(over):
     """On a spoilt cam each way of resting dwells for its own time; the samples' longest window tells how long."""
@@ -347,6 +353,7 @@ def wavy_range(a, b):
     return tuple(found)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("band", few([0.02, 0.2, 1.0, 3.0], 2))
 @pytest.mark.parametrize("count", [60, 3000])
 def test_the_longest_dwell_wherever_it_starts(band, count):

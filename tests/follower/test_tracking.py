@@ -100,6 +100,7 @@ GUIDES: dict[str, tuple[Any, float, float]] = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", few([60, 140]))
 @pytest.mark.parametrize("name", GUIDES)
 def test_single_rollers_on_polygons_against_bisected_distances(name, count):
@@ -146,6 +147,7 @@ def dense(follower, contour, count):
 NAMES = ["cycloidal", "polynomial-345", "polynomial-4567", "modified-sine", "harmonic"]
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("seed", range(16))
 def test_random_double_rollers_against_dense_contacts(seed):
     rng = np.random.default_rng(seed)
@@ -305,6 +307,7 @@ def test_the_limits_of_opposite_rollers_hold_on_parallel_contours_and_are_sharp(
     assert max(reached) > 1.0001 * tolerance * np.hypot(1.0, slope / r).max()
 
 
+@pytest.mark.slow
 def test_a_frame_of_rollers_tells_its_dwells_and_how_flat_they_are():
     """Rise, dwell, and the same downwards: half a turn on the other roller does what the first did."""
     half = [Segment("rise", np.radians(110), 8.0, law("cycloidal")), Segment("dwell", np.radians(70))]
@@ -320,6 +323,7 @@ def test_a_frame_of_rollers_tells_its_dwells_and_how_flat_they_are():
     assert flat == pytest.approx(range_, rel=0.02)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("vertex", [0, 1, 1500, 1999])
 @pytest.mark.parametrize("depth", [0.02, -0.02])
 def test_a_dent_or_spike_of_one_vertex_is_proved(vertex, depth):
@@ -346,6 +350,7 @@ def test_what_is_not_proved_is_looked_at_closely(monkeypatch):
         assert motion.max == pytest.approx(np.degrees(dense(follower, contour, 20_000)), rel=1e-3)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("scale", [1.0 - 4e-4, 1.0 + 4e-4])
 def test_a_dent_or_spike_in_a_very_fine_polygon_is_not_lost_between_samples(scale):
     follower = inch()

@@ -3,11 +3,10 @@
 from itertools import pairwise
 from pathlib import Path
 
-import ezdxf
 import numpy as np
 import pytest
 from support.cases import few
-from support.heavy import shapely
+from support.heavy import ezdxf, shapely
 
 from camgeo.curve.backwards import Backwards, least_hollow
 from camgeo.curve.curve import Curve, Run
@@ -81,6 +80,7 @@ def test_a_shape_run_backwards_is_the_same_shape(body):
         assert (here.turn <= bounds.turn_high).all()
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("body", "radius"),
     [(ROLLER, 3.0), (ROLLER, 8.0), (ROLLER, 18.0), (DWELLS, 5.0), (SHU_WU, 10.0), (REULEAUX, 1.0), (TRIMMED, 4.0)],

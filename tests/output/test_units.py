@@ -77,6 +77,7 @@ def alike(one: Any, other: Any, name: str = "", scale: float = 1.0) -> int:
     return int(scale != 1.0)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("text", "lengths"), [(LINKED, 60), (SLIDING, 60), (ROLLER, 20)])
 def test_reports(text: str, lengths: int) -> None:
     millimetres, inches = (pipeline.check(recipe).report for recipe in recipes(text))
@@ -88,6 +89,7 @@ def test_reports(text: str, lengths: int) -> None:
     assert alike(millimetres, inches) > lengths
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("text", "lengths"), [(LINKED, 8), (SLIDING, 6), (ROLLER, 8)])
 def test_studies(text: str, lengths: int) -> None:
     rung = Rung("arcs", 0.01, 0.008, 0.009, 0.007, "mm", 0.006, "mm", 0.1, {}, 40, 30.0, 1000, ())

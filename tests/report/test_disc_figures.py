@@ -64,6 +64,7 @@ TRAIN += "guide: {overhang: 30, length: 40, friction: 0.15}}"
 RISE, RETURN = "pressure-angle-rise", "pressure-angle-return"
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("offset", "rise", "back"),
     [
@@ -330,6 +331,7 @@ YOKE = "cam: {kind: constant-diameter, base_radius: 20.0, roller_radius: 9, "
 YOKE += "motion: [{rise: 20, over: 80, law: cycloidal}, {dwell: 100}]}\n"
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("text", "rising", "falling"),
     [
@@ -369,6 +371,7 @@ def test_a_return_that_a_spring_drives_may_be_steeper() -> None:
     )
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "text",
     [

@@ -51,6 +51,7 @@ SLIDE = """(() => {{
 }})()"""
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", SHOWN)
 def test_the_slider_moves_the_follower_by_the_right_amount(browser: Browser, tmp_path: Path, name: str) -> None:
     made = of(name)
@@ -211,6 +212,7 @@ def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser:
     assert not thread.is_alive()
 
 
+@pytest.mark.slow
 def test_it_prints_and_follows_the_colours(browser: Browser, tmp_path: Path) -> None:
     page_ = opened(browser, of("as-figure-9-2a"), tmp_path)
     assert page_.pdf().startswith(b"%PDF")

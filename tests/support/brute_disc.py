@@ -10,8 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import ezdxf
 import numpy as np
+
+from support.heavy import ezdxf
 
 LAWS = {
     "cycloidal": lambda u: u - np.sin(2 * np.pi * u) / (2 * np.pi),

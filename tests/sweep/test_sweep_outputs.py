@@ -225,6 +225,7 @@ def apart_by_hand(count: int) -> list[int]:
     return taken[:count]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, tmp_path: Path) -> None:
     text = ask(refine="true").recipe.text.replace("keep: 3", "keep: 20")
@@ -273,6 +274,7 @@ def test_a_users_file_in_the_way_is_told_before_anything_is_computed(name: str, 
     assert [path.name for path in tmp_path.iterdir()] == ["four-bar"]
 
 
+@pytest.mark.slow
 def test_fewer_best_designs_take_the_old_ones_away(tmp_path: Path) -> None:
     search(ask(), tmp_path, How(1), MEANS)
     text = ask().recipe.text.replace("keep: 3", "keep: 1")
@@ -280,6 +282,7 @@ def test_fewer_best_designs_take_the_old_ones_away(tmp_path: Path) -> None:
     assert sorted(path.name for path in (tmp_path / "four-bar").glob("*.yaml")) == ["best-1.yaml"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("package", "left_out"),
     [

@@ -89,6 +89,7 @@ def test_a_design_that_breaks_a_limit_is_brought_within():
     assert polish(asked, given)[1]["transmission-angle"] >= 36
 
 
+@pytest.mark.slow
 def test_where_nothing_better_is_found_the_start_stays():
     asked = ask("dwell: {at_least: 170}")
     given, _ = start(asked, (18.0, 8.5, 105.0))

@@ -130,6 +130,7 @@ def drawn(request):
     return Scene.of(request.param), FIGURES[request.param].loop(FINE)
 
 
+@pytest.mark.thin(3)
 def test_positions_and_both_derivatives_over_the_relative_angle(drawn):
     scene, loop = drawn
     motion = scene.mechanism.at(FINE, 2)
@@ -160,6 +161,7 @@ def test_the_motion_table_is_over_the_shaft_angle(workshop):
     assert np.abs(np.degrees(mistaken) - table["output_deg"]).max() > 4
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", DWELLING)
 @pytest.mark.parametrize("band", BANDS)
 def test_dwells_over_either_angle(name, band):
