@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from support.cases import few
 
 import camgeo
 
@@ -19,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 NAMES = ("shu-wu", "fourier", "w-law", "oscillating-yoke", "as-figure-1", "slider-crank", "reuleaux")
 
 
-@pytest.fixture(scope="module", params=NAMES)
+@pytest.fixture(scope="module", params=few(NAMES, 2))
 def design(request: pytest.FixtureRequest) -> camgeo.Design:
     return camgeo.design(camgeo.load(ROOT / "recipes" / f"{request.param}.yaml"))
 

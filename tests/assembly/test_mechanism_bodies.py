@@ -180,6 +180,7 @@ def carried(assembly: Assembly, name: str, point: tuple[float, float]) -> np.nda
     return np.column_stack([x + point[0] * c - point[1] * s, y + point[0] * s + point[1] * c])
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("name", "one", "point", "other", "there"),
     [

@@ -279,6 +279,7 @@ def test_a_table_of_a_law_comes_back_within_its_reading(law, stroke, over, place
     assert off.max() <= 3 * reading
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_rows(tmp_path):
     angles = np.linspace(0, 180, 100_000)
     written(tmp_path, angles, 10 * (1 - np.cos(np.radians(angles))), "{:.6f},{:.4f}")

@@ -443,6 +443,7 @@ def run_two(pytester: Pytester, *arguments: str) -> pytest.RunResult:
         return pytester.runpytest_subprocess("-p", "xdist", "-p", "camgeo.pytest_plugin", "-n", "2", *arguments)
 
 
+@pytest.mark.slow
 def test_with_several_processes(project: Pytester) -> None:
     project.makeini(INI + "testpaths = nowhere cams/..\n")
     add(project, "poor", SMALL + "verify: {motion_error: 0.001}\n")

@@ -176,7 +176,7 @@ def test_curvature_that_jumps(name):
     check_same(curve, dual_body(whole.shape), 2e-5)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("shape", "e"), [(STAR, e) for e in (4.0, 5.0, 8.0, 12.0)])
 def test_rollers_leave_the_eroded_body(shape, e):
     whole = roller(shape, e)

@@ -100,6 +100,7 @@ def test_inch_drawing_is_in_inches_and_its_solid_in_millimetres(tmp_path):
     assert mesh.is_watertight
 
 
+@pytest.mark.slow
 def test_counter_clockwise_mirrors_every_feature(tmp_path):
     (tmp_path / "cw").mkdir()
     (tmp_path / "ccw").mkdir()

@@ -387,6 +387,7 @@ def test_a_roller_that_meets_nothing():
         follower.judge(polygon(circle_points(8) + np.array([200.0, 0.0])), PHI)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(DOUBLES, 4, first=1))
 def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     """The exact contour moved outward and inward by e all round is the worst that e allows."""

@@ -368,6 +368,7 @@ def test_the_longest_dwell_wherever_it_starts(band, count):
         assert np.ptp(inside) <= band * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_flatness_is_the_range_over_the_intended_dwell():
     vertices, band = uneven(300, 0.02), np.radians(0.1)
     verdict = judge_frame(Contour.from_vertices(vertices), FOUR_BAR, SHAFT, 1e-3, band=band)

@@ -35,7 +35,7 @@ from kin.law.segment import Constant
 
 OUTER = 200.0
 LIMITS = Limits(tolerance=1e-4)
-DENSE = TURN / 8000 * np.arange(8000)
+DENSE = TURN / 4000 * np.arange(4000)
 
 
 def intent(follower, **other):

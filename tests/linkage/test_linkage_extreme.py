@@ -141,6 +141,7 @@ def test_discriminant_down_to_1e_15(assembly, power):
     hold(cases, outright=("output", "velocity", "acceleration"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("assembly", few(ASSEMBLIES, 2))
 def test_links_from_a_millionth_to_a_million_breadths(assembly):
     rng = np.random.default_rng(5)

@@ -120,6 +120,7 @@ def test_what_a_cutter_leaves_in_a_hollow(radius):
     assert apart.min() == pytest.approx(radius, abs=0.011), "the cutter never cuts into the contour"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("top", few(["", "rotation: ccw\n"], 2))
 def test_the_path_on_a_layer_of_its_own(tmp_path, top):
     body = top + ROLLER + "name: c\nexport: {files: [dxf, {dxf: {as: spline}}]}\nverify: {angles: 36}\n"

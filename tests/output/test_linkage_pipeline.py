@@ -254,6 +254,7 @@ def test_what_cannot_be_is_refused(old: str, new: str, words: str, tmp_path: Pat
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_an_inch_recipe_says_the_same_in_inches(tmp_path: Path) -> None:
     slider = FOUR_BAR.replace("{kind: four-bar, ground: 80, coupler: 70, rocker: 105}", "{kind: slider-crank, %s}")
     slider = slider.replace("band: 0.1, at_least: 36", "band: %s")

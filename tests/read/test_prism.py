@@ -255,6 +255,7 @@ def test_what_was_found_counts_into_every_figure(tmp_path):
     assert all(check.ok for check in judge_contour(solid.contour, YOKE, phi, tight).checks)
 
 
+@pytest.mark.slow
 def test_what_was_found_counts_for_a_linkage_as_well():
     lift = lift_from_fourier(25.0, {1: -18.0}, {1: 13 / 30 - 8.5, 3: 1.0, 5: 13 / 30})
     mechanism = Mechanism(FourBar(80.0, 70.0, 105.0), lift, 50.0)

@@ -371,7 +371,7 @@ def test_a_return_that_a_spring_drives_may_be_steeper() -> None:
     )
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [
@@ -403,6 +403,7 @@ def test_a_guide_without_a_stem() -> None:
             load_text(disc(follower, more=TRAIN), "cam.yaml")
 
 
+@pytest.mark.slow
 def test_a_sweep_ranks_and_limits_by_them() -> None:
     from camgeo.sweep.search import evaluator
     from camgeo.sweep.search.ask import Ask

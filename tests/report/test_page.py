@@ -233,6 +233,7 @@ def ring_of(found: Content) -> tuple[np.ndarray, np.ndarray]:
     return ring.points, ring.bulges
 
 
+@pytest.mark.slow
 def test_a_linkage_stands_as_kin_says_over_the_shaft_angle() -> None:
     made = of("as-figure-9-2a")
     mechanism = designed(made.recipe).driven.mechanism

@@ -172,6 +172,7 @@ def test_nothing_sticks_out_or_lies_over_its_neighbour(
         browser.size(1280, 800)
 
 
+@pytest.mark.slow
 def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser: Browser, tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
     text = of("shu-wu").text

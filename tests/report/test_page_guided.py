@@ -116,6 +116,7 @@ def test_a_centre_stays_its_radius_from_the_cam_and_the_contact_lies_between(nam
     assert (within == (name == "ring")).all()
 
 
+@pytest.mark.thin(3)
 @BOTH
 @pytest.mark.parametrize("name", ROUND)
 def test_the_pressure_angle_is_that_between_the_arrow_and_the_way_of_the_centre(name: str, rotation: str) -> None:

@@ -153,6 +153,7 @@ def test_an_undercut_recipe_is_told_and_fails(tmp_path: Path, capsys: pytest.Cap
     assert "undercut" in text
 
 
+@pytest.mark.slow
 def test_a_linkage_that_binds_fails_and_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recipe = tmp_path / "cam.yaml"
     recipe.write_text(

@@ -58,6 +58,7 @@ def test_what_was_found_is_said_in_one_line(tmp_path: Path, capsys: pytest.Captu
     assert said.out.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "-v"]) == 0
     said = capsys.readouterr().out
@@ -201,6 +202,7 @@ def test_an_interrupted_sweep_exits_130_and_goes_on_later(jobs: str, tmp_path: P
     assert run["designs_found"] + run["designs_computed"] == 825
 
 
+@pytest.mark.slow
 def test_progress_is_shown_on_a_terminal_and_taken_away_again(tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)

@@ -203,6 +203,7 @@ def test_the_report_tells_what_was_asked_and_what_came_of_it(swept: Path) -> Non
     assert report["run"]["designs_per_second"] > 0
 
 
+@pytest.mark.slow
 def test_lengths_are_told_in_the_recipes_unit(tmp_path: Path) -> None:
     text = "units: inch\n" + ask(margin=0.04).recipe.text
     inches = Ask.of(read(text.encode(), "x.yaml"))
@@ -378,6 +379,7 @@ def test_a_picture_has_room_for_long_names_and_notes() -> None:
     assert b"links[1]" in files["svg"]
 
 
+@pytest.mark.slow
 def test_a_curve_over_one_variable_is_drawn(tmp_path: Path) -> None:
     text = ask().recipe.text.replace("    linkage.rocker: {from: 95, to: 110, steps: 33}\n", "")
 

@@ -179,6 +179,7 @@ def test_the_error_falls_with_the_fourth_power_of_the_step():
     assert 8 < ratio < 32
 
 
+@pytest.mark.slow
 def test_where_nothing_can_be_written_the_compiled_engine_is_not_kept(monkeypatch):
     numba = pytest.importorskip("numba")
     compiler = numba.njit

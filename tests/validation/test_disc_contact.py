@@ -113,6 +113,7 @@ def test_d15_undercut():
     assert deviation(made.as_arcs()[0], follower.envelope).worst[0] < 1e-7
 
 
+@pytest.mark.slow
 def test_d16_sizing():
     """The smallest cams that hold their pressure angles are cams: the limit tells the least angle's cosine."""
     stem = least_stem(M02, 30 * DEGREE, 45 * DEGREE)
