@@ -35,12 +35,12 @@ def examples(full: int) -> int:
 def thinned_out(items: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
     """Rows of tests marked `thin(every)` that are left to the slow run: those off the diagonal of the parameters.
 
-    A row's place in a parameter is told by its name there.
+    A row's place in a parameter is told by its name there, among the rows that are not slow anyway: the first stays.
     """
     seen: dict[str, list[dict[str, int]]] = {}
     for item in items:
         thin = item.get_closest_marker("thin")
-        if thin is not None:
+        if thin is not None and item.get_closest_marker("slow") is None:
             names = item.callspec._idlist  # type: ignore[attr-defined]
             places = seen.setdefault(item.nodeid.split("[")[0], [{} for _ in names])
             number = sum(known.setdefault(name, len(known)) for name, known in zip(names, places, strict=True))
