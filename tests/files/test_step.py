@@ -253,7 +253,7 @@ def test_a_moved_corner_of_the_contour_is_caught(tmp_path):
     assert failures(path, recipe, design, 0.001) & {"watertight", "contour"}
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(2)
 @kernel
 @pytest.mark.parametrize(
     ("change", "check"),
