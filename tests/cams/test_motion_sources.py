@@ -436,6 +436,7 @@ def test_kin_s_own_error_keeps_its_angle(tmp_path):
     assert caught.value.at_deg == 180
 
 
+@pytest.mark.slow
 def test_a_sweep_reads_the_table_and_its_best_design_finds_it_from_its_own_folder(tmp_path, monkeypatch, capsys):
     written(tmp_path, HALF, sampled(HALF))
     vary = "{cam.base_radius: {from: 38, to: 44, steps: 3}, cam.motion.reading: [0.001, 0.002]}"

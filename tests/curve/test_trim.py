@@ -168,6 +168,7 @@ def test_swallowtails_that_run_into_each_other(mean, cos, sin, backwards, left):
     check_same(curve, dual_body(whole.shape), 2e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(["parabolic", "harmonic", "modified-sine", "polynomial-345"], 4))
 def test_curvature_that_jumps(name):
     whole = breadth(1.0, name)
@@ -176,7 +177,7 @@ def test_curvature_that_jumps(name):
     check_same(curve, dual_body(whole.shape), 2e-5)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.slow
 @pytest.mark.parametrize(("shape", "e"), [(STAR, e) for e in (4.0, 5.0, 8.0, 12.0)])
 def test_rollers_leave_the_eroded_body(shape, e):
     whole = roller(shape, e)

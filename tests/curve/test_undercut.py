@@ -159,7 +159,7 @@ def test_eight_swallowtails_below_rounding_are_told_apart():
         assert cut.end - cut.start == pytest.approx(2.0 * np.sqrt(6.0 * lack / bend), rel=1e-3)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("e", [4.0, 5.0, 8.0])
 def test_lobes_too_sharp_for_the_roller(e):
     found = undercuts(roller(STAR, e))

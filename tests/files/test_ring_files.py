@@ -105,6 +105,7 @@ def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
     assert checks["motion"].ok
 
 
+@pytest.mark.slow
 def test_a_trimmed_ring_tells_the_motion_that_is_lost(tmp_path):
     recipe = ring("{outer: 130}", CAM.format("  undercut: trim\n", 40, 160).replace("36\n", "30\n"), files="dxf")
     _, checks = found(recipe)

@@ -157,6 +157,7 @@ def test_no_error_between_the_samples_is_missed():
     assert np.radians(one.max) == pytest.approx(sampled, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_exact_arcs_give_no_error():
     """A Reuleaux triangle with rounded corners, drawn as its six arcs: its lift jumps in p'' where the arcs meet."""
     lift = lift_reuleaux(3, BREADTH, 6.0)

@@ -103,6 +103,7 @@ def _all(contour):
     return np.concatenate([np.linspace(run.low, run.high, 8001)[:-1] for run in contour.runs])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", few([5.2, 9.0, 40.0], 3))
 def test_what_a_cutter_leaves_in_a_hollow(radius):
     _, design = design_of(DEEP)

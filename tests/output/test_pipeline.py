@@ -46,7 +46,7 @@ def test_there_are_recipes() -> None:
     assert len(RECIPES) >= 17
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(9)
 @pytest.mark.parametrize("path", few(RECIPES, 3), ids=lambda path: path.stem)
 def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> None:
     recipe = load(path)

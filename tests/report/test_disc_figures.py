@@ -212,6 +212,7 @@ def test_any_follower_against_samples(kind: str, radius: int, offset: float, ris
             assert found["pivot-clearance"].value == pytest.approx(away, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_disc_that_passes_over_the_pivot_is_remarked() -> None:
     text = disc("kind: roller, radius: 8, arm: {length: 40, pivot: 45}", SWING, 40.0)
     value = figures(text, "pivot-clearance")["pivot-clearance"].value

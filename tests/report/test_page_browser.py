@@ -125,6 +125,7 @@ def test_keys_and_buttons_turn_the_shaft(browser: Browser, tmp_path: Path) -> No
     assert page_.problems == []
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("name", "sense"), [("shu-wu", -1.0), ("w-law", 1.0)])
 def test_the_cam_can_be_dragged(browser: Browser, tmp_path: Path, name: str, sense: float) -> None:
     page_ = opened(browser, of(name), tmp_path)
@@ -138,6 +139,7 @@ def test_the_cam_can_be_dragged(browser: Browser, tmp_path: Path, name: str, sen
     assert (sense * degrees) % 360.0 == pytest.approx(50.0, abs=1.0)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("width", "dark"), [(360, False), (1280, True), (1600, False)])
 @pytest.mark.parametrize("name", ["shu-wu", "six-bar", "w-law"])
 def test_nothing_sticks_out_or_lies_over_its_neighbour(

@@ -246,6 +246,7 @@ def test_a_guide_stands_clear_of_what_it_guides(name: str) -> None:
                 assert points[:, 0].max() < start
 
 
+@pytest.mark.slow
 def test_every_follower_of_a_family_is_drawn() -> None:
     names = {designed(drawn(name, "cw")[0]).follower.name for name in (*ROUND, *FLAT, "yoke")}
     assert len(names) == 9

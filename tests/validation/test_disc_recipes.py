@@ -360,6 +360,7 @@ def test_d14_valve_flat():
     proved(recipe, design)
 
 
+@pytest.mark.slow
 def test_d14_valve_roller():
     recipe, design = made(f"base_radius: 18, follower: {{kind: roller, radius: 9}}, motion: {LOBE}")
     pitch, contour = pitch_of(design), contour_of(design)
@@ -458,7 +459,7 @@ def test_d16_sizing_of_a_stem():
 D16 = {"trailing": (16.727263336, 72.169575733, 12.668363853), "leading": (16.273179510, 66.057520228, 14.235604064)}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.slow
 @pytest.mark.parametrize("side", D16)
 def test_d16_sizing_of_an_arm(side):
     recipe, design = sized(35, 45, f", arm: {{length: 65, side: {side}}}", M07)

@@ -192,6 +192,7 @@ def test_the_papers_places_of_the_dwells_are_near_their_beginnings(name):
     assert deg(found.start + found.length / 2) - place > 20
 
 
+@pytest.mark.slow
 def test_two_rests_of_the_oscillating_yoke_are_true_ones(workshop):
     """S stands still for 60 degrees twice a turn, and the frame with it: the shaft turns 60 degrees meanwhile."""
     made = workshop.shipped("oscillating-yoke")

@@ -297,7 +297,7 @@ def goldberg(workshop):
     return workshop.shipped("w-ellipse", "spline")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(5)
 def test_equation_7_1_on_the_file(pitch):
     curve, e = pitch
     assert np.abs(curve.closing(np.linspace(0, 2 * PI, 3601))).max() <= 3 * e
