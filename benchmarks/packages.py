@@ -2,7 +2,7 @@
 
 A cycloidal rise of 20 mm in 120 degrees, 60 of dwell, the same back, base radius 40 mm: a yoke of 100 mm fits the right
 cam. `mechanism` and `pylinkage` give points of a profile; those are written as a polyline and judged as any file is.
-PYTHON runs them. Run without it, in a Python that has neither, they are told as missing.
+PYTHON runs them. Run without it, in a Python that has neither, they are listed as missing.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ from random_recipes import FAMILIES, TOPICS, Made, made
 ROOT = Path(__file__).resolve().parents[1]
 TOGETHER = 6  # recipes of one call, whose imports are paid once
 ATTEMPTS = 6  # draws for one slot, until one is exported
-SECONDS = 300  # for one recipe; whoever takes longer is told, and compared as far as it came
+SECONDS = 300  # for one recipe; what takes longer is named, and compared as far as it came
 NAMED_BY = ("name", "path", "file", "what", "kind")  # what tells the entries of a report's list apart
 REPORT = "report.json"
 LEFT_OUT = {"seconds", "camgeo", "sha256", "bytes"}  # of a report: files are compared themselves

@@ -1,7 +1,7 @@
 """Speed as ratios in one run on one machine: `python benchmarks/speed.py [fit] [stl] [judge] [cold] [--small]`.
 
 Each figure is the least of several repeats, taken in turn with what it is compared with, so that a machine whose speed
-drifts changes both alike; fits are told in processor time. The targets stand beside the figures; nothing here passes or
+drifts changes both alike; fits are in processor time. The targets stand beside the figures; nothing here passes or
 fails. `--small` takes little of everything, to see that it works: its ratios say nothing.
 """
 

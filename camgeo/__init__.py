@@ -1,6 +1,6 @@
 """Disc cams from a short recipe to files, their motion judged from the files themselves.
 
-`load`, `design`, `export`, `check` and `verify` are the library; docs/library.md tells of it. Each name is
+`load`, `design`, `export`, `check` and `verify` are the library; docs/library.md describes it. Each name is
 imported when it is first asked for.
 """
 

@@ -87,7 +87,7 @@ def _status() -> int:
 
 
 def _leave(interrupts: _Interrupts, status: int) -> NoReturn:
-    """Leave at once, as the interpreter's own way out is open to interrupts, and tells them as tracebacks."""
+    """Leave at once, as the interpreter's own way out is open to interrupts, and reports them as tracebacks."""
     import atexit
 
     atexit._run_exitfuncs()  # noqa: SLF001 - what libraries leave to the end; there is no public way to it

@@ -164,7 +164,7 @@ class Run:
 
     @property
     def report(self) -> dict[str, Any] | None:
-        """The report on the recipe; None where it has faults, which `fault` then tells."""
+        """The report on the recipe; None where it has faults, which `fault` then gives."""
         if self._report is None and not self.fault:
             self._run()
         return self._report
@@ -172,7 +172,7 @@ class Run:
     def _run(self) -> None:
         from camgeo import check, export
         from camgeo.api.log import unsaid
-        from camgeo.output.output_folder import SurroundingsError
+        from camgeo.common.errors import SurroundingsError
         from camgeo.recipe import RecipeErrors
 
         assert self.recipe is not None
@@ -181,7 +181,7 @@ class Run:
             f"{self.shown}: the run broke off with an error of camgeo's own, reported by the first item that ran"
         )
         try:
-            with unsaid():  # each item tells of its own check
+            with unsaid():  # each item reports its own check
                 report = check(self.recipe) if self.out is None else export(self.recipe, self.out)
             self._report, self.fault = dict(report), ""
         except RecipeErrors as errors:
@@ -219,7 +219,7 @@ class RecipeFile(pytest.File):
 
 
 def _foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
-    """Tell the checks to come; none where there is no such motion, which the recipe's own item then tells."""
+    """Tell the checks to come; none where there is no such motion, which the recipe's own item then reports."""
     from camgeo.synthesis.expected_checks import foreseen
     from kin.law.programme import IntentError
 

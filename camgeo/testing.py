@@ -1,7 +1,8 @@
 """Assertions for one's own tests of cams: on any DXF, SVG, STL, 3MF or STEP file, and on recipes.
 
 Each function returns the figure it has measured and raises AssertionError with figure, limit and place. A file that
-cannot be read as a contour fails; a file that is not there raises OSError, a recipe with faults RecipeErrors. Paths are
+cannot be read as a contour fails; a file that is not there raises OSError, a recipe with faults RecipeErrors, a wrong
+type TypeError, a value that makes no sense CallError. Paths are
 those of .dxf, .svg, .stl, .3mf or .step files, told apart so. Lengths are in mm where a function takes no recipe, else
 in the recipe's units, as in its report.
 """
@@ -10,24 +11,27 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from pathlib import Path
+from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.checks.declared import (
+    BENT,
     CHECKS,
     CLOSED,
     CONTOUR,
-    CURVATURE,
     MOTION,
     READABLE,
     UNDERCUT_GLOBAL,
     UNDERCUT_LOCAL,
     WATERTIGHT,
 )
+from camgeo.common.arguments import is_a, number_of, path_of, spelled, whole_of
+from camgeo.common.errors import CallError
+from camgeo.recipe.recipe import MOST_ANGLES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from os import PathLike
+    from pathlib import Path
 
     from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
@@ -92,11 +96,11 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
     closed, as `assert_watertight` has it, and the gap is 0.
     """
     __tracebackhide__ = True
-    path = Path(path)
+    path = path_of("path", path)
     if _is_solid(path):
         assert_watertight(path)
         return 0.0
-    drawing = _drawing(path, gap)
+    drawing = _drawing(path, _length("gap", gap))
     faults = [f"{fault.kind} {fault.entity} at ({fault.x:.6g}, {fault.y:.6g}) mm" for fault in drawing.faults]
     _no_faults(path, faults + _crossings(drawing.contour))
     return drawing.widest_gap
@@ -108,9 +112,9 @@ def assert_watertight(path: AnyPath) -> float:
     Returns the enclosed volume, mm^3.
     """
     __tracebackhide__ = True
-    path = Path(path)
+    path = path_of("path", path)
     if not _is_solid(path):
-        raise ValueError(f"{path.name}: not a .stl, .3mf or .step file")
+        raise CallError(f"{path.name}: not a .stl, .3mf or .step file")
     solid = _solid(path)
     _no_faults(path, [*(f"{fault}, none allowed" for fault in solid.faults), *_crossings(solid.contour)])
     return solid.volume
@@ -126,9 +130,10 @@ def assert_constant_breadth(
     none. The extremes are those of the whole turn, not of samples. Returns them.
     """
     __tracebackhide__ = True
-    path = Path(path)
-    found = _breadth(_contour(path, mm))
-    nominal = 0.5 * (found.least + found.greatest) if breadth is None else breadth
+    path = path_of("path", path)
+    found = _breadth(_contour(path, None if mm is None else _length("mm", mm)))
+    nominal = 0.5 * (found.least + found.greatest) if breadth is None else number_of("breadth", breadth)
+    tolerance = _length("tolerance", tolerance)
     for value, at in ((found.greatest, found.greatest_at_deg), (found.least, found.least_at_deg)):
         if not abs(value - nominal) <= 2.0 * tolerance:
             named = "the mean" if breadth is None else "the nominal"
@@ -201,12 +206,16 @@ def _judged(
     __tracebackhide__ = True
     from camgeo import verify as judged
 
-    path, recipe = Path(path), _loaded(recipe)
+    path, recipe = path_of("path", path), _loaded(recipe)
     swings = recipe.cam.unit == "deg"
     verify = recipe.verify
     if limit is not None:
+        limit = _length("limit", limit)
         verify = replace(verify, motion_error=math.radians(limit) if swings else limit * recipe.mm)
     if angles is not None:
+        angles = whole_of("angles", angles)
+        if not 1 <= angles <= MOST_ANGLES:
+            raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {spelled(angles)}")
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
     report: dict[str, Any] = dict(judged(recipe, path, tolerance=tolerance))
@@ -257,17 +266,26 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     recipe = replace(recipe, cam=recipe.cam.refusing())
     design = designed(recipe)
     report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.joints))
-    names = {CURVATURE.name, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
+    names = {*BENT, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
     checks = [check for check in report["checks"] if check["name"] in names]
     _all_hold(checks, report, recipe, recipe.name)
-    radius: float = next(check["value"] for check in checks if check["name"] == CURVATURE.name)
+    radius: float = next(check["value"] for check in checks if check["name"] in BENT)
     return radius
 
 
 def _loaded(recipe: AnyRecipe) -> Recipe:
     from camgeo.recipe import Recipe, load
 
-    return recipe if isinstance(recipe, Recipe) else load(recipe)
+    is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
+    return recipe if isinstance(recipe, Recipe) else load(path_of("recipe", recipe))
+
+
+def _length(name: str, value: float) -> float:
+    """Give an argument that is 0 or above and finite, as a breadth, a tolerance and the like are."""
+    found = number_of(name, value)
+    if not 0.0 <= found < math.inf:
+        raise CallError(f"{name} is a number of 0 or above, not {found!r}")
+    return found
 
 
 # --- all of them ------------------------------------------------------------------------------------------------------

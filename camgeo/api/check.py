@@ -57,7 +57,7 @@ class Check(judge.Check):
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of a design in `unit`, and the shaft angle of its place; None where there is none, as `detail` tells."""
+    """A figure of a design in `unit`, and the shaft angle of its place; None where there is none, as `detail` says."""
 
     value: float | None
     unit: str

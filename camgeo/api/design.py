@@ -13,8 +13,11 @@ from camgeo.api import notebook
 from camgeo.api.check import Check, Figure
 from camgeo.api.edges import FORMS, Edges, Form
 from camgeo.api.errors import CallError
+from camgeo.api.loading import recipe_of
 from camgeo.api.log import staged, tell_checks
+from camgeo.common.arguments import number_of, numbers_of, spelled, text_of, whole_of
 from camgeo.common.clock import Clock
+from camgeo.recipe.schema.fields import MOST
 from camgeo.synthesis.design import Design as Exact
 from camgeo.synthesis.design import designed
 
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array
 
+MOST_POINTS = 1_000_000  # of a contour: more than any file has, and quickly made
 MOST_DERIVATIVE = 6  # of the motion by the shaft angle; more means nothing in print
 
 
@@ -35,6 +39,7 @@ def design(recipe: Recipe) -> Design:
 
     Raises RecipeErrors where there is no such motion or curve. A check that fails raises nothing: see `Design.ok`.
     """
+    recipe_of(recipe)
     found = Design(recipe, designed(recipe, Clock(staged(recipe))))
     tell_checks(recipe.name, found.checks)
     return found
@@ -107,12 +112,12 @@ class Design:
         Derivatives are by radian of shaft angle, up to the sixth; where one jumps it is the limit from above. Raises
         CallError for another order, angles that are not finite, and a linkage that does not turn.
         """
-        angle = np.asarray(theta, dtype=np.float64)
+        angle, order = numbers_of("theta", theta), whole_of("derivative", derivative)
         if not np.isfinite(angle).all():
             raise CallError("shaft angles are finite numbers, in radians")
-        if isinstance(derivative, bool) or derivative not in range(MOST_DERIVATIVE + 1):
-            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {derivative!r}")
-        row = self._motion(angle.ravel(), derivative).reshape(angle.shape)
+        if order not in range(MOST_DERIVATIVE + 1):
+            raise CallError(f"a derivative is one of order 0 to {MOST_DERIVATIVE}, not {spelled(order)}")
+        row = self._motion(angle.ravel(), order).reshape(angle.shape)
         return float(row) if row.ndim == 0 else row
 
     def _motion(self, angle: Array, order: int) -> Array:
@@ -132,10 +137,11 @@ class Design:
         """Give n points of the exact contour, (n, 2) in mm: counter-clockwise about the shaft at (0, 0), as drawn.
 
         They stand at equal steps of the curve's own parameter, the first not repeated at the end. Raises CallError
-        where a check forbids to make the contour, and for fewer than 3 points.
+        where a check forbids to make the contour, for fewer than 3 points and for more than a million.
         """
-        if isinstance(n, bool) or n < 3:
-            raise CallError(f"a contour takes 3 points at least, not {n!r}")
+        n = whole_of("n", n)
+        if not 3 <= n <= MOST_POINTS:
+            raise CallError(f"a contour takes 3 points at least and {MOST_POINTS} at most, not {spelled(n)}")
         runs = self._made().runs
         ends = np.cumsum([run.high - run.low for run in runs])
         along = ends[-1] * np.arange(n) / n
@@ -156,12 +162,12 @@ class Design:
         """
         from camgeo.output.job import Job
 
-        if form not in FORMS:
-            raise CallError(f"a form is one of {', '.join(FORMS)}, not {form!r}")
-        if not 0.0 < tolerance < float("inf"):
-            raise CallError(f"a tolerance is a length above 0, in mm, not {tolerance!r}")
+        text_of("form", form, FORMS, "a form")
+        within = number_of("tolerance", tolerance)
+        if not 0.0 < within <= MOST:
+            raise CallError(f"a tolerance is a length above 0 and up to {MOST:.10g} mm, not {within!r}")
         self._made()
-        return Edges.of(Job.of(self.recipe, self.exact).outline(form, tolerance))
+        return Edges.of(Job.of(self.recipe, self.exact).outline(form, within))
 
     def _made(self) -> Curve:
         if self.exact.contour is None:

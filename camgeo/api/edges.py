@@ -103,7 +103,7 @@ class Edges(Sequence[Edge]):
             knots = tuple(outline.knots.tolist())
             edges = (Spline(start, start, outline.degree, _points(outline.control.tolist()), knots),)
         else:
-            raise TypeError("a rational spline has weights, which no edge tells")
+            raise TypeError("a rational spline has weights, which no edge has")
         return Edges(edges, outline.bound.outward, outline.bound.inward, outline.area)
 
 

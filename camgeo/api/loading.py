@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from os import PathLike
 from typing import TYPE_CHECKING
 
+from camgeo.common.arguments import is_a, path_of
+from camgeo.recipe import Recipe
 from camgeo.recipe.loading import announced, load_silent, load_text
 from camgeo.recipe.schema.change import written
 
 if TYPE_CHECKING:
-    from os import PathLike
-
-    from camgeo.recipe.recipe import Recipe
     from camgeo.recipe.schema.change import Value
 
 NAME = "recipe"  # of what has no file
@@ -21,11 +21,17 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
     """Read a recipe from a file, from YAML text or from a mapping of the same keys.
 
     A `str` with a line break in it is a text, any other the path of a file. A recipe that is no file and gives no
-    `name` is called recipe. Raises RecipeErrors, which tells every fault with line, column and remedy;
-    warns by DeprecatedKeyWarning of each former name.
+    `name` is called recipe. Raises RecipeErrors, which has every fault with line, column and remedy, and TypeError for
+    what is none of the three; warns by DeprecatedKeyWarning of each former name.
     """
+    is_a("source", source, (str, PathLike, Mapping), "a path, YAML text or a mapping")
     if isinstance(source, Mapping):
-        return announced(load_text(written(source, NAME), NAME))
+        return announced(load_text(written(source, NAME), NAME, NAME))
     if isinstance(source, str) and ("\n" in source or "\r" in source):
         return announced(load_text(source, NAME))
-    return announced(load_silent(source))
+    return announced(load_silent(path_of("source", source)))
+
+
+def recipe_of(recipe: object) -> None:
+    """Raise TypeError for what is no recipe."""
+    is_a("recipe", recipe, Recipe, "a Recipe", "read it by camgeo.load")

@@ -1,4 +1,4 @@
-"""What the library tells by `logging`: stages at debug, files and verdicts at info, checks that fail at warning."""
+"""What the library reports by `logging`: stages at debug, files and verdicts at info, checks that fail at warning."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from kin.judge.check import Check
 
 LOG = logging.getLogger("camgeo")
-LOG.addHandler(logging.NullHandler())  # whoever sets no logging up is told nothing
+LOG.addHandler(logging.NullHandler())  # without logging set up nothing is written
 
 
 @contextmanager
 def unsaid() -> Iterator[None]:
-    """Tell nothing meanwhile, where all of it is told in another way."""
+    """Tell nothing meanwhile, where all of it is reported in another way."""
     before, LOG.disabled = LOG.disabled, True
     try:
         yield
@@ -27,7 +27,7 @@ def unsaid() -> Iterator[None]:
 
 
 def staged(recipe: Recipe, progress: Callable[[str], None] | None = None) -> Callable[[str], None]:
-    """Give what a clock tells of each stage as it begins: the log hears of it, and who wants to know."""
+    """Give what a clock reports of each stage as it begins: the log hears of it, and who wants to know."""
 
     def tell(stage: str) -> None:
         LOG.debug("%s: %s", recipe.name, stage)

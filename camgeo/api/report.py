@@ -9,6 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.api.check import Check
+from camgeo.api.errors import CallError
+from camgeo.common.arguments import is_a
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -127,6 +129,9 @@ class Report(Mapping[str, JSON]):
         """Tell of a check that fails over several lines: figure, limit, place, the recipe's field, what would do."""
         from camgeo.report.failure import failure
 
+        is_a("check", check, Check, "a Check")
+        if check not in self.checks:
+            raise CallError(f"{self.recipe.name}: {check.name} is none of this report's checks; give one of .checks")
         index = self.checks.index(check)
         return failure(self._document["checks"][index], self._document, self.recipe)
 
@@ -183,5 +188,5 @@ class Report(Mapping[str, JSON]):
 
 
 def _known(kind: type[Check | Remark], entry: dict[str, Any]) -> dict[str, Any]:
-    """Leave out what an entry of the report tells beyond the fields of its class."""
+    """Leave out what an entry of the report has beyond the fields of its class."""
     return {name: entry[name] for name in kind.__dataclass_fields__ if name in entry}

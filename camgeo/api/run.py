@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.api.errors import CallError
+from camgeo.api.loading import recipe_of
 from camgeo.api.log import LOG, staged, tell_checks
 from camgeo.api.report import Report
+from camgeo.common.arguments import called, is_a, number_of, path_of, spelled, texts_of
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.output import pipeline
@@ -17,6 +18,7 @@ from camgeo.recipe.schema.fields import MOST
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from os import PathLike
+    from pathlib import Path
 
     from camgeo.common.units import Units
     from camgeo.recipe.recipe import Recipe
@@ -37,17 +39,21 @@ def export(
     it should be, CallError for a kind of which the recipe lists no file. A check that fails raises nothing: see
     `Report.ok`.
     """
-    only = (only,) if isinstance(only, str) else tuple(only)
+    recipe_of(recipe)
+    called("progress", progress)
+    only, folder = texts_of("only", only), path_of("out", out)
     listed = {request.kind for request in recipe.export.files}
     faults = [_unlisted(kind) for kind in only if kind not in listed]
     if faults and not listed.intersection(only):
         raise CallError(*faults)
-    outcome = pipeline.export(recipe, Path(out), only=only, told=staged(recipe, progress))
+    outcome = pipeline.export(recipe, folder, only=only, told=staged(recipe, progress))
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
 def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
+    recipe_of(recipe)
+    called("progress", progress)
     return _told(Report(recipe, pipeline.check(recipe, told=staged(recipe, progress)).report))
 
 
@@ -67,18 +73,23 @@ def verify(
     """
     from kin.read.files import SUFFIXES
 
-    paths = [Path(name) for name in (file, *files)]
-    found = [path for path in paths if path.is_file()]
-    faults = [f"{escaped(str(path))}: {_no_file(path)}" for path in paths if path not in found]
+    recipe_of(recipe)
+    paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
+    within = None if tolerance is None else number_of("tolerance", tolerance)
+    if units is not None:
+        is_a("units", units, str, "a str")
+    told = {path: _no_file(path) for path in paths}
+    found = [path for path in paths if not told[path]]
+    faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
     known = ", ".join(SUFFIXES)
     faults += [f"{escaped(str(path))}: none of {known}" for path in found if path.suffix.lower() not in SUFFIXES]
-    if tolerance is not None and not 0.0 < tolerance <= MOST:
-        faults.append(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {tolerance!r}")
+    if within is not None and not 0.0 < within <= MOST:
+        faults.append(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {within!r}")
     if units is not None and units not in UNIT_MM:
-        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {units!r}")
+        faults.append(f"a unit is one of {', '.join(UNIT_MM)}, not {spelled(units)}")
     if faults:
         raise CallError(*faults)
-    within = None if tolerance is None else tolerance * recipe.mm
+    within = None if within is None else within * recipe.mm
     report = pipeline.judged(recipe, paths, tolerance=within, units=None if units is None else UNIT_MM[units])
     return _told(Report(recipe, report, None, tuple(paths)))
 
@@ -96,11 +107,17 @@ def _told(report: Report) -> Report:
 
 def _unlisted(kind: str) -> str:
     if kind not in KINDS:
-        return f"a kind of file is one of {', '.join(KINDS)}, not {kind!r}"
+        return f"a kind of file is one of {', '.join(KINDS)}, not {spelled(kind)}"
     return f"export.files lists no {kind}"
 
 
 def _no_file(path: Path) -> str:
-    if path.is_dir():
-        return "a folder; name the files in it"
-    return "not a regular file" if path.exists() else "the file does not exist"
+    """Say why a path leads to no file; empty where it does."""
+    try:
+        if path.is_file():
+            return ""
+        if path.is_dir():
+            return "a folder; name the files in it"
+        return "not a regular file" if path.exists() else "the file does not exist"
+    except OSError as error:  # a name too long, a folder without permission
+        return f"cannot be read: {error.strerror or error}"

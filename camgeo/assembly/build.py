@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from camgeo.assembly.assembly import Assembly
     from camgeo.assembly.guided import Stand
     from camgeo.cams.constant_diameter import ConstantDiameterCam
-    from camgeo.cams.disc import OscillatingFaceCam, OscillatingRoundCam, TranslatingFaceCam, TranslatingRoundCam
+    from camgeo.cams.disc_cams import OscillatingFaceCam, OscillatingRoundCam, TranslatingFaceCam, TranslatingRoundCam
     from camgeo.curve.moving_frame import Displacement
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.recipe import Recipe

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 STEPS = 720  # of a turn, at which the exact motion and its rates are taken
 LOOKS = 24  # points of each line and arc of a hole from which its walls are looked at
 AXIAL = 1e-6  # mm, by which rounding may make an axial gap less
-COARSE = 0.25  # mm, within which the room is told
+COARSE = 0.25  # mm, within which the room is reported
 ACCURACY = 0.05  # of the clearance, to which the least distance of two bodies is found
 
 
@@ -67,7 +67,7 @@ def thinnest(assembly: Assembly) -> tuple[float, str]:
     """Least thickness or wall of all bodies but the cam, mm, and where.
 
     A wall is looked for between the edges of one plate, from points along its holes. A retainer's or arm's thickness is
-    as asked; the cam's walls are told by its own check.
+    as asked; the cam's walls are reported by its own check.
     """
     s = assembly.sizes
     found = [(s.link, "links"), (s.clip, "retainers")]

@@ -91,20 +91,24 @@ def _support(radius: float, drive: Drive, high: float) -> list[Plate]:
     return [Plate(disc(radius), (disc(inner),), s.plate, high)]
 
 
-def _coupler(frame: Carrier, coupler: float, site: Site) -> None:
-    """Add the bar from the frame to D, in which its own axes then have their origin."""
+def _coupler(frame: Carrier, linkage: FourBar | SliderCrank, site: Site) -> None:
+    """Add the bar from the frame to D, in which its own axes then have their origin.
+
+    It runs along the frame, or slants from the end of the frame's side where D stands beyond that.
+    """
     s, half = site.s, 0.5 * site.links.mechanism.breadth
-    start, end = half + s.gap_each_side + 0.5 * s.bar, half + coupler
+    start, end = half + s.gap_each_side + 0.5 * s.bar, half + linkage.coupler
+    y = linkage.joint_offset
     if end < start:
         least = s.gap_each_side + 0.5 * s.bar
         raise BodyError("linkage.coupler", "ends within the frame's side", "give at least {least}", least=least)
-    frame.origin = (end, 0.0)
-    frame.plates.append(Plate(bar((start, 0.0), frame.origin, s.bar), (), frame.low, frame.high))
+    frame.origin = (end, y)
+    frame.plates.append(Plate(bar((start, max(-half, min(y, half))), frame.origin, s.bar), (), frame.low, frame.high))
 
 
 def _four_bar(site: Site, frame: Carrier, linkage: FourBar) -> tuple[Carrier, ...]:
     s = site.s
-    _coupler(frame, linkage.coupler, site)
+    _coupler(frame, linkage, site)
     low, high = site.level()
     frame.plates += pin(s, frame.origin, frame.high, low, high)
     site.hold("d", frame.name, frame.origin, high, frame.place)
@@ -126,7 +130,7 @@ def _rocker(site: Site, linkage: FourBar | InvertedSliderCrank, low: float, high
 
 def _slider_crank(site: Site, frame: Carrier, linkage: SliderCrank) -> tuple[Carrier, ...]:
     s = site.s
-    _coupler(frame, linkage.coupler, site)
+    _coupler(frame, linkage, site)
     last = frame.plates.pop()
     frame.plates.append(Plate(last.outline, (eye(s, *frame.origin),), last.low, last.high))
     frame.holes = (frame.origin,)
@@ -142,9 +146,9 @@ def _slider_crank(site: Site, frame: Carrier, linkage: SliderCrank) -> tuple[Car
 
 def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> tuple[Carrier, ...]:
     """The block slides in a slot of the frame's bar; it turns on the post B, or carries the end of a rocker."""
-    s, half = site.s, 0.5 * site.links.mechanism.breadth
+    s = site.s
     place = site.links.joint(0, "D")
-    _slot(site, frame, place, half)
+    _slot(site, frame, place, linkage.joint_offset)
     plates = [Plate(block(s), () if linkage.rocker else (eye(s),), frame.low, frame.high)]
     site.fits.append(Fit("block in the frame's slot", s.clearance))
     if linkage.rocker == 0.0:
@@ -163,9 +167,9 @@ def _inverted(site: Site, frame: Carrier, linkage: InvertedSliderCrank) -> tuple
     return (_rocker(site, linkage, low, high),)
 
 
-def _slot(site: Site, frame: Carrier, block_place: Place, half: float) -> None:
-    """Add the slotted bar on the side of the frame where the block is."""
-    s = site.s
+def _slot(site: Site, frame: Carrier, block_place: Place, offset: float) -> None:
+    """Add the slotted bar on the side of the frame where the block is; the side itself reaches to a bar beyond it."""
+    s, half = site.s, 0.5 * site.links.mechanism.breadth
     found, middle = site.sampled(block_place), site.sampled(frame.place)
     c, n = np.cos(middle[:, 2]), np.sin(middle[:, 2])
     x = (found[:, 0] - middle[:, 0]) * c + (found[:, 1] - middle[:, 1]) * n
@@ -178,10 +182,14 @@ def _slot(site: Site, frame: Carrier, block_place: Place, half: float) -> None:
             "give a longer ground, or a smaller mechanism.bar",
         )
         raise BodyError("linkage.ground", message, remedy, short=least - first)
-    outer, slot = slotted(first, last, 0.0, s)
-    tie = box(half + s.gap_each_side, -0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, 0.5 * s.bar)
-    outer, slot, tie = (moved(outline, 0.0, 0.0, 0.0 if side > 0.0 else 0.5 * TURN) for outline in (outer, slot, tie))
-    frame.plates += [Plate(outer, (slot,), frame.low, frame.high), Plate(tie, (), frame.low, frame.high)]
+    y, inner = side * offset, half + s.gap_each_side
+    outer, slot = slotted(first, last, y, s)
+    ties = [box(inner, y - 0.5 * s.bar, outer.box()[0] + 0.5 * s.wall, y + 0.5 * s.bar)]
+    if abs(y) > half:
+        ties.append(box(inner, min(0.0, y - 0.5 * s.bar), inner + s.wall, max(0.0, y + 0.5 * s.bar)))
+    outer, slot, *ties = (moved(one, 0.0, 0.0, 0.0 if side > 0.0 else 0.5 * TURN) for one in (outer, slot, *ties))
+    frame.plates += [Plate(outer, (slot,), frame.low, frame.high)]
+    frame.plates += [Plate(tie, (), frame.low, frame.high) for tie in ties]
 
 
 class Maker(NamedTuple):

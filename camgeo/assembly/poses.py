@@ -32,7 +32,7 @@ class Turning:
 
 
 def sliding(lift: Lift) -> Place:
-    """Give the place of a plate that slides along x: the face whose lift is told stands at its origin."""
+    """Give the place of a plate that slides along x: the face whose lift is reported stands at its origin."""
 
     def place(phi: Array, order: int) -> Array:
         found = np.zeros((3, order + 1, len(phi)))

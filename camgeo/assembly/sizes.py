@@ -12,7 +12,7 @@ from kin.numeric.errors import KinError
 if TYPE_CHECKING:
     from camgeo.recipe.assembly import MechanismAsked
 
-JUST = 1.0 - 1e-9  # a least size as it is told, rounded, is not too small
+JUST = 1.0 - 1e-9  # a least size as it is reported, rounded, is not too small
 HALF = 0.5  # mm: what follows from the cam is a multiple of it
 LEAST_PIN = 3.0  # mm: a thinner one breaks between its layers
 MOST_PIN = 12.0
@@ -24,7 +24,7 @@ LEAST_CLEARANCE = 1e-3  # mm: no body is made finer
 class BodyError(KinError, ValueError):
     """A body that cannot be made as asked: `field` of the recipe to blame, what is wrong, and what would do.
 
-    Message and remedy name lengths, mm, in braces: they are told in the recipe's unit.
+    Message and remedy name lengths, mm, in braces: they are reported in the recipe's unit.
     """
 
     def __init__(self, field: str, message: str, remedy: str, **lengths: float) -> None:

@@ -6,29 +6,37 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.family import (
-    UNDERCUT,
-    Cam,
-    Circle,
-    Family,
-    Intent,
-    Undercut,
-)
+from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Intent, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam
-from camgeo.cams.motion import MotionAsked, check_filled, motion_field
-from camgeo.recipe.schema.fields import Kind, Table, length
+from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
+from camgeo.cams.motion import FormulaAsked
+from camgeo.recipe.schema.fields import Table, length
 
 if TYPE_CHECKING:
+    from camgeo.cams.motion import MotionAsked
     from camgeo.recipe.schema.reader import Reader, Values
+    from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
     from kin.law.sources.motion import Motion
 
-_OTHER_HALF = "two parallel faces hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
+ROUNDED = 1e-9  # rad, by which segments may miss their angle (as in kin.law.sources.programme)
 
 
 @dataclass(frozen=True)
-class ConstantBreadthCam(FlatFacedCam):
-    """A cam between two parallel faces, from the motion over one half turn (Shu and Wu)."""
+class SlidingFrame:
+    """Links that the square frame slides on, mm: the rocker less the offset of the slide's line; side -1 is crossed."""
+
+    ground: float
+    rocker: float
+    side: float
+
+
+@dataclass(frozen=True)
+class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
+    """A cam between two parallel faces, from the motion over one half turn (Shu and Wu).
+
+    With `swings` that is the swing of the frame over the shaft angle, rad, and the lift follows from `frame`.
+    """
 
     kind: ClassVar[str] = "constant-breadth"
     offers: ClassVar[frozenset[str]] = frozenset({"face", "plate"})
@@ -36,19 +44,52 @@ class ConstantBreadthCam(FlatFacedCam):
     base_radius: float
     motion: MotionAsked
     undercut: Undercut
+    swings: bool = False
+    frame: SlidingFrame | None = None
 
     def intent(self) -> Intent:
         """The lift of the first face over a whole turn (SW eqs. 2 to 4)."""
         from kin.law.support_function import lift_constant_breadth
 
-        return lift_constant_breadth(self.base_radius, self._half_turn())
+        return lift_constant_breadth(self.base_radius, self.half_turn(), "swing" if self.swings else "motion")
 
-    def _half_turn(self) -> Motion:
-        return self.motion.motion(math.pi, "motion", -1)
+    def half_turn(self) -> Motion:
+        """The lift over the half turn, of a swing over that of the relative angle."""
+        swing = self.frame_swing()
+        return super().half_turn() if swing is None else swing.half_turn
 
-    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
-        """Those of the half turn; the other half has them too, turned round."""
-        return self._half_turn().joints
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:
+        """Those of the half turn, or of the swing over the shaft angle, rad."""
+        swing = self.frame_swing()
+        return super().joints(intent) if swing is None else swing.joints
+
+    @property
+    def by_linkage(self) -> bool:
+        """Where the frame's swing is given."""
+        return self.swings
+
+    def in_frame(self, ground: float, rocker: float, side: float) -> Cam:
+        """The cam with the links that its frame slides on, where they make its lift."""
+        return replace(self, frame=SlidingFrame(ground, rocker, side)) if self.swings else self
+
+    def frame_swing(self) -> FrameSwing | None:
+        """The law of the swing, over as much of the shaft as its source tells."""
+        if not self.swings:
+            return None
+        from kin.law.frame_swing import frame_swing, span_of
+
+        if self.frame is None:
+            raise TypeError("a frame swings in a linkage")
+        asked, last = self.motion, self.motion.last
+        if isinstance(asked, FormulaAsked):
+            last = span_of(asked.text, asked.scale)
+        motion = asked.motion(math.pi if last is None else last, "swing", None)
+        if asked.covered is not None and abs(rise := float(motion.at_end(0)[0])) < math.pi:
+            wanted = math.pi + rise
+            # fractions of degrees add up to all but rounding
+            if abs(wanted - asked.covered) <= ROUNDED:
+                motion = asked.motion(wanted, "swing", None)
+        return frame_swing(motion, self.frame.ground, self.frame.rocker, self.frame.side)
 
     @property
     def size_field(self) -> tuple[str, float]:
@@ -67,26 +108,25 @@ class ConstantBreadthCam(FlatFacedCam):
 TABLE = Table(
     (
         length("base_radius", "radius of the base circle", required=True),
-        motion_field(
-            "motion",
-            Kind.LENGTH,
-            "motion over one half turn, 180 degrees; the other half follows from it",
-            required=True,
-        ),
+        replace(MOTION, required=False),
+        SWING,
         UNDERCUT,
     ),
+    alternatives=(("motion", ()), ("swing", ())),
 )
 
 
 def check(cam: Values, reader: Reader) -> None:
     """Note segments that do not fill the half turn."""
-    if "motion" in cam:
-        check_filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader, why=_OTHER_HALF)
+    check_half_turn(cam, reader, "two parallel faces")
 
 
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     """Make the cam of values in which there is no fault."""
-    return ConstantBreadthCam(cam["base_radius"], cam["motion"], cam.get("undercut", "refuse"))
+    undercut: Undercut = cam.get("undercut", "refuse")
+    return ConstantBreadthCam(
+        cam["base_radius"], cam["swing" if "swing" in cam else "motion"], undercut, "swing" in cam
+    )
 
 
 FAMILY = Family(ConstantBreadthCam, TABLE, build, check)

@@ -13,21 +13,18 @@ import numpy as np
 
 from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Intent, Undercut
 from camgeo.cams.guided import GuidedCam
-from camgeo.cams.motion import MotionAsked, check_filled, motion_field
-from camgeo.recipe.schema.fields import Kind, Table, length
+from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
+from camgeo.recipe.schema.fields import Table, length
 
 if TYPE_CHECKING:
+    from camgeo.cams.motion import MotionAsked
     from camgeo.curve.moving_frame import Displacement, Translating
     from camgeo.recipe.schema.reader import Reader, Values
     from kin.follower.follower import Follower as Judged
-    from kin.law.joints import Joint
-    from kin.law.sources.motion import Motion
-
-_OTHER_HALF = "two opposite rollers hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
 
 
 @dataclass(frozen=True)
-class ConstantDiameterCam(GuidedCam):
+class ConstantDiameterCam(HalfTurnCam, GuidedCam):
     """A cam between two opposite rollers of one frame, from the motion over one half turn."""
 
     kind: ClassVar[str] = "constant-diameter"
@@ -54,14 +51,7 @@ class ConstantDiameterCam(GuidedCam):
         from camgeo.curve.moving_frame import Displacement
         from kin.law.sources.motion import opposed
 
-        return Displacement.of(opposed(self._half_turn()))
-
-    def _half_turn(self) -> Motion:
-        return self.motion.motion(math.pi, "motion", -1)
-
-    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
-        """Those of the half turn; the other half has them too, turned round."""
-        return self._half_turn().joints
+        return Displacement.of(opposed(self.half_turn()))
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """A frame with two rollers."""
@@ -91,12 +81,7 @@ TABLE = Table(
     (
         length("base_radius", "radius of the base circle", required=True),
         length("roller_radius", "radius of both rollers", required=True),
-        motion_field(
-            "motion",
-            Kind.LENGTH,
-            "motion over one half turn, 180 degrees; the other half follows from it",
-            required=True,
-        ),
+        MOTION,
         UNDERCUT,
     ),
 )
@@ -104,8 +89,7 @@ TABLE = Table(
 
 def check(cam: Values, reader: Reader) -> None:
     """Note segments that do not fill the half turn."""
-    if "motion" in cam:
-        check_filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader, why=_OTHER_HALF)
+    check_half_turn(cam, reader, "two opposite rollers")
 
 
 def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001

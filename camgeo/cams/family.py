@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
     from kin.follower.follower import Follower as Judged
+    from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
@@ -145,6 +146,19 @@ class Cam(ABC):
     def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:
         """What kin judges files by: the follower with its law; `breadth` is a yoke's, `face` that of a pair."""
 
+    @property
+    def by_linkage(self) -> bool:
+        """Whether the lengths of the linkage shape the cam."""
+        return False
+
+    def in_frame(self, ground: float, rocker: float, side: float) -> Cam:  # noqa: ARG002
+        """The cam told of the links that its square frame slides on (`kin.law.frame_swing`), mm."""
+        return self
+
+    def frame_swing(self) -> FrameSwing | None:
+        """The law by which a recipe lets the frame swing over the shaft angle, if it gives one."""
+        return None
+
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """Angle between the contact's normal and the follower's way, rad, over parameters of the contour (n,).
 
@@ -201,9 +215,9 @@ class Cam(ABC):
         """Say how the follower comes to swing less; `mm` is the recipe's unit."""
         return "a smaller swing"
 
-    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> str:  # noqa: ARG002
-        """Say which size keeps the pressure angle below two angles, rad; empty where none is known."""
-        return ""
+    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:  # noqa: ARG002
+        """Say which size keeps the pressure angle below two angles, rad, with the cam; None where none is known."""
+        return None
 
     def rounder_pitch(self, intent: Intent, radius: float, mm: float) -> str:  # noqa: ARG002
         """Say what makes the roller half the pitch curve's least convex radius (mm); empty where nothing rolls."""

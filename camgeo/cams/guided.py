@@ -7,6 +7,7 @@ its parallel by the roller's radius.
 from __future__ import annotations
 
 from abc import abstractmethod
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, cast
 
 from camgeo.cams.family import Cam, Circle, Profile
@@ -70,15 +71,18 @@ class GuidedCam(Cam):
         radius, sense = self.touch_radius, float(self.metal)
         return {"slope": pitch.slope, "spin": lambda tau, side=1: pitch.spin(tau, side, radius, sense)}
 
-    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> str:
+    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius on this stem; a cam with an arm has words of its own."""
         from camgeo.curve.sizing import least_stem
 
         if self.unit != "mm":
-            return ""
+            return None
         found = least_stem(cast("Displacement", intent), rising, falling, cast("Translating", self.guide).offset)
         base = (found.prime - self.metal * self.touch_radius) / mm
-        return f"a base radius of {upward(base)}" if base > 0.0 else ""
+        if base <= 0.0:
+            return None
+        size = upward(base)
+        return f"a base radius of {size}", replace(self, base_radius=float(size) * mm)  # type: ignore[type-var]
 
     def rounder_pitch(self, intent: Intent, radius: float, mm: float) -> str:  # noqa: ARG002
         """The base radius at which the roller is half of the pitch curve's least convex radius."""

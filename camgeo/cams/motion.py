@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.lift_table import FILE, Rows, Unit, read_rows
 from camgeo.cams.segments import read_segments, segment_table, segments_schema
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from kin.law.sources.motion import Motion
 
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law.programme)
+_ROUNDING = 1e-9  # of a stroke that is just as great as it may be
 _ZERO = 1e-11  # of the greatest displacement: a beginning below this is rounding
 MOST_POINTS = 1000
 MOST_REPEATS = 100
@@ -33,20 +34,47 @@ LEAST_READING = 1e-6  # of the greatest displacement, where a recipe gives none:
 
 
 class MotionAsked(ABC):
-    """A motion as a recipe gives it; compares, hashes and travels between processes. Lengths in mm, angles in rad."""
+    """A motion as a recipe gives it; compares, hashes and travels between processes. Lengths in mm, angles in rad.
+
+    `scale` mm or rad are one of the recipe's units; `source` is the key of what it comes from, behind its field's path.
+    """
+
+    scale: float
+    source: ClassVar[str] = ""
 
     def motion(self, total: float, field: str, around: int | None) -> Motion:
         """Make the motion over `total` rad, or with `around` 1 over an equal part of it that repeats.
 
-        Raises kin's IntentError with the field of what does not fit. How its parts join is told by its `joints`.
+        Raises kin's IntentError with the field of what does not fit. How its parts join is said by its `joints`.
         """
         found = self._made(total, field, around)
+        self._demand_within(found, f"{field}{self.source}")
         return found.from_lowest() if around == 1 else found
+
+    def _demand_within(self, motion: Motion, field: str) -> None:
+        """Raise IntentError for a motion over more than any stroke may be."""
+        from kin.law.programme import IntentError
+        from kin.law.sources.peaks import extremes
+
+        least, _, greatest, at = extremes(motion.motion, 0)
+        stroke = (greatest - least) / self.scale
+        if stroke > MOST * (1.0 + _ROUNDING):
+            raise IntentError(
+                f"a motion over {stroke:.10g} in all, to its greatest displacement at {math.degrees(at):.6g} degrees; "
+                f"give displacements that differ by {MOST:.0f} at most",
+                field,
+                math.degrees(at),
+            )
 
     @property
     def covered(self) -> float | None:
         """Angle in rad that segments fill, None of a source that fills any."""
         return None
+
+    @property
+    def last(self) -> float | None:
+        """Last angle in rad of a source that tells one; None of one that goes on."""
+        return self.covered
 
     @property
     def repeats(self) -> int:
@@ -63,6 +91,7 @@ class SegmentsAsked(MotionAsked):
 
     segments: tuple[MotionSegment, ...]
     repeat: int = 1
+    scale: float = field(default=1.0, compare=False)
 
     @property
     def repeats(self) -> int:
@@ -88,6 +117,7 @@ class FormulaAsked(MotionAsked):
 
     text: str
     scale: float
+    source: ClassVar[str] = ".formula"
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         from kin.law.formula.formula import Formula
@@ -108,6 +138,12 @@ class TableAsked(MotionAsked):
     rows: Rows
     reading: float
     scale: float
+    source: ClassVar[str] = ".table"
+
+    @property
+    def last(self) -> float | None:
+        """That of the last row."""
+        return self.rows.theta[-1] if self.rows.theta else None
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         return _smoothed(self, total, field, around)
@@ -134,6 +170,12 @@ class PointsAsked(MotionAsked):
 
     points: tuple[tuple[float, float], ...]
     scale: float
+    source: ClassVar[str] = ".points"
+
+    @property
+    def last(self) -> float | None:
+        """That of the last point."""
+        return self.points[-1][0]
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         from kin.law.sources.points import from_points
@@ -171,6 +213,8 @@ class LobeAsked(MotionAsked):
     lift: float
     half: float
     powers: tuple[float, ...]
+    scale: float = field(default=1.0, compare=False)
+    source: ClassVar[str] = ".lobe"
 
     def _made(self, total: float, field: str, around: int | None) -> Motion:
         from kin.law.sources.lobe import lobe
@@ -191,8 +235,13 @@ def _demand_zero(value: float, within: float, scale: float, field: str, where: s
 # --- in a recipe ------------------------------------------------------------------------------------------------------
 
 
-def motion_field(name: str, stroke: Kind, about: str, *, whole_turn: bool = False, required: bool = False) -> Field:
-    """Make the field of a motion whose strokes are lengths or angles; one over a `whole_turn` may repeat itself."""
+def motion_field(
+    name: str, stroke: Kind, about: str, *, whole_turn: bool = False, longest: int = 180, required: bool = False
+) -> Field:
+    """Make the field of a motion whose strokes are lengths or angles; one over a `whole_turn` may repeat itself.
+
+    `longest` degrees are those of a segment, where it is not over a whole turn.
+    """
     sources = _sources(stroke, whole_turn=whole_turn)
     form = Form(
         "a list of motion segments",
@@ -201,12 +250,12 @@ def motion_field(name: str, stroke: Kind, about: str, *, whole_turn: bool = Fals
         lambda field: {"anyOf": [segments_schema(field), table_schema(sources)]},
         instead=sources,
     )
-    return Field(name, Kind.OWN, about, required, table=_segment(stroke, whole_turn=whole_turn), form=form)
+    return Field(name, Kind.OWN, about, required, table=_segment(stroke, 360 if whole_turn else longest), form=form)
 
 
 @cache
-def _segment(stroke: Kind, *, whole_turn: bool) -> Table:
-    return segment_table(stroke, 360 if whole_turn else 180)
+def _segment(stroke: Kind, longest: int) -> Table:
+    return segment_table(stroke, longest)
 
 
 @cache
@@ -244,7 +293,7 @@ def _sources(stroke: Kind, *, whole_turn: bool) -> Table:
         return Table(fields, alternatives)
     repeat = Field("repeat", Kind.INTEGER, "how often the segments fill a turn", at_least=1, at_most=MOST_REPEATS)
     form = Form("a list of motion segments", "a list of segments", partial(_read_list, stroke), segments_schema)
-    inner = _segment(stroke, whole_turn=True)
+    inner = _segment(stroke, 360)
     segments = Field("segments", Kind.OWN, "the segments of 360/repeat degrees", table=inner, form=form)
     return Table((repeat, segments, *fields), (("segments", ("repeat",)), *alternatives))
 
@@ -273,13 +322,13 @@ def _read(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> 
     if "points" in values:
         return PointsAsked(values["points"], scale)
     if "lobe" in values:
-        return LobeAsked(**values["lobe"])
+        return LobeAsked(**values["lobe"], scale=scale)
     return _table(stroke, reader, values, join(path, "table"))
 
 
 def _read_list(stroke: Kind, reader: Reader, field: Field, node: Node, path: str) -> SegmentsAsked | None:
     segments = read_segments(reader, field, node, path, stroke)
-    return SegmentsAsked(segments) if segments else None
+    return SegmentsAsked(segments, scale=reader.scale(stroke)) if segments else None
 
 
 def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAsked | None:
@@ -289,7 +338,11 @@ def _table(stroke: Kind, reader: Reader, values: Values, path: str) -> TableAske
     if found is None:
         return None
     rows, place = found
-    largest = max(map(abs, rows.s), default=0.0)
+    largest, line = max(zip(map(abs, rows.s), rows.lines, strict=True), default=(0.0, 0))
+    if MOST * reader.scale(stroke) < largest < math.inf:  # what is not finite is refused with the other faults of rows
+        problem = f"{values['table']}, line {line}: a displacement above {MOST:.0f}"
+        reader.fault_at(path, problem, None, "give a table of smaller ones")
+        return None
     reading = values.get("reading", max(place, LEAST_READING * largest))
     return TableAsked(values["table"], rows, reading, reader.scale(stroke))
 
@@ -316,7 +369,7 @@ def _read_points(
 
 
 def _points(_: Field) -> Schema:
-    point = {"type": "array", "items": number_schema(), "minItems": 2, "maxItems": 2}
+    point = {"type": "array", "items": number_schema(unit=Kind.MOTION), "minItems": 2, "maxItems": 2}
     return {"type": "array", "items": point, "minItems": 1, "maxItems": MOST_POINTS}
 
 

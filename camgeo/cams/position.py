@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
@@ -76,8 +77,39 @@ class Law(Protocol):
         ...
 
 
+class _Turn(ABC):
+    """What follows from `rows`."""
+
+    @abstractmethod
+    def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
+        """Position and its derivatives by the shaft angle."""
+
+    def turn(self, shaft: Array, order: int) -> Array:
+        """The same over one turn."""
+        return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
+
+
+class _Swing:
+    """How an angle about a pivot is shown."""
+
+    title: ClassVar[str] = "swing"
+    unit: ClassVar[str] = "deg"
+
+    def column(self, units: str) -> str:  # noqa: ARG002
+        """Name of its column."""
+        return "follower_deg"
+
+    def shown(self, mm: float) -> float:  # noqa: ARG002
+        """Degrees."""
+        return math.degrees(1.0)
+
+    def converted(self, value: Array, mm: float) -> Array:  # noqa: ARG002
+        """Degrees."""
+        return np.degrees(value)
+
+
 @dataclass(frozen=True)
-class LiftPosition:
+class LiftPosition(_Turn):
     """Along a line, by a law whose parameter is the shaft angle; `datum` is the law's value at lift 0, mm."""
 
     law: Law
@@ -103,10 +135,6 @@ class LiftPosition:
         found[0] -= self.datum
         return found
 
-    def turn(self, shaft: Array, order: int) -> Array:
-        """The same over one turn."""
-        return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
-
     def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
         """Of the first contact; a second one, opposite, is not tabled."""
         return {"": relative}
@@ -125,24 +153,10 @@ class LiftPosition:
 
 
 @dataclass(frozen=True)
-class ArmPosition(LiftPosition):
+class ArmPosition(_Swing, LiftPosition):
     """About a pivot, by a law whose parameter is the shaft angle, rad; `arm` is what it works at, mm."""
 
     arm: float = 1.0
-    title: ClassVar[str] = "swing"
-    unit: ClassVar[str] = "deg"
-
-    def column(self, units: str) -> str:  # noqa: ARG002
-        """Name of its column."""
-        return "follower_deg"
-
-    def shown(self, mm: float) -> float:  # noqa: ARG002
-        """Degrees."""
-        return math.degrees(1.0)
-
-    def converted(self, value: Array, mm: float) -> Array:  # noqa: ARG002
-        """Degrees."""
-        return np.degrees(value)
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
         """Swing in rad, and the arm in mm."""
@@ -150,33 +164,15 @@ class ArmPosition(LiftPosition):
 
 
 @dataclass(frozen=True)
-class SwingPosition:
+class SwingPosition(_Swing, _Turn):
     """About a pivot, by a law of transmission; `share` of its angle psi is the follower's own swing."""
 
     law: Transmission
     share: float = 1.0
-    title: ClassVar[str] = "swing"
-    unit: ClassVar[str] = "deg"
-
-    def column(self, units: str) -> str:  # noqa: ARG002
-        """Name of its column."""
-        return "follower_deg"
-
-    def shown(self, mm: float) -> float:  # noqa: ARG002
-        """Degrees."""
-        return math.degrees(1.0)
-
-    def converted(self, value: Array, mm: float) -> Array:  # noqa: ARG002
-        """Degrees."""
-        return np.degrees(value)
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Swing, rad, and its derivatives."""
         return self.share * self.law.psi_of_shaft(shaft, order, side)
-
-    def turn(self, shaft: Array, order: int) -> Array:
-        """The same over one turn."""
-        return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
 
     def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
         """Of A and B. The law repeats itself with phi - psi + delta in place of phi and -psi in place of psi (W 4.9).

@@ -14,7 +14,7 @@ from camgeo.recipe.schema.fields import Field, Kind, length, mapping
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from camgeo.cams.disc import DiscCam, OscillatingRoundCam, RoundCam, TranslatingFaceCam, TranslatingRoundCam
+    from camgeo.cams.disc_cams import DiscCam, OscillatingRoundCam, RoundCam, TranslatingFaceCam, TranslatingRoundCam
     from camgeo.cams.family import Intent
     from camgeo.curve.curve import Shape
     from camgeo.curve.moving_frame import Displacement

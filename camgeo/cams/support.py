@@ -15,19 +15,23 @@ from camgeo.cams.family import (
     Family,
     Harmonics,
     Intent,
+    Profile,
     Undercut,
 )
 from camgeo.cams.flat_faced import FlatFacedCam
-from camgeo.common.rounding import upward
+from camgeo.common.rounding import NOISE, upward
 from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
     from kin.law.support_function import Lift
 
+FREE = 3  # angles of a Reuleaux polygon that follow from the others
 LOOKS = 72  # places at which the size of a formula's values is looked at
 LEAST_PART = 1e-9  # of its farthest point from the shaft: a cam with a smaller mean radius is lost in rounding
+LEAST_ANGLE = 0.1  # degrees: on a cam of 50 mm an arc of 0.09 mm
 ROUNDING = 1e-15  # of the same: a mean radius below it is 0
+LEAST_PIECE = 1e-5  # mm: chord of an arc that every file holds; the kernel of STEP takes points within 1e-7 mm as one
 
 
 @dataclass(frozen=True)
@@ -49,11 +53,16 @@ class FourierShape:
 
 @dataclass(frozen=True)
 class ReuleauxShape:
-    """A regular Reuleaux polygon with an odd number of sides and rounded corners, in mm."""
+    """A Reuleaux polygon with an odd number of sides, mm; its corners sharp at rounding 0.
+
+    `angles`, rad, are those for which the cam turns about its first corners, sides - 3 in number; without them the
+    polygon is regular.
+    """
 
     sides: int
     breadth: float
-    rounding: float
+    rounding: float = 0.0
+    angles: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -90,10 +99,20 @@ class SupportCam(FlatFacedCam):
             found = support_function.lift_from_fourier(shape.mean, dict(shape.cos), dict(shape.sin), self.shaft)
             return _with_size(found, "fourier.mean")
         if isinstance(shape, ReuleauxShape):
-            found = support_function.lift_reuleaux(shape.sides, shape.breadth, shape.rounding, self.shaft)
+            of = shape.sides, shape.breadth, shape.rounding, self.shaft, shape.angles
+            found = support_function.lift_reuleaux(*of)
             return _with_size(found, "reuleaux.breadth")
         found = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, self.shaft)
         return _with_size(found, "hypocycloid.breadth")
+
+    def profile(self, intent: Intent) -> Profile:
+        """The envelope of the face; the sharp corners of a Reuleaux polygon are corners of the contour."""
+        made = super().profile(intent)
+        if not isinstance(self.shape, ReuleauxShape):
+            return made
+        from camgeo.curve.support import with_corners
+
+        return replace(made, curve=with_corners(made.base))
 
     @property
     def size_field(self) -> tuple[str, float]:
@@ -175,7 +194,9 @@ def _formula(shape: FormulaShape, shaft: tuple[float, float]) -> Lift:
     largest = int(np.argmax(size))
     if size[largest] > MOST:  # other lengths are bounded as they are read
         at = math.degrees(t[largest])
-        raise IntentError(f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}", "p", at)
+        raise IntentError(
+            f"p reaches {size[largest]:.6g} at {at:.6g} degrees, above {MOST:.0f}; give a p of smaller values", "p", at
+        )
     return lift
 
 
@@ -194,10 +215,27 @@ _FOURIER = mapping(
 
 _REULEAUX = mapping(
     "reuleaux",
-    "a regular Reuleaux polygon with rounded corners",
+    "a Reuleaux polygon, regular or by its angles, with rounded or sharp corners",
     _odd("sides", "number of sides"),
     length("breadth", "constant breadth", required=True),
-    length("rounding", "radius of the corners, below half the breadth", required=True),
+    Field(
+        "rounding",
+        Kind.LENGTH,
+        "radius of the corners, below half the breadth; at 0 they are sharp",
+        default="0",
+        at_least=0,
+        at_most=MOST,
+    ),
+    Field(
+        "angles",
+        Kind.NUMBERS,
+        "angles for which the cam turns about its corners, in order; all but the last three",
+        default="all equal",
+        unit=Kind.ANGLE,
+        at_least=LEAST_ANGLE,
+        at_most=180,
+        most=96,
+    ),
 )
 
 
@@ -230,12 +268,34 @@ TABLE = Table(
 
 
 def check(cam: Values, reader: Reader) -> None:
-    """Note corners that leave no side."""
+    """Note corners that leave no side or are nearly none, and too few or too many angles."""
     reuleaux = cam.get("reuleaux", {})
+    if {"sides", "angles"} <= reuleaux.keys():
+        sides, given = reuleaux["sides"], len(reuleaux["angles"])
+        remedy = f"give {sides - FREE}; the last three follow" if sides > FREE else "leave it out: it is regular"
+        if given != sides - FREE:
+            reader.fault_at("cam.reuleaux.angles", f"not as many as {sides} sides leave open", str(given), remedy)
     if {"breadth", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] >= reuleaux["breadth"] / 2:
         remedy = f"give less than {reuleaux['breadth'] / 2 / reader.mm:g} {reader.units}"
         value = f"{reuleaux['rounding'] / reader.mm:g}"
         reader.fault_at("cam.reuleaux.rounding", "not below half the breadth", value, remedy)
+    if {"sides", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] > 0.0:
+        arc = 2.0 * math.sin(0.5 * _least_angle(**reuleaux))  # chord of a corner's arc of radius 1
+        if arc * reuleaux["rounding"] < LEAST_PIECE * (1.0 - NOISE):
+            remedy = f"give at least {upward(LEAST_PIECE / arc / reader.mm)} {reader.units}"
+            value = f"{reuleaux['rounding'] / reader.mm:g}"
+            reader.fault_at("cam.reuleaux.rounding", "a corner smaller than a file can hold", value, remedy)
+
+
+def _least_angle(sides: int, angles: tuple[float, ...] = (), **_: float) -> float:
+    """Least of the angles, rad, for which the cam turns about a corner; the regular one where none has those given."""
+    from kin.law.programme import IntentError
+    from kin.law.reuleaux import closed_angles
+
+    try:
+        return min(closed_angles(sides, angles)) if angles else math.pi / sides
+    except IntentError:
+        return math.pi / sides
 
 
 def build(cam: Values, mm: float) -> Cam:

@@ -19,6 +19,7 @@ from camgeo.recipe.figures import (
     FIGURES,
     FORMER,
     LEAST_WALL,
+    PITCH_RADIUS,
     PRESSURE_ANGLE,
     RADIUS,
     VELOCITY_RATIO,
@@ -80,10 +81,10 @@ OfFile: TypeAlias = "Callable[[Scene, FileRequest], bool]"
 class Declared:
     """One check.
 
-    `units` are those it may have, lengths as mm. `exact` tells whether it is made of the exact cam, its motion and
+    `units` are those it may have, lengths as mm. `exact` says whether it is made of the exact cam, its motion and
     mechanism, `of_file` whether of a file; `why_not` why it is not made, empty where that needs no words. `field` is
     the recipe's field that it hangs on most, `own_field` the one that takes its place where the recipe gives it.
-    `remedy` tells what would let it hold, empty where nothing would or where the check itself tells it. `backlash` is
+    `remedy` says what would let it hold, empty where nothing would or where the check itself says it. `backlash` is
     whether it concerns what is left between contour and follower; `in_frame` whether under a linkage it concerns the
     cam in its frame alone, its place being the relative angle then. `formerly` is its former name.
     """
@@ -170,7 +171,7 @@ def _reached(scene: Scene, file: FileRequest) -> bool:
 
 
 def _ringed(scene: Scene, file: FileRequest) -> bool:
-    return scene.recipe.part.outer is not None and _contour(scene, file)
+    return scene.recipe.part.outer is not None and _contour(scene, file) and file.kind != "gcode"
 
 
 def _bored(scene: Scene, file: FileRequest) -> bool:
@@ -281,7 +282,9 @@ def _motion_lost(scene: Scene) -> str:
 
 # --- the checks: of the motion and the curve --------------------------------------------------------------------------
 
-CURVATURE = Declared(RADIUS, ("mm",), _always, remedy=remedies.rounder)
+CURVATURE = Declared(RADIUS, ("mm",), lambda scene: not scene.roller, remedy=remedies.rounder)
+PITCH = Declared(PITCH_RADIUS, ("mm",), lambda scene: scene.roller, remedy=remedies.rounder, formerly=RADIUS)
+BENT = frozenset({CURVATURE.name, PITCH.name})  # of a cam the one or the other: the curve that undercut hangs on
 UNDERCUT_LOCAL = Declared("undercut-local", ("mm",), _always)
 UNDERCUT_GLOBAL = Declared(
     "undercut-global", ("mm",), lambda scene: scene.roller, why_not=_convex, field="cam.roller_radius"
@@ -333,8 +336,8 @@ ARCS = Declared("arcs", ("mm",), of_file=_program)
 RAPID = Declared("rapid", ("", "faults"), of_file=_program)
 DEPTH = Declared("depth", ("mm",), of_file=_program)
 DIRECTION = Declared("direction", ("", "faults"), of_file=_program)
-ENTRY = Declared("entry", ("deg",), of_file=_program)
-GOUGE = Declared("gouge", ("mm",), of_file=_program)
+ENTRY = Declared("entry", ("deg",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
+GOUGE = Declared("gouge", ("mm",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
 BORE = Declared("bore", ("mm",), of_file=_bored, why_not=_no_bore, field="part.bore")
 OUTER = Declared("outer", ("mm",), of_file=_ringed, field="part.outer")
 HOLES = Declared("holes", ("mm",), of_file=_drilled, field="part")
@@ -404,7 +407,7 @@ def _of_figure(name: str, figure: Figure) -> Declared:
         return False
 
     former = LIMIT + FORMER[name] if name in FORMER else ""
-    # the check itself tells what would do
+    # the check itself says what would do
     return Declared(LIMIT + name, (), given, of_file, field=f"limits.{name}", formerly=former)
 
 

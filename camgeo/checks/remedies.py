@@ -51,6 +51,13 @@ def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Rec
     return f"a chamfer below {downward(value)} {check['unit']}" if value > 0.0 else NO_CHAMFER
 
 
+def other_entry(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell where else the cutter may come to the path; nothing of a hub that is cut into, or of no milling."""
+    if check["value"] is None or recipe.manufacture is None:
+        return ""
+    return "another manufacture.start, or a smaller manufacture.lead_in"
+
+
 NO_CHAMFER = "no chamfer, or a contour without corners"
 
 
@@ -63,10 +70,11 @@ def lone_ring(recipe: Recipe) -> bool:
 def smaller_bore(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
     """Tell which bore, or outline of a ring, leaves the wall; of a part with more the check itself names the edges."""
     value, limit, part = check["value"], check["limit"], recipe.part
-    if value is None or limit is None or not (part.plain or lone_ring(recipe)):
+    outline = part.outer is not None and check.get("detail", "").startswith("opening and outline")  # the worst pair
+    if value is None or limit is None or not (part.plain or outline or lone_ring(recipe)):
         return ""
     less = 2.0 * (limit - value)
-    if lone_ring(recipe):
+    if outline or lone_ring(recipe):
         return f"a part.outer larger by more than {upward(less)} {check['unit']}"
     if part.bore is None:
         return ""

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.schema.errors import RecipeError
 
 PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
 
@@ -30,11 +31,15 @@ class Task:
 
 @dataclass(frozen=True)
 class Result:
-    """What became of one recipe: its report, None where it came to none; a message for standard error; the status."""
+    """What became of one recipe: its report, None where it came to none; a message for standard error; the status.
+
+    `errors` are the faults of the recipe, of which the message is made.
+    """
 
     report: Report | None
     message: str
     status: int
+    errors: tuple[RecipeError, ...] = ()
 
 
 def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Result]:
@@ -66,9 +71,9 @@ def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Res
 
 
 def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Result:
-    """Run one recipe; a wrong recipe, the disk and a missing package are told in the result, not raised."""
+    """Run one recipe; a wrong recipe, the disk and a missing package are reported in the result, not raised."""
     from camgeo.api import run
-    from camgeo.output.output_folder import SurroundingsError
+    from camgeo.common.errors import SurroundingsError
     from camgeo.recipe.schema.errors import RecipeErrors
 
     try:
@@ -77,7 +82,7 @@ def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Resu
         else:
             report = run.export(recipe, task.out, only=task.only, progress=progress)
     except RecipeErrors as errors:
-        return Result(None, str(errors), WRONG)
+        return Result(None, str(errors), WRONG, errors.errors)
     except (SurroundingsError, OSError) as error:
         return Result(None, f"camgeo: {recipe.name}: {error}", SURROUNDINGS)
     except ModuleNotFoundError as error:

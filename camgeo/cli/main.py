@@ -6,7 +6,7 @@ import argparse
 import gc
 import sys
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ from camgeo.common.terminal import complain, escaped, open_streams, say, say_jso
 from camgeo.common.units import UNIT_MM
 from camgeo.output.mixture import mixtures
 from camgeo.recipe.export import KINDS
+from camgeo.recipe.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
     from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.schema.errors import RecipeError
 
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
@@ -111,7 +113,7 @@ def _parser() -> argparse.ArgumentParser:
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
     verify.add_argument("files", nargs="+", metavar="FILE")
-    _add_options(verify, "for all the files, in the recipe's unit")
+    _add_options(verify, "for all the files, in the recipe's unit or with its own: 0.0005in")
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
     sweep_command.add_arguments(sweep, _jobs)
@@ -131,7 +133,7 @@ def _parser() -> argparse.ArgumentParser:
 def _add_recipes(command: argparse.ArgumentParser) -> None:
     """Give a command of several recipes what all such take."""
     command.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
-    _add_options(command, "in place of export.tolerance, in the recipe's unit")
+    _add_options(command, "in place of export.tolerance, in the recipe's unit or with its own: 0.0005in")
     command.add_argument(
         "--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as are worthwhile)"
     )
@@ -144,16 +146,18 @@ def _add_options(command: argparse.ArgumentParser, tolerance: str) -> None:
     command.add_argument("--json", action="store_true", help="the reports as JSON, for machines")
 
 
-def _length(text: str) -> float:
+def _length(text: str) -> str:
+    """Give a length as written, which may carry its unit; that of one that does not is the recipe's."""
     from camgeo.recipe.schema.fields import MOST
+    from camgeo.recipe.schema.scalars import Complaint
 
     try:
-        value = float(text)
-    except ValueError:
+        value = read_quantity(text, "mm")
+    except Complaint:
         value = 0.0
     if not 0.0 < value <= MOST:
         raise argparse.ArgumentTypeError(f"a tolerance is a length above 0 and up to {MOST:.10g}, not {text}")
-    return value
+    return text
 
 
 def _jobs(text: str) -> int:
@@ -172,7 +176,13 @@ def _complain(text: str) -> None:
 def _export(arguments: argparse.Namespace) -> int:
     if arguments.watch:
         return _watch(arguments)
-    recipes, status = _loaded(arguments.recipes, arguments.tolerance, arguments.only)
+    recipes, refused = _loaded(arguments.recipes, arguments.tolerance, arguments.only)
+    paths = [recipe.path.resolve() for recipe in recipes]
+    again = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
+    for recipe in again:
+        _complain(f"{escaped(str(recipe.path))}: the same recipe is named twice in this call; name it once")
+    if again:
+        return WRONG
     names = [recipe.name.casefold() for recipe in recipes]
     twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
     for recipe in twice:
@@ -180,12 +190,12 @@ def _export(arguments: argparse.Namespace) -> int:
         _complain(f"{escaped(str(recipe.path))}: {text}")
     if twice:
         return WRONG
-    return max(status, _told(recipes, Task(Path(arguments.out), tuple(arguments.only)), arguments))
+    return _told(recipes, refused, Task(Path(arguments.out), tuple(arguments.only)), arguments)
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    recipes, status = _loaded(arguments.recipes, arguments.tolerance, ())
-    return max(status, _told(recipes, Task(None), arguments))
+    recipes, refused = _loaded(arguments.recipes, arguments.tolerance, ())
+    return _told(recipes, refused, Task(None), arguments)
 
 
 def _watch(arguments: argparse.Namespace) -> int:
@@ -222,56 +232,70 @@ def _watch(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _loaded(paths: Sequence[str], tolerance: float | None, only: Sequence[str]) -> tuple[list[Recipe], int]:
-    """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong."""
+def _loaded(
+    paths: Sequence[str], tolerance: str | None, only: Sequence[str]
+) -> tuple[list[Recipe], dict[int, dict[str, Any]]]:
+    """Load the recipes that are sound and list a file of a kind in `only`; of the others say what is wrong.
+
+    Those others come second, by their place in the call, as a list of reports has them.
+    """
     from camgeo.cli.recipes import load
     from camgeo.recipe.schema.errors import RecipeErrors
 
     recipes: list[Recipe] = []
-    for path in paths:
+    refused: dict[int, dict[str, Any]] = {}
+    for i, path in enumerate(paths):
         try:
             recipe = load(path)
+            if only and not any(request.kind in only for request in recipe.export.files):
+                raise recipe.error("export.files", f"lists no {' or '.join(only)}, which --only requests")
         except RecipeErrors as errors:
             complain(str(errors))
-            continue
-        if only and not any(request.kind in only for request in recipe.export.files):
-            line, column = recipe.locate("export.files")
-            _complain(
-                f"{escaped(path)}:{line}:{column}: export.files lists no {' or '.join(only)}, which --only requests"
-            )
+            refused[i] = _unmade(path, str(errors), errors.errors)
             continue
         recipes.append(_at(recipe, tolerance))
-    return recipes, OK if len(recipes) == len(paths) else WRONG
+    return recipes, refused
 
 
-def _at(recipe: Recipe, tolerance: float | None) -> Recipe:
-    """Give the recipe with the tolerance of the call, in its own unit, if there is one."""
+def _unmade(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, Any]:
+    """Make the entry of a recipe that came to no report, for machines."""
+    found = [asdict(error) for error in errors] or [{"problem": message}]
+    return {"recipe": recipe, "ok": False, "errors": found}
+
+
+def _at(recipe: Recipe, tolerance: str | None) -> Recipe:
+    """Give the recipe with the tolerance of the call, in its own unit or the recipe's, if there is one."""
     if tolerance is None:
         return recipe
-    return replace(recipe, export=replace(recipe.export, tolerance=tolerance * recipe.mm))
+    within = read_quantity(tolerance, recipe.units) * recipe.mm
+    return replace(recipe, export=replace(recipe.export, tolerance=within))
 
 
-def _told(recipes: list[Recipe], task: Task, arguments: argparse.Namespace) -> int:
-    """Run recipes and print what came of each; the highest status."""
-    status = OK
-    reports: list[dict[str, Any]] = []
+def _told(recipes: list[Recipe], refused: dict[int, dict[str, Any]], task: Task, arguments: argparse.Namespace) -> int:
+    """Run recipes and print what came of each, in JSON with those `refused` in their places; the highest status."""
+    status = WRONG if refused else OK
+    entries: list[dict[str, Any]] = []
     for found in results(recipes, task, arguments.jobs):
         status = max(status, found.status)
         if found.report is not None:
             report: dict[str, Any] = dict(found.report)
             if task.out is None:
                 _mention(report, mixtures(Path(arguments.out) / found.report.recipe.name))
-            reports.append(report)
+            entries.append(report)
             if not arguments.json:
-                if arguments.verbose and len(reports) > 1:
+                if arguments.verbose and len(entries) > 1:
                     say("")
                 _show(report, verbose=arguments.verbose)
         if found.message:
             complain(found.message)
+        if found.report is None:
+            entries.append(_unmade(recipes[len(entries)].name, found.message, found.errors))
     if arguments.json:
         from camgeo.report.document import encoded
 
-        say_json(encoded(reports))
+        for place in sorted(refused):
+            entries.insert(place, refused[place])
+        say_json(encoded(entries))
     return status
 
 
@@ -304,7 +328,8 @@ def _verify(arguments: argparse.Namespace) -> int:
     try:
         recipe = _at(load(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
-        report = dict(verify(recipe, *paths, tolerance=arguments.tolerance, units=arguments.units))
+        within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
+        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units))
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:

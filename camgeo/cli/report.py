@@ -48,7 +48,7 @@ def _angle(text: str) -> float:
 def run(arguments: argparse.Namespace) -> int:
     """Write the page of one recipe: 0 every check holds, 1 one fails, which the page shows, 2 wrong, 3 surroundings."""
     from camgeo.cli.recipes import load
-    from camgeo.output.output_folder import SurroundingsError
+    from camgeo.common.errors import SurroundingsError
     from camgeo.output.pipeline import shown
     from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.report.page.page import page

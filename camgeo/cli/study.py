@@ -47,7 +47,7 @@ def _seconds(text: str) -> float:
 def run(arguments: argparse.Namespace) -> int:
     """Study one recipe: 0 the exact cam and every rung's file hold, 1 one does not, 2 wrong, 3 surroundings."""
     from camgeo.cli.recipes import load
-    from camgeo.output.output_folder import SurroundingsError
+    from camgeo.common.errors import SurroundingsError
     from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.sweep.study.document import document, table
     from camgeo.sweep.study.margins import margins
@@ -100,7 +100,7 @@ def _climbed(recipe: Recipe, design: Design, arguments: argparse.Namespace, prog
 
 
 def _write(recipe: Recipe, study: dict[str, Any], out: Path, *, ok: bool) -> None:
-    """Write study.json and its picture beside the recipe's files, both or neither; a missing package is told.
+    """Write study.json and its picture beside the recipe's files, both or neither; a missing package is reported.
 
     A study in which a check does not hold, of the exact cam or of a file, leaves the last good one and goes to
     `out`/<name>.rejected. That a ladder ends, at a tolerance that is refused or for want of time, is an ordinary end.

@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, str, int]:
     """Outcome, or what went wrong, and the exit status."""
-    from camgeo.output.output_folder import SurroundingsError
+    from camgeo.common.errors import SurroundingsError
     from camgeo.sweep.search.engines import EngineError
     from camgeo.sweep.search.job import VersionsError
     from camgeo.sweep.search.run import How

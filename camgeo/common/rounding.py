@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 
-NOISE = 1e-9  # share of a figure that is its own rounding: 6.000000000000001 is told as 6
+NOISE = 1e-9  # share of a figure that is its own rounding: 6.000000000000001 is reported as 6
 
 
 def upward(value: float, digits: int = 6) -> str:

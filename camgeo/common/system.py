@@ -76,7 +76,7 @@ def unlock(lock: int, path: Path) -> None:
 def uninterrupted() -> Iterator[None]:
     """Put an interrupt off to the end; a process that is begun meanwhile is deaf from its start, where a system can.
 
-    Both are needed: a thread of a library may still take the signal, and Python tells it to the main thread.
+    Both are needed: a thread of a library may still take the signal, and Python passes it to the main thread.
     """
     came: list[tuple[int, FrameType | None]] = []
     main = threading.current_thread() is threading.main_thread()

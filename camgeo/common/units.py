@@ -1,8 +1,9 @@
-"""Units of length that a file may be told to be in."""
+"""Units of length that a file may be stated to be in."""
 
 from __future__ import annotations
 
 from typing import Literal, TypeAlias
 
 Units: TypeAlias = Literal["mm", "cm", "m", "inch", "foot"]
-UNIT_MM: dict[Units, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4, "foot": 304.8}
+INCH = 25.4  # mm
+UNIT_MM: dict[Units, float] = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": INCH, "foot": 304.8}

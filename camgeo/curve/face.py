@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
-from camgeo.curve.rates import OfLaw, Source, bounds_of, cut, series_of, steady_rates
+from camgeo.curve.rates import OfLaw, Source, bounds_of, cut, series_of
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Side
@@ -38,17 +38,6 @@ class FaceShape(OfLaw[FacingT]):
     The parameter is the law's; the normal turns as ``t`` does, the point is ``E(t)(r + i r'/t')``, and
     ``sigma = (r + d2r/dt2) t'``.
     """
-
-    @property
-    def steady(self) -> Array:
-        """Speed and turn (m, 2) where the follower rests."""
-        return steady_rates(self, self.law.steady)
-
-    @property
-    def radii(self) -> Array:
-        """Radii of the stretches that are circular arcs (m,)."""
-        steady = self.steady
-        return steady[:, 0] / steady[:, 1]
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
         """Frame at parameters t (n,) of the law."""

@@ -19,7 +19,8 @@ import numpy as np
 
 from camgeo.curve.curvature import roots
 from camgeo.curve.curve import CurveError
-from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme
+from camgeo.curve.extremes import LEVELS, MOST, PARTS, SHARPNESS, Extreme, divided
+from camgeo.curve.support import is_sharp
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,8 +79,8 @@ def _integrals(curve: Curve, low: Array, high: Array) -> Array:
 
 
 def touched(contour: Curve, parameter: Array) -> Mask:
-    """Whether the contour has a point of each parameter (n,), or was trimmed away there."""
-    if contour.closed:
+    """Whether the contour has a point of each parameter (n,), a sharp corner or not, or was trimmed away there."""
+    if contour.closed or is_sharp(contour):
         return np.ones(parameter.shape, dtype=bool)
     period = contour.shape.period
     kept = [np.mod(parameter - run.low, period) <= run.high - run.low for run in contour.runs]
@@ -153,9 +154,7 @@ def _greatest(curve: Curve, value: Callable[[Frame], Array], pace: Callable[[Bou
         low, high, reach = low[open_], high[open_], reach[open_]
         if low.size > MOST:
             break
-        share = np.linspace(0.0, 1.0, PARTS + 1)
-        knots = low[:, None] * (1.0 - share) + high[:, None] * share
-        low, high = knots[:, :-1].ravel(), knots[:, 1:].ravel()
+        low, high = divided(low, high, PARTS)
     return Extreme(best, at, float(reach.max()) - best)
 
 

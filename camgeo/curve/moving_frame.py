@@ -13,6 +13,7 @@ momentary eccentricity s (C cos psi - L).
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
@@ -20,7 +21,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from camgeo.curve.curve import Bounds, Frame, columns
-from camgeo.curve.rates import OfLaw, bounds_of, cut, series_of, steady_rates
+from camgeo.curve.rates import OfLaw, SourceT, bounds_of, cut, series_of
 from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise
 from kin.law.programme import IntentError, first_harmonic
@@ -282,30 +283,24 @@ class Oscillating:
 
 
 @dataclass(frozen=True)
-class CentreShape(OfLaw[Displacement]):
-    """Path of a roller's centre round the standing cam, over the shaft angle; a knife edge's is the contour itself."""
+class FramedShape(OfLaw[SourceT]):
+    """Path of a point by the figures b, a and tau' of its moving frame, over the parameter of a motion."""
 
-    guide: Guide
+    @abstractmethod
+    def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
+        """Give the motion's figures as series."""
 
-    def __post_init__(self) -> None:
-        self.guide.demand(*self.law.range)
+    @abstractmethod
+    def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
+        """Give b, a and tau' as series of those."""
 
-    @property
-    def steady(self) -> Array:
-        """Speed and turn (m, 2) where the follower dwells and the curve is a circle about the shaft."""
-        return steady_rates(self, self.law.steady)
-
-    @property
-    def radii(self) -> Array:
-        """Radii of the stretches that are circular arcs (m,): dwells."""
-        steady = self.steady
-        return steady[:, 0] / steady[:, 1]
+    @abstractmethod
+    def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
+        """Give the point as complex numbers (n,), tau (n,), b and a (3, n) and tau' (2, n) with their derivatives."""
 
     def sample(self, t: Array, side: Side = 1) -> Frame:
-        """Frame at shaft angles t (n,)."""
-        s = self.law.derivatives(t, 3, side)
-        b, a, rate = self.guide.rows(s)
-        centre, travel = self.guide.place(t, s[0])
+        """Frame at parameters t (n,)."""
+        centre, travel, b, a, rate = self.rows(t, side)
         # `_rates` by hand
         speed = np.hypot(a[0], b[0])
         square = speed * speed
@@ -323,25 +318,45 @@ class CentreShape(OfLaw[Displacement]):
         )
 
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
-        """Taylor coefficients (order + 1, n) of speed and turn at shaft angles t (n,)."""
-        return series_of(self._figures, t, order, side, self._rates)
+        """Taylor coefficients (order + 1, n) of speed and turn at parameters t (n,)."""
+        return series_of(self.figures, t, order, side, self._rates)
 
     def bounds(self, low: Array, high: Array) -> Bounds:
         """Proved bounds over intervals (n,)."""
-        return bounds_of(self._figures, low, high, self._rates)
-
-    def _figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
-        return (self.law.on(tau, side),)
+        return bounds_of(self.figures, low, high, self._rates)
 
     def _rates(self, figures: tuple[Series, ...]) -> tuple[Series, Series]:
-        """Speed and turn from S: two orders fewer."""
-        b, a, rate = self.guide.frame(figures[0])
+        """Speed and turn from the motion's figures: two orders fewer."""
+        b, a, rate = self.frame(figures)
         a_slope = a.derivative()
         order = a_slope.order
         b_slope, a, b = cut(b.derivative(), order), cut(a, order), cut(b, order)
         square = a**2 + b**2
         bend = (b_slope * a - a_slope * b) * square**-1
         return elementary.sqrt(square), bend + (rate if isinstance(rate, float) else cut(rate, order))
+
+
+@dataclass(frozen=True)
+class CentreShape(FramedShape[Displacement]):
+    """Path of a roller's centre round the standing cam, over the shaft angle; a knife edge's is the contour itself."""
+
+    guide: Guide
+
+    def __post_init__(self) -> None:
+        self.guide.demand(*self.law.range)
+
+    def figures(self, tau: Series, side: Side = 1) -> tuple[Series, ...]:
+        """Give S."""
+        return (self.law.on(tau, side),)
+
+    def frame(self, figures: tuple[Series, ...]) -> tuple[Series, Series, Series | float]:
+        """Give those of the guide."""
+        return self.guide.frame(figures[0])
+
+    def rows(self, t: Array, side: Side) -> tuple[Array, Array, Array, Array, Array]:
+        """Give those of the guide at shaft angles t (n,)."""
+        s = self.law.derivatives(t, 3, side)
+        return (*self.guide.place(t, s[0]), *self.guide.rows(s))
 
     def slope(self, tau: Series, side: Side = 1) -> Series:
         """Tangent of the pressure angle as a series: a/b."""

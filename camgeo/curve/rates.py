@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
@@ -13,7 +14,7 @@ from kin.numeric.interval import Ball
 from kin.numeric.taylor import factorials
 
 if TYPE_CHECKING:
-    from camgeo.curve.curve import Shape, Side
+    from camgeo.curve.curve import Frame, Shape, Side
     from kin.numeric.arrays import Array, Mask
 
 Series = TypeVar("Series", Jet, BallJet)
@@ -42,7 +43,7 @@ FINE_ORDER = 9
 
 
 class Source(Protocol):
-    """What every motion tells of its stretches."""
+    """What every motion gives of its stretches."""
 
     @property
     def breaks(self) -> Array:
@@ -64,10 +65,14 @@ SourceT = TypeVar("SourceT", bound=Source)
 
 
 @dataclass(frozen=True)
-class OfLaw(Generic[SourceT]):
-    """What a shape has of its motion alone, whose parameter it shares."""
+class OfLaw(ABC, Generic[SourceT]):
+    """What a shape has of its motion, whose parameter it shares."""
 
     law: SourceT
+
+    @abstractmethod
+    def sample(self, t: Array, side: Side = 1) -> Frame:
+        """Frame at parameters t (n,)."""
 
     @property
     def period(self) -> float:
@@ -84,14 +89,21 @@ class OfLaw(Generic[SourceT]):
         """Equal parts of the motion: so has the curve, but for a turn."""
         return self.law.repeats
 
+    @property
+    def steady(self) -> Array:
+        """Speed and turn (m, 2) on the stretches where they are constant, as at dwells; nan on the others."""
+        rests = self.law.steady
+        out = np.full((rests.size, 2), np.nan)
+        if rests.any():
+            at = self.sample(stretches(self.law).mean(axis=1)[rests])
+            out[rests] = np.column_stack([at.speed, at.turn])
+        return out
 
-def steady_rates(shape: Shape, rests: Mask) -> Array:
-    """Speed and turn (m, 2) of a shape on the stretches where they are constant; nan on the others."""
-    out = np.full((rests.size, 2), np.nan)
-    if rests.any():
-        at = shape.sample(stretches(shape).mean(axis=1)[rests])
-        out[rests] = np.column_stack([at.speed, at.turn])
-    return out
+    @property
+    def radii(self) -> Array:
+        """Radii of the stretches that are circular arcs (m,); nan on the others."""
+        steady = self.steady
+        return steady[:, 0] / steady[:, 1]
 
 
 def stretches(of: Source | Shape) -> Array:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve.curve import Bounds, Frame, columns
+from camgeo.curve.curve import Bounds, Curve, Frame, Run, columns
 from kin.numeric.taylor import factorials
 
 if TYPE_CHECKING:
@@ -73,3 +73,20 @@ class SupportShape:
         one, none = np.ones_like(low), np.zeros_like(low)
         size = np.abs(mid) + rad
         return Bounds(mid[0] - rad[0], mid[0] + rad[0], one, one, size[1], none, size[2], none)
+
+
+def with_corners(curve: Curve) -> Curve:
+    """A whole curve whose arcs of radius 0 are corners: an open run for each arc between them; else the curve itself.
+
+    All stretches beside a corner are arcs, as of a Reuleaux polygon.
+    """
+    stretches = curve.runs[0].stretches
+    kept = [each for each in stretches.tolist() if curve.radius(each) != 0.0]
+    if len(kept) in {0, len(stretches)}:
+        return curve
+    return Curve(curve.shape, tuple(Run(low, high, (), closed=False) for low, high in kept))
+
+
+def is_sharp(contour: Curve) -> bool:
+    """Whether a contour has corners, and these are all its shape's arcs of radius 0: nothing of it is cut off."""
+    return not contour.closed and contour == with_corners(Curve.whole(contour.shape))

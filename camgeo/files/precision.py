@@ -7,7 +7,7 @@ which nine are written: 7.1e-10 mm.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,7 @@ from camgeo.fit.nodes import ToleranceError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from camgeo.fit.pieces import Outline
     from kin.numeric.arrays import Array
 
 # Least tolerance that is accepted, in worst displacements of a vertex. The quarter that is left to the fit makes the
@@ -38,6 +39,16 @@ class Precision:
     name: str
     nearest: Callable[[Array], Array]
     spacing: Callable[[float], float]
+
+    def in_units(self, mm: float) -> Precision:
+        """The same numbers of a file whose unit is `mm` mm long: in mm, what a reader makes of them."""
+        if mm == 1.0:
+            return self
+
+        def spacing(size: float) -> float:
+            return mm * self.spacing(size / mm) + 4.0 * float(np.spacing(size))  # the quotient and the product round
+
+        return replace(self, nearest=lambda values: self.nearest(values / mm) * mm, spacing=spacing)
 
     def rounded(self, points: Array) -> tuple[Array, float]:
         """Points (n, d) as written, without negative zeros, and the farthest that one moved."""
@@ -77,6 +88,16 @@ class Precision:
             )
 
 
+def converted(outline: Outline) -> float:
+    """Farthest in mm that writing an outline in another unit, and reading it back, moves one of its points.
+
+    A quotient and a product of each coordinate, each of which rounds by half a unit in the last place, and a factor
+    that is no double itself: two and a half in all, sqrt(2) times as much in the plane, and twice that for the control
+    points of a spline, which lie outside.
+    """
+    return 8.0 * float(np.spacing(np.abs(outline.box()).max()))
+
+
 def _single(values: Array) -> Array:
     return values.astype(np.float32).astype(np.float64)
 
@@ -91,5 +112,5 @@ def _nine_decimals(values: Array) -> Array:
 
 
 SINGLE = Precision("an STL", "single precision", _single, lambda size: float(np.spacing(np.float32(size))))
-# the product above is rounded too, which tells beyond 4.5 km
+# the product above is rounded too, which shows beyond 4.5 km
 DECIMALS = Precision("a 3MF", "nine decimals", _nine_decimals, lambda size: 1.0 / _UNIT + 2.0 * float(np.spacing(size)))

@@ -1,4 +1,4 @@
-"""Parts as STEP files (ISO 10303-21, AP214): exact solids, always in millimetres, written by Open CASCADE.
+"""Parts as STEP files (ISO 10303-21, AP214): exact solids, written by Open CASCADE.
 
 Numbers are written with 17 digits, which give back the same double; the kernel's own default of 13 would move a wall of
 a large radius. Nothing in the file depends on when, where or by whom it was written.
@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import io
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from camgeo.files.brep import need_kernel, solid_shape
 from camgeo.files.curves import misfit
+from camgeo.files.precision import converted
 from camgeo.fit.nodes import ToleranceError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from camgeo.files.solid import Solid
@@ -30,33 +31,45 @@ REAL = "%.16E"
 
 
 def write_step(
-    path: Path, outline: Outline, solid: Solid, *, tolerance: float, name: str = "", about: str = ""
+    path: Path,
+    outline: Outline,
+    solid: Solid,
+    *,
+    tolerance: float,
+    units: Literal["mm", "inch"] = "mm",
+    name: str = "",
+    about: str = "",
 ) -> Bound:
-    """Write the solid round an outline; returns the contour's bound as it is written, mm.
+    """Write the solid round an outline, mm, in a unit; returns the contour's bound as it is written, mm.
 
     Raises MissingExtraError without the kernel, ToleranceError where the bound is above the tolerance, RegionError as
     `solid_shape` does; OSError as the file system does.
     """
     need_kernel()
-    bound = outline.bound.widened(misfit(outline))
+    bound = outline.bound.widened(written_off(outline, units))
     if not bound.worst <= tolerance:
         raise ToleranceError(
             f"STEP: the contour would be off by {bound.worst:.6g} mm, more than {tolerance:.6g} mm: circles of nearly "
             "straight arcs are rounded",
             bound.worst,
         )
-    path.write_bytes(_text(solid_shape(outline, solid), name, about))
+    path.write_bytes(_text(solid_shape(outline, solid), units, name, about))
     return bound
 
 
-def _text(shape: Any, name: str, about: str) -> bytes:  # noqa: ANN401 - shapes of the kernel have no types
+def written_off(outline: Outline, units: str) -> float:
+    """Farthest in mm that the walls are off an outline: by misfits of circles, and by the numbers of another unit."""
+    return misfit(outline) + (0.0 if units == "mm" else converted(outline))
+
+
+def _text(shape: Any, units: str, name: str, about: str) -> bytes:  # noqa: ANN401 - shapes of the kernel have no types
     """Write a solid out, under a name."""
     from OCP.Interface import Interface_Static
     from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
     from OCP.StepData import StepData_StepWriter
 
     writer = STEPControl_Writer()  # brings the settings into being
-    with _settings(Interface_Static), _quiet():
+    with _settings(Interface_Static, TEXTS | {"write.step.unit": units.upper()}), _quiet():
         model = writer.Model(True)
         writer.Transfer(shape, STEPControl_StepModelType.STEPControl_ManifoldSolidBrep)
         _named(model, name, about)
@@ -69,11 +82,11 @@ def _text(shape: Any, name: str, about: str) -> bytes:  # noqa: ANN401 - shapes 
 
 
 @contextmanager
-def _settings(static: Any) -> Iterator[None]:  # noqa: ANN401 - the kernel has no types
+def _settings(static: Any, chosen: Mapping[str, str]) -> Iterator[None]:  # noqa: ANN401 - the kernel has no types
     texts = {key: static.CVal_s(key) for key in TEXTS}
     numbers = {key: static.IVal_s(key) for key in NUMBERS}
     try:
-        for key, text in TEXTS.items():
+        for key, text in chosen.items():
             static.SetCVal_s(key, text)
         for key, number in NUMBERS.items():
             static.SetIVal_s(key, number)

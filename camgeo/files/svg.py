@@ -3,7 +3,7 @@
 The groups have the names of a DXF's layers, and the numbers are those of a DXF: in drawing units, from the shaft, y
 upwards by a transform. Reference geometry is left out, since many machines cut whatever a drawing shows.
 
-SVG gives an arc by its ends, radius and flags, from which near half a turn nothing can be told exactly: an error e of
+SVG gives an arc by its ends, radius and flags, from which near half a turn nothing can be stated exactly: an error e of
 the radius moves the arc by up to sqrt(2 r e). Every arc is cut into such of a quarter turn at most. There the half
 chord is the radius times the sine of up to 45 degrees, and rounding of the numbers moves the arc by no more than a few
 roundings of its size, some 1e-15 of it.

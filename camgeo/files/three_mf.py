@@ -1,4 +1,4 @@
-"""Meshes as 3MF, the zip archive that slicers read; by the core specification 1.3 alone, in millimetres.
+"""Meshes as 3MF, the zip archive that slicers read; by the core specification 1.3 alone.
 
 An object a body, named; an item of the build a place. Coordinates are the shortest decimals that give back the doubles.
 The archive has no dates and a fixed order, so that the same meshes give the same bytes.
@@ -12,7 +12,9 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
 
+from camgeo.common.units import INCH
 from camgeo.files.markup import number, one_line
+from camgeo.files.precision import DECIMALS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -36,6 +38,7 @@ _LINKS = (
 )
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the first moment that a zip archive can name
 _LEVEL = 6
+_UNITS = {1.0: "millimeter", INCH: "inch"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,19 +50,22 @@ class Item:
     place: Array | None = None
 
 
-def write_3mf(path: Path, items: Sequence[Item], *, title: str, about: str = "") -> None:
-    """Write meshes, mm, each under its name and in its place; raises OSError as the file system does."""
+def write_3mf(path: Path, items: Sequence[Item], *, title: str, mm: float = 1.0, about: str = "") -> None:
+    """Write meshes, mm, each under its name and in its place, in a unit of `mm` mm, 1 or 25.4.
+
+    Raises KeyError for another unit, OSError as the file system does.
+    """
     lines = [
-        f'{_XML}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">',
+        f'{_XML}<model unit="{_UNITS[mm]}" xml:lang="en-US" xmlns="{_CORE}">',
         f'<metadata name="Title">{one_line(title)}</metadata>',
         *([f'<metadata name="Description">{one_line(about)}</metadata>'] if about else []),
         '<metadata name="Application">camgeo</metadata>',
         "<resources>",
     ]
     for k, item in enumerate(items, start=1):
-        lines += [f'<object id="{k}" type="model" name="{one_line(item.name)}"><mesh>', *_mesh(item.mesh)]
+        lines += [f'<object id="{k}" type="model" name="{one_line(item.name)}"><mesh>', *_mesh(item.mesh, mm)]
         lines.append("</mesh></object>")
-    lines += ["</resources>", "<build>", *(_built(k, item) for k, item in enumerate(items, start=1)), "</build>"]
+    lines += ["</resources>", "<build>", *(_built(k, item, mm) for k, item in enumerate(items, start=1)), "</build>"]
     lines += ["</model>", ""]
     with ZipFile(path, "w") as archive:
         for name, text in (("[Content_Types].xml", _TYPES), ("_rels/.rels", _LINKS), (_MODEL, "\n".join(lines))):
@@ -68,9 +74,10 @@ def write_3mf(path: Path, items: Sequence[Item], *, title: str, about: str = "")
             archive.writestr(entry, text, compresslevel=_LEVEL)
 
 
-def _mesh(mesh: Mesh) -> Iterable[str]:
+def _mesh(mesh: Mesh, mm: float) -> Iterable[str]:
+    points = mesh.points if mm == 1.0 else DECIMALS.nearest(mesh.points / mm)  # which the quotient has missed
     yield "<vertices>"
-    x, y, z = (map(number, column) for column in mesh.points.T.tolist())
+    x, y, z = (map(number, column) for column in points.T.tolist())
     for a, b, c in zip(x, y, z, strict=True):
         yield f'<vertex x="{a}" y="{b}" z="{c}"/>'
     yield "</vertices><triangles>"
@@ -79,7 +86,8 @@ def _mesh(mesh: Mesh) -> Iterable[str]:
     yield "</triangles>"
 
 
-def _built(k: int, item: Item) -> str:
+def _built(k: int, item: Item, mm: float) -> str:
     if item.place is None:
         return f'<item objectid="{k}"/>'
-    return f'<item objectid="{k}" transform="{" ".join(map(number, np.ravel(item.place).tolist()))}"/>'
+    place = [*np.ravel(item.place[:3]).tolist(), *(item.place[3] / mm).tolist()]
+    return f'<item objectid="{k}" transform="{" ".join(map(number, place))}"/>'

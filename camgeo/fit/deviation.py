@@ -142,7 +142,7 @@ def _ranges(curve: Curve, chain: Chain, nodes: int) -> tuple[Array, Array, Array
 class _Seen(NamedTuple):
     """What nodes on n pieces show: nodes + 1 on each, (n, nodes + 1).
 
-    `distance` is f and `angle` beta; `speed` and `turn` are the curve's. `forward` (n,) tells whether the curve runs
+    `distance` is f and `angle` beta; `speed` and `turn` are the curve's. `forward` (n,) says whether the curve runs
     forward along the piece at every node.
     """
 

@@ -1,4 +1,4 @@
-"""A closed rational B-spline whose spans are Bezier pieces of one degree: for contours that are told exactly."""
+"""A closed rational B-spline whose spans are Bezier pieces of one degree: for contours that are stated exactly."""
 
 from __future__ import annotations
 

@@ -119,7 +119,7 @@ def polynomial_of(curve: Curve) -> Polynomial:
     if not isinstance(shape, SupportShape):
         raise FormError("the contour is not given by a support function")
     if not curve.closed:
-        raise FormError("the contour is trimmed, and has corners")
+        raise FormError("the contour has corners")
     functions = shape.lift.law.functions
     if len(functions) > 1:
         raise FormError(f"the support function is pieced together from {len(functions)} stretches")

@@ -2,7 +2,7 @@
 
 Moved is the intent: a flat face farther out, a smaller roller on the same pitch curve, faces of a pair beside their
 pivot's lines. The contour follows from it by the same formulas and is proved by the same proofs; openings are moved the
-other way, as exact parallels. So what kin is told differs from the nominal part by a number, and nothing is sampled.
+other way, as exact parallels. So what kin is given differs from the nominal part by a number, and nothing is sampled.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.fit.pieces import ArcSpline
-from camgeo.synthesis.design import sound
+from camgeo.synthesis.design import is_trimmed, sound
 from camgeo.synthesis.part.shapes import EXACT
 from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
@@ -94,7 +94,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         contour=contour,
         position=made.cam.position(intent),
         follower=replace(design.follower, breadth=breadth),
-        trimmed=contour is not None and not contour.closed,
+        trimmed=is_trimmed(contour, profile),
         driven=None,
         body=body,
         face=face,
@@ -103,7 +103,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
 
 
 def _part(part: Part, out: float, scale: float) -> Part:
-    """Lengths of the part that the files are told directly."""
+    """Lengths of the part that the files are given directly."""
     hub = part.hub
     if hub is not None:
         hub = replace(hub, diameter=scale * (hub.diameter + 2.0 * out), height=scale * hub.height)

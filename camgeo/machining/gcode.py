@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 SHARE = 0.05  # of the tolerance that is left to the rounding of numbers
-KEPT = 2e-3  # of a length that a place is told by: the last place is no more
+KEPT = 2e-3  # of a length that a place is given by: the last place is no more
 FIGURES = 6  # significant ones, at least, of a feed
 LEAST_PLACES = 3
 STRAIGHT = 0.25  # of the last place: an arc no higher than this over its chord is written as a line
@@ -29,7 +29,7 @@ _COMMENT = 200  # characters
 
 @dataclass(frozen=True)
 class Cutting:
-    """What the machine is told besides the path: mm, mm a minute, turns a minute."""
+    """What the machine is given besides the path: mm, mm a minute, turns a minute."""
 
     feed: float
     plunge: float

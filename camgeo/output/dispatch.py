@@ -19,7 +19,7 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     """Make the files of one request, the first at `path`, any others beside it.
 
     Raises RecipeErrors where a tolerance cannot be held or no such file can be made, SurroundingsError where the disk
-    or a missing extra stands in the way. A page is no such request: it tells of all other files.
+    or a missing extra stands in the way. A page is no such request: it reports on all other files.
     """
     job, failed = job.of_file(request)
     if failed:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.files.precision import converted
 from camgeo.output.job import Made
 from kin.judge.check import about
 
@@ -22,11 +23,15 @@ COARSE = 1e-2  # mm: tolerance of the pitch curve drawn for reference, which not
 def make_drawing(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one drawing."""
     with job.refusals(request):
-        outline = job.outline(request.as_ or "polyline", job.tolerance(request))
+        own = request.units not in {None, job.recipe.units}
+        outline = job.outline_written(
+            request.as_ or "polyline", job.tolerance(request), lambda found: converted(found) if own else 0.0
+        )
         checks, tool = _tool_path(job, request)
         with job.clock.stage(f"write {request.kind}"):
             _write(job, outline, request, path, tool)
-    made = job.judged(request, path, outline.bound, outline.count)
+    bound = outline.bound.widened(converted(outline)) if own else outline.bound
+    made = job.judged(request, path, bound, outline.count)
     return Made(made.files, (*(about(check, path.name) for check in checks), *made.checks))
 
 
@@ -36,18 +41,18 @@ def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[Cutout
     if asked is None or not asked.layer or request.kind != "dxf" or request.compensation is not None:
         return [], []
     from camgeo.files.dxf import Cutout
-    from camgeo.machining.milling import reach_check
+    from camgeo.machining.milling import path_arcs, reach_check
 
     with job.clock.stage("cutter path"):
         check, path = reach_check(job.recipe, job.design)
         if path is None:
             return [check], []
-        arcs = path.within(job.tolerance(request))
+        arcs = path_arcs(job.recipe, path, job.tolerance(request))
     return [check], [Cutout("TOOLPATH", arcs.mirrored() if job.recipe.rotation == "ccw" else arcs)]
 
 
 def _write(job: Job, outline: Outline, request: FileRequest, path: Path, tool: list[Cutout]) -> None:
-    recipe, design = job.recipe, job.design
+    recipe, design = job.recipe.told_for(request), job.design
     bore, cut, remarks = recipe.part.bore, [], []
     if design.body is not None:
         from camgeo.output import part_geometry

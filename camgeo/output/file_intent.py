@@ -1,4 +1,4 @@
-"""What kin is told of each kind of file."""
+"""What kin is given of each kind of file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def intent_of_file(
     recipe: Recipe, design: Design, kind: str, by: Compensation | None = None, field: str = "export.files"
 ) -> Intent:
-    """What kin is told of a file of some kind, whose part may be made different `by` something.
+    """What kin is given of a file of some kind, whose part may be made different `by` something.
 
     Raises RecipeErrors for a program of which the recipe knows nothing, and as `compensated` does.
     """

@@ -1,4 +1,4 @@
-"""Programs for milling machines: the cutter's path round the contour, and round holes that are wide enough."""
+"""Programs for milling machines: the cutter's path along the contour, and round holes that are wide enough."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from camgeo.fit.cache import Outlines
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.gcode import Cutting, places, plain, rounding, write_gcode
-from camgeo.machining.milling import clear_of_hub, few_passes, milled_holes, path_of, reach_check, unmilled
-from camgeo.machining.toolpath import begun_at, circle, depths, led, passes
+from camgeo.machining.milling import clear_of_hub, few_passes, milled_holes, path_arcs, path_of, reach_check, unmilled
+from camgeo.machining.toolpath import begun_at, bend_at_begin, circle, depths, led, passes
 from camgeo.output.job import Made
 from kin.judge.check import about
 
@@ -40,16 +40,17 @@ def make_gcode(job: Job, request: FileRequest, path: Path) -> Made:
     check = about(check, path.name)
     if not check.ok:
         return Made((), (check,))
-    count = places(job.tolerance(request), recipe.mm, _told_apart(job, asked))
+    mm = recipe.told_for(request).mm
+    count = places(job.tolerance(request), mm, _told_apart(job, asked))
     with job.refusals(request):
-        fine = _outline(job, path_of(recipe, job.design), job.tolerance(request) - rounding(count, recipe.mm))
+        fine = _outline(job, path_of(recipe, job.design), job.tolerance(request) - rounding(count, mm))
         rough = None
         if asked.allowance is not None:
             rough = _outline(job, path_of(recipe, job.design, asked.allowance), ROUGH * asked.allowance)
         with job.clock.stage("write gcode"):
             features = [*_holes(job, asked), (FEATURE, _round(job, asked, rough, fine))]
             _write(job, request, path, features, count)
-    bound = fine.bound.widened(rounding(count, recipe.mm))
+    bound = fine.bound.widened(rounding(count, mm))
     made = job.judged(request, path, bound, fine.count)
     return Made(made.files, (check, *made.checks))
 
@@ -71,19 +72,21 @@ def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
             raise TypeError("a path is made of arcs")
         return outline
 
-    return path.within(tolerance, fitted)
+    return path_arcs(job.recipe, path, tolerance, fitted)
 
 
 def _round(job: Job, asked: Manufacture, rough: ArcSpline | None, fine: ArcSpline) -> list[Pass]:
-    """Passes round the contour."""
+    """Passes along the contour: round a disc, within a ring."""
     thickness = job.recipe.part.thickness
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
+    outside = job.recipe.cam.metal > 0
 
     def loop(path: ArcSpline) -> Loop:
         begun = begun_at(path, asked.start)
         drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
-        return led(drawn, asked.lead, outside=True, clockwise=asked.direction == "climb")
+        lead = asked.lead if outside else min(asked.lead, 0.5 * bend_at_begin(drawn))
+        return led(drawn, lead, outside=outside, clockwise=(asked.direction == "climb") == outside)
 
     return passes(None if rough is None else loop(rough), loop(fine), asked, thickness)
 
@@ -111,12 +114,13 @@ def _write(job: Job, request: FileRequest, path: Path, features: list[tuple[str,
     recipe, asked = job.recipe, job.recipe.manufacture
     if asked is None or not (asked.feed and asked.plunge and asked.spindle and asked.safe_height):
         raise recipe.error("manufacture", "gcode needs feed, plunge, spindle, depth_of_cut and safe_height")
-    mm = recipe.mm
+    told = recipe.told_for(request)
+    mm = told.mm
     top = "top of the stock" if recipe.part.hub is None else "upper face of the disc"
     remarks = [
         recipe.name,
         recipe.about,
-        f"units: {'inch' if recipe.units == 'inch' else 'mm'}",
+        f"units: {told.units}",
         f"cutter: diameter {plain(asked.cutter / mm)}",
         f"tolerance: {plain(job.tolerance(request) / mm)}",
         f"zero: the shaft, {top}; thickness {plain((recipe.part.thickness or 0.0) / mm)}",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import MOTION, RATIO
 from camgeo.common.clock import Clock
+from camgeo.common.errors import SurroundingsError
 from camgeo.curve.curve import CurveError
 from camgeo.files.errors import MissingExtraError
 from camgeo.files.triangulate import RegionError
@@ -15,12 +16,11 @@ from camgeo.fit.bound import FormError
 from camgeo.fit.cache import Outlines, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.output.file_intent import intent_of_file
-from camgeo.output.output_folder import SurroundingsError
 from camgeo.report.document import FileResult
 from camgeo.synthesis.design import permitted
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
     from camgeo.assembly.assembly import Assembly
@@ -82,7 +82,10 @@ class Job:
                 return self, made.checks
             unsure = by.scale * self.outlines.unsure
             self.variants[by] = Job(made.recipe, made.design, Outlines(made.design.contour, self.clock, unsure))
-        return self.variants[by], ()
+        job, told = self.variants[by], self.recipe.told_for(request)
+        if request.units is not None:  # a file's title tells lengths as its numbers do
+            job = replace(job, recipe=replace(job.recipe, name=f"{self.recipe.name}, {by.told(told.mm)}"))
+        return job, ()
 
     @property
     def clock(self) -> Clock:
@@ -96,8 +99,7 @@ class Job:
 
     def field(self, request: FileRequest) -> str:
         """Path of a request in the recipe; that of the list for one that does not stand there."""
-        files = self.recipe.export.files
-        return f"export.files[{files.index(request)}]" if request in files else "export.files"
+        return self.recipe.field_of(request)
 
     def tolerance(self, request: FileRequest) -> float:
         """Tolerance of a file, mm: its own, or the export's."""
@@ -111,6 +113,17 @@ class Job:
         """The contour in a form, within a tolerance, mirrored as the recipe has it."""
         outline = self.outlines.within(form, tolerance)
         return outline.mirrored() if self.recipe.rotation == "ccw" else outline
+
+    def outline_written(self, form: str, tolerance: float, off: Callable[[Outline], float]) -> Outline:
+        """The contour in a form that is within a tolerance as it is written, which moves it by up to `off`, mm.
+
+        Raises ToleranceError as the fit does.
+        """
+        outline = self.outline(form, tolerance)
+        moved = off(outline)
+        if outline.bound.worst + moved <= tolerance or not 4.0 * moved < tolerance:
+            return outline
+        return self.outline(form, tolerance - 2.0 * moved)
 
     @contextmanager
     def refusals(self, request: FileRequest) -> Iterator[None]:
@@ -142,9 +155,11 @@ class Job:
         from kin.judge.verify import verify
 
         recipe, tolerance = self.recipe, self.tolerance(request)
-        meant = intent_of_file(recipe, self.design, request.kind)
+        told = recipe.told_for(request)
+        meant = intent_of_file(told, self.design, request.kind)
+        units = told.mm if request.kind == "stl" else None  # which an STL cannot state
         with self.clock.stage(f"judge {request.kind}"):
-            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance))
+            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance), units)
         measured = verdict.measured_error
         file = FileResult(
             path,
@@ -157,6 +172,7 @@ class Job:
             verdict.linkage,
             perimeter=verdict.perimeter,
             area=verdict.area,
+            units=verdict.units,
         )
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
-    """Write and judge every body; the checks of the mechanism itself are told with its first file.
+    """Write and judge every body; the checks of the mechanism itself are reported with its first file.
 
     Nothing is made of a mechanism that does not turn. Raises as `make` does.
     """

@@ -22,7 +22,7 @@ REPORTS = ("report.json", "page.json", "study.json", "sweep.json")
 
 
 def mixtures(folder: Path, names: Collection[str] = ()) -> list[str]:
-    """Say of each report in a folder which of its files are missing or others than it tells of.
+    """Say of each report in a folder which of its files are missing or others than it lists.
 
     With `names`, only of reports that tell of one of these. What is no report of camgeo, or cannot be read, says
     nothing.
@@ -37,7 +37,7 @@ def mixtures(folder: Path, names: Collection[str] = ()) -> list[str]:
             files = ", ".join(escaped(given) for given in others)
             told = "are not the files" if len(others) > 1 else "is not the file"
             place = escaped(str(folder / name))
-            found.append(f"{place}: {files} {told} that it tells of: {_why(folder)}; export again")
+            found.append(f"{place}: {files} {told} that it lists: {_why(folder)}; export again")
     return found
 
 

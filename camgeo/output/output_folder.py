@@ -38,9 +38,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from camgeo.common import system
+from camgeo.common.errors import SurroundingsError
 from camgeo.common.system import locked, patient, unlock
-from camgeo.common.terminal import escaped
-from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -50,14 +49,6 @@ REPORT = "report.json"
 REJECTED = ".rejected"
 _JOURNAL = ".journal.json"  # files of a set do not begin with a dot
 _OLD = ".old"
-
-
-class SurroundingsError(KinError):
-    """What is needed around a run is missing or refuses: the disk, a permission, a lock; `path` is where."""
-
-    def __init__(self, message: str, path: Path) -> None:
-        super().__init__(f"{escaped(str(path))}: {message}")
-        self.path = path
 
 
 class BusyError(SurroundingsError):

@@ -9,6 +9,7 @@ import numpy as np
 
 from camgeo.assembly.interference import slabs
 from camgeo.assembly.meshes import body_mesh, flat, laid_out, mirrored, standing
+from camgeo.common.units import UNIT_MM
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import Bound
 from camgeo.output.job import Made
@@ -74,7 +75,7 @@ def _part(job: Job, request: FileRequest, body: PrintBody) -> Part:
         return Part(body, mesh, facts.bound, body.low - float(mesh.points[:, 2].min()), facts.vertices)
     with job.refusals(request), job.clock.stage(f"mesh {request.kind}"):
         try:
-            mesh, off = body_mesh(body, tolerance=job.tolerance(request), precision=precision_of(request))
+            mesh, off = body_mesh(body, tolerance=job.tolerance(request), precision=precision_of(job, request))
         except RegionError as error:
             raise job.recipe.error("mechanism", str(error)) from error
     return Part(body, mesh, Bound(off, off))
@@ -84,19 +85,20 @@ def _stl(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> M
     from camgeo.files.stl import write_stl
     from kin.read.mesh.stl import triangles_of
 
+    mm = job.recipe.told_for(request).mm
     files: list[FileResult] = []
     checks: list[Check] = []
     for part in parts:
         name = part.body.name
         if name == CAM:
-            write_stl(path, part.mesh, about=f"{job.recipe.name}: {name}")
+            write_stl(path, part.mesh, mm=mm, about=f"{job.recipe.name}: {name}")
             made = _judged_cam(job, request, path, part)
         else:
             there = path.with_name(f"{job.recipe.name}-{name}.stl")
             turn, lift = flat(part.mesh)
-            lying = replace(part.mesh, points=precision_of(request).rounded(part.mesh.points @ turn + lift)[0])
-            write_stl(there, lying, about=f"{job.recipe.name}: {name}")
-            corners = triangles_of(there.read_bytes(), there)[0].astype(np.float64)
+            lying = replace(part.mesh, points=precision_of(job, request).rounded(part.mesh.points @ turn + lift)[0])
+            write_stl(there, lying, mm=mm, about=f"{job.recipe.name}: {name}")
+            corners = triangles_of(there.read_bytes(), there)[0].astype(np.float64) * mm
             # the way back is the way there: half a turn, and the lift undone before it
             made = _judged_body(job, request, there, part, (corners - lift) @ turn)
         files += made.files
@@ -114,7 +116,7 @@ def _three_mf(job: Job, request: FileRequest, path: Path, parts: Sequence[Part])
     made = Made(())
     for there, places in ((path, for_printing), (standing_there, [part.place for part in parts])):
         items: list[Item] = [Item(p.body.name, p.mesh, place) for p, place in zip(parts, places, strict=True)]
-        write_3mf(there, items, title=recipe.name, about=recipe.about)
+        write_3mf(there, items, title=recipe.name, mm=recipe.told_for(request).mm, about=recipe.about)
         built = {one.name: one for one in read_placed(there)}
         checks: list[Check] = []
         for part in parts:
@@ -138,7 +140,7 @@ def _glb(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> M
         mesh = replace(part.mesh, points=part.mesh.points + np.array([0.0, 0.0, part.raised]))
         actors.append(Actor(part.body.name, mesh, part.body.pose, part.body.colour))
     write_glb(path, actors, title=job.recipe.name)
-    return Made((FileResult(path, request, None, None, None, None, None),))
+    return Made((FileResult(path, request, None, None, None, None, None, units=UNIT_MM["m"]),))
 
 
 def _judged_cam(job: Job, request: FileRequest, path: Path, part: Part) -> Made:
@@ -149,8 +151,8 @@ def _judged_body(job: Job, request: FileRequest, path: Path, part: Part, corners
     from kin.judge.check import about
     from kin.judge.printed import judge_body
 
-    tolerance = job.tolerance(request)
+    tolerance, units = job.tolerance(request), job.recipe.told_for(request).mm
     with job.clock.stage(f"judge {request.kind}"):
         checks = judge_body(part.body.name, corners, slabs(part.body.plates), tolerance, path)
-    file = FileResult(path, request, tolerance, None, part.bound, None, None, body=part.body.name)
+    file = FileResult(path, request, tolerance, None, part.bound, None, None, body=part.body.name, units=units)
     return Made((file,), tuple(about(check, path.name) for check in checks))

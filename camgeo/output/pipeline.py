@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.machining import Compensation
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.content import Content
     from kin.judge.check import Check
@@ -98,32 +97,19 @@ def judged(
     checks, files = list(design.checks), []
     for path in paths:
         with clock.stage("judge"):
-            within = _tolerance_of(recipe, path) if tolerance is None else tolerance
-            by, field = _compensation_of(recipe, path)
-            meant = intent_of_file(recipe, design, kind_of(path), by, field)
-            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within), units)
-        request = FileRequest(verdict.kind, compensation=by)
+            asked = recipe.request_of(path.name)
+            request = FileRequest(kind_of(path)) if asked is None else asked
+            within = (request.tolerance or recipe.export.tolerance) if tolerance is None else tolerance
+            told = recipe if asked is None else recipe.told_for(asked)
+            meant = intent_of_file(told, design, kind_of(path), request.compensation, recipe.field_of(asked))
+            given = recipe.unstated(path) if units is None else units
+            verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within), given)
+        request = FileRequest(verdict.kind, compensation=request.compensation)
         measured = verdict.measured_error
         file = FileResult(path, request, within, verdict.pieces, None, measured, verdict.motion, verdict.linkage)
-        files.append(replace(file, perimeter=verdict.perimeter, area=verdict.area))
+        files.append(replace(file, perimeter=verdict.perimeter, area=verdict.area, units=verdict.units))
         checks += verdict.checks
     return document(recipe, _findings(recipe, design, checks, files, clock, units=units))
-
-
-def _compensation_of(recipe: Recipe, path: Path) -> tuple[Compensation | None, str]:
-    """By what the recipe makes the part of a file of this name different, and that file's field."""
-    files = recipe.export.files
-    for i, request in enumerate(files):
-        if request.filename(recipe.name, files) == path.name:
-            return request.compensation, f"export.files[{i}]"
-    return None, "export.files"
-
-
-def _tolerance_of(recipe: Recipe, path: Path) -> float:
-    """Tolerance in mm that the recipe gives a file of this name; that of the export for any other."""
-    files = recipe.export.files
-    own = [request.tolerance for request in files if request.filename(recipe.name, files) == path.name]
-    return next((tolerance for tolerance in own if tolerance is not None), recipe.export.tolerance)
 
 
 def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:

@@ -19,23 +19,25 @@ if TYPE_CHECKING:
 def make_solid(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one solid."""
     mesh, facts = cam_mesh(job, request)
+    mm = job.recipe.told_for(request).mm
     with job.clock.stage(f"write {request.kind}"):
         if request.kind == "stl":
             from camgeo.files.stl import write_stl
 
-            write_stl(path, mesh, about=job.recipe.name)
+            write_stl(path, mesh, mm=mm, about=job.recipe.name)
         else:
             from camgeo.files.three_mf import Item, write_3mf
 
-            write_3mf(path, [Item("cam", mesh)], title=job.recipe.name, about=job.recipe.about)
+            write_3mf(path, [Item("cam", mesh)], title=job.recipe.name, mm=mm, about=job.recipe.about)
     return job.judged(request, path, facts.bound, facts.vertices)
 
 
-def precision_of(request: FileRequest) -> Precision:
+def precision_of(job: Job, request: FileRequest) -> Precision:
     """The numbers that a request's file holds."""
     from camgeo.files.precision import DECIMALS, SINGLE
 
-    return DECIMALS if request.kind == "3mf" else SINGLE
+    numbers = DECIMALS if request.kind == "3mf" else SINGLE
+    return numbers.in_units(job.recipe.told_for(request).mm)
 
 
 def aim(job: Job, request: FileRequest) -> float:
@@ -49,7 +51,7 @@ def aim(job: Job, request: FileRequest) -> float:
     size = float(np.abs(job.contour.sample(job.contour.cells.low).point).max())
     # between two samples the contour reaches a little farther
     try:
-        fine = precision_of(request).fit_tolerance(job.tolerance(request), 1.01 * size)
+        fine = precision_of(job, request).fit_tolerance(job.tolerance(request), 1.01 * size)
     except ToleranceError as error:
         raise job.refused(request, error) from error
     return fine * (body.fineness if body else 1.0)
@@ -60,7 +62,7 @@ def cam_mesh(job: Job, request: FileRequest) -> tuple[Mesh, MeshFacts]:
 
     Raises RecipeErrors and SurroundingsError as `make` does.
     """
-    recipe, body, tolerance, precision = job.recipe, job.design.body, job.tolerance(request), precision_of(request)
+    recipe, body, tolerance, precision = job.recipe, job.design.body, job.tolerance(request), precision_of(job, request)
     if recipe.part.thickness is None:
         raise recipe.error("part.thickness", "a solid needs a thickness")
     fine = aim(job, request)

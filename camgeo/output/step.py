@@ -5,43 +5,38 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.files.brep import need_kernel
-from camgeo.files.curves import misfit
 from camgeo.fit.pieces import Polygon
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.files.solid import Solid
-    from camgeo.fit.pieces import Outline
     from camgeo.output.job import Job, Made
     from camgeo.recipe.export import FileRequest
 
 
 def make_step(job: Job, request: FileRequest, path: Path) -> Made:
     """Fit, write, read back and judge one STEP file; without the kernel nothing is fitted."""
-    from camgeo.files.step import write_step
+    from camgeo.files.step import write_step, written_off
 
-    recipe, tolerance = job.recipe, job.tolerance(request)
+    recipe, tolerance = job.recipe.told_for(request), job.tolerance(request)
     with job.refusals(request):
         need_kernel()
-        outline = _fitted(job, request.as_ or "arcs", tolerance)
+        form = request.as_ or "arcs"
+        outline = job.outline_written(form, tolerance, lambda found: written_off(found, recipe.units))
+        if isinstance(outline, Polygon):
+            raise TypeError("a STEP file has no polygons")
         with job.clock.stage("write step"):
-            bound = write_step(path, outline, _solid(job), tolerance=tolerance, name=recipe.name, about=recipe.about)
+            bound = write_step(
+                path,
+                outline,
+                _solid(job),
+                tolerance=tolerance,
+                units=recipe.units,
+                name=recipe.name,
+                about=recipe.about,
+            )
     return job.judged(request, path, bound, outline.count)
-
-
-def _fitted(job: Job, form: str, tolerance: float) -> Outline:
-    """Fit of the contour that is within the tolerance as its walls are written.
-
-    Raises ToleranceError as the fit does.
-    """
-    outline = job.outline(form, tolerance)
-    if isinstance(outline, Polygon):
-        raise TypeError("a STEP file has no polygons")
-    off = misfit(outline)
-    if outline.bound.worst + off <= tolerance or not 4.0 * off < tolerance:
-        return outline
-    return job.outline(form, tolerance - 2.0 * off)
 
 
 def _solid(job: Job) -> Solid:

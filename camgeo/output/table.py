@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def make_table(job: Job, request: FileRequest, path: Path) -> Made:
-    """Write one table; that of a mechanism that does not turn is left out, as the report tells."""
+    """Write one table; that of a mechanism that does not turn is left out, as the report says."""
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())
@@ -28,23 +28,25 @@ def make_table(job: Job, request: FileRequest, path: Path) -> Made:
     with job.clock.stage(_STAGES[name]):
         columns, rows = _TABLES[name](job, request)
         write_table(path, columns, rows, gaps=name in _GAPS)
-    return Made((FileResult(path, request, None, None, None, None, None),))
+    units = job.recipe.told_for(request).mm
+    return Made((FileResult(path, request, None, None, None, None, None, units=units),))
 
 
-def _motion(job: Job, _: FileRequest) -> Columns:
+def _motion(job: Job, request: FileRequest) -> Columns:
+    told = job.recipe.told_for(request)
     if job.design.driven is not None:
         from camgeo.synthesis import linkage
 
-        return linkage.motion_table(job.recipe, job.design.driven.mechanism)
+        return linkage.motion_table(told, job.design.driven.mechanism)
     from camgeo.synthesis.motion_table import motion_table
 
-    return motion_table(job.recipe, job.design.intent)
+    return motion_table(told, job.design.intent)
 
 
 def _contacts(job: Job, request: FileRequest) -> Columns:
     from camgeo.synthesis.contact_table import contact_table
 
-    return contact_table(job.recipe, job.design, _motion(job, request))
+    return contact_table(job.recipe.told_for(request), job.design, _motion(job, request))
 
 
 def _polar(job: Job, request: FileRequest) -> Columns:
@@ -52,18 +54,18 @@ def _polar(job: Job, request: FileRequest) -> Columns:
     from camgeo.synthesis.contact_table import polar_table
 
     try:
-        return polar_table(job.recipe, job.contour)
+        return polar_table(job.recipe.told_for(request), job.contour)
     except StarError as error:
         where, remedy = f"{job.field(request)}.csv.as", "give `as: inspection`, whose rows are places of contact"
         raise job.recipe.error(where, str(error), "'polar'", remedy) from error
 
 
-def _inspection(job: Job, _: FileRequest) -> Columns:
+def _inspection(job: Job, request: FileRequest) -> Columns:
     from camgeo.machining.inspection import inspection_table
 
-    return inspection_table(job.recipe, job.design)
+    return inspection_table(job.recipe.told_for(request), job.design)
 
 
 _TABLES = {"motion": _motion, "contacts": _contacts, "polar": _polar, "inspection": _inspection}
 _STAGES = {"motion": "table", "contacts": "contacts", "polar": "polar", "inspection": "inspection"}
-_GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be told
+_GAPS = frozenset({"contacts", "inspection"})  # nothing is touched there, or nothing is to be reported

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.yaml_source import Node
 
 
+Length: TypeAlias = Literal["mm", "inch"]
+
+
 FileKind: TypeAlias = Literal["dxf", "svg", "stl", "3mf", "step", "glb", "csv", "html", "gcode"]
 
 
@@ -51,7 +54,7 @@ class FileRequest:
 
     `as_` is of DXF, SVG, STEP and CSV, `version` of DXF; `tolerance` (mm) stands in for the export's own; a part that
     is made different from the nominal one has its `compensation`. `parts` is of solids: the cam, or all bodies of the
-    mechanism.
+    mechanism. `units` is the file's own unit, None for the kind's (`told_in`).
     """
 
     kind: FileKind
@@ -60,13 +63,19 @@ class FileRequest:
     tolerance: float | None = None
     compensation: Compensation | None = None
     parts: Literal["cam", "all"] = "cam"
+    units: Length | None = None
+
+    def told_in(self, units: Length) -> Length:
+        """Give the unit of the file where the recipe's is `units`: its own, or the recipe's, but mm of a solid."""
+        return self.units or ("mm" if self.kind in SOLIDS else units)
 
     def filename(self, name: str, requests: collections.abc.Sequence[FileRequest]) -> str:
         """Name the file among all `requests` of recipe `name`.
 
         `<name>.<kind>`; where a kind is asked for more than once `<name>-<as>.<kind>`, and where that still leaves two
-        alike `<name>-<as>-<version>.<kind>`, and `-kerf` and the like behind for a part that is not nominal. Of
-        all bodies of a mechanism it is the first: `<name>-cam.stl`, `<name>-parts.3mf` or `<name>-assembly.glb`.
+        alike `<name>-<as>-<version>.<kind>`, with `-kerf` and the like behind for a part that is not nominal, and
+        `-inch` or `-mm` for a unit of its own. Of all bodies of a mechanism it is the first: `<name>-cam.stl`,
+        `<name>-parts.3mf` or `<name>-assembly.glb`.
         """
         kin = [request for request in requests if request.kind == self.kind]
         parts = [name] if self.parts == "cam" else [name, ALL_PARTS[self.kind]]
@@ -77,6 +86,8 @@ class FileRequest:
                 parts.append(self.version)
         if len(alike) > 1 and self.compensation:
             parts.append(self.compensation.tags)
+        if len(alike) > 1 and self.units and self.parts == "cam":
+            parts.append(self.units)
         return f"{'-'.join(parts)}.{SUFFIXES.get(self.kind, self.kind)}"
 
 
@@ -92,6 +103,14 @@ _TOLERANCE = length("tolerance", "greatest distance between this file's contour 
 
 
 _PARTS = Field("parts", Kind.CHOICE, "the cam, or every body of the mechanism", default="cam", choices=("cam", "all"))
+
+
+def _units(default: str) -> Field:
+    about = "unit of the file's numbers, which the file states where its format can"
+    return Field("units", Kind.CHOICE, about, default=default, choices=("mm", "inch"))
+
+
+_OF_RECIPE, _OF_SOLID = _units("the recipe's"), _units("mm")
 
 
 FILES: dict[str, Table] = {
@@ -111,6 +130,7 @@ FILES: dict[str, Table] = {
                 default="R2010",
                 choices=("R12", "R2000", "R2010", "R2013"),
             ),
+            _OF_RECIPE,
             _TOLERANCE,
             *COMPENSATION,
         ),
@@ -124,12 +144,13 @@ FILES: dict[str, Table] = {
                 default="arcs",
                 choices=("arcs", "polyline", "spline"),
             ),
+            _OF_RECIPE,
             _TOLERANCE,
             *COMPENSATION,
         ),
     ),
-    "stl": Table((_PARTS, _TOLERANCE, *COMPENSATION)),
-    "3mf": Table((_PARTS, _TOLERANCE, *COMPENSATION)),
+    "stl": Table((_PARTS, _OF_SOLID, _TOLERANCE, *COMPENSATION)),
+    "3mf": Table((_PARTS, _OF_SOLID, _TOLERANCE, *COMPENSATION)),
     "step": Table(
         (
             Field(
@@ -139,6 +160,7 @@ FILES: dict[str, Table] = {
                 default="arcs",
                 choices=("arcs", "spline", "exact"),
             ),
+            _OF_SOLID,
             _TOLERANCE,
             *COMPENSATION,
         ),
@@ -153,10 +175,11 @@ FILES: dict[str, Table] = {
                 default="motion",
                 choices=("motion", "contacts", "polar", "inspection"),
             ),
+            _OF_RECIPE,
         )
     ),
     "html": Table(()),
-    "gcode": Table((_TOLERANCE,)),
+    "gcode": Table((_OF_RECIPE, _TOLERANCE)),
 }
 
 
@@ -229,7 +252,7 @@ def check_files(values: Values, reader: Reader) -> None:
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
     ring = is_ring(values)
-    if not ring and any(request.kind == "gcode" for request in listed):
+    if any(request.kind == "gcode" for request in listed):
         check_slight(values, reader)
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
         path = file["path"]
@@ -244,9 +267,7 @@ def check_files(values: Values, reader: Reader) -> None:
         elif request.parts == "all" and "part.bore" not in reader.marks:
             remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
-        if request.kind == "gcode" and ring:
-            reader.fault_at(path, "a program for a ring is not made", None, "leave gcode out")
-        elif request.kind == "gcode":
+        if request.kind == "gcode":
             check_milling(path, reader)
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
             remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"
@@ -287,6 +308,7 @@ def _request(kind: FileKind, file: Values) -> FileRequest:
         chosen.get("tolerance"),
         build_compensation(file),
         chosen.get("parts", "cam"),
+        chosen.get("units"),
     )
 
 

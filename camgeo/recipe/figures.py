@@ -302,13 +302,15 @@ def read_limits(reader: Reader, field: Field, node: Node, path: str) -> list[Val
             none = "no design" if field is not LIMITS else "nothing"
             reader.fault_at(f"{below}.at_most", f"below at_least, so {none} is accepted", None, "exchange them")
         said = {bound: factor * value for bound, value in values.items()}
+        if on_return is not None and "at_least" in values:
+            reader.fault_at(f"{below}.at_least", "cannot be combined with on_return", None, "leave one of the two out")
+            continue
         if on_return is not None:
             rising = said.pop("at_most", None)
             for one, bound, most in ((ON_RISE, "at_most", rising), (ON_RETURN, "on_return", on_return)):
                 if most is not None:
                     limits.append({"figure": one, "at": below, "at_most": most, "key": f"{name}.{bound}"})
-            if not said:
-                continue
+            continue
         limits.append({"figure": name, "at": below, **said} | ({} if rpm is None else {"rpm": rpm}))
     return limits
 
@@ -350,12 +352,24 @@ def of_recipe(reader: Reader) -> tuple[str, ...]:
 
 def check_limits(limits: list[Values], reader: Reader) -> None:
     """Note limits of figures that the recipe has not."""
-    here = of_recipe(reader)
+    here, bounded = of_recipe(reader), dict[tuple[str, str], str]()
     for limit in limits:
+        for bound in ("at_least", "at_most"):
+            key = limit["figure"], bound
+            if bound in limit and bounded.setdefault(key, limit["at"]) != limit["at"]:
+                other, path = sorted((bounded[key], limit["at"]), key=len)
+                reader.fault_at(path, f"{other} with on_return bounds it too", None, "leave one of the two out")
         name, needs = limit["figure"], FIGURES[limit["figure"]].needs
         if needs and name not in here and not ("rpm" in limit and "linkage" not in reader.marks):
             remedy = f"the figures of this recipe are {either(here, 'and')}"
-            reader.fault_at(limit["at"], f"{name} needs {NEEDS[needs]}", None, remedy)
+            path, what = limit["at"], name
+            if "key" in limit:  # one that a key of another figure gives
+                path, what, remedy = (
+                    f"{path}.on_return",
+                    "on_return",
+                    "give at_most alone, which holds on the return too",
+                )
+            reader.fault_at(path, f"{what} needs {NEEDS[needs]}", None, remedy)
 
 
 def build_limits(limits: list[Values]) -> tuple[Limit, ...]:

@@ -12,6 +12,7 @@ from camgeo.recipe.schema.yaml_source import join
 if TYPE_CHECKING:
     import kin.linkage.dyad
     import kin.linkage.four_bar
+    from camgeo.cams.family import Cam
     from camgeo.recipe.schema.fields import Schema
     from camgeo.recipe.schema.reader import Reader, Values
     from camgeo.recipe.schema.yaml_source import Node
@@ -95,6 +96,7 @@ class FourBarLinkage:
     rocker: float
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
+    joint_offset: float = 0.0
 
     kind: ClassVar[str] = "four-bar"
     slides: ClassVar[bool] = False
@@ -103,7 +105,11 @@ class FourBarLinkage:
         """Make the linkage of the recipe."""
         from kin.linkage.four_bar import FourBar
 
-        return FourBar(self.ground, self.coupler, self.rocker, self.assembly)
+        return FourBar(self.ground, self.coupler, self.rocker, self.assembly, self.joint_offset)
+
+    def shaped(self, cam: Cam) -> Cam:
+        """The cam, which these links do not shape."""
+        return cam
 
 
 @dataclass(frozen=True)
@@ -114,6 +120,7 @@ class InvertedSliderCrankLinkage:
     rocker: float
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
+    joint_offset: float = 0.0
 
     kind: ClassVar[str] = "inverted-slider-crank"
     slides: ClassVar[bool] = False
@@ -122,7 +129,11 @@ class InvertedSliderCrankLinkage:
         """Make the linkage of the recipe."""
         from kin.linkage.four_bar import InvertedSliderCrank
 
-        return InvertedSliderCrank(self.ground, self.rocker, self.assembly)
+        return InvertedSliderCrank(self.ground, self.rocker, self.assembly, self.joint_offset)
+
+    def shaped(self, cam: Cam) -> Cam:
+        """The cam told of these links, which shape it where a recipe gives the swing of the frame."""
+        return cam.in_frame(self.ground, self.rocker - self.joint_offset, 1.0 if self.assembly == "open" else -1.0)
 
 
 @dataclass(frozen=True)
@@ -133,6 +144,7 @@ class SliderCrankLinkage:
     offset: float
     assembly: Assembly
     dyads: tuple[Dyad, ...] = ()
+    joint_offset: float = 0.0
 
     kind: ClassVar[str] = "slider-crank"
     slides: ClassVar[bool] = True
@@ -141,7 +153,11 @@ class SliderCrankLinkage:
         """Make the linkage of the recipe."""
         from kin.linkage.four_bar import SliderCrank
 
-        return SliderCrank(self.coupler, self.offset, self.assembly)
+        return SliderCrank(self.coupler, self.offset, self.assembly, self.joint_offset)
+
+    def shaped(self, cam: Cam) -> Cam:
+        """The cam, which these links do not shape."""
+        return cam
 
 
 Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage
@@ -261,9 +277,23 @@ _GROUND = length("ground", "distance r1 of the fixed pivot from the shaft, along
 _COUPLER = length("coupler", "length r3 from the middle of the frame's side to the joint", required=True)
 
 
+_JOINT_OFFSET = coordinate(
+    "joint_offset",
+    "distance of the joint from the frame's mid-line, positive towards the face whose lift the cam's law gives",
+    default="0",
+)
+
+
 LINKAGES: dict[str, Table] = {
     "four-bar": Table(
-        (_GROUND, _COUPLER, length("rocker", "length r4 of the rocker", required=True), _ASSEMBLY, _DYADS)
+        (
+            _GROUND,
+            _COUPLER,
+            length("rocker", "length r4 of the rocker", required=True),
+            _JOINT_OFFSET,
+            _ASSEMBLY,
+            _DYADS,
+        )
     ),
     "inverted-slider-crank": Table(
         (
@@ -276,6 +306,7 @@ LINKAGES: dict[str, Table] = {
                 at_least=0,
                 at_most=MOST,
             ),
+            replace(_JOINT_OFFSET, about=_JOINT_OFFSET.about.replace("the joint", "the slide's line")),
             _ASSEMBLY,
             _DYADS,
         )
@@ -284,6 +315,7 @@ LINKAGES: dict[str, Table] = {
         (
             _COUPLER,
             coordinate("offset", "distance of the slide's line from the shaft, along +y", required=True),
+            _JOINT_OFFSET,
             _ASSEMBLY,
             _DYADS,
         )
@@ -291,6 +323,7 @@ LINKAGES: dict[str, Table] = {
 }
 
 
+TURNING = ("inverted-slider-crank",)  # whose frame may be given a swing: the lift follows from it
 SLIDING = ("slider-crank", "rrp")  # kinds of linkage and of dyad whose output is a length
 
 
@@ -326,6 +359,9 @@ DWELL = (
 
 def check_linkage(values: Values, reader: Reader) -> None:
     """Note the faults between a linkage, its dwells and the cam that drives it."""
+    if "cam.swing" in reader.marks and reader.kinds["linkage"] not in TURNING:
+        remedy = "give linkage: {kind: inverted-slider-crank, ground: 80, rocker: 0}, or motion in its place"
+        reader.fault_at("cam.swing", "needs a linkage of kind inverted-slider-crank", None, remedy)
     if "linkage" not in reader.marks:
         for path in ("dwell", "verify.output_error"):
             if path in reader.marks:

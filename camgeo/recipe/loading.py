@@ -38,6 +38,8 @@ def announced(recipe: Recipe) -> Recipe:
 
 def load_silent(path: str | PathLike[str]) -> Recipe:
     """Read a recipe from a file, whose `notices` are left to the caller; raises RecipeErrors as `load` does."""
+    if not str(path):
+        raise RecipeErrors([RecipeError("''", 0, 0, "", "an empty name of a file", None, "give the path of a recipe")])
     try:
         data = bytes_of(path, MAX_BYTES, "recipe")
     except Complaint as complaint:
@@ -45,8 +47,18 @@ def load_silent(path: str | PathLike[str]) -> Recipe:
     return read(data, path)
 
 
-def read(data: bytes, path: str | PathLike[str]) -> Recipe:
-    """Read a recipe from bytes; `path` names it in errors and gives its default name. Raises RecipeErrors."""
+def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
+    """Read a recipe from bytes; `path` names it in errors and gives its default name. Raises RecipeErrors.
+
+    Bytes that no file has, and nobody has seen, have no lines to speak of: `unplaced` names them in errors.
+    """
+    if unplaced:
+        try:
+            recipe = read(data, path)
+        except RecipeErrors as errors:
+            raise RecipeErrors(error.without_place(unplaced) for error in errors.errors) from None
+        notices = tuple(notice.without_place(unplaced) for notice in recipe.notices)
+        return replace(recipe, notices=notices, unplaced=unplaced)
     source = read_source(data, str(path))
     reader = Reader(source, READERS, RECIPE)
     values = read_values(reader)
@@ -66,6 +78,6 @@ def read(data: bytes, path: str | PathLike[str]) -> Recipe:
     )
 
 
-def load_text(text: str, path: str | PathLike[str]) -> Recipe:
+def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recipe:
     """Read a recipe from a text, as `read` does from bytes. Raises RecipeErrors."""
-    return read(text.encode("utf-8", "surrogatepass"), path)
+    return read(text.encode("utf-8", "surrogatepass"), path, unplaced)

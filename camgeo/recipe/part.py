@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
+from camgeo.common.rounding import NOISE, upward
 from camgeo.recipe.din6885 import LEAST, key_for
 from camgeo.recipe.din6885 import MOST as WIDEST
 from camgeo.recipe.schema.errors import shown
@@ -111,8 +112,8 @@ class Part:
 
     `thickness` of the disc along the shaft. `bore` is a diameter, or the width across flats where `sides` (4 or 6) are
     given; `bore_at` is then the direction of one flat's normal. `wall` is the least that may be left between any two
-    edges; without it what is left is told and must be above 0. `outer` is the diameter of a ring, whose opening is the
-    cam.
+    edges; without it what is left is reported and must be above 0. `outer` is the diameter of a ring, whose opening is
+    the cam.
     """
 
     thickness: float | None = None
@@ -140,6 +141,8 @@ class Part:
 
 
 MOST_HOLES = 60
+LEAST_SIZE = 1e-3  # mm: of what is cut, drilled or stands; a file's reader takes much less for nothing
+_NO_SIZES = frozenset({"wall", "least"})  # what has to be left, which may be as little as one likes
 
 
 def _angle(name: str, about: str, default: str = "0") -> Field:
@@ -306,7 +309,7 @@ PART = mapping(
     _optional("mark", "timing mark on the ray where the shaft angle is 0", *_MARK),
     length("outer", "diameter of the outline of a ring, with `track: internal`", default="none"),
     length("wall", "least wall between any two edges", default="reported, and above 0"),
-    later=("follower",),
+    later=(("follower", ""),),
 )
 
 
@@ -331,6 +334,21 @@ def check_part(part: Values, reader: Reader) -> None:
                 reader.fault_at(f"part.{name}", "needs a round bore", None, "give the bore's diameter, or leave it out")
     _disc(part, reader)
     _holes(part, reader)
+    _sizes(part, reader)
+
+
+def _sizes(part: Values, reader: Reader) -> None:
+    """Note what is too small to be told from nothing in a file."""
+    for path, field in reader.numbers.items():
+        top, *names = path.split(".")
+        if top != "part" or field.kind is not Kind.LENGTH or field.above is None or names[-1] in _NO_SIZES:
+            continue
+        value: Any = part
+        for name in names:
+            value = value.get(name, {})
+        if isinstance(value, float) and value < LEAST_SIZE * (1.0 - NOISE):
+            remedy = f"give at least {upward(LEAST_SIZE / reader.mm)} {reader.units}"
+            reader.fault_at(path, "smaller than a file can hold", f"{value / reader.mm:g}", remedy)
 
 
 def _needs(reader: Reader, name: str, other: str, why: str) -> None:
@@ -360,9 +378,14 @@ def _round(part: Values, bore: float, reader: Reader) -> None:
 def _disc(part: Values, reader: Reader) -> None:
     thickness, hub, screw = part.get("thickness"), part.get("hub", {}), part.get("set_screw", {})
     bore = part.get("bore")
-    if isinstance(bore, float) and "diameter" in hub and hub["diameter"] <= bore:
-        remedy = f"give more than {_told(bore, reader)}"
-        reader.fault_at("part.hub.diameter", "not above the bore", _told(hub["diameter"], reader), remedy)
+    if isinstance(bore, float) and "diameter" in hub and hub["diameter"] <= bore + 2.0 * LEAST_SIZE:
+        remedy = f"give more than {upward((bore + 2.0 * LEAST_SIZE) / reader.mm)} {reader.units}"
+        reader.fault_at(
+            "part.hub.diameter",
+            "not above the bore" if hub["diameter"] <= bore else "no wall round the bore",
+            _told(hub["diameter"], reader),
+            remedy,
+        )
     if thickness is not None:
         chamfer = part.get("chamfer")
         _below(reader, "part.chamfer", chamfer, 0.5 * thickness, "half the thickness")

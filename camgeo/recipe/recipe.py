@@ -7,16 +7,28 @@ one: its keys, how they are read and published, what they are checked for and wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import collections.abc
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal, overload
 
 from camgeo.cams.families import FAMILIES
+from camgeo.common.arguments import is_a, number_of, path_of
+from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.assembly import MECHANISM, MechanismAsked
 from camgeo.recipe.cam import CAM, CAMS, build_cam, check_cam
 from camgeo.recipe.dynamics import DYNAMICS, Dynamics, build_train, check_train
 from camgeo.recipe.export import EXPORT, build_export, check_files
 from camgeo.recipe.figures import LIMITS, Limit, build_limits, check_limits
-from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, DwellAsked, build_linkage, check_linkage
+from camgeo.recipe.linkage import (
+    DWELL,
+    DYADS,
+    LINKAGE,
+    LINKAGES,
+    SLIDING,
+    DwellAsked,
+    build_linkage,
+    check_linkage,
+)
 from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
 from camgeo.recipe.part import PART, build_part, check_part
 from camgeo.recipe.ring import check_ring
@@ -28,12 +40,11 @@ from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Sequence, as_writt
 from camgeo.recipe.sweep import SWEEP, build_sweep, check_sweep
 
 if TYPE_CHECKING:
-    import collections.abc
     from os import PathLike
     from pathlib import Path
 
     from camgeo.cams.family import Cam
-    from camgeo.recipe.export import Export
+    from camgeo.recipe.export import Export, FileRequest, Length
     from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.part import Part
     from camgeo.recipe.schema.change import Value
@@ -41,7 +52,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.schema.yaml_source import Mark
     from camgeo.recipe.sweep import Sweep
 
-ANGLES = 3600
+ANGLES, MOST_ANGLES = 3600, 1_000_000  # of a turn at which files are judged
 _MM = {"mm": 1.0, "inch": 25.4}
 
 
@@ -64,11 +75,12 @@ class Recipe:
 
     `mm` is the length of its unit, `path` where it was read, `text` what stands there. `marks` are the places of the
     fields given, `renamed` the paths as written of those given by a former key, `notices` what is to be said of those.
+    `unplaced` names in errors a text that stands in no file, whose lines nobody has seen; empty where lines count.
     """
 
     name: str
     about: str
-    units: Literal["mm", "inch"]
+    units: Length
     mm: float
     rotation: Literal["cw", "ccw"]
     cam: Cam
@@ -87,6 +99,7 @@ class Recipe:
     text: str = field(default="", repr=False, compare=False)
     renamed: collections.abc.Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
     notices: tuple[RecipeError, ...] = field(default=(), repr=False, compare=False)
+    unplaced: str = field(default="", repr=False, compare=False)
 
     @property
     def tables(self) -> tuple[str, ...]:
@@ -104,27 +117,65 @@ class Recipe:
 
         Values are in the recipe's units, as its text has them; where a path has none yet, the field is added. All else
         in the text stays, comments and former keys included. Raises RecipeErrors for a path that leads nowhere, and
-        where the new recipe has faults.
+        where the new recipe has faults; TypeError for a path that is no text.
         """
         from camgeo.recipe.loading import load_text
         from camgeo.recipe.schema.change import changed
         from camgeo.recipe.schema.yaml_source import read_source
 
+        is_a("path", path, (str, collections.abc.Mapping), "a str or a mapping from such")
+        if not isinstance(path, str) and value is not None:
+            raise TypeError("value must be left out where path is a mapping")
         text = self.text
+        given: dict[str, str] = {}
         for at, new in ({path: value} if isinstance(path, str) else path).items():
+            is_a("path", at, str, "a str")
+            there = self.written(self.present(at))
+            if there in given:
+                remedy = "give it one value"
+                raise self.error(there, f"the same field as {given[there]}", None, remedy)
+            given[there] = at
             source = read_source(text.encode("utf-8", "surrogatepass"), str(self.path))
-            text = changed(source, self.written(self.present(at)), new)
-        return load_text(text, self.path)
+            text = changed(source, there, new)
+        return load_text(text, self.path, f"{self.path} (replaced)")
+
+    def told_in(self, units: Length) -> Recipe:
+        """Give the recipe as one that tells its lengths in another unit; what it asks for stays."""
+        return replace(self, units=units, mm=_MM[units])
+
+    def told_for(self, request: FileRequest) -> Recipe:
+        """Give the recipe as one in the unit of a file."""
+        return self.told_in(request.told_in(self.units))
+
+    def field_of(self, request: FileRequest | None) -> str:
+        """Give the path of a request; that of the list for one that does not stand there."""
+        files = self.export.files
+        return f"export.files[{files.index(request)}]" if request in files else "export.files"
+
+    def request_of(self, filename: str) -> FileRequest | None:
+        """Give the request whose file has this name, the first of all bodies' files, or None."""
+        files = self.export.files
+        return next((request for request in files if request.filename(self.name, files) == filename), None)
+
+    def unstated(self, path: Path) -> float | None:
+        """Give the unit, mm, of a file that cannot state one, where the recipe asks for a file of this name."""
+        request = self.request_of(path.name) if path.suffix == ".stl" else None
+        return None if request is None else self.told_for(request).mm
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the recipe's text to a file, in place of what is there; raises OSError as the file system does."""
-        from pathlib import Path
+        """Write the recipe's text to a file, in place of what is there.
 
-        Path(path).write_text(self.text, encoding="utf-8", newline="")
+        Raises SurroundingsError where the file system refuses, CallError for a path that no file can have.
+        """
+        file = path_of("path", path)
+        try:
+            file.write_text(self.text, encoding="utf-8", newline="")
+        except OSError as error:
+            raise SurroundingsError(f"cannot be written: {error.strerror or error}", file) from error
 
     def locate(self, path: str) -> tuple[int, int]:
         """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
-        path = self.written(path)
+        path = self.written(path)  # which refuses what is no text
         while path and path not in self.marks:
             path = path[: max(path.rfind("."), path.rfind("["), 0)]
         return self.marks.get(path, (1, 1))
@@ -132,30 +183,37 @@ class Recipe:
     def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
         """Make the error that a later stage raises about a field, with the field's place in the file."""
         line, column = self.locate(path)
-        return RecipeErrors([RecipeError(str(self.path), line, column, self.written(path), problem, value, remedy)])
+        error = RecipeError(str(self.path), line, column, self.written(path), problem, value, remedy)
+        return RecipeErrors([error.without_place(self.unplaced) if self.unplaced else error])
 
     def written(self, path: str) -> str:
         """Give a path as the recipe has it, with a former key where one stands."""
+        is_a("path", path, str, "a str")
         return as_written(path, self.renamed)
 
     def present(self, path: str) -> str:
         """Give the path of a field of cam or linkage with present keys in the place of former ones."""
+        is_a("path", path, str, "a str")
         linkage = "" if self.linkage is None else self.linkage.kind
         return present(RECIPE, path, {"cam": self.cam.kind, "linkage": linkage})
 
     def text_with(self, values: collections.abc.Mapping[str, float]) -> str:
         """Give the recipe's text with other numbers by their paths, by former keys or present ones.
 
-        Raises ValueError and RecipeErrors as `camgeo.recipe.schema.edit.with_values` does.
+        Raises CallError and RecipeErrors as `camgeo.recipe.schema.edit.with_values` does.
         """
-        return with_values(self.text, {self.written(self.present(path)): value for path, value in values.items()})
+        is_a("values", values, collections.abc.Mapping, "a mapping from paths to numbers")
+        for path in values:
+            is_a("values: a path", path, str, "a str")
+        numbers = {path: number_of(f"values[{path!r}]", value) for path, value in values.items()}
+        return with_values(self.text, {self.written(self.present(path)): value for path, value in numbers.items()})
 
 
 RECIPE = Table(
     (
         Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
         Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
-        Field("units", Kind.CHOICE, "unit of every length", default="mm", choices=("mm", "inch")),
+        Field("units", Kind.CHOICE, "unit of lengths that carry none", default="mm", choices=("mm", "inch")),
         Field(
             "rotation",
             Kind.CHOICE,
@@ -182,7 +240,7 @@ RECIPE = Table(
                 "number of shaft angles at which each file is judged",
                 default="3600",
                 at_least=8,
-                at_most=1_000_000,
+                at_most=MOST_ANGLES,
             ),
             Field(
                 "motion_error",
@@ -214,6 +272,7 @@ RECIPE = Table(
         ),
         Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
     ),
+    later=(("camshaft", "camshafts"),),
 )
 
 
@@ -272,18 +331,20 @@ def _check(values: Values, reader: Reader) -> None:
 
 def build(values: Values, path: Path, marks: collections.abc.Mapping[str, Mark], text: str) -> Recipe:
     """Make the recipe of values in which there is no fault."""
+    linkage = build_linkage(values["linkage"]) if "linkage" in values else None
+    cam = build_cam(values["cam"], values["mm"])
     return Recipe(
         name=values["name"],
         about=values.get("about", ""),
         units=values.get("units", "mm"),
         mm=values["mm"],
         rotation=values.get("rotation", "cw"),
-        cam=build_cam(values["cam"], values["mm"]),
+        cam=cam if linkage is None else linkage.shaped(cam),
         part=build_part(values.get("part", {})),
         export=build_export(values.get("export", {})),
         verify=Verify(**{"angles": ANGLES, **values.get("verify", {})}),
         path=path,
-        linkage=build_linkage(values["linkage"]) if "linkage" in values else None,
+        linkage=linkage,
         dwell=DwellAsked(**values["dwell"]) if "dwell" in values else None,
         sweep=build_sweep(values["sweep"]) if "sweep" in values else None,
         dynamics=build_train(values["dynamics"]) if "dynamics" in values else None,

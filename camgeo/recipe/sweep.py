@@ -71,15 +71,19 @@ FIGURES = {name: figure for name, figure in EVERY.items() if figure.swept}
 _FORMER = tuple((former, name) for former, name in PRESENT.items() if name in FIGURES)
 
 
-RANGE = Table(
-    (
-        Field("from", Kind.NUMBER, "first value, as the recipe writes it", required=True),
-        Field("to", Kind.NUMBER, "last value", required=True),
-        Field(
-            "steps", Kind.INTEGER, "number of values, both ends included; for a grid", at_least=2, at_most=MOST_STEPS
-        ),
+def _range_of(unit: Kind | None) -> Table:
+    """Give the table of a range of numbers of some kind."""
+    steps = "number of values, both ends included; for a grid"
+    return Table(
+        (
+            Field("from", Kind.NUMBER, "first value, as the recipe writes it", required=True, unit=unit),
+            Field("to", Kind.NUMBER, "last value", required=True, unit=unit),
+            Field("steps", Kind.INTEGER, steps, at_least=2, at_most=MOST_STEPS),
+        )
     )
-)
+
+
+RANGE = _range_of(None)
 
 
 def read_vary(reader: Reader, field: Field, node: Node, path: str) -> list[Values] | None:
@@ -99,30 +103,37 @@ def read_vary(reader: Reader, field: Field, node: Node, path: str) -> list[Value
         return None
     axes = []
     for name, below in ((name, join(path, name)) for name in given):
-        axis = _axis(reader, given[name], below)
+        axis = _axis(reader, given[name], below, _varied(reader, name))
         if axis is not None:
             axes.append({"path": name, "at": below, **axis})
     return axes
 
 
-def _axis(reader: Reader, node: Node, path: str) -> Values | None:
-    """Read a range or a list of values."""
+def _varied(reader: Reader, path: str) -> Kind:
+    """Say what the number at a path is, whose unit its values may carry; a length where the path itself is at fault."""
+    path = present(reader.root, path, reader.kinds)
+    field = reader.numbers.get(path) or field_at(reader.root, path, reader.kinds)
+    return Kind.LENGTH if field is None else field.unit or field.kind
+
+
+def _axis(reader: Reader, node: Node, path: str, unit: Kind) -> Values | None:
+    """Read a range or a list of values of a number of some kind, as the recipe writes them."""
     either_way = Field("", Kind.OWN, "", form=_AXIS)
     if isinstance(node, Sequence):
         items = reader.items(either_way, node, path, MOST_VALUES)
-        part = Field("", Kind.NUMBER, "")
+        part = Field("", Kind.NUMBER, "", unit=unit)
         values = [reader.field(part, item, join(path, i)) for i, item in enumerate(items)]
         return {"values": tuple(values)} if values and None not in values else None
     if not isinstance(node, Mapping):
         reader.fault(node.mark, path, "not a range", described(node), reader.wanted(either_way))
         return None
-    read = reader.table(RANGE, node, path)
+    read = reader.table(_range_of(unit), node, path)
     return read if {"from", "to"} <= read.keys() else None
 
 
 def _vary_schema(_: Field) -> Schema:
-    values = {"type": "array", "items": number_schema(), "minItems": 1, "maxItems": MOST_VALUES}
-    axis = {"anyOf": [table_schema(RANGE), values]}
+    values = {"type": "array", "items": number_schema(unit=Kind.MOTION), "minItems": 1, "maxItems": MOST_VALUES}
+    axis = {"anyOf": [table_schema(_range_of(Kind.MOTION)), values]}
     return {"type": "object", "additionalProperties": axis, "minProperties": 1, "maxProperties": MOST_AXES}
 
 
@@ -186,8 +197,13 @@ def check_sweep(sweep: Values, reader: Reader) -> None:
     design = [reader.written(path) for path in reader.numbers if path.startswith(_VARIED)]
     counts = Counter(id(scalar) for _, scalar in scalars(reader.source.root))
     shared = {path for path, scalar in scalars(reader.source.root) if counts[id(scalar)] > 1}
+    varied: dict[str, str] = {}
     for axis in axes:
         path = _as_written(axis, reader)
+        if path in varied:  # a former key and the present one lead to the same number
+            reader.fault_at(axis["at"], f"varies the same number as {varied[path]}", None, "leave one of the two out")
+            continue
+        varied[path] = axis["path"]
         if path not in design:
             _no_number(axis, design, reader)
         elif path in shared:

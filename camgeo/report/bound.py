@@ -1,13 +1,13 @@
-"""How a check's limit is told: whether the limit itself is allowed, in words and as a sign."""
+"""How a check's limit is reported: whether the limit itself is allowed, in words and as a sign."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from camgeo.checks.declared import (
+    BENT,
     CHAMFER,
     CLEARANCE,
-    CURVATURE,
     JAM,
     LEAST_BACKLASH,
     MOBILITY,
@@ -18,7 +18,7 @@ from camgeo.checks.declared import (
 )
 
 STRICT: dict[str, float | None] = {
-    CURVATURE.name: None,
+    **dict.fromkeys(BENT),
     CHAMFER.name: None,
     WALL.name: 0.0,
     MOBILITY.name: 0.0,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from camgeo import __version__
 from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
+from camgeo.common.units import UNIT_MM
 from camgeo.recipe.export import NO_CONTOUR, NO_PART
 from camgeo.report.bound import is_strict, sign, words
 from camgeo.report.listed import listed
@@ -36,7 +37,8 @@ UNIT_NAMES = {"mm": "mm", "inch": "in"}
 class FileResult:
     """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
 
-    `body` is the one that it is judged as. `perimeter` and `area` (mm, mm^2) are those of its contour as read.
+    `body` is the one that it is judged as. `perimeter` and `area` (mm, mm^2) are those of its contour as read,
+    `units` (mm) is the unit of its numbers, None where there are none or nothing was read.
     """
 
     path: Path
@@ -50,6 +52,7 @@ class FileResult:
     body: str = "cam"
     perimeter: float | None = None
     area: float | None = None
+    units: float | None = None
 
     @property
     def shows_cam(self) -> bool:
@@ -131,8 +134,8 @@ def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | No
 
 
 def of_displacements(recipe: Recipe) -> tuple[float, str]:
-    """Factor and unit in which the follower's displacements are told: the recipe's, or degrees."""
-    swings = recipe.cam.unit == "deg"
+    """Factor and unit in which the follower's displacements are reported: the recipe's, or degrees."""
+    swings = recipe.cam.unit == "deg" or recipe.cam.by_linkage
     return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
 
 
@@ -184,6 +187,9 @@ def _jumps(recipe: Recipe, joint: Joint) -> list[dict[str, Any]]:
 def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
     told = listed(file.path.name, file.path.read_bytes())
     entry: dict[str, Any] = {"path": told.pop("path"), "kind": file.request.kind, **told}
+    if file.units is not None:
+        named = (name for name, mm in UNIT_MM.items() if math.isclose(mm, file.units, rel_tol=1e-6))
+        entry["units"] = next(named, f"{file.units:.9g} mm")
     if file.request.kind in NO_CONTOUR:
         return entry
     mm = recipe.mm
@@ -337,7 +343,7 @@ def table(report: dict[str, Any]) -> str:
 
 
 def verdict(report: dict[str, Any]) -> str:
-    """What `summary` tells with the verdict's line last, so that it stays in sight under a table."""
+    """What `summary` says with the verdict's line last, so that it stays in sight under a table."""
     first, *failed = summary(report).split("\n")
     return "\n".join([*failed, first])
 

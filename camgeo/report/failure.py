@@ -18,6 +18,7 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
     """Tell a failed check of a report over several lines; `shown` names the recipe's file in place of its path."""
     field = _field(check, recipe)
     line, column = recipe.locate(field)
+    place = recipe.unplaced or f"{shown or recipe.path}:{line}:{column}"
     rows = [
         ("value", _value(check)),
         ("limit", _limit(check)),
@@ -25,7 +26,7 @@ def failure(check: dict[str, Any], report: dict[str, Any], recipe: Recipe, shown
         ("file", check.get("file", "")),
         ("found", check.get("detail", "")),
         ("remedy", remedy(check, report, recipe)),
-        ("recipe", f"{shown or recipe.path}:{line}:{column} {recipe.written(field)}"),
+        ("recipe", f"{place} {recipe.written(field)}"),
     ]
     return headline(check) + "".join(f"{INDENT}{name:<9}{text}" for name, text in rows if text)
 
@@ -43,7 +44,7 @@ def headline(check: dict[str, Any]) -> str:
 
 
 def remedy(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
-    """Tell what would let the check hold; empty where nothing would, or where the check itself tells it."""
+    """Tell what would let the check hold; empty where nothing would, or where the check itself says it."""
     declared = EVERY.get(check["name"])
     return "" if declared is None or declared.remedy is None else declared.remedy(check, report, recipe)
 

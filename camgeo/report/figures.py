@@ -6,10 +6,10 @@ import math
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from camgeo.checks.declared import (
+    BENT,
     CHECKS,
     CLEARANCE,
     COLLISION,
-    CURVATURE,
     LEAST_BACKLASH,
     PRESSURE,
     RATIO,
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Any
 
-    from camgeo.cams.disc import OscillatingRoundCam
+    from camgeo.cams.disc_cams import OscillatingRoundCam
     from camgeo.curve.extremes import Extreme
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.document import FileResult
@@ -117,7 +117,7 @@ def _of_check(check: Check) -> Measured:
 
 def _radius(_: Recipe, design: Design) -> Measured:
     """Of the metal, not of the roller's way, which is bent less by the roller's radius."""
-    bent = next(check for check in design.checks if check.name == CURVATURE.name)
+    bent = next(check for check in design.checks if check.name in BENT)
     value = None if bent.value is None else bent.value - abs(design.profile.roller_radius)
     return Measured(value, "mm", bent.at_deg, bent.detail)
 
@@ -125,7 +125,7 @@ def _radius(_: Recipe, design: Design) -> Measured:
 def _pitch_radius(recipe: Recipe, design: Design) -> Measured:
     """Of its convex places; the check of a ring is of its hollows."""
     if recipe.cam.metal > 0:
-        return _of_check(next(check for check in design.checks if check.name == CURVATURE.name))
+        return _of_check(next(check for check in design.checks if check.name in BENT))
     from camgeo.curve.curvature import least_radius
 
     radius, at = least_radius(design.profile.base)

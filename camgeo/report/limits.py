@@ -33,7 +33,7 @@ def limit_checks(
 ) -> list[Check]:
     """Hold every figure that the recipe limits against its bounds.
 
-    `checks` are all that were made, `dynamics` the report's section. A figure that cannot be had fails, and tells why.
+    `checks` are all that were made, `dynamics` the report's section. A figure that cannot be had fails, and says why.
     """
     scene = Scene(recipe, design.follower)
     speeds = {limit.figure: limit.rpm for limit in recipe.limits if limit.rpm is not None}
@@ -58,7 +58,7 @@ def limit_checks(
 def _held(
     recipe: Recipe, limit: Limit, measured: Measured, file: str | None = None, tolerance: float | None = None
 ) -> list[Check]:
-    """Hold a figure against each bound that is given; `tolerance` is the file's. What fails tells what would do."""
+    """Hold a figure against each bound that is given; `tolerance` is the file's. What fails says what would do."""
     found = []
     bounds: tuple[tuple[Sense, float | None], ...] = (("at_least", limit.at_least), ("at_most", limit.at_most))
     for sense, bound in bounds:

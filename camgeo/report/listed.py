@@ -1,4 +1,4 @@
-"""How a report tells of a file: its name, size and checksum."""
+"""How a report lists a file: its name, size and checksum."""
 
 from __future__ import annotations
 

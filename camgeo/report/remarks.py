@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import CURVATURE, PRESSURE
-from camgeo.common.rounding import downward
+from camgeo.checks.declared import BENT, PRESSURE
+from camgeo.common.rounding import downward, upward
+from camgeo.curve.support import is_sharp
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
 from camgeo.report.document import Remark, of_displacements
@@ -18,6 +20,7 @@ from kin.law.joints import Joint
 from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
+    from camgeo.cams.family import Cam
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
 
@@ -28,6 +31,7 @@ THICKEST, THINNEST = 2.0, 0.01  # of the cam's greatest radius
 STILL = 1e-9  # of the cam's size: a motion that is none
 LOOKS = 1440  # places of a turn at which the stroke is looked at
 CLEAR = 0.05  # of the cam's size
+SHAFT = 0.02  # of the cam's size: the least radius of a shaft that drives it
 HALF = 0.5  # of the least convex radius of the pitch curve: the greatest roller by rule of thumb
 INCH, STEP, HALF_MM = 25.4, 64.0, 0.5  # sizes by the inch are whole 64ths, metric ones whole or half mm
 _SAME = 1e-6
@@ -39,6 +43,7 @@ def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
         _size_found(recipe),
         _pressure(recipe, design),
         _roller(recipe, design),
+        _corner(recipe, design),
         _cutter(recipe, design),
         _pivot(recipe, design),
         *_motion(recipe, design),
@@ -84,15 +89,41 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
         worst, value, rule, of = max(over, key=lambda row: row[1] - row[2])
         at_deg = degrees(worst.at)
     told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for rollers, {kind}"
-    size = recipe.cam.less_pressure(design.intent, math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
-    return Remark(PRESSURE.name, value, rule, "deg", told + (f", which {size} keeps" if size else ""), at_deg)
+    found = recipe.cam.less_pressure(design.intent, math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
+    if found is not None:
+        size, other = found
+        against = _against(recipe, other, design)
+        told += f"; {size} would keep it, but {against}" if against else f", which {size} keeps"
+    return Remark(PRESSURE.name, value, rule, "deg", told, at_deg)
+
+
+def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
+    """Say what stands against a cam of another size for the same motion; empty where nothing does."""
+    from camgeo.curve.curve import CurveError
+    from camgeo.curve.measures import farthest, nearest
+    from camgeo.synthesis.design import sound
+    from kin.law.programme import IntentError
+
+    cam = cam.refusing()
+    try:
+        checks, contour = sound(replace(recipe, cam=cam), cam.profile(design.intent), design.intent)
+    except (CurveError, IntentError):
+        return "its curve cannot be made"
+    if contour is None:
+        return f"fails {next(check.name for check in checks if not check.ok)}"
+    part = recipe.part
+    if part.outer is not None:
+        reach = 2.0 * farthest(contour).value
+        return f"needs a part.outer above {upward(reach / recipe.mm)}" if reach >= part.outer else ""
+    room = SHAFT * design.profile.curve.size if part.bore is None else 0.5 * part.bore
+    return "leaves no metal round the shaft" if nearest(contour).value <= room else ""
 
 
 def _roller(recipe: Recipe, design: Design) -> Remark | None:
     """A roller above half the pitch curve's least convex radius, where the recipe limits no radius."""
     if any(limit.figure in {RADIUS, PITCH_RADIUS} and limit.at_least is not None for limit in recipe.limits):
         return None
-    bent = next(check for check in design.checks if check.name == CURVATURE.name)
+    bent = next(check for check in design.checks if check.name in BENT)
     roller, radius = recipe.cam.touch_radius, bent.value
     if design.contour is None or radius is None or recipe.cam.metal < 0 or not HALF * radius < roller:
         return None
@@ -104,6 +135,24 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
         f"convex radius; up to half is the rule, which {size} keeps"
     )
     return Remark("large-roller", roller, HALF * radius, "mm", told, bent.at_deg)
+
+
+def _corner(recipe: Recipe, design: Design) -> Remark | None:
+    """Sharp corners that the recipe asks for, where it limits no radius."""
+    if design.contour is None or not is_sharp(design.contour):
+        return None
+    if any(limit.figure == RADIUS and limit.at_least is not None for limit in recipe.limits):
+        return None
+    runs = design.contour.runs
+    after = [*runs[1:], runs[0]]
+    turns = [(two.low - one.high) % design.contour.shape.period for one, two in zip(runs, after, strict=True)]
+    longest = max(range(len(runs)), key=turns.__getitem__)
+    told = (
+        f"the contact stays on a sharp corner for {math.degrees(turns[longest]):.4g} degrees: its edge wears, the "
+        "contact pressure has no bound; a reuleaux.rounding above 0 rounds it"
+    )
+    at_deg = design.position.shaft_deg(runs[longest].high)
+    return Remark("sharp-corner", math.degrees(turns[longest]), 0.0, "deg", told, at_deg)
 
 
 def _cutter(recipe: Recipe, design: Design) -> Remark | None:

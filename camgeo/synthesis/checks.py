@@ -16,7 +16,7 @@ from kin.numeric.angles import degrees
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.cams.disc import TranslatingFaceCam, TranslatingRoundCam
+    from camgeo.cams.disc_cams import TranslatingFaceCam, TranslatingRoundCam
     from camgeo.cams.family import Cam, Intent, Profile
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 ZOOMS, ZOOM = 5, 32  # about the worst of these: so often, into so many parts
 EXACT = 1e-9  # of the arm: to this the closing equation must hold
+SAME = 1e-12  # of the greatest value: others within it are equal to it
 
 
 def motion_checks(cam: Cam, intent: Intent, profile: Profile, names: tuple[str, ...]) -> list[Check]:
@@ -162,10 +163,13 @@ def slack(extreme: Extreme) -> float:
 
 
 def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
-    """Greatest value of a continuous function of period 2 pi, looked at at t (n,) and closely about the best; where."""
+    """Greatest value of a continuous function of period 2 pi, looked at at t (n,) and closely about the best; where.
+
+    Of places that are equal but for rounding the first.
+    """
     seen = of(t)
     around = np.concatenate([t[-1:] - 2.0 * math.pi, t, t[:1] + 2.0 * math.pi])
-    worst = int(np.argmax(seen))
+    worst = int(np.argmax(seen >= (1.0 - SAME) * seen.max()))
     at, value = float(t[worst]), float(seen[worst])
     low, high = float(around[worst]), float(around[worst + 2])
     for _ in range(ZOOMS):

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from camgeo.checks.declared import CURVATURE, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
+from camgeo.checks.declared import CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
@@ -107,7 +107,6 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         more += found
         if not all(check.ok for check in found):
             contour = body = None  # without its least walls there is no part to draw
-    trimmed = contour is not None and not contour.closed
     return Design(
         intent,
         profile,
@@ -115,7 +114,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         (*checks, *more),
         cam.position(intent),
         follower,
-        trimmed,
+        is_trimmed(contour, profile),
         driven,
         body,
         joints=cam.joints(intent),
@@ -134,7 +133,7 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
     radius = least.radius + roller
     shaft_deg = recipe.cam.position(intent).shaft_deg
     roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
-    bent = Check(CURVATURE.name, roomy, radius, roller, "mm", at_deg, "at_least")
+    bent = Check((PITCH if roller else CURVATURE).name, roomy, radius, roller, "mm", at_deg, "at_least")
     if math.isinf(radius):
         bent = replace(bent, detail="the pitch curve of the ring has no hollow")
     if least.room and roomy:
@@ -154,7 +153,9 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
             outcome = f"; trimming is not possible: {error}"
     if not (roomy or found):
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
-    # of a trimmed contour the radius that was asked for is told, and held against nothing
+    if not profile.curve.closed:
+        bent = _sharp(profile, shaft_deg)
+    # of a trimmed contour the radius that was asked for is reported, and held against nothing
     cut_off = bool(found and contour)
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
@@ -173,6 +174,18 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
         ok, at_deg, limit = contour is not None, shaft_deg(worst.at), None if cut_off else 0.0
         checks.append(Check(of_kind[kind].name, ok, depth, limit, "mm", at_deg, detail=detail))
     return checks, contour
+
+
+def is_trimmed(contour: Curve | None, profile: Profile) -> bool:
+    """Whether undercut was cut off a contour: corners that it has by design lose no motion."""
+    return contour is not None and contour is not profile.curve
+
+
+def _sharp(profile: Profile, shaft_deg: Callable[[float], float]) -> Check:
+    """The check of curvature of a contour whose corners are asked for: reported, and held against nothing."""
+    runs = profile.curve.runs
+    detail = f"{len(runs)} sharp corners, as the recipe asks"
+    return Check(CURVATURE.name, True, 0.0, None, "mm", shaft_deg(runs[0].high), "at_least", detail=detail)
 
 
 def _bent_most(profile: Profile) -> Least:
@@ -251,7 +264,7 @@ def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, 
 
 
 def intended(recipe: Recipe, design: Design) -> Judged:
-    """What kin is told of the part: the follower with its law, and how the part is drawn."""
+    """What kin is given of the part: the follower with its law, and how the part is drawn."""
     from kin.judge.contour_checks import DwellAsked
     from kin.judge.verify import Intent
 
@@ -266,6 +279,7 @@ def intended(recipe: Recipe, design: Design) -> Judged:
         outer=recipe.part.outer,
         trimmed=design.trimmed,
         mechanism=driven.mechanism if driven is not None and turns else None,
+        swing=recipe.cam.frame_swing() if turns else None,
         dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
     )
     if design.body is None:

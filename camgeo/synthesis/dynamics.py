@@ -124,17 +124,15 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn
     train = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
     if design.driven is None:
         follower = intended(recipe, design).follower
+        if asked.backlash is not None and len(follower.contacts) == 1:
+            why = f"a single {design.follower.name} has no backlash"
+            raise recipe.error("dynamics.backlash", why, None, "give preload")
         swings, found = follower.unit == "deg", follower.rests
     else:
         if not design.driven.turns:
             raise recipe.error("dynamics", STANDS)
         swings = design.driven.mechanism.unit == "deg"
         found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
-    if asked.backlash is not None and design.yoke_breadth is None and not swings:
-        kind = design.follower
-        held = bool(kind.closure)
-        why = f"that of a {kind.name} is not computed" if held else f"a single {kind.name} has no backlash"
-        raise recipe.error("dynamics.backlash", why, None, "give preload")
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
     return _Scene(recipe, asked, train, purse, found, unit, name, drawn)
@@ -153,9 +151,8 @@ def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
         play = intent.follower.moved_by(play)
     if path is None:
         return intended_faces(intent.follower, play)
-    return measured_faces(
-        intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored, units=scene.drawn), play
-    )
+    units = scene.recipe.unstated(path) if scene.drawn is None else scene.drawn
+    return measured_faces(intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored, units=units), play)
 
 
 def contour_of(path: Path, mm: float, *, mirrored: bool, units: float | None = None) -> Contour:

@@ -1,7 +1,7 @@
 """The linkage that a cam drives: the mechanism of a recipe, its checks before any file, its figures and its table.
 
 The cam is held in a square frame, the coupler (AS section 3). Angles of the recipe's checks are shaft angles, as
-everywhere; where the linkage binds, the shaft has no angle, and the relative angle between cam and frame is told.
+everywhere; where the linkage binds, the shaft has no angle, and the relative angle between cam and frame is reported.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Where a rigid body stands over one turn of the shaft, and between which bounds its velocity lies over an interval.
 
 A pose is x, y in mm and an angle in rad, of the body's own axes in the fixed ones. Rates are by the shaft angle. Every
-kind of motion here tells `over` an interval what it is at the middle and how far the rates stray from a middle value;
+kind of motion here gives `over` an interval what it is at the middle and how far the rates stray from a middle value;
 these are bounds, not samples: a search that rests on them is a proof for the motion as it is stated. A `Sampled` motion
 is a curve through samples, stated between them by interpolation alone; its `slack` estimates how far the true motion
 may be from it.

@@ -35,7 +35,7 @@ _BESIDE = 1e-9  # of a speed: so near a resonance, and not on it, where nothing 
 _RESOLUTION = 1e-11
 _CORNER = 1e-9  # of the greatest velocity: a lesser leap is a tangent's rounding
 _BISECTIONS = 200  # of the logarithm of a speed: many times the bits of a number
-_LEAST_RATIO = 0.5  # natural frequency in turns of the shaft, below which nobody asks
+_LEAST_RATIO = 0.5  # natural frequency in turns of the shaft, below which none is sought
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ def _rigid(train: Train, drive: Drive) -> float | None:
 
 
 def _last(train: Train) -> float:
-    """The speed beyond which nobody asks."""
+    """The speed beyond which none is sought."""
     return train.natural / _LEAST_RATIO * 60.0 / TURN
 
 

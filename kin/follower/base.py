@@ -10,7 +10,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+from kin.follower.rests import dwells_of_law, dwells_of_transmission
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from kin.follower.envelope import Envelope
     from kin.follower.guide import Guide, Side
     from kin.follower.motion_error import Judged, Play, Unit
+    from kin.law.piecewise import Piecewise
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
@@ -94,7 +97,7 @@ class Closure:
     limit    greatest play or interference of a contour within a tolerance of the exact one
     name     of the check on both, play and interference
     tight    name of a check on interference alone; None for none
-    breadth  of a frame, mm: what is told is how broad the contour is; None where play is told
+    breadth  of a frame, mm: what is reported is how broad the contour is; None where play is
     """
 
     limit: Callable[[float], float]
@@ -103,7 +106,7 @@ class Closure:
     breadth: float | None = None
 
     def detail(self, play: Play) -> str:
-        """What the check tells of a play that was found."""
+        """What the check reports of a play that was found."""
         if self.breadth is not None:
             return f"breadth {self.breadth - play.most:.9g} to {self.breadth - play.least:.9g} mm"
         sampled = ", sampled" if play.extremes == "sampled" else ""
@@ -174,3 +177,36 @@ class Follower(ABC):
     @abstractmethod
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error, mm or degrees, of a contour within `tolerance` of the exact one."""
+
+
+class OfLaw(Follower):
+    """A follower whose intended motion is a law over the shaft angle."""
+
+    law: Piecewise
+
+    @property
+    def motion(self) -> Piecewise:
+        """The law."""
+        return self.law
+
+    @cached_property
+    def rests(self) -> Rests:
+        """Dwells of the law."""
+        return tuple(dwells_of_law(self.law))
+
+
+class OfTransmission(Follower):
+    """A double follower whose intended motion is the swing of a transmission, `share` times psi."""
+
+    share: ClassVar[float] = 1.0
+    transmission: Transmission
+
+    @cached_property
+    def motion(self) -> Swing:
+        """The swing over the shaft angle."""
+        return Swing(self.transmission, self.share)
+
+    @cached_property
+    def rests(self) -> Rests:
+        """Dwells of psi."""
+        return tuple(dwells_of_transmission(self.transmission))

@@ -11,17 +11,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from kin.follower.base import Closure, Contact, Follower, Rests, Swing
+from kin.follower.base import Closure, Contact, OfLaw, OfTransmission
 from kin.follower.drive import OfArmFace
 from kin.follower.envelope import FacePitch, FlatEnvelope, Outset, PairSupport
 from kin.follower.guide import LEADING, TRAILING, Arm
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import FINE_STEP, across, grid
-from kin.follower.rests import dwell_angles, dwells_of_law, dwells_of_transmission
+from kin.follower.rests import dwell_angles
 from kin.follower.support import Bearing, bearing_of
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
@@ -128,7 +128,7 @@ class ArmFace:
 
 
 @dataclass(frozen=True, eq=False)
-class SwingingFace(Follower):
+class SwingingFace(OfLaw):
     """A flat face on an arm about a pivot at distance C from the shaft, `offset` f mm nearer the cam than its parallel.
 
     Its position, of which `law` is the intended one over the shaft angle, is the angle psi between the face and the
@@ -150,16 +150,6 @@ class SwingingFace(Follower):
         """The face, which touches about where it would at rest."""
         reach = self.pivot * float(np.cos(self.intended(np.zeros(1))[0]))
         return (Contact(Arm(reach, self.pivot, self.side)),)
-
-    @property
-    def motion(self) -> Piecewise:
-        """The law."""
-        return self.law
-
-    @cached_property
-    def rests(self) -> Rests:
-        """Dwells of the law."""
-        return tuple(dwells_of_law(self.law))
 
     @cached_property
     def support(self) -> PairSupport:
@@ -226,7 +216,7 @@ class SwingingFace(Follower):
 
 
 @dataclass(frozen=True, eq=False)
-class FlatPair(Follower):
+class FlatPair(OfTransmission):
     """W's pair of flat faces that include pi - alpha and meet in a pivot at distance 2 l from the shaft (W section 5).
 
     The pair swings by psi/2; the normal of face A stands at t, that of face B at t + alpha, in the cam frame. Positions
@@ -234,6 +224,7 @@ class FlatPair(Follower):
     the pivot at that distance, and their cam is the parallel curve.
     """
 
+    share: ClassVar[float] = 0.5
     transmission: Transmission
     face: float = 0.0
 
@@ -242,16 +233,6 @@ class FlatPair(Follower):
         """Face A, which keeps the swing below, and face B."""
         arm = self.transmission.arm
         return Contact(Arm(arm, 2.0 * arm, TRAILING), TRAILING), Contact(Arm(arm, 2.0 * arm, LEADING), LEADING)
-
-    @cached_property
-    def motion(self) -> Swing:
-        """Half of psi over the shaft angle."""
-        return Swing(self.transmission, 0.5)
-
-    @property
-    def rests(self) -> Rests:
-        """Dwells of psi."""
-        return tuple(dwells_of_transmission(self.transmission))
 
     @property
     def closure(self) -> Closure:

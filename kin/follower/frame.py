@@ -2,13 +2,15 @@
 
 The contour drives the mechanism through contact with the frame's four faces (`kin.follower.frame_contact`). A real
 part is never of exactly constant breadth, so the frame can rest in four ways, or float between; the worst counts.
-Measured and intended output are compared at the same shaft angle, with the cam mounted as drawn.
+Measured and intended output are compared at the same shaft angle, with the cam mounted as drawn. What is intended is
+the motion of the exact cam or, where the swing of the frame is prescribed, the law of that: then the lift counts for
+nothing but the zero of the shaft angle.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -19,7 +21,7 @@ from kin.follower.motion_error import MotionError, Play, Unit, motion_error, wit
 from kin.follower.support import bearing_of
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
-from kin.numeric.elementary import Jet
+from kin.numeric.elementary import Jet, cos
 from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import Extremes, extremes
 from kin.numeric.longest_window import dwells
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.contour.contour import Contour
+    from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array, Indices
 
@@ -79,7 +82,8 @@ class LinkageVerdict:
     dwells: tuple[DwellFound, ...]
 
 
-class _Intended(NamedTuple):
+@dataclass(frozen=True)
+class _Intended:
     """The mechanism as meant: shaft angle and output (2, 4, n) at relative angles, with three derivatives."""
 
     mechanism: Mechanism
@@ -87,6 +91,11 @@ class _Intended(NamedTuple):
     def alike(self, error: Array) -> Array:
         """Return errors of the output (n,) without whole turns, if it is an angle."""
         return error - TURN * np.round(error / TURN) if self.mechanism.unit == "deg" else error
+
+    def output(self, shaft: Array) -> Array:
+        """Output at shaft angles (n,)."""
+        found: Array = self.rows(self.mechanism.relative(shaft))[1, 0]
+        return found
 
     def rows(self, theta: Array) -> Array:
         at = self.mechanism.at(theta, 3)
@@ -119,6 +128,33 @@ class _Intended(NamedTuple):
         return np.not_equal(before, np.searchsorted(ring, np.maximum(a, b) + BESIDE, side="right"))
 
 
+@dataclass(frozen=True)
+class _Prescribed(_Intended):
+    """The mechanism whose frame swings by a law over the shaft angle: the output is solved from that alone."""
+
+    swing: FrameSwing
+
+    def output(self, shaft: Array) -> Array:
+        """Output at shaft angles (n,)."""
+        found: Array = self._over_shaft(shaft, 0)[0]
+        return found
+
+    def _over_shaft(self, shaft: Array, order: int) -> Array:
+        """Output and its derivatives by the shaft angle (order + 1, n); of dyads from r1 cos theta_4 = r4 - Y."""
+        chain, turned = self.mechanism.chain, self.swing.output(shaft, order)
+        if not chain.dyads:
+            return turned.derivatives()
+        s = cos(turned) * -self.swing.ground + (self.swing.rocker + 0.5 * chain.breadth)
+        return chain.solve(s, s.constant(0.5 * chain.breadth), self.mechanism.about).outputs[-1].derivatives()
+
+    def error(self, theta: Array, measured: Array, near: Array) -> Array:  # noqa: ARG002 - one call for both
+        """As that of what the exact cam does; the law is taken at the measured shaft angle itself."""
+        (phi, phi_slope, phi_bend), output = measured
+        meant, rate, bend = self._over_shaft(phi, 2)
+        error = self.alike(output[0] - meant)
+        return np.stack([error, output[1] - rate * phi_slope, output[2] - bend * phi_slope**2 - rate * phi_bend])
+
+
 def _step(phi: Array, shaft: Array) -> Array:
     """Step from where the shaft angle has the derivatives (4, n) to where it is phi (n,), by its Taylor polynomial."""
     step: Array = (phi - shaft[0]) / shaft[1]
@@ -141,26 +177,29 @@ def judge_frame(
     shaft: Array,
     tolerance: float,
     *,
+    swing: FrameSwing | None = None,
     band: float | None = None,
     over: Over = "shaft",
 ) -> LinkageVerdict:
     """Let a contour drive the mechanism: extremes over the whole turn, rms and increments from shaft angles (n,).
 
-    `band`, rad or mm, asks for dwells over the shaft angle or the relative one; None for none. Raises FrameError where
-    the contour does not drive it all round, or so suddenly that rounding hides the error, and BindingError where the
-    intended cam does not drive it. Cost: a position of the linkage for each break of the contour as each face has it,
-    in each way of resting.
+    `swing` is the law prescribed for the frame, None where what the exact cam does is meant. `band`, rad or mm, asks
+    for dwells over the shaft angle or the relative one; None for none. Raises FrameError where the contour does not
+    drive it all round, or so suddenly that rounding hides the error, and BindingError where the intended cam does not
+    drive it. Cost: a position of the linkage for each break of the contour as each face has it, in
+    each way of resting.
     """
+    intended = _Intended(mechanism) if swing is None else _Prescribed(mechanism, swing)
     try:
-        return _judged(contour, mechanism, shaft, tolerance, band=band, over=over)
+        return _judged(contour, intended, shaft, tolerance, band=band, over=over)
     except UnsettledError as error:
         raise FrameError(f"the error of the output cannot be determined: {error}") from error
 
 
 def _judged(
-    contour: Contour, mechanism: Mechanism, shaft: Array, tolerance: float, *, band: float | None, over: Over
+    contour: Contour, intended: _Intended, shaft: Array, tolerance: float, *, band: float | None, over: Over
 ) -> LinkageVerdict:
-    bearing, intended = bearing_of(contour), _Intended(mechanism)
+    bearing, mechanism = bearing_of(contour), intended.mechanism
     unit: Unit = "deg" if mechanism.unit == "deg" else "mm"
     ways = [Resting.of(mechanism, bearing, rest) for rest in WAYS]
     centred = Resting.of(mechanism, bearing, CENTRED)
@@ -169,7 +208,7 @@ def _judged(
     rows = intended.rows(nodes)
     worst = [_worst(way, intended, rows[:, :, np.searchsorted(nodes, way.nodes)]) for way in every]
     angles = with_steps(shaft)
-    meant = intended.rows(mechanism.relative(angles))[1, 0]
+    meant = intended.output(angles)
     errors = [intended.alike(way.over_shaft(angles, 0)[0] - meant) for way in every]
     window = None if band is None else _intended_dwell(intended, band)
     flat = [] if window is None else [_extremes(way, *way.relative(window)).span for way in every]

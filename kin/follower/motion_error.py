@@ -82,7 +82,7 @@ class Play:
 
 
 class Judged(NamedTuple):
-    """What a follower tells of a contour.
+    """What a follower finds of a contour.
 
     motion  its motion error
     play    for the followers that are held from two sides, else None

@@ -17,7 +17,7 @@ import numpy as np
 
 from kin.contour.arcs import cross, dot, left, right
 from kin.contour.nearest import signed_distance
-from kin.follower.base import Closure, Contact, Follower, Rests, Swing
+from kin.follower.base import Closure, Contact, Follower, OfLaw, OfTransmission
 from kin.follower.contact import dilated, first_contact, shortened
 from kin.follower.drive import OfRoller
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
@@ -25,7 +25,7 @@ from kin.follower.guide import LEADING, TRAILING, Arm, Translating, polar_rows
 from kin.follower.laws import ByLaw, BySwing, GuidedPitch
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import grid
-from kin.follower.rests import dwell_angles, dwells_of_law, dwells_of_transmission
+from kin.follower.rests import dwell_angles
 from kin.follower.tracking import Greatest, Held, greatest, greatest_error, outward
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import UnsettledError
@@ -72,20 +72,8 @@ class _Rollers(Follower):
         return np.stack([one.position(held_position(obstacle, one.guide, phi + one.turned)) for one in self.contacts])
 
 
-class _OfLaw(_Rollers):
-    """A law over the shaft angle is what the first roller is meant to do."""
-
-    law: Piecewise
-
-    @property
-    def motion(self) -> Piecewise:
-        """The law."""
-        return self.law
-
-    @cached_property
-    def rests(self) -> Rests:
-        """Dwells of the law."""
-        return tuple(dwells_of_law(self.law))
+class _Guided(_Rollers, OfLaw):
+    """Rollers on guides, of which the first is to follow a law over the shaft angle."""
 
     @cached_property
     def envelope(self) -> RollerEnvelope:
@@ -93,7 +81,7 @@ class _OfLaw(_Rollers):
         return RollerEnvelope(GuidedPitch(self.contacts[0], self.law), -self.radius if self.internal else self.radius)
 
     @cached_property
-    def _by_law(self) -> ByLaw:
+    def _law(self) -> ByLaw:
         return ByLaw(self.law)
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
@@ -105,7 +93,7 @@ class _OfLaw(_Rollers):
         guide, steps = first.guide, with_steps(phi)
         held = held_on(obstacle, guide, steps, first.zero, first.sense)
         errors = (first.position(held.position[: len(steps)]) - self.intended(steps))[None]
-        worst, remainder = settled([held], self._by_law, errors, few=len(obstacle) <= MOST_PIECES)
+        worst, remainder = settled([held], self._law, errors, few=len(obstacle) <= MOST_PIECES)
         dwells = [float(np.ptp(held_position(obstacle, guide, angle))) for angle in dwell_angles(self.rests, phi)]
         motion = motion_error(worst, errors[0], max(dwells, default=None), self.unit, remainder=remainder)
         return Judged(motion, self._play(obstacle, phi))
@@ -130,7 +118,7 @@ class _OfLaw(_Rollers):
 
 
 @dataclass(frozen=True, eq=False)
-class Roller(_OfLaw):
+class Roller(_Guided):
     """A roller of `radius`, mm, on a guide that stands at the shaft angle in the cam's frame.
 
     Its position, of which `law` is the intended one over the shaft angle, grows as the roller is lifted: the angle at
@@ -151,7 +139,7 @@ class Roller(_OfLaw):
 
 
 @dataclass(frozen=True, eq=False)
-class RollerYoke(_OfLaw):
+class RollerYoke(_Guided):
     """Two rollers of `radius` opposite each other in a frame that travels on a line through the shaft.
 
     Their centres are `breadth` w apart, mm. The position is the distance p of roller 1's centre from the shaft, of
@@ -185,7 +173,7 @@ class RollerYoke(_OfLaw):
 
 
 @dataclass(frozen=True, eq=False)
-class DoubleRoller(_Rollers):
+class DoubleRoller(_Rollers, OfTransmission):
     """W's two rollers of `radius` on rigid arms of length l that include 2 alpha, the pivot at l from the shaft.
 
     The position is psi, clockwise positive; roller A trails the pivot, roller B leads it (W 4.4).
@@ -202,16 +190,6 @@ class DoubleRoller(_Rollers):
         """
         arm, apart = self.transmission.arm, self.transmission.alpha
         return tuple(Contact(Arm(arm, arm, side), side, np.pi, apart) for side in (TRAILING, LEADING))
-
-    @cached_property
-    def motion(self) -> Swing:
-        """Psi over the shaft angle."""
-        return Swing(self.transmission)
-
-    @property
-    def rests(self) -> Rests:
-        """Dwells of psi."""
-        return tuple(dwells_of_transmission(self.transmission))
 
     @property
     def closure(self) -> Closure:

@@ -33,7 +33,7 @@ class Bearing:
     """m stretches: stretch k from breaks[k] to breaks[k+1], the last over 2 pi to the first; breaks rise in [0, 2 pi).
 
     `point` (m, 2) is the corner that bears, `piece` (m,) the arc or Bezier piece that does instead, -1 for a corner.
-    `back` is by how much less than the contour reaches q is told, mm.
+    `back` is by how much less than the contour reaches q is reported, mm.
     """
 
     contour: Contour

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
     from kin.judge.milling import Milling
+    from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array, Indices
 
@@ -54,8 +55,9 @@ class Intent:
     bore        diameter, mm; None for no hole at all
     outer       diameter of a ring, mm, whose follower runs in the opening; None for a cam that it runs round
     thickness   of a solid, mm, z from 0; None where only contours are judged
-    trimmed     an undercut is cut off: what motion is lost is told, and judged only against limits that are given
+    trimmed     an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
     mechanism   that the yoke's frame drives as a coupler; None for a plain follower
+    swing       law that the mechanism's frame has to follow; its lift's is the law if None
     dwell       of the mechanism's output, which is found in each file and, if it must last, judged
     holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
     layers      of its solid, from below, and radial holes through layers with an outline of their own
@@ -69,6 +71,7 @@ class Intent:
     thickness: float | None = None
     trimmed: bool = False
     mechanism: Mechanism | None = None
+    swing: FrameSwing | None = None
     dwell: DwellAsked | None = None
     holes: tuple[Hole, ...] = ()
     layers: tuple[Layer, ...] = ()
@@ -101,7 +104,7 @@ class Limits:
 class Findings:
     """What was found on a contour; motion is None where the follower finds no contact.
 
-    `deviation` is None where it could not be told.
+    `deviation` is None where it could not be found.
     `linkage` is None without a mechanism, or where the contour does not drive it all round.
     """
 
@@ -145,8 +148,7 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits, 
     if intent.mechanism is not None:
         linkage, more = _judge_linkage(contour, intent, phi, limits, slack=slack, uneven=uneven)
         checks += more
-    standing = 0.0 if intent.milling is None else intent.milling.standing
-    judged_contour = _contour_check(found, intent.follower, limits.tolerance, slack, standing)
+    judged_contour = _contour_check(found, intent, limits.tolerance, slack)
     return Findings(judged, found, (judged_contour, *checks), linkage)
 
 
@@ -160,12 +162,12 @@ def _less_sure(judged: Judged, follower: Follower, uneven: float) -> Judged:
     return judged._replace(motion=judged.motion.less_sure(follower.motion_limit(uneven)), play=play)
 
 
-def _contour_check(
-    found: Deviation, follower: Follower, tolerance: float, slack: float, standing: float = 0.0
-) -> Check:
-    """Check both sides of a contour against the tolerance; outside as much more may stand as a cutter may leave."""
+def _contour_check(found: Deviation, intent: Intent, tolerance: float, slack: float) -> Check:
+    """Check both sides of a contour against the tolerance; on the cutter's, as much more may stand as it may leave."""
     worst, parameter = found.worst
-    worst = max(worst - standing, found.inside) if standing else worst
+    milling, follower = intent.milling, intent.follower
+    if milling is not None and milling.standing:
+        worst = max(worst - milling.standing, found.outside if milling.inside else found.inside)
     detail = f"{found.outside:.3g} mm outside, {found.inside:.3g} mm inside the exact contour"
     if found.rounds != 1:
         detail = f"the contour goes {found.rounds} times round the exact one; {detail}"
@@ -233,10 +235,12 @@ def _judge_linkage(
     try:
         off = _output_less_sure(mechanism, uneven)
         if asked is None:
-            found = judge_frame(contour, mechanism, phi, limits.tolerance)
+            found = judge_frame(contour, mechanism, phi, limits.tolerance, swing=intent.swing)
         else:
             band = _band_less_sure(asked, mechanism, off)
-            found = judge_frame(contour, mechanism, phi, limits.tolerance, band=band, over=asked.over)
+            found = judge_frame(
+                contour, mechanism, phi, limits.tolerance, swing=intent.swing, band=band, over=asked.over
+            )
         if uneven:
             found = replace(
                 found,

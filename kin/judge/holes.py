@@ -33,7 +33,7 @@ class Hole:
     """A closed outline that is meant to be, counter-clockwise, mm: points and bulges as in a DXF polyline.
 
     name    to tell it by
-    kind    the check that tells of it: bore, holes or mark
+    kind    the check that reports it: bore, holes or mark
     depth   below the upper face of the disc, mm; None through everything
     """
 

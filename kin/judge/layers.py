@@ -81,7 +81,7 @@ def _height(layer: Layer) -> float:
 
 
 def faces(layers: Sequence[Layer]) -> list[tuple[str, float]]:
-    """Heights of the horizontal faces, each with the check that tells of it: thickness, hub or mark."""
+    """Heights of the horizontal faces, each with the check that reports it: thickness, hub or mark."""
     rising = sorted(layers, key=lambda layer: layer.low)
     found = []
     for below, above in zip([None, *rising], [*rising, None], strict=True):

@@ -59,6 +59,7 @@ class Verdict:
     pieces          of the outer contour, as the file counts them
     linkage         what the contour makes of the mechanism; None without one, or where it does not drive it all round
     perimeter, area of the outer contour as read, mm and mm^2
+    units           mm in a unit of the file as it was read: as the file states, or else as it was given or meant
     """
 
     kind: Kind
@@ -70,6 +71,7 @@ class Verdict:
     linkage: LinkageVerdict | None = None
     perimeter: float | None = None
     area: float | None = None
+    units: float | None = None
 
     @property
     def ok(self) -> bool:
@@ -109,11 +111,12 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits, units: float
         linkage=found.linkage,
         perimeter=one.contour.length,
         area=abs(one.contour.area),
+        units=one.units,
     )
 
 
 class _Read(NamedTuple):
-    """The checks on what a file holds, its contour in mm as if not mirrored, and the number of its pieces.
+    """The checks on what a file holds, its contour in mm as if not mirrored, the number of its pieces, mm in its unit.
 
     `uneven`: by how much a solid's other sections differ from that contour, mm, where only rounding is behind it.
     """
@@ -121,6 +124,7 @@ class _Read(NamedTuple):
     checks: list[Check]
     contour: Contour
     pieces: int
+    units: float
     uneven: float = 0.0
 
 
@@ -141,7 +145,8 @@ def _of_drawing(path: Path, intent: Intent, limits: Limits, units: float | None)
     checks = [_units_check(drawing.units_mm, units, intent, found.contour), _closed_check(drawing, found.contour)]
     engraved = [_placed(c, scale, intent.mirrored) for c in drawing.engraved]
     checks += [*found.checks, *_opening_checks(found.holes, engraved, intent, limits)]
-    return _Read(checks, found.contour, drawing.pieces if intent.outer is None else len(found.contour))
+    pieces = drawing.pieces if intent.outer is None else len(found.contour)
+    return _Read(checks, found.contour, pieces, scale if drawing.units_mm is None else drawing.units_mm)
 
 
 def _of_program(path: Path, intent: Intent, limits: Limits, units: float | None) -> _Read:
@@ -151,14 +156,13 @@ def _of_program(path: Path, intent: Intent, limits: Limits, units: float | None)
 
     if intent.milling is None:
         raise ReadError("unsupported", "how the part is milled is not given", path)
-    if intent.outer is not None:
-        raise ReadError("unsupported", "a program that mills a ring is not judged", path)
     program = read_gcode(path)
     _demand_same(program.units_mm, units, path)
     done = milled(program, intent.milling, limits.tolerance)
     contour, *holes = (_placed(c, 1.0, intent.mirrored) for c in (done.contour, *done.holes))
     checks = [_units_check(program.units_mm, units, intent, contour), _count_check("closed", _crossing_places(contour))]
-    return _Read([*checks, *done.checks, *_opening_checks(holes, [], intent, limits)], contour, done.pieces)
+    checks += [*done.checks, *_opening_checks(holes, [], intent, limits)]
+    return _Read(checks, contour, done.pieces, program.units_mm)
 
 
 def _opening_checks(
@@ -221,13 +225,16 @@ def _of_solid(path: Path, intent: Intent, limits: Limits, units: float | None) -
         solid = read_solid(path, levels(intent), units)
         _demand_same(solid.units_mm, units, path)
         if not solid.sections:
-            raise ReadError("empty", "the solid has no section where the part has its layers", path)
+            told = "the solid has no section where the part has its layers"
+            if solid.units_mm is None:
+                told += f"; it states no unit and is read in one of {units or 1.0:.9g} mm, another is given by --units"
+            raise ReadError("empty", told, path)
         at = [_faced_section(one, intent, limits.tolerance, path) for one in solid.sections]
         sections = [Section(one.height, f.contour, f.holes) for one, f in zip(solid.sections, at, strict=True)]
         checks = [_watertight_check(solid, at[0].contour), *(less_sure(one, solid.uneven) for one in at[0].checks)]
         checks += solid_checks(solid, sections, intent, limits.tolerance)
         pieces = solid.pieces if intent.outer is None else len(at[0].contour)
-        return _Read(checks, at[0].contour, pieces, solid.uneven)
+        return _Read(checks, at[0].contour, pieces, solid.units_mm or units or 1.0, solid.uneven)
     solid = read_solid(path, (), units)
     _demand_same(solid.units_mm, units, path)
     contour, holes, ring = _faced_section(solid, intent, limits.tolerance, path)
@@ -238,7 +245,8 @@ def _of_solid(path: Path, intent: Intent, limits: Limits, units: float | None) -
     if intent.thickness is not None:
         checks.append(_thickness_check(solid, intent.thickness, limits.tolerance))
         checks.append(volume_check(solid.volume, solid.thickness, contour, intent, limits.tolerance))
-    return _Read(checks, contour, solid.pieces if intent.outer is None else len(contour), solid.uneven)
+    pieces = solid.pieces if intent.outer is None else len(contour)
+    return _Read(checks, contour, pieces, solid.units_mm or units or 1.0, solid.uneven)
 
 
 def _faced_section(section: AnySolid | Section, intent: Intent, tolerance: float, path: Path) -> Faced:

@@ -95,7 +95,7 @@ def _waves(formula: Formula) -> float:
     are counted as well.
     """
     t = np.mod(np.arange(1, _PLACES + 1) * (math.sqrt(5) - 1) * math.pi, _TURN)
-    with np.errstate(all="ignore"):  # what is not finite is refused where it can be told
+    with np.errstate(all="ignore"):  # what is not finite is refused where it can be named
         p = formula.jet(t, 5).derivatives()
         g, slope, bend = p[1:4] + p[3:6]
         rate = math.sqrt(float(np.mean(slope**2))) / (math.sqrt(float(np.mean(g**2))) or 1.0) or 1.0

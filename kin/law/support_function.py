@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,7 @@ import numpy as np
 from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise, Side
 from kin.law.programme import IntentError, Programme, first_harmonic
+from kin.law.reuleaux import closed_angles, corners
 from kin.law.segment import Affine, Constant, Harmonics, Round, Series, Stretch
 from kin.numeric.distinct import distinct
 from kin.numeric.elementary import BallJet, cos, sin
@@ -205,7 +207,7 @@ def joined(
 ) -> Lift:
     """Join stretches round the turn, stretch i between knots i and i + 1 (rad): arcs of one circle become one.
 
-    Raises IntentError at `field` where p or p' jumps. `smooth_seam` tells that the last runs on in the first.
+    Raises IntentError at `field` where p or p' jumps. `smooth_seam` says that the last runs on in the first.
     """
     knots, functions = list(knots), list(functions)
     i = 1
@@ -288,12 +290,21 @@ def lift_hypocycloid(cusps: int, size: float, breadth: float, pivot: tuple[float
     return joined([0.0, _TURN], [function], "hypocycloid", smooth_seam=True)
 
 
-def lift_reuleaux(sides: int, breadth: float, rounding: float, pivot: tuple[float, float] = (0.0, 0.0)) -> Lift:
-    """Make the regular Reuleaux polygon of odd `sides`, its corners rounded by `rounding`, mm.
+def lift_reuleaux(
+    sides: int,
+    breadth: float,
+    rounding: float,
+    pivot: tuple[float, float] = (0.0, 0.0),
+    angles: Sequence[float] = (),
+) -> Lift:
+    """Make the Reuleaux polygon of odd `sides`, its corners rounded by `rounding`, mm, or sharp at 0.
 
-    It is the curve at distance `rounding` outside the sharp one of breadth w - 2 rounding, whose corners lie on a
-    circle of radius (w - 2 rounding)/(2 cos(pi/2n)) about the origin, the first one on the +x axis. rho is the rounding
-    over each corner and w - rounding opposite. IntentError for an even count or a rounding outside 0 to w/2.
+    It is the curve at distance `rounding` outside the sharp one of breadth w - 2 rounding. Without `angles` that is the
+    regular one, whose corners lie on a circle of radius (w - 2 rounding)/(2 cos(pi/2n)) about the origin, the first one
+    on the +x axis. `angles`, rad, are those of the first n - 3 corners in the order in which the cam turns about them;
+    see `kin.law.reuleaux`, which finds the others. The origin is Steiner's point then, and the first corner bears
+    evenly about +x, which of a regular polygon comes to the same. rho is the rounding over each corner and w - rounding
+    opposite. IntentError for an even count, a rounding outside 0 to w/2, or angles of no polygon.
     """
     if sides < 3 or sides % 2 == 0:
         raise IntentError(f"a Reuleaux polygon has an odd number of sides, 3 or more, not {sides}", "reuleaux.sides")
@@ -302,23 +313,29 @@ def lift_reuleaux(sides: int, breadth: float, rounding: float, pivot: tuple[floa
             f"the rounding must lie between 0 and half the breadth, {breadth / 2:.6g} mm; it is {rounding:.6g} mm",
             "reuleaux.rounding",
         )
-    half = math.pi / (2 * sides)
-    circumradius = (breadth - 2 * rounding) / (2 * math.cos(half))
-    functions = []
-    for i in range(2 * sides):  # normals within `half` of i pi/n: about the corner there, or about the one opposite
-        corner = (2 * i if i % 2 == 0 else 2 * (i + sides)) * half
-        arc = Circle(breadth - rounding if i % 2 else rounding, *_polar(circumradius, corner))
-        functions.append(about(arc, pivot))
-    knots = [(2 * i - 1) * half for i in range(2 * sides)] + [_TURN - half]
-    return joined(knots, functions, "reuleaux")
+    half, size = math.pi / (2 * sides), breadth - 2 * rounding
+    if angles:
+        own = closed_angles(sides, angles)
+        centres = [(size * one.real, size * one.imag) for one in corners(own)]
+        centres += centres
+        knots = list(accumulate((*own, *own[:-1]), initial=-0.5 * own[0]))
+    else:
+        # normals within `half` of i pi/n: about the corner there, or about the one opposite
+        places = ((2 * i if i % 2 == 0 else 2 * (i + sides)) * half for i in range(2 * sides))
+        centres = [_polar(size / (2 * math.cos(half)), place) for place in places]
+        knots = [(2 * i - 1) * half for i in range(2 * sides)]
+    functions = [
+        about(Circle(breadth - rounding if i % 2 else rounding, *centre), pivot) for i, centre in enumerate(centres)
+    ]
+    return joined([*knots, knots[0] + _TURN], functions, "reuleaux")
 
 
 def _polar(radius: float, angle: float) -> tuple[float, float]:
     return radius * math.cos(angle), radius * math.sin(angle)
 
 
-def lift_constant_breadth(base_radius: float, programme: Programme) -> Lift:
-    """Make the constant-breadth cam of a motion S over the half turn (SW eqs. 1-6).
+def lift_constant_breadth(base_radius: float, programme: Programme, field: str = "motion") -> Lift:
+    """Make the constant-breadth cam of a motion S, given as `field`, over the half turn (SW eqs. 1-6).
 
     p = r_b + S on [0, pi] and p(t + pi) = d - p(t), with breadth d = 2 r_b + h. Closing needs S(pi) = h whatever h is:
     h is the displacement at the end of the programme, not its maximum. So a programme that comes back to 0 has h = 0,
@@ -336,14 +353,14 @@ def lift_constant_breadth(base_radius: float, programme: Programme) -> Lift:
     stroke = float(end[0])
     breadth = 2 * base_radius + stroke
     if breadth <= 0:
-        raise IntentError(f"the motion ends at {stroke:.6g} mm: no breadth is left beside 2 r_b", "motion")
+        raise IntentError(f"the motion ends at {stroke:.6g} mm: no breadth is left beside 2 r_b", field)
     size = base_radius + float(np.abs(programme.motion.derivatives(programme.motion.knots, 2)).max())
     if abs(end[1] + start[1]) > _JOIN * size:
         raise IntentError(
             f"the motion does not join over the half turn: S' is {start[1]:.9g} mm/rad at 0 degrees, so it must be "
             f"{-start[1]:.9g} at 180, where it is {end[1]:.9g}; "
             f"the contour would tear open by {abs(end[1] + start[1]):.6g} mm",
-            "motion",
+            field,
             180.0,
         )
     halves: list[Stretch] = []
@@ -351,7 +368,7 @@ def lift_constant_breadth(base_radius: float, programme: Programme) -> Lift:
         halves += [_raised(f, offset, sense, begin) for f in programme.motion.functions]
     first = programme.motion.knots
     knots = [*first[:-1], *(first + math.pi)]
-    return joined(knots, halves, "motion", datum=base_radius)
+    return joined(knots, halves, field, datum=base_radius)
 
 
 def _raised(function: Stretch, offset: float, sense: float, start: float) -> Stretch:

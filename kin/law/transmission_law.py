@@ -137,7 +137,7 @@ class Transmission:
 
     @cached_property
     def _distance(self) -> Piecewise | None:
-        """The polar radius r over tau = t where it is told without psi."""
+        """The polar radius r over tau = t where it is given without psi."""
         first = self.psi.functions[0]
         if not isinstance(first, FromDelta):
             return None

@@ -4,7 +4,7 @@ A point P of the earlier link drives each dyad: RRR (two bars to a ground pivot 
 line) and RPR (a block at P in a slotted rocker about G). All are triangles or right triangles, solved and
 differentiated as in `kin.linkage.loop`. Angles are counter-clockwise from the x axis.
 
-What a dyad reaches it also tells: `output_link` is the link that it drives, `driven` its name; `joints` are P, Q and
+What a dyad reaches it also gives: `output_link` is the link that it drives, `driven` its name; `joints` are P, Q and
 G. For P on the closed path x, y (n,), the direction of GP is taken about the `middle` of its range, so that the output
 is continuous on it, and `turned` is the angle by which that direction turns once round the path: there must be none.
 """

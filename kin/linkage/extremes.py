@@ -42,8 +42,8 @@ class Figures:
     force_least               of the force angle, 0 to pi/2 (`kin.linkage.forces`)
     velocity, acceleration    of the output by the shaft angle: the greatest absolute value, with its sign
     velocity_relative, acceleration_relative            likewise by the relative angle
-    dead_centres              where the joint D stands in the middle between faces 1 and 3, S = w/2; where it rests
-                              there, both ends of the rest. Each with the value 0
+    dead_centres              where the line through the joint D along the frame passes through the shaft, Y = 0; where
+                              it rests there, both ends of the rest. Each with the value 0
     """
 
     least: Place
@@ -78,7 +78,7 @@ class Rows(NamedTuple):
     transmission_cosine: Array
     force_sine: Array
     force_cosine: Array
-    offset: Array  # of D from the middle of the frame
+    offset: Array  # Y of D from the shaft, across the frame
 
 
 _OF_OUTPUT = {"output", "velocity_relative", "acceleration_relative", "velocity", "acceleration"}

@@ -1,13 +1,15 @@
 """Linkages driven by a constant-breadth cam in a square frame (AS sections 3 to 5): positions and their derivatives.
 
-The frame is the coupler. Its axes u(theta_3), n(theta_3) carry the joint D at X = w + r3 - S1, Y = S - w/2 from the
-shaft A, where S, S1 are the support of the cam at theta and a quarter turn on. So D = X u + Y n, and no cotangent of
+The frame is the coupler. Its axes u(theta_3), n(theta_3) carry the joint D at X = w + r3 - S1, Y = S - w/2 + e from
+the shaft A, where S, S1 are the support of the cam at theta and a quarter turn on, and `joint_offset` e is how far D
+stands from the frame's mid-line towards face 1, whose lift S is. AS have e = 0 and say that a different point does as
+well: r4 - e then stands for the r4 of an inverted slider-crank's loop. So D = X u + Y n, and no cotangent of
 theta_3 occurs anywhere (AS 11-13, 19, 22 have it). B = (r1, 0) is the fixed pivot, and theta_4 the angle at B from BA
 to BD, clockwise as in AS Figure 7. Each loop is a triangle or a right triangle, solved by half angles and
 differentiated implicitly (`kin.linkage.loop`); AS 34 is 0/0 at theta_3 = theta_4 and theta_4 + pi, the forms here are
 not.
 
-A linkage tells all that others ask of it, at positions that it has solved: `output_link` is the link that it drives,
+A linkage gives all that others ask of it, at positions that it has solved: `output_link` is the link that it drives,
 `driven` its name, and `joined` the name of the link that D is fixed in and whose axes are the frame's: the frame, or a
 block in it. `joints` are D and the pivot B. `transmission` is the sine and cosine (n,) of the angle from the frame's
 line u to the rocker BD, or to the slide's normal; `force` those of the force angle, the sine of the sign of phi'
@@ -31,6 +33,7 @@ from kin.linkage.loop import (
     Triangle,
     Vector,
     bearing,
+    demand_finite,
     demand_lengths,
     demand_mobile,
     excess,
@@ -80,25 +83,28 @@ class Positions:
 
 @dataclass(frozen=True)
 class FourBar:
-    """AB = ground r1, coupler r3 from the frame's face to D, rocker BD = r4; mm.
+    """AB = ground r1, coupler r3 from the frame's face to D, rocker BD = r4; D `joint_offset` off the mid-line; mm.
 
-    Open is the (+) root of AS 18, D above AB (Figure 7); crossed has D below. ValueError unless all are positive.
+    Open is the (+) root of AS 18, D above AB (Figure 7); crossed has D below. ValueError unless all lengths are
+    positive and the offset finite.
     """
 
     ground: float
     coupler: float
     rocker: float
     assembly: Assembly = "open"
+    joint_offset: float = 0.0
     unit: ClassVar[str] = "deg"
     driven: ClassVar[str] = "rocker"
     joined: ClassVar[str] = "frame"
 
     def __post_init__(self) -> None:
         demand_lengths(self.assembly, ground=self.ground, coupler=self.coupler, rocker=self.rocker)
+        demand_finite("joint's offset", self.joint_offset)
 
     def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:
         """How far AD is from |r1 - r4| and from r1 + r4, mm (n,): negative where the loop cannot close."""
-        x, y = _frame_terms(s, s1, w, self.coupler)
+        x, y = _frame_terms(s, s1, w, self.coupler, self.joint_offset)
         q = total(*x) ** 2 + total(*y) ** 2
         a, b = self.ground, self.rocker
         return triangle_margin(a, b, np.atleast_1d(q), excess(x, y, (a, -b)), -excess(x, y, (a, b)))
@@ -110,7 +116,7 @@ class FourBar:
         AD^2 - (r1 - r4)^2 and (r1 + r4)^2 - AD^2, and 2 r1 r4 sin theta_4 theta_4' = (AD^2)'.
         """
         r1, r4, side = self.ground, self.rocker, side_of(self.assembly)
-        ad = _frame_vector(s, s1, w, self.coupler)
+        ad = _frame_vector(s, s1, w, self.coupler, self.joint_offset)
         abd = Triangle.of(r1, r4, ad)
         joint = abd.along / (2 * r1), abd.root * (side / (2 * r1))
         frame = abd.beside * side - ad.bearing()
@@ -147,13 +153,16 @@ class FourBar:
 class InvertedSliderCrank:
     """AB = ground r1, and a rocker r4 whose end D slides along the frame's u: theta_3 + theta_4 = 90 degrees; mm.
 
-    r4 = 0 is the oscillating yoke. Open is the root of AS 27, theta_4 from 0 to 180 degrees; crossed is its negative:
-    the mirror image, with D on the other side of the shaft along u. ValueError unless r1 > 0 and r4 >= 0.
+    The line on which it slides is `joint_offset` off the frame's mid-line, and touches the circle of r4 about B. r4 = 0
+    is the oscillating yoke. Open is the root of AS 27, theta_4 from 0 to 180 degrees; crossed is its negative:
+    the mirror image, with D on the other side of the shaft along u. ValueError unless r1 > 0, r4 >= 0 and the offset is
+    finite.
     """
 
     ground: float
     rocker: float
     assembly: Assembly = "open"
+    joint_offset: float = 0.0
     unit: ClassVar[str] = "deg"
     driven: ClassVar[str] = "rocker"
     joined: ClassVar[str] = "block"
@@ -162,6 +171,7 @@ class InvertedSliderCrank:
         demand_lengths(self.assembly, ground=self.ground)
         if not (math.isfinite(self.rocker) and self.rocker >= 0):
             raise ValueError(f"the rocker must be 0 or longer, not {self.rocker!r} mm")
+        demand_finite("joint's offset", self.joint_offset)
 
     def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:  # noqa: ARG002 - one call for all linkages
         """How far Y is from the ends of its range, r4 - r1 and r4 + r1, mm (n,): negative out of reach."""
@@ -170,8 +180,8 @@ class InvertedSliderCrank:
 
     def _room(self, s: float | Array, w: float) -> tuple[Array, Array]:
         """r1 (1 - cos theta_4) and r1 (1 + cos theta_4), each (n,)."""
-        r1, r4 = self.ground, self.rocker
-        near, far = total(r1, -r4, s, -w / 2), total(r1, r4, -s, w / 2)
+        r1, r4, e = self.ground, self.rocker, self.joint_offset
+        near, far = total(r1, -r4, s, -w / 2, e), total(r1, r4, -s, w / 2, -e)
         return np.atleast_1d(near), np.atleast_1d(far)
 
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:  # noqa: ARG002 - one call for all linkages
@@ -224,31 +234,33 @@ class InvertedSliderCrank:
 class SliderCrank:
     """A slide for D along the fixed x axis at height `offset`, coupler r3 from the frame's face to D; mm.
 
-    Open has D at positive x, crossed at negative. ValueError unless the coupler is positive and the offset finite.
+    D is `joint_offset` off the frame's mid-line. Open has D at positive x, crossed at negative. ValueError unless the
+    coupler is positive and the offsets finite.
     """
 
     coupler: float
     offset: float
     assembly: Assembly = "open"
+    joint_offset: float = 0.0
     unit: ClassVar[str] = "mm"
     driven: ClassVar[str] = "slide"
     joined: ClassVar[str] = "frame"
 
     def __post_init__(self) -> None:
         demand_lengths(self.assembly, coupler=self.coupler)
-        if not math.isfinite(self.offset):
-            raise ValueError(f"the offset must be finite, not {self.offset!r} mm")
+        demand_finite("offset", self.offset)
+        demand_finite("joint's offset", self.joint_offset)
 
     def margin(self, s: float | Array, s1: float | Array, w: float) -> Array:
         """How much AD is longer than the offset, mm (n,): negative out of reach."""
-        x, y = _frame_terms(s, s1, w, self.coupler)
+        x, y = _frame_terms(s, s1, w, self.coupler, self.joint_offset)
         q = np.atleast_1d(total(*x) ** 2 + total(*y) ** 2)
         return longer(q, excess(x, y, (self.offset,)), self.offset)
 
     def solve(self, s: Jet, s1: Jet, w: float) -> Positions:
         """Solve D_x^2 = AD^2 - offset^2, D_x D_x' = (AD^2)'/2. Raises BindingError."""
         offset, side = self.offset + 0.0, side_of(self.assembly)  # no -0, whose polar angle is -pi
-        ad = _frame_vector(s, s1, w, self.coupler)
+        ad = _frame_vector(s, s1, w, self.coupler, self.joint_offset)
         q = ad.q
         square = excess(ad.x_terms, ad.y_terms, (offset,))
         demand_mobile(longer(q.c[0], square, offset), order=q.order, fixed=q.c[0] == 0)
@@ -288,11 +300,11 @@ def _rocker(ground: float, at: Positions) -> Link:
 
 
 def _frame_terms(
-    s: float | Array, s1: float | Array, w: float, r3: float
+    s: float | Array, s1: float | Array, w: float, r3: float, e: float
 ) -> tuple[tuple[float | Array, ...], tuple[float | Array, ...]]:
     """X and Y of D in the frame's axes, as the terms of which they are the sums."""
-    return (r3, w, -s1), (s, -w / 2)
+    return (r3, w, -s1), (s, -w / 2, e)
 
 
-def _frame_vector(s: Jet, s1: Jet, w: float, r3: float) -> Vector:
-    return Vector.of(-s1, s, *_frame_terms(s.c[0], s1.c[0], w, r3))
+def _frame_vector(s: Jet, s1: Jet, w: float, r3: float, e: float) -> Vector:
+    return Vector.of(-s1, s, *_frame_terms(s.c[0], s1.c[0], w, r3, e))

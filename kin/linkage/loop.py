@@ -206,6 +206,12 @@ def side_of(assembly: Assembly) -> float:
     return 1.0 if assembly == "open" else -1.0
 
 
+def demand_finite(name: str, value: float) -> None:
+    """Raise ValueError unless a length of either sign is finite."""
+    if not math.isfinite(value):
+        raise ValueError(f"the {name} must be finite, not {value!r} mm")
+
+
 def demand_lengths(assembly: str, **lengths: float) -> None:
     """Raise ValueError unless the assembly has one of its names and the lengths are positive and finite."""
     if assembly not in {"open", "crossed"}:

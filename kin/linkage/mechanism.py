@@ -268,7 +268,7 @@ class Mechanism:
             transmission_cosine=cosine,
             force_sine=force_sine,
             force_cosine=force_cosine,
-            offset=s.c[0] - 0.5 * self.breadth,
+            offset=s.c[0] - 0.5 * self.breadth + self.linkage.joint_offset,
         )
 
     def _lifts(self, theta: Array, order: int, side: Side = 1) -> tuple[Jet, Jet]:

@@ -1,4 +1,4 @@
-"""Newton's method inside brackets: a zero is found as closely as is asked for, or an error tells how far it came."""
+"""Newton's method inside brackets: a zero is found as closely as is asked for, or an error says how far it came."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ SOLIDS = frozenset({"stl", "3mf", "step"})
 OTHERS: dict[str, Kind] = {".stp": "step", ".ngc": "gcode", ".nc": "gcode", ".tap": "gcode"}
 """Suffixes that are not the kind's own."""
 SUFFIXES: dict[str, Kind] = {f".{kind}": kind for kind in KINDS} | OTHERS
-"""Every suffix, and the kind of file that it tells."""
+"""Every suffix, and the kind of file that it means."""
 AnySolid: TypeAlias = "Solid | StepSolid"
 
 

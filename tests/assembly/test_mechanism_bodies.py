@@ -49,6 +49,14 @@ SHAPES = {
     "inverted": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: inverted-slider-crank, ground: 130, rocker: 70}}\n",
     "oscillating": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: inverted-slider-crank, ground: 90, rocker: 0}}\n",
     "slider-crank": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: slider-crank, coupler: 76, offset: 6}}\n",
+    "four-bar, off": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: four-bar, ground: 80, coupler: 70, rocker: 105,"
+    " joint_offset: 40}\n",
+    "inverted, off": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: inverted-slider-crank, ground: 130, rocker: 70,"
+    " joint_offset: -14}\n",
+    "oscillating, off": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: inverted-slider-crank, ground: 120, rocker: 0,"
+    " assembly: crossed, joint_offset: 45}\n",
+    "slider-crank, off": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: slider-crank, coupler: 76, offset: 6,"
+    " joint_offset: -12}\n",
     "rrr": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: four-bar, ground: 80, coupler: 70, rocker: 105, dyads: ["
     "{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]}\n",
     "rrp": f"cam:\n  kind: support\n{AS_1}linkage: {{kind: four-bar, ground: 80, coupler: 70, rocker: 105, dyads: ["
@@ -85,6 +93,7 @@ SHAPES["roller yoke"] = (
     "  motion: [{dwell: 40}, {rise: 12, over: 100, law: modified-sine}, {dwell: 40}]\n"
 )
 GUIDED = list(SHAPES)[-9:]
+OFF = [name for name in SHAPES if name.endswith("off")]
 
 
 @cache
@@ -149,7 +158,7 @@ def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) 
 
 
 @pytest.mark.thin(3)
-@pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair", *GUIDED], 2))
+@pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair", *OFF, *GUIDED], 2))
 def test_nothing_meets_at_any_angle(name: str) -> None:
     checks = collision_checks(made(name)[2])
     assert [check.detail for check in checks if not check.ok] == []
@@ -188,6 +197,9 @@ def carried(assembly: Assembly, name: str, point: tuple[float, float]) -> np.nda
         ("crossed", "frame", (25.0 + 70.0, 0.0), "rocker", (105.0, 0.0)),
         ("inverted", "block", (0.0, 0.0), "rocker", (70.0, 0.0)),
         ("slider-crank", "frame", (25.0 + 76.0, 0.0), "slide", (0.0, 0.0)),
+        ("four-bar, off", "frame", (25.0 + 70.0, 40.0), "rocker", (105.0, 0.0)),
+        ("inverted, off", "block", (0.0, 0.0), "rocker", (70.0, 0.0)),
+        ("slider-crank, off", "frame", (25.0 + 76.0, -12.0), "slide", (0.0, 0.0)),
         ("rrr", "rocker", (80.0, 0.0), "rod-1", (0.0, 0.0)),
         ("rrr", "rod-1", (100.0, 0.0), "rocker-1", (30.0, 0.0)),
         ("rrp", "rocker", (60.0, 0.0), "rod-1", (0.0, 0.0)),

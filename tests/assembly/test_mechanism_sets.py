@@ -1,4 +1,4 @@
-"""Sets of all bodies through the whole pipeline: what is told, what fails, what is refused."""
+"""Sets of all bodies through the whole pipeline: what is reported, what fails, what is refused."""
 
 from __future__ import annotations
 

@@ -162,3 +162,26 @@ def test_rounding_at_the_ends_of_a_short_rise_is_no_jump():
         f"kind: disc, base_radius: 50, follower: {{kind: roller, radius: 5}}, motion: {rows}{{dwell: 308.99}}]"
     )
     assert [[order for order, _, _ in joint.jumps] for joint in designed(made).joints] == [[3], [3]]
+
+
+def of_swing(segments, order):
+    swing = f"kind: constant-breadth, base_radius: 60, swing: [{segments}]"
+    text = f"cam: {{{swing}}}\nlinkage: {{kind: inverted-slider-crank, ground: 80, rocker: 0}}\n"
+    found = pipeline.check(load_text(f"{text}export: {{files: [csv]}}\nverify: {{angles: 90}}\n", "case.yaml")).report
+    assert {one["unit"] for one in found["joints"]} <= {"deg/rad^2", "deg/rad^3"}
+    return [(one["at_deg"], one["before"], one["after"]) for one in found["joints"] if one["derivative"] == order]
+
+
+def test_the_joints_of_a_frames_swing_stand_at_the_shafts_angles():
+    """At 140 degrees, where the rise ends, and at 0, where the law follows its own image."""
+    a = 20 / 2 * (180 / 140) ** 2
+    told = of_swing("{rise: 20, over: 140, law: harmonic}, {dwell: 60}", 2)
+    assert told == [pytest.approx(one, abs=1e-9) for one in ((0.0, 0.0, a), (140.0, -a, 0.0))]
+    # from rest to rest over all of it: the image begins and ends as the law does, upside down, but for its jerk
+    whole = "{rise: 20, over: 200, law: harmonic}"
+    assert of_swing(whole, 2) == []
+    ((at, before, after),) = of_swing(whole, 3)
+    a = math.radians(20) / 2 * (180 / 200) ** 2
+    # at rest the third derivative of the image is the law's, negative, less six squares of the second: chain rule
+    assert (at, before) == (0.0, pytest.approx(math.degrees(-6 * a * a), abs=1e-9))
+    assert after == pytest.approx(0.0, abs=1e-9)

@@ -183,7 +183,7 @@ def test_what_a_figure_is_against_the_motion_itself() -> None:
 def test_a_roller_s_figures_against_the_pitch_curve() -> None:
     values = {one["name"].removeprefix(LIMIT): one["value"] for one in held(ROLLER, wide(ROLLER))}
     checks = {one["name"]: one["value"] for one in report_of(ROLLER)["checks"]}
-    assert values["pitch-radius"] == checks["radius-of-curvature"]
+    assert values["pitch-radius"] == checks["pitch-radius"]
     for name in ("pressure-angle", "velocity-ratio"):
         assert values[name] == checks[name]
     assert values["backlash"] == pytest.approx(checks["form-closure"], rel=1e-9)

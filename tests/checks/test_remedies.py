@@ -47,6 +47,23 @@ def arc(radius: float, side: str, ratio: str = "4") -> str:
 SHARP = "[{rise: 20, over: 60, law: cycloidal}, {dwell: 10}, {return: 20, over: 60, law: cycloidal}, {dwell: 230}]"
 
 
+def swung(
+    rise: float = 20,
+    over: float = 140,
+    rest: float | None = None,
+    *,
+    ground: float = 80,
+    rocker: float = 2,
+    law: str = "cycloidal",
+    linkage: str = "inverted-slider-crank",
+) -> str:
+    left = (60 if over == 120 else 180 + rise - over) if rest is None else rest
+    dwell = f", {{dwell: {left}}}" if left else ""
+    frame = f"linkage: {{kind: {linkage}, ground: {ground}, rocker: {rocker}}}"
+    swing = f"swing: [{{rise: {rise}, over: {over}, law: {law}}}{dwell}]"
+    return f"cam: {{kind: constant-breadth, base_radius: 110, {swing}}}\n{frame}{FILES}"
+
+
 def disc(base: float, follower: str, more: str = "", track: str = "") -> str:
     return (
         f"cam: {{kind: disc, base_radius: {base!r}, follower: {{{follower}}}, {track}motion: {SHARP}}}{more}{FILES}"
@@ -60,7 +77,7 @@ def diameter(base: float, radius: float) -> str:
 
 
 def said(text: str) -> str:
-    """What a design of the recipe is told, empty if nothing; its files are not made."""
+    """What a design of the recipe is advised, empty if nothing; its files are not made."""
     try:
         design = designed(load_text(text, "tried.yaml"))
     except RecipeErrors as errors:
@@ -120,6 +137,13 @@ DESIGNS: list[tuple[str, str, Follow]] = [
         r"a base radius larger by more than (\S+) would have no undercut",
         lambda by: f"cam: {{kind: constant-breadth, base_radius: {5 + 1.00001 * by}, {RISE}}}{FILES}",
     ),
+    (swung(over=120), r"let it cover (\S+), 180 and its net rise", lambda span: swung(over=120, rest=span - 120)),
+    (swung(over=70), r"spread the swing over a larger angle", lambda _: swung(over=115)),
+    (swung(over=70), r"or swing less", lambda _: swung(9, over=70)),
+    (swung(rocker=85), r"or a rocker nearer to the joint's offset", lambda _: swung(rocker=15)),
+    (swung(rocker=85), r"give a longer ground", lambda _: swung(rocker=85, ground=120)),
+    (swung(law="{polynomial: [0, 1]}", rest=0, over=200), r"let it rest at both ends", lambda _: swung()),
+    (swung(linkage="four-bar, coupler: 60"), r"give linkage: \{kind: inverted-slider-crank", lambda _: swung()),
     (
         roller("delta: {cos: {1: 400}}", ratio="4/3", radius=30.0),
         r"a roller radius below (\S+) would have no undercut",
@@ -343,7 +367,7 @@ def unwritten(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def said_of_set(text: str) -> str:
-    """What a set is told of its bodies."""
+    """What a set is advised of its bodies."""
     recipe = load_text(text, "set.yaml")
     try:
         check(recipe)

@@ -378,6 +378,25 @@ def test_signs() -> None:
     assert (offset(10.0).pressure_angle(theta) < offset(0.0).pressure_angle(theta)).all()
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_face_may_swing_nearly_as_fast_as_the_cam_turns(side: int) -> None:
+    """A cycloid of stroke h over 120 degrees swings back by 3 h/pi per turn of the cam at the most."""
+    limit = math.pi / 3.0
+    SwingingFace.on(motion(limit * (1.0 - 1e-9)), 10.0, 90.0, 5.0, side)
+    with pytest.raises(IntentError, match=r"1(\.0+\d*)? times as fast as the cam turns"):
+        SwingingFace.on(motion(limit * (1.0 + 1e-9)), 10.0, 90.0, 5.0, side)
+
+
+def test_a_slow_swing_needs_no_search_for_its_fastest(monkeypatch: pytest.MonkeyPatch) -> None:
+    def searched(*_: object) -> None:
+        raise AssertionError("searched")
+
+    monkeypatch.setattr("camgeo.curve.disc.least", searched)
+    SwingingFace.on(motion(0.2), 10.0, 90.0, 5.0, 1)
+    with pytest.raises(AssertionError, match="searched"):
+        SwingingFace.on(motion(1.2), 10.0, 90.0, 5.0, 1)
+
+
 @pytest.mark.parametrize(
     ("make", "said"),
     [

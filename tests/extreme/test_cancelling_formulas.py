@@ -77,10 +77,14 @@ def case(text, oracle, why):
     lift = designed(asked).intent
     found, exact = lift.derivatives(ANGLES, 1), [oracle.derivatives(mp.mpf(float(t))) for t in ANGLES]
     off = max(worst(found[k], [[row[k]] for row in exact]) for k in (0, 1))
-    yield Row(what, "p and p' as a share of the rounding that is told", off / lift.rounding, 1.0, why)
+    yield Row(what, "p and p' as a share of the rounding that is reported", off / lift.rounding, 1.0, why)
     room = 1e-14 + lift.rounding
     yield Row(
-        what, "profile, as a share of the size", off_profile(asked, oracle), 4e-13 + 40.0 * room, f"told: {room:.0e} mm"
+        what,
+        "profile, as a share of the size",
+        off_profile(asked, oracle),
+        4e-13 + 40.0 * room,
+        f"stated: {room:.0e} mm",
     )
     files = made(asked)
     most = max(off_file(contour, oracle, 1e-3) for contour in files.contours.values())
@@ -89,7 +93,7 @@ def case(text, oracle, why):
 
 def below_the_noise():
     said = refused("kind: support\np: 25 + (1e9 + cos(3*t)) - 1e9", tolerance=1e-6)
-    yield Row("`p: 25 + (1e9 + cos(3*t)) - 1e9`", "a file within 1e-6 mm", said, "at least 2.74e-06 mm", "as told")
+    yield Row("`p: 25 + (1e9 + cos(3*t)) - 1e9`", "a file within 1e-6 mm", said, "at least 2.74e-06 mm", "as stated")
 
 
 @pytest.mark.thin(4)

@@ -67,11 +67,11 @@ def undercut(share):
     text = cut["detail"].split(" would")[0].rsplit(" ", 1)[1]
     start, end = (float(cut["detail"].split(word)[1].split()[0]) for word in ("from ", "to "))
     off = max(abs(radius["value"] / exact - 1.0), abs(float(text) / -exact - 1.0))
-    why = "the rounding of 25, as a share of the radius; told with six digits"
+    why = "the rounding of 25, as a share of the radius; reported with six digits"
     yield Row(what, "radius, and the base radius that would be free", off, 1e-6 + 1e-14 / share, why)
     # rho = 36 a x^2 - |rho_min| about its least value, and a swallowtail reaches sqrt 3 times its half width
     width = 2.0 * math.sqrt(3.0) * math.degrees(math.sqrt(-exact / (36.0 * a)))
-    if share > 1e-7:  # below, the two angles are told with fewer digits than they differ by
+    if share > 1e-7:  # below, the two angles are reported with fewer digits than they differ by
         off = abs(((end - start) % 360.0) / width - 1.0)
         yield Row(what, "extent of the undercut", off, 20.0 * share + 5e-4 / width, "to first order in the radius")
     left = made(recipe(harmonic(3, a, trim=True)))

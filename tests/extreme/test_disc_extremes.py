@@ -71,7 +71,7 @@ REFUSED = {
 }
 
 FAILING = {
-    "roller of the least radius of curvature": (Touching("roller", BENT), 26.0 - BENT, SHARP, "radius-of-curvature"),
+    "roller of the least radius of curvature": (Touching("roller", BENT), 26.0 - BENT, SHARP, "pitch-radius"),
     "roller at 1e-9 beyond undercut": (
         Touching("roller", BENT * (1 + 1e-9)), 26.0 - BENT * (1 + 1e-9), SHARP, "undercut-local",
     ),

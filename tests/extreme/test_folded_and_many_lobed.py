@@ -130,7 +130,7 @@ def undercut_by_small_rise(radius):
         f"corners of all {len(lost)} lost stretches, from the rollers that make them, share of the radius",
         float(off),
         1e-12,
-        "paths that swing are integrated in panels, or told by their ends",
+        "paths that swing are integrated in panels, or given by their ends",
     )
 
 
@@ -275,10 +275,10 @@ def tightest():
         if off < 0:
             yield Row(what, "file within 0.001 mm", found.used(), 1.0, "share of the tolerance; free of undercut")
             continue
-        told = found.check("radius-of-curvature")["value"]
+        told = found.check("pitch-radius")["value"]
         yield Row(
             what,
-            "least radius, undercut told",
+            "least radius, undercut reported",
             abs(told / least - 1.0),
             1e-13,
             "root-found, bounded to 1e-12 of the size",

@@ -79,7 +79,7 @@ def steep():
     exact = 40.0 + 1e-6 * (0.75 + 1.0 / (2.0 * math.pi)) - 2.0 * math.pi * 1e-6 / width**2
     off = abs(found.check("radius-of-curvature")["value"] / exact - 1.0)
     assert not found.check("undercut-local")["ok"]
-    yield Row("cycloidal rise of 1e-6 mm over 0.01 degree", "least radius, undercut told", off, 1e-10, "as above")
+    yield Row("cycloidal rise of 1e-6 mm over 0.01 degree", "least radius, undercut reported", off, 1e-10, "as above")
 
 
 def eccentric():

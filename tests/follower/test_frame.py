@@ -30,6 +30,15 @@ LINKAGES = {
     "inverted": (InvertedSliderCrank(60.0, 20.0), Bars("inverted", 60.0, rocker=20.0)),
     "yoke, crossed": (InvertedSliderCrank(60.0, 0.0, "crossed"), Bars("inverted", 60.0, side=-1)),
     "slider": (SliderCrank(90.0, 15.0), Bars("slider", coupler=90.0, offset=15.0)),
+    "four-bar, off": (
+        FourBar(80.0, 70.0, 105.0, joint_offset=-9.0),
+        Bars("four-bar", 80.0, 70.0, 105.0, aside=-9.0),
+    ),
+    "inverted, off": (
+        InvertedSliderCrank(60.0, 10.0, "crossed", 14.0),
+        Bars("inverted", 60.0, rocker=10.0, side=-1, aside=14.0),
+    ),
+    "slider, off": (SliderCrank(90.0, 15.0, joint_offset=8.0), Bars("slider", coupler=90.0, offset=15.0, aside=8.0)),
     "slider, crossed": (SliderCrank(90.0, -10.0, "crossed"), Bars("slider", coupler=90.0, offset=-10.0, side=-1)),
 }
 FOUR_BAR = Mechanism(LINKAGES["four-bar"][0], LIFT, BREADTH)

@@ -3,8 +3,6 @@
 The sound files are fits of curves that know nothing of the judge. A ring is drawn as its opening in a circle.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from support.camfiles import arcs_through, solid_triangles, write_dxf, write_stl
@@ -28,7 +26,6 @@ from camgeo.fit.spline import fit_spline
 from kin.follower.follower import Roller
 from kin.follower.guide import Translating
 from kin.judge.holes import round_hole
-from kin.judge.milling import Milling
 from kin.judge.verify import Intent, Limits, verify
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
@@ -196,11 +193,6 @@ def test_a_ring_as_a_solid_of_faces(tmp_path):
     for outer, failed in ((40.0, set()), (40.002, {"outer", "volume"})):
         verdict = verify(path, Intent(follower, outer=outer, thickness=8.0), 30, LIMITS)
         assert {check.name for check in verdict.checks if not check.ok} == failed
-    asked = Intent(follower, outer=40.0)
-    program = tmp_path / "ring.gcode"
-    program.write_text("G21\n")
-    (only,) = verify(program, replace(asked, milling=Milling(3.0, 8.0, 4.0)), 30, LIMITS).checks
-    assert "a program that mills a ring is not judged" in only.detail
 
 
 def test_the_side_of_an_arm_is_not_lost_in_the_ring(tmp_path):

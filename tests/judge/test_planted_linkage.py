@@ -1,6 +1,6 @@
 """Spoilt files of a cam that drives a linkage: each fault must be caught, by the checks that are named here.
 
-The sound files come from formulas by numpy alone (`camfiles`); what drives the output falsely must be told by the
+The sound files come from formulas by numpy alone (`camfiles`); what drives the output falsely must be reported by the
 output's own error, from DXF and from STL.
 """
 

@@ -1,4 +1,4 @@
-"""The verdict as a whole: splines and ellipses, trimmed undercut, figures on the edge of their limits, what is told."""
+"""The verdict as a whole: splines and ellipses, trimmed undercut, figures at the edge of their limits, what is said."""
 
 import numpy as np
 import pytest
@@ -191,7 +191,7 @@ def halfplanes(lift, count):
 
 @pytest.mark.slow
 def test_a_trimmed_undercut_of_a_yoke(tmp_path):
-    """p = 25 + 4 cos 3t has rho down to -7: three corners remain, and the lift lost there is told but not judged."""
+    """p = 25 + 4 cos 3t has rho down to -7: three corners remain; the lift lost there is reported, not judged."""
     lift = lift_hypocycloid(3, 4.0, 50.0)
     points = halfplanes(lift, 6000)
     path = write_dxf(tmp_path / "cam.dxf", points)

@@ -77,7 +77,7 @@ def test_a_lobe_ends_with_four_derivatives_at_rest():
             (2, 8, 8, 20, 26),
             (
                 "the powers of a lobe are 2 and four more whole numbers that rise to 100 at most, "
-                "such as 2-8-14-20-26, not 2-8-8-20-26"
+                "such as [2, 8, 14, 20, 26], not [2, 8, 8, 20, 26]"
             ),
         ),
     ],
@@ -363,7 +363,7 @@ def test_a_smooth_function_is_met_closer_by_more_points():
             [0, 90, 360],
             [0, 1, 2],
             [],
-            "the motion does not close: it is 0 at the first point, 2 a turn later",
+            "the motion does not close: it is 0 at the first point, 2 a turn later; give both the same displacement",
             "motion.points[2]",
         ),
         ([0, 90, 180], [0, 1, 2], [(90, 170)], "no point stands at 170 degrees, where a dwell ends", "motion.points"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import mpmath as mp
@@ -28,6 +29,12 @@ LINKAGES: list[Any] = [
     *(SliderCrank(70.0, 12.0, assembly) for assembly in ("open", "crossed")),
     SliderCrank(70.0, -12.0, "crossed"),
     SliderCrank(70.0, 0.0, "crossed"),
+    FourBar(80.0, 70.0, 105.0, "open", 7.5),
+    FourBar(80.0, 70.0, 105.0, "crossed", -31.0),
+    InvertedSliderCrank(130.0, 10.0, "open", 40.0),
+    InvertedSliderCrank(130.0, 0.0, "crossed", -12.0),
+    SliderCrank(70.0, 12.0, "open", -9.0),
+    SliderCrank(70.0, 12.0, "crossed", 9.0),
 ]
 
 
@@ -47,7 +54,7 @@ def test_loop_closes(linkage, cam):
     s, s1 = jets(cam)
     at = linkage.solve(s, s1, W)
     frame, (dx, dy) = at.frame.c[0], (d.c[0] for d in at.joint)
-    x, y = at.slide.c[0], s.c[0] - W / 2
+    x, y = at.slide.c[0], s.c[0] - W / 2 + linkage.joint_offset
     assert dx == pytest.approx(x * np.cos(frame) - y * np.sin(frame), abs=1e-12)
     assert dy == pytest.approx(x * np.sin(frame) + y * np.cos(frame), abs=1e-12)
     if isinstance(linkage, SliderCrank):
@@ -78,7 +85,7 @@ def test_derivatives_of_the_joint_are_those_of_the_loop(linkage):
 
     s, s1 = jets(order=5)
     at = linkage.solve(s, s1, W)
-    x, y, u, v = at.slide, s - W / 2, cos(at.frame), sin(at.frame)
+    x, y, u, v = at.slide, s - W / 2 + linkage.joint_offset, cos(at.frame), sin(at.frame)
     for ours, theirs in zip(at.joint, (x * u - y * v, x * v + y * u), strict=True):
         assert ours.derivatives() == pytest.approx(theirs.derivatives(), rel=1e-10, abs=1e-10)
     if linkage.unit == "deg":
@@ -133,6 +140,13 @@ def test_rocker_beyond_a_right_angle():
     s, s1 = (Jet(np.array([[p], [0.3]])) for p in (25.0, 30.0))
     at = FourBar(60.0, 90.0, 70.0).solve(s, s1, W)
     assert math.degrees(at.output.c[0, 0]) == pytest.approx(115.376933525, abs=1e-8)  # acos(-9/21) from AD = 110
+
+
+def test_a_slide_off_the_mid_line_is_that_of_a_rocker_shorter_by_as_much():
+    """The loop knows r4 - e alone; where the joint stands along the rocker is another matter."""
+    s, s1 = jets()
+    off, plain = InvertedSliderCrank(130.0, 70.0, "open", 22.0), InvertedSliderCrank(130.0, 48.0)
+    assert off.solve(s, s1, W).output.c == pytest.approx(plain.solve(s, s1, W).output.c, rel=1e-13)
 
 
 def test_oscillating_yoke_at_rest_stands_upright():
@@ -191,7 +205,7 @@ def test_a_jet_in_another_direction_gives_the_sensitivity():
 
 
 def margin_from_lengths(linkage, s, s1):
-    y = s - W / 2
+    y = s - W / 2 + linkage.joint_offset
     if isinstance(linkage, InvertedSliderCrank):
         return min(linkage.ground - linkage.rocker + y, linkage.ground + linkage.rocker - y)
     side = math.hypot(W + linkage.coupler - s1, y)
@@ -202,7 +216,15 @@ def margin_from_lengths(linkage, s, s1):
 
 @pytest.mark.parametrize(
     "linkage",
-    [FourBar(80.0, 70.0, 160.0), FourBar(30.0, 70.0, 70.0), InvertedSliderCrank(20.0, 12.0), SliderCrank(40.0, 70.0)],
+    [
+        FourBar(80.0, 70.0, 160.0),
+        FourBar(30.0, 70.0, 70.0),
+        FourBar(80.0, 70.0, 162.0, "open", 20.0),
+        InvertedSliderCrank(20.0, 12.0),
+        InvertedSliderCrank(20.0, 3.0, "open", -12.0),
+        SliderCrank(40.0, 70.0),
+        SliderCrank(40.0, 78.0, "open", -20.0),
+    ],
 )
 def test_margin_and_where_it_binds(linkage):
     s, s1 = jets()
@@ -241,6 +263,9 @@ def test_lengths_that_are_none(bad):
     if not math.isfinite(bad):
         with pytest.raises(ValueError, match="must be finite"):
             SliderCrank(1.0, bad)
+        for linkage in (FourBar(1.0, 1.0, 1.0), InvertedSliderCrank(1.0, 1.0), SliderCrank(1.0, 1.0)):
+            with pytest.raises(ValueError, match="joint's offset must be finite"):
+                replace(linkage, joint_offset=bad)
 
 
 def test_assembly_by_name_only():
@@ -253,28 +278,32 @@ lengths = st.floats(5, 300)
 slopes = st.integers(-(10**9), 10**9).map(lambda k: k * 4e-8)  # the oracle does not resolve slopes of 1e-200
 lifts = st.tuples(st.floats(1, 49), slopes, slopes)
 assemblies = st.sampled_from(["open", "crossed"])
+frames = st.tuples(st.just(0.0) | st.floats(-60, 60), st.tuples(lifts, lifts))
 
 
 def check(kind, linkage, dims, pair):
     s, s1 = (Jet(np.array([[c[0]], [c[1]], [c[2] / 2]])) for c in pair)
     assume(linkage.margin(s.c[0], s1.c[0], W)[0] > 0)
     at = linkage.solve(s, s1, W)
-    exact, condition = judged_linkage(kind, linkage.assembly, dims, W, pair)
+    exact, condition = judged_linkage(kind, linkage.assembly, dims, W, pair, offset=linkage.joint_offset)
     found = (*at.output.derivatives()[:, 0], *at.frame.derivatives()[:, 0])
     for ours, theirs, bound in zip(found, (*exact[:3], *exact[5:]), (*condition[:3], *condition[5:]), strict=True):
         assert ratio(ours, theirs, bound) <= 1
 
 
-@given(lengths, lengths, lengths, assemblies, st.tuples(lifts, lifts))
-def test_any_four_bar(r1, r3, r4, assembly, pair):
-    check("four", FourBar(r1, r3, r4, assembly), (r1, r3, r4), pair)
+@given(lengths, lengths, lengths, assemblies, frames)
+def test_any_four_bar(r1, r3, r4, assembly, frame):
+    e, pair = frame
+    check("four", FourBar(r1, r3, r4, assembly, e), (r1, r3, r4), pair)
 
 
-@given(lengths, st.floats(0, 300), assemblies, st.tuples(lifts, lifts))
-def test_any_inverted_slider_crank(r1, r4, assembly, pair):
-    check("inverted", InvertedSliderCrank(r1, r4, assembly), (r1, r4), pair)
+@given(lengths, st.floats(0, 300), assemblies, frames)
+def test_any_inverted_slider_crank(r1, r4, assembly, frame):
+    e, pair = frame
+    check("inverted", InvertedSliderCrank(r1, r4, assembly, e), (r1, r4), pair)
 
 
-@given(lengths, st.floats(-300, 300), assemblies, st.tuples(lifts, lifts))
-def test_any_slider_crank(r3, offset, assembly, pair):
-    check("slider", SliderCrank(r3, offset, assembly), (r3, offset), pair)
+@given(lengths, st.floats(-300, 300), assemblies, frames)
+def test_any_slider_crank(r3, offset, assembly, frame):
+    e, pair = frame
+    check("slider", SliderCrank(r3, offset, assembly, e), (r3, offset), pair)

@@ -34,6 +34,9 @@ LINKAGES: dict[str, Any] = {
     "oscillating yoke": InvertedSliderCrank(90.0, 0.0),
     "slider-crank": SliderCrank(100.0, 20.0),
     "slider-crank, crossed": SliderCrank(100.0, 20.0, "crossed"),
+    "four-bar, joint off": FourBar(80.0, 70.0, 105.0, "open", 8.0),
+    "inverted slider-crank, joint off": InvertedSliderCrank(130.0, 50.0, "crossed", -12.0),
+    "slider-crank, joint off": SliderCrank(100.0, 20.0, "open", -9.0),
 }
 SIX_BAR = (
     RRR("coupler", (10.0, 25.0), (160.0, 40.0), (110.0, 90.0), "open"),
@@ -104,11 +107,11 @@ class Polygon:
     def reach(self, direction):
         return (np.array([math.cos(direction), math.sin(direction)]) @ self.points).max()
 
-    def joint(self, frame, turned, coupler):
+    def joint(self, frame, turned, linkage):
         """D, for the frame's direction and a cam turned clockwise."""
         face1, face2 = self.reach(frame + math.pi / 2 + turned), self.reach(frame + math.pi + turned)
         u, n = np.array([math.cos(frame), math.sin(frame)]), np.array([-math.sin(frame), math.cos(frame)])
-        return (50 + coupler - face2) * u + (face1 - 25) * n
+        return (50 + linkage.coupler - face2) * u + (face1 - 25 + linkage.joint_offset) * n
 
     def frame(self, miss, low, high):
         """Direction of the frame at which `miss` of the joint vanishes, between low and high."""
@@ -120,26 +123,26 @@ class Polygon:
         return 0.5 * (low + high)
 
 
-@pytest.mark.parametrize("kind", ["four-bar", "slider-crank"])
+@pytest.mark.parametrize("kind", ["four-bar", "slider-crank", "four-bar, joint off", "slider-crank, joint off"])
 def test_a_polygon_in_a_rigid_frame(kind):
     """At given shaft angles, where only the direction of the frame is unknown."""
-    linkage = LINKAGES[kind]
+    linkage, swings = LINKAGES[kind], kind.startswith("four-bar")
     of, polygon = mechanism(linkage), Polygon((18.0, 8.5))
     start = of.at(0.0, 0).frame[0, 0] + math.pi / 2
     for shaft in (0.0, 0.7, 1.9, 3.3, 4.4, 5.9):
         turned = shaft - start
 
         def miss(frame, turned=turned):
-            x, y = polygon.joint(frame, turned, linkage.coupler)
-            return math.hypot(x - 80, y) - 105 if kind == "four-bar" else y - 20
+            x, y = polygon.joint(frame, turned, linkage)
+            return math.hypot(x - 80, y) - 105 if swings else y - 20
 
         expected = of.at(of.relative(shaft), 0)
-        low, high = (0.5, 2.2) if kind == "four-bar" else (-0.6, 0.9)
+        low, high = (0.5, 2.2) if swings else (-0.6, 0.9)
         frame = polygon.frame(miss, low, high)
-        x, y = polygon.joint(frame, turned, linkage.coupler)
-        output = math.atan2(y, 80 - x) if kind == "four-bar" else x
+        x, y = polygon.joint(frame, turned, linkage)
+        output = math.atan2(y, 80 - x) if swings else x
         assert frame == pytest.approx(expected.frame[0, 0], abs=1e-7)
-        assert output == pytest.approx(expected.output[0, 0], abs=1e-5 if kind == "slider-crank" else 1e-7)
+        assert output == pytest.approx(expected.output[0, 0], abs=1e-7 if swings else 1e-5)
 
 
 # The shaft angle
@@ -208,10 +211,11 @@ def test_force_angle_vanishes_exactly_where_the_shaft_stands_still():
 
 pivots = st.tuples(st.floats(-15, 15), st.floats(-15, 15))
 assemblies = st.sampled_from(["open", "crossed"])
+asides = st.just(0.0) | st.floats(-50, 50)
 linkages = st.one_of(
-    st.builds(FourBar, st.floats(20, 200), st.floats(10, 200), st.floats(20, 250), assemblies),
-    st.builds(InvertedSliderCrank, st.floats(10, 200), st.floats(0, 200), assemblies),
-    st.builds(SliderCrank, st.floats(10, 200), st.floats(-80, 80), assemblies),
+    st.builds(FourBar, st.floats(20, 200), st.floats(10, 200), st.floats(20, 250), assemblies, asides),
+    st.builds(InvertedSliderCrank, st.floats(10, 200), st.floats(0, 200), assemblies, asides),
+    st.builds(SliderCrank, st.floats(10, 200), st.floats(-80, 80), assemblies, asides),
 )
 
 
@@ -391,7 +395,7 @@ def test_figures_against_dense_samples(driven):
     assert value.over_shaft(value.output)[1, 0] == pytest.approx(figures.velocity.value, rel=1e-11)
     assert [place.value for place in figures.dead_centres] == [0, 0]
     for place in figures.dead_centres:
-        assert driven.at(place.relative, 0).faces[0, 0, 0] == pytest.approx(25, abs=1e-12)
+        assert driven.at(place.relative, 0).faces[0, 0, 0] == pytest.approx(25 - driven.linkage.joint_offset, abs=1e-12)
 
 
 def test_dead_centres_on_either_side_of_zero_are_all_told():

@@ -161,8 +161,8 @@ def spoil(monkeypatch):
 def spoiling(monkeypatch, which, change):
     stl_writer, mf_writer = stl.write_stl, three_mf.write_3mf
 
-    def write_stl(path, mesh, *, about=""):
-        stl_writer(path, change(mesh) if which in path.name else mesh, about=about)
+    def write_stl(path, mesh, **said):
+        stl_writer(path, change(mesh) if which in path.name else mesh, **said)
 
     def write_3mf(path, items, **said):
         mf_writer(path, [replace(i, mesh=change(i.mesh)) if i.name == which else i for i in items], **said)

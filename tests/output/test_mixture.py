@@ -1,4 +1,4 @@
-"""New files beside an old report are told by `verify` and `check`: after a kill, or by hand."""
+"""New files beside an old report are reported by `verify` and `check`: after a kill, or by hand."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_killed_before_the_last_rename(recipe: Path, capsys: pytest.CaptureFixtu
     assert done.returncode == 9
     report = Path("out/cam/report.json")
     told = (
-        f"{report}: cam.dxf, cam.csv are not the files that it tells of: a run was killed between two sets of files; "
+        f"{report}: cam.dxf, cam.csv are not the files that it lists: a run was killed between two sets of files; "
         "export again"
     )
     for call in (["verify", "cam.yaml", "out/cam/cam.dxf"], ["check", "cam.yaml"], ["check", "cam.yaml", "--json"]):
@@ -68,7 +68,7 @@ def test_killed_before_the_last_rename(recipe: Path, capsys: pytest.CaptureFixtu
 def test_changed_or_taken_away_by_hand(recipe: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = recipe.parent / "out" / "cam" / "cam.csv"
     table.write_text("mine\n", encoding="utf-8")
-    why = "is not the file that it tells of: changed since, or of another run; export again"
+    why = "is not the file that it lists: changed since, or of another run; export again"
     assert said_of(capsys, "check", "cam.yaml") == f"camgeo: out/cam/report.json: cam.csv {why}\n"
     table.unlink()
     assert said_of(capsys, "check", "cam.yaml", "--out", "out").endswith(f"cam.csv {why}\n")

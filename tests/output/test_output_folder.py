@@ -14,7 +14,8 @@ import pytest
 from support import sets
 from support.sets import NAME, STEPS, export, names_of, write
 
-from camgeo.output.output_folder import Run, SurroundingsError
+from camgeo.common.errors import SurroundingsError
+from camgeo.output.output_folder import Run
 
 
 def generation_of(folder, *, size=1):

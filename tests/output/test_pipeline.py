@@ -59,7 +59,8 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
     assert sorted(entry.name for entry in folder.iterdir()) == sorted(
         ["report.json", *(file["path"] for file in report["files"])]
     )
-    assert {"radius-of-curvature", "undercut-local", "contour", "motion", "wall"} <= set(names(report))
+    bent = "pitch-radius" if recipe.cam.touch_radius else "radius-of-curvature"
+    assert {bent, "undercut-local", "contour", "motion", "wall"} <= set(names(report))
     made = Counter((check["name"], check.get("file")) for check in report["checks"])
     told = Counter((item.name, item.file) for item in foreseen(recipe))
     if any(request.parts == "all" for request in recipe.export.files):  # how many bodies there are is not foreseen

@@ -253,8 +253,8 @@ def test_what_is_not_asked_for_is_skipped() -> None:
         ),
         (
             TRAIN.replace("preload: 150", "backlash: 0.02"),
-            "cam: {kind: constant-diameter, base_radius: 40, roller_radius: 8, motion: {formula: 5*sin(t)**2}}\n",
-            "that of a roller yoke is not computed",
+            "cam: {kind: disc, base_radius: 40, follower: {kind: roller, radius: 8}, motion: {formula: 5*sin(t)**2}}\n",
+            "a single translating roller has no backlash",
         ),
     ],
 )
@@ -297,3 +297,20 @@ def test_a_spoilt_file_shows_in_its_own_run(tmp_path: Path) -> None:
     amplitudes = [run["steady"]["residual"][0]["amplitude"] for run in (whole, bent)]
     assert bent["from"] == "spoilt.dxf"
     assert amplitudes[1] > 3.0 * amplitudes[0]
+
+
+def test_two_rollers_rattle_as_two_faces_of_the_same_motion_do() -> None:
+    train = TRAIN.replace("preload: 150", "backlash: 0.05")
+    motion = "motion: [{rise: 12, over: 80, law: modified-sine}, {dwell: 100}]}\n"
+    found = []
+    for cam in ("constant-breadth, base_radius: 28", "constant-diameter, base_radius: 28, roller_radius: 8"):
+        report = pipeline.check(recipe(train, f"cam: {{kind: {cam}, {motion}")).report
+        runs = report["dynamics"]["runs"]
+        checks = {one.get("file"): one["value"] for one in report["checks"] if one["name"] == "least-backlash"}
+        found.append((runs[0]["impacts"], checks))
+    (faces, of_faces), (rollers, of_rollers) = found
+    assert rollers["count"] == faces["count"] > 0
+    assert rollers["greatest_velocity"] == pytest.approx(faces["greatest_velocity"], rel=1e-9)
+    assert of_rollers[None] == pytest.approx(of_faces[None], abs=1e-12) == pytest.approx(0.05, abs=1e-9)
+    (of_file,) = (value for file, value in of_rollers.items() if file)
+    assert 0.05 - 2e-3 < of_file < 0.05 + 2e-3  # its own tolerance on either side

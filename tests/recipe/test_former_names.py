@@ -177,6 +177,22 @@ def test_renamed_checks_say_their_former_names() -> None:
     assert not {"face-length", "limit:face-length"} & checks.keys()
 
 
+def test_the_check_of_a_pitch_curve_has_the_name_of_its_figure() -> None:
+    motion = "[{rise: 8, over: 180, law: cycloidal}, {return: 8, over: 180, law: cycloidal}]"
+    for follower, name in (("roller, radius: 5", "pitch-radius"), ("knife-edge", "radius-of-curvature")):
+        text = f"cam: {{kind: disc, base_radius: 30, follower: {{kind: {follower}}}, motion: {motion}}}\n"
+        design = camgeo.design(camgeo.load(text))
+        report = camgeo.check(camgeo.load(text + "export: {tolerance: 0.01, files: [csv]}\nverify: {angles: 60}\n"))
+        (told,) = (one for one in report["checks"] if one["name"] in {"pitch-radius", "radius-of-curvature"})
+        assert told["name"] == name
+        assert told.get("formerly") == ("radius-of-curvature" if name == "pitch-radius" else None)
+        checks = {check.name: check.value for check in design.checks}
+        metal = design.figures["radius-of-curvature"].value
+        pitch = design.figures["pitch-radius"].value if name == "pitch-radius" else metal
+        assert checks[name] == pitch
+        assert (checks[name] == metal) is (name == "radius-of-curvature")
+
+
 def test_a_sweep_writes_both_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "swept.yaml"
     path.write_text(PIVOT + SWEEP.replace("KEY", "pivot").replace("FIGURE", "face-length"))
@@ -212,3 +228,17 @@ def test_no_former_name_is_a_present_one() -> None:
     assert not FORMER.keys() & PRESENT.keys()
     assert FORMER.keys() <= FIGURES.keys()
     assert not PRESENT.keys() & FIGURES.keys()
+
+
+@pytest.mark.parametrize("keys", [("pivot", "shaft"), ("shaft", "pivot")])
+@pytest.mark.parametrize("written", [SHAFT, PIVOT])
+def test_a_sweep_varies_a_number_by_one_of_its_names_alone(written: str, keys: tuple[str, str]) -> None:
+    text = written + SWEEP.replace("KEY", keys[0]).replace("FIGURE", "size")
+    second = f"}}, 'cam.{keys[1]}[0]': [1, 2]}}\n  limits"
+    (one,) = told(text.replace("}}\n  limits", second))
+    assert one.endswith(
+        f"sweep.vary.'cam.{keys[1]}[0]': varies the same number as cam.{keys[0]}[0]; leave one of the two out"
+    )
+    assert not any("varies" in str(notice) for notice in load_text(text, "cam.yaml").notices)
+    other = second.replace("[0]", "[1]")
+    assert len(load_text(text.replace("}}\n  limits", other), "cam.yaml").sweep.vary) == 2

@@ -18,7 +18,7 @@ from support.places import SHIPPED
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.cams.constant_diameter import ConstantDiameterCam
-from camgeo.cams.disc import (
+from camgeo.cams.disc_cams import (
     DiscCam,
     OscillatingFaceCam,
     OscillatingRollerCam,
@@ -457,7 +457,7 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
         theta = np.linspace(0, 2 * np.pi, 7201)
         p = intent.derivatives(theta, 2)
         low, high, radius = p[0].min(), p[0].max(), (p[0] + p[2]).min()
-        assert radius > 0
+        assert radius > 0 or path.stem == "reuleaux-irregular"  # of sharp corners
         papers = path.stem.startswith("as-") or path.stem in {"six-bar", "sweep-four-bar"}  # the paper's own shafts
         assert low - bore > (THIN if papers else WALL)
     elif isinstance(intent, Displacement):

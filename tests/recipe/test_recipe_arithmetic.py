@@ -13,7 +13,7 @@ from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.edit import with_values
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.recipe.schema.json_schema import json_schema
-from camgeo.recipe.schema.scalars import Complaint, read_number, read_whole
+from camgeo.recipe.schema.scalars import Complaint, read_number, whole
 
 TEXT = (
     "cam: {{kind: constant-breadth, base_radius: {0}, "
@@ -41,9 +41,9 @@ def test_what_it_comes_to(text: str, value: float) -> None:
 
 
 def test_a_whole_number() -> None:
-    assert read_whole("2*3 + 1") == 7
+    assert whole(read_number("2*3 + 1")) == 7
     with pytest.raises(Complaint, match="not a whole number"):
-        read_whole("7/2.0")
+        whole(read_number("7/2.0"))
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_a_whole_number() -> None:
         ("sin(1)", "not a number, given 'sin(1)'; give a length above 0 in mm"),
         ("e*2", "not a number, given 'e*2'"),
         ("2 3", "not a number, given '2 3'"),
-        ("15 mm", "not a number, given '15 mm'; write the number without its unit"),
+        ("2 1/2", "not a number, given '2 1/2'; a mixed number takes a plus, such as 1+1/2"),
     ],
 )
 def test_what_is_refused_and_where(text: str, said: str) -> None:
@@ -80,7 +80,7 @@ def test_the_json_schema_knows_it() -> None:
     cam = next(kind for kind in kinds if "base_radius" in kind["properties"])
     pattern = re.compile(cam["properties"]["base_radius"]["anyOf"][1]["pattern"])
     assert all(map(pattern.search, ("15/25.4", "2*(3 + 0.5)", "1e-3", "pi", "-.5")))
-    assert not any(map(pattern.search, ("", "abc", "( )", "12 mm", "sin(1)", "1,5")))
+    assert not any(map(pattern.search, ("", "abc", "( )", "12 m", "sin(1)", "1,5")))
 
 
 def test_wherever_a_number_is_expected() -> None:

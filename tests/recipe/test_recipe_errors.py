@@ -1,4 +1,4 @@
-"""What a faulty recipe is told: whole messages, with file, line, column, field, fault, value and remedy."""
+"""What a faulty recipe is answered: whole messages, with file, line, column, field, fault, value and remedy."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from camgeo.cli.main import main
 from camgeo.recipe import RecipeError, RecipeErrors, load, read
 from camgeo.recipe.schema.yaml_source import MAX_ALIASES, MAX_BYTES, MAX_DEPTH, MAX_NODES
 from kin.law.formula.formula import Formula, FormulaError
@@ -22,6 +23,7 @@ KEYS = (
 PART = "thickness, bore, keyway, flat, hub, set_screw, bolts, dowel, lightening, chamfer, mark, outer and wall"
 BORE = "give a diameter above 0, or a form such as {square: 10} or {hexagon: 10} in mm"
 NAME = "letters, digits, '.', '_' and '-', beginning with a letter, a digit or '_', at most 64 characters"
+TAKEN = "give mm, cm, in or inch, or a number alone, which is in"
 LENGTH = "give a length above 0 in mm"
 FORMATS = "give dxf, svg, stl, 3mf, step, glb, csv, html or gcode"
 
@@ -43,7 +45,7 @@ cam:
   roller_radius: -8
   delta: {cos: {2: 625}}
 dynamics: {mass: 1, stiffness: 1e5, rpm: 100}
-part: {bore: 10mm, follower: 3}
+part: {bore: 10um, follower: 3}
 export: {files: [dxf, {dxf: {as: spline, version: R12}}, stl, stp]}
 verify: {angles: 010}
 tolerance: 4
@@ -58,7 +60,7 @@ tolerance: 4
         "cams/a.yaml:7:18: cam.roller_radius: not above 0, given -8; give a length above 0 in inch",
         "cams/a.yaml:8:17: cam.delta.cos.2: an even number, given 2; give an odd whole number from 1 to 199",
         "cams/a.yaml:9:11: dynamics: needs preload or backlash; give exactly one of them",
-        "cams/a.yaml:10:14: part.bore: not a number, given '10mm'; write the number without its unit",
+        f"cams/a.yaml:10:14: part.bore: 'um' is no unit of a length, given '10um'; {TAKEN} inch",
         f"cams/a.yaml:10:20: part.follower: not available in this version; leave it out; the keys here are {PART}",
         (
             "cams/a.yaml:11:34: export.files[1].dxf.as: R12 has no splines, given 'spline'; "
@@ -308,7 +310,10 @@ def test_keys(body: str, message: str) -> None:
         ("0x1F", "not a number, given '0x1F'; write it in decimal"),
         ("1_000", "not a number, given '1_000'; write it without underscores"),
         ("1,5", "not a number, given '1,5'; a decimal takes a point, not a comma"),
-        ("10 mm", "not a number, given '10 mm'; write the number without its unit"),
+        (
+            "10 m",
+            "'m' is no unit of a length, given '10 m'; give mm, cm, in or inch, or a number alone, which is in mm",
+        ),
         ("on", "not a number, given 'on'; this is a truth value"),
         ("2020-01-01", "not a number, given '2020-01-01'; this is a date"),
         ("1/0", f"divides by zero, given 1/0; {LENGTH}"),
@@ -484,10 +489,10 @@ MOTION = "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, ove
             ],
         ),
         (
-            "cam: {kind: support, reuleaux: {sides: 1, breadth: 50, rounding: 0}}",
+            "cam: {kind: support, reuleaux: {sides: 1, breadth: 50, rounding: -1}}",
             [
                 f"1:40: cam.reuleaux.sides: below 3, given 1; {ODD}",
-                f"1:66: cam.reuleaux.rounding: not above 0, given 0; {LENGTH}",
+                "1:66: cam.reuleaux.rounding: below 0, given -1; give a length of at least 0 in mm",
             ],
         ),
         (
@@ -611,6 +616,39 @@ def test_cams(body: str, messages: list[str]) -> None:
     assert told(body) == [f"c.yaml:{message}" for message in messages]
 
 
+@pytest.mark.parametrize(
+    ("lines", "place"),
+    [
+        ("  track: {groove: {clearance: 0.03}}\n", "4:10: cam.track: grooves"),
+        ("  track: groove\n", "4:10: cam.track: grooves"),
+        ("  groove: {clearance: 0.03}\n", "4:3: cam.groove: grooves"),
+        ("  conjugate: {radius: 11, distance: 120}\n", "4:3: cam.conjugate: conjugate cams"),
+        ("camshaft: {lobes: [{recipe: intake.yaml, at: 234, z: 0}]}\n", "4:1: camshaft: camshafts"),
+    ],
+)
+def test_what_is_not_made_yet(lines: str, place: str) -> None:
+    """One line, and what it tells to do helps."""
+    head = "cam:\n  kind: disc\n  follower: {kind: roller, radius: 8}\n"
+    motion = "[{rise: 20, over: 180, law: cycloidal}, {return: 20, over: 180, law: cycloidal}]"
+    tail = f"  base_radius: 30\n  motion: {motion}\n"
+    body = head + tail + lines if lines.startswith("camshaft") else head + lines + tail
+    (message,) = told(body)
+    assert message.startswith(f"c.yaml:{place} are not made yet; ".replace("4:1:", "6:1:"))
+    assert read((head + tail).encode(), "c.yaml").cam.kind == "disc"
+
+
+def test_a_camshaft_alone_is_one_fault() -> None:
+    (message,) = told("camshaft: {lobes: [{recipe: intake.yaml, at: 234, z: 0}]}\n")
+    assert message.startswith("c.yaml:1:1: camshaft: camshafts are not made yet; leave it out; ")
+
+
+def test_a_camshaft_ends_with_status_2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "shaft.yaml"
+    path.write_text("camshaft: {lobes: []}\n")
+    assert main(["check", str(path)]) == 2
+    assert "shaft.yaml:1:1: camshaft: camshafts are not made yet" in capsys.readouterr().err
+
+
 def test_segments() -> None:
     body = """\
 cam:
@@ -680,7 +718,7 @@ TWINS = "give each another `as` or `version`, or a recipe of its own"
             "[{dxf: }]",
             [
                 (
-                    "23: export.files[0].dxf: nothing given; give a mapping with as, version, tolerance, kerf, "
+                    "23: export.files[0].dxf: nothing given; give a mapping with as, version, units, tolerance, kerf, "
                     "clearance and shrinkage, or leave the key out"
                 )
             ],

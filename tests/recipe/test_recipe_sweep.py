@@ -212,10 +212,13 @@ def test_an_axis(axis: str, message: str) -> None:
         ("{from: 1, to: 2, steps: 1}", [".steps: below 2, given 1; give a whole number from 2 to 1000000"]),
         (
             "{from: 1, until: 2, steps: 4}",
-            [".to: missing; give a number: last value", ".until: unknown key; the keys here are from, to and steps"],
+            [
+                ".to: missing; give a number in mm: last value",
+                ".until: unknown key; the keys here are from, to and steps",
+            ],
         ),
-        ("{from: a, to: 2, steps: 4}", [".from: not a number, given 'a'; give a number"]),
-        ("[a]", ["[0]: not a number, given 'a'; give a number"]),
+        ("{from: a, to: 2, steps: 4}", [".from: not a number, given 'a'; give a number in mm"]),
+        ("[a]", ["[0]: not a number, given 'a'; give a number in mm"]),
     ],
 )
 def test_the_values_of_an_axis(axis: str, messages: list[str]) -> None:

@@ -20,7 +20,7 @@ from camgeo.report.remarks import remarks_of
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
-    from camgeo.cams.disc import RoundCam
+    from camgeo.cams.disc_cams import RoundCam
     from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.document import Remark
@@ -258,7 +258,7 @@ def test_without_it_one_bound_holds_both_ways() -> None:
 
 def test_on_return_of_a_cam_that_has_it_not() -> None:
     roller = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 300}}}\n"
-    with pytest.raises(RecipeErrors, match="pressure-angle-return needs a cam of kind disc or constant-diameter"):
+    with pytest.raises(RecipeErrors, match="on_return needs a cam of kind disc or constant-diameter"):
         load_text(roller + "limits: {pressure-angle: {on_return: 40}}\n", "cam.yaml")
 
 

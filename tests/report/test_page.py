@@ -258,6 +258,27 @@ def test_a_linkage_stands_as_kin_says_over_the_shaft_angle() -> None:
     assert made.data["rests"][0][1] == pytest.approx(37.05, abs=0.01)
 
 
+@pytest.mark.parametrize("offset", [9.0, -40.0])
+def test_a_joint_off_the_mid_line_is_where_the_coupler_ends(tmp_path: Path, offset: float) -> None:
+    """An offset beyond the frame's side hangs the bar on an arm that prolongs the side."""
+    text = (RECIPES / "as-figure-9-2a.yaml").read_text(encoding="utf-8")
+    path = tmp_path / "off.yaml"
+    path.write_text(text.replace("rocker: 105", f"rocker: 105, joint_offset: {offset}"), encoding="utf-8")
+    made = Made(path)
+    dx, dy, _ = made.pose("joint D")
+    fx, fy, theta3 = made.pose("frame")
+    c, s = np.cos(theta3), np.sin(theta3)
+    assert np.abs(fx + 95.0 * c - offset * s - dx).max() < 2e-3
+    assert np.abs(fy + 95.0 * s + offset * c - dy).max() < 2e-3
+    frame = next(body for body in made.content.scene.bodies if body.name == "frame")
+    square, *bars = (np.concatenate([ring.points for ring in shape.rings]) for shape in frame.shapes)
+    assert len(bars) == (2 if abs(offset) > 25.0 else 1)
+    assert np.hypot(*(bars[0] - (95.0, offset)).T).min() < 3.0
+    for bar, on in zip(bars, [*bars[1:], square], strict=True):
+        assert bar.min(axis=0)[0] < on.max(axis=0)[0]
+        assert (np.abs(bar[:, 1]).min() < np.abs(on[:, 1]).max()) or len(bars) == 1
+
+
 @pytest.mark.slow
 def test_ccw_is_the_mirror_image_and_the_motion_stays() -> None:
     made = of("six-bar")

@@ -64,7 +64,7 @@ def drawn(name: str, rotation: str) -> tuple[Any, Content]:
     text = YOKE if name == "yoke" else text.replace("\n  x: {}", "")
     text += "part: {outer: 140}\n" if name == "ring" else ""
     recipe = load_text(f"rotation: {rotation}\n{text}", "guided.yaml")
-    # dwells are told by what judges the files
+    # dwells are found by what judges the files
     with patch.object(curves, "rests", return_value=[]):
         return recipe, content(recipe, designed(recipe), [])
 

@@ -31,13 +31,14 @@ def three(path):
     return here, [(c - a) / (2 * STEP) for a, _, c in triples], [(a - 2 * b + c) / STEP**2 for a, b, c in triples]
 
 
-def linkage_path(kind, sense, lengths, w, lifts):
+def linkage_path(kind, sense, lengths, frame, lifts):
     """Return t -> (theta_3, output) from |D| known and D on the rocker's circle or the slide's line."""
 
     s, s1 = (polynomial(lift) for lift in lifts)
+    w, offset = frame  # its breadth, and how far the joint is off its mid-line
 
     def path(t):
-        y = s(t) - w / 2
+        y = s(t) - w / 2 + offset
         if kind == "inverted":
             r1, r4 = lengths
             theta4 = sense * mp.acos((r4 - y) / r1)
@@ -56,10 +57,10 @@ def linkage_path(kind, sense, lengths, w, lifts):
     return path
 
 
-def linkage_figures(kind, sense, lengths, w, lifts):
+def linkage_figures(kind, sense, lengths, frame, lifts):
     """Return the figures of NAMES."""
     with mp.workdps(140):
-        (frame, out), (frame1, out1), (frame2, out2) = three(linkage_path(kind, sense, lengths, w, lifts))
+        (frame, out), (frame1, out1), (frame2, out2) = three(linkage_path(kind, sense, lengths, frame, lifts))
         rate = 1 - frame1
         return [out, out1, out2, out1 / rate, (out2 * rate + out1 * frame2) / rate**3, frame, frame1, frame2]
 
@@ -129,13 +130,13 @@ def judged(figures, shape, numbers):
         return base, condition
 
 
-def judged_linkage(kind, assembly, lengths, w, lifts):
+def judged_linkage(kind, assembly, lengths, w, lifts, *, offset=0.0):
     sense, n, m = (1 if assembly == "open" else -1), len(lengths), len(lifts[0])
 
     def shape(v):
-        return kind, sense, v[:n], v[n], (v[n + 1 : n + 1 + m], v[n + 1 + m :])
+        return kind, sense, v[:n], v[n : n + 2], (v[n + 2 : n + 2 + m], v[n + 2 + m :])
 
-    return judged(linkage_figures, shape, [*lengths, w, *lifts[0], *lifts[1]])
+    return judged(linkage_figures, shape, [*lengths, w, offset, *lifts[0], *lifts[1]])
 
 
 def judged_dyad(kind, assembly, lengths, ground, driven):

@@ -25,7 +25,10 @@ def axes(th3):
 
 @dataclass(frozen=True)
 class Bars:
-    """kind: four-bar (ground, coupler, rocker), inverted (ground, rocker) or slider (coupler, offset); side +1 open."""
+    """kind: four-bar (ground, coupler, rocker), inverted (ground, rocker) or slider (coupler, offset); side +1 open.
+
+    `aside` is how far the joint, or the line of the slide, stands from the frame's mid-line towards face 1.
+    """
 
     kind: str
     ground: float = 0.0
@@ -33,6 +36,7 @@ class Bars:
     rocker: float = 0.0
     offset: float = 0.0
     side: int = 1
+    aside: float = 0.0
 
     def miss(self, joint, th3, lift, breadth):
         """How far the joint D is from where the linkage wants it, for a trial direction of the frame."""
@@ -41,7 +45,7 @@ class Bars:
         if self.kind == "slider":
             return joint[1] - self.offset
         # the pivot B carries a rocker at right angles to the frame's slide, which lies at -Y from the shaft's line
-        return self.ground * np.sin(th3) - self.rocker + lift - breadth / 2
+        return self.ground * np.sin(th3) - self.rocker + lift - breadth / 2 + self.aside
 
     def length(self, breadth, along):
         """X, the distance of the joint from the shaft along the frame."""
@@ -65,7 +69,7 @@ class Bars:
 def placed(bars, breadth, lift, along, th3):
     """The joint D of a frame with faces 1 and 2 at these distances from the shaft."""
     u, n = axes(th3)
-    return bars.length(breadth, along) * u + (lift - breadth / 2) * n
+    return bars.length(breadth, along) * u + (lift - breadth / 2 + bars.aside) * n
 
 
 def solve(bars, breadth, reach, near=None):

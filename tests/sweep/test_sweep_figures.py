@@ -93,6 +93,15 @@ def test_figures_are_those_of_the_mechanism(linkage, shape, assembly):
     assert_like(found.figures, exact(one))
 
 
+@pytest.mark.parametrize("linkage", list(PATHS))
+def test_a_joint_off_the_mid_line(linkage):
+    one, path = recipe(linkage=linkage, more=", joint_offset: 0", pivot="[12, 6]"), ("linkage.joint_offset",)
+    found = evaluate(one, path, np.array([[9.0], [-9.0]]), samples=720)
+    for row, value in enumerate([9.0, -9.0]):
+        assert_like(found.figures, exact(recipe_with(one, path, [value])), row)
+    assert found.figures["swing"][0] != pytest.approx(found.figures["swing"][1], rel=1e-4)
+
+
 def test_the_papers_dwell():
     found = compute_one(recipe(), {})
     assert found["dwell-relative"] == pytest.approx(45.174019358, abs=2e-6)
@@ -135,7 +144,7 @@ def test_designs_anywhere_have_the_figures_of_their_mechanism_or_none(linkage, x
     if min(wanted["margin"] / 50, wanted["shaft-rate"]) < 0.2:
         return  # near a limit position the motion is too sharp for the samples
     for name, over in (("dwell", "shaft"), ("dwell-relative", "relative")):
-        # of dwells as long as each other to half the angle between samples, any may be told
+        # of dwells as long as each other to half the angle between samples, any may be reported
         alike = [dwell for dwell in dwells(made, over) if dwell > wanted[name] - 180 / 720]
         wanted[name] = min(alike, key=lambda dwell: abs(dwell - found.figures[name][0]))
     assert_like(found.figures, wanted, tolerance=2e-4)
@@ -387,7 +396,7 @@ def test_the_margin_of_a_linkage_that_binds_is_negative(linkage, lengths):
     n = 48
     p = 25 + 200 * np.cos(angles(n))[None]
     cams = Support(np.array([[50.0]]), p, 0 * p, 0 * p)
-    loop = engine(linkage).of(1.0, cams, Lengths(*(np.array([[float(length)]]) for length in lengths)))
+    loop = engine(linkage).of(1.0, cams, Lengths(*(np.array([[float(length)]]) for length in (*lengths, 0))))
     margin = loop.margin(lambda rows: rows.min(axis=1))
     s1 = np.roll(p[0], -n // 4)
     wanted = linkage.margin(p[0], s1, 50.0).min()
@@ -399,3 +408,18 @@ def test_the_margin_of_a_linkage_that_binds_is_negative(linkage, lengths):
 def test_screening_leaves_the_recipe_alone():
     one = swept("size: {at_most: 40}")
     assert replace(one, sweep=None) == replace(swept(""), sweep=None)
+
+
+def test_links_that_shape_the_cam_make_it_anew():
+    """Where the swing of the frame is given, the lift hangs on the lengths of the linkage."""
+    swing = "swing: [{rise: 20, over: 140, law: cycloidal}, {dwell: 60}]"
+    shape = f"kind: constant-breadth\n  base_radius: 80\n  {swing}"
+    one = recipe(shape, "kind: inverted-slider-crank, ground: 80, rocker: 12", more=", joint_offset: 2", pivot="")
+    paths = ("linkage.ground", "linkage.joint_offset", "cam.base_radius")
+    values = np.array([[80.0, 2.0, 80.0], [95.0, 2.0, 80.0], [80.0, 20.0, 80.0], [80.0, 2.0, 84.0]])
+    found = evaluate(one, paths, values, samples=7200)
+    for row, numbers in enumerate(values):
+        wanted = exact(recipe_with(one, paths, numbers))
+        assert_like(found.figures, wanted, row, tolerance=3e-5)
+        assert found.figures["swing"][row] == pytest.approx(20.0, abs=1e-6)
+    assert np.ptp(found.figures["radius-of-curvature"]) > 1.0

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from support.heavy import parquet
 from support.sweepers import GRID, MEANS, ask, hills
 
-from camgeo.output.output_folder import SurroundingsError
+from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.figures import Limit
 from camgeo.recipe.loading import load, read
 from camgeo.sweep.search import gather as gathering

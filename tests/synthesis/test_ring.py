@@ -44,7 +44,7 @@ def test_the_hollows_of_the_pitch_curve_hold_the_roller(rise):
     recipe = ring(4.0, rise=rise, base=25.0)
     _, _, radius = pitch(recipe)
     hollow = radius[radius > 0].min()
-    told = checks(recipe)["radius-of-curvature"]
+    told = checks(recipe)["pitch-radius"]
     assert told.value == pytest.approx(hollow, rel=1e-5)
     assert told.limit == 4.0
     assert told.ok == (hollow > 4.0)
@@ -55,7 +55,7 @@ def test_the_hollows_of_the_pitch_curve_hold_the_roller(rise):
 def test_a_roller_at_the_limit_against_all_its_own_positions(beyond, sound):
     """Contact is where no other place of the roller's centre lies nearer to the opening than its radius."""
     start = ring(9.0)
-    least = checks(start)["radius-of-curvature"].value
+    least = checks(start)["pitch-radius"].value
     radius = least + beyond
     recipe = ring(radius, base=start.cam.prime + radius)
     z, first, _ = pitch(recipe, 4000)
@@ -64,7 +64,7 @@ def test_a_roller_at_the_limit_against_all_its_own_positions(beyond, sound):
     near = np.array([np.abs(point - z).min() for point in edge])
     assert (near.min() > radius - 1e-6) == sound
     assert checks(recipe)["undercut-local"].ok == sound
-    assert checks(recipe)["radius-of-curvature"].ok == sound
+    assert checks(recipe)["pitch-radius"].ok == sound
 
 
 def test_the_opening_is_wider_than_its_roller():
@@ -76,7 +76,7 @@ def test_the_opening_is_wider_than_its_roller():
 
 
 def test_a_ring_without_hollows_has_no_limit():
-    told = checks(ring(9.0, rise=140, base=60.0, part="{outer: 200}"))["radius-of-curvature"]
+    told = checks(ring(9.0, rise=140, base=60.0, part="{outer: 200}"))["pitch-radius"]
     assert told.ok
     assert math.isinf(told.value)
     assert told.at_deg is None

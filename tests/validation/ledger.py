@@ -70,7 +70,7 @@ class Row:
         if self.value is None:
             differs = "-"
         else:
-            # rounding differs between machines, so below a billionth only the order is told
+            # rounding differs between machines, so below a billionth only the order is given
             off = abs(self.ours - self.value)
             floor = 1e-9 * max(1.0, abs(self.value))
             differs = f"{off:.1e}" if off > floor else f"< {floor:.0e}"

@@ -45,8 +45,10 @@ def row(field, optional_together):
 def table(found):
     together = [name for name, _ in found.alternatives]
     lines = [HEAD, *(row(field, together) for field in found.fields)]
-    if found.later:
-        lines += ["", f"Known and refused in this version: {', '.join(f'`{name}`' for name in found.later)}."]
+    later = [f"`{name}`" for name, _ in found.later]
+    later += [f"`{field.name}: {word}`" for field in found.fields for word, _ in field.later_choices]
+    if later:
+        lines += ["", f"Known and refused in this version: {', '.join(later)}."]
     return "\n".join(lines)
 
 

@@ -419,7 +419,7 @@ def test_d15_undercut():
     seen = (raw[:, 0] + 1j * raw[:, 1]) * np.exp(-1j * theta)
     high = (seen.real + np.sqrt(18.0**2 - np.minimum(seen.imag**2, 18.0**2))).max()
     assert high - 26.0 - lift(s, theta) == pytest.approx(1.737170, abs=1e-5)
-    # the files: the motion that is lost is told, and no more is lost than is meant
+    # the files: the motion that is lost is reported, and no more is lost than is meant
     report = pipeline.check(recipe).report
     assert report["ok"]
     (cut_off,) = (check for check in report["checks"] if check["name"] == "undercut-local")

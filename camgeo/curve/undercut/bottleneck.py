@@ -10,7 +10,7 @@ radius of curvature, or half of the narrowest double normal, whichever is less. 
 - while the tangent stays within a right angle of that at x, an arc of curvature at most 1/R does not enter the disc
   of radius R that touches it at x (the slope ``sin theta`` of the arc as a graph over the tangent is at most s/R); on
   a convex arc this holds up to a half turn (Blaschke's rolling theorem), and a concave one leaves the tangent for the
-  outer side. Such pairs are near and need no search (`camgeo.curve.undercut.tangents` tells the directions);
+  outer side. Such pairs are near and need no search (`camgeo.curve.undercut.tangents` gives the directions);
 - the others are kept in boxes, pairs of intervals, with proved lower bounds of R from the bounds of speed and turn;
 - where |x - y|^2 is proved convex over a box, in arc length, its least value is at the double normal itself.
 """
@@ -57,7 +57,7 @@ class Neck:
 class OpenNeckError(CurveError):
     """What was left open: every disc of radius `least` rolls all round, none above `most`; `pair` is where, parameters.
 
-    Both in mm. `seen` tells whether a pair of points was found that no larger disc than `most` passes; otherwise `most`
+    Both in mm. `seen` says whether a pair of points was found that no larger disc than `most` passes; otherwise `most`
     is the radius that was asked for.
     """
 

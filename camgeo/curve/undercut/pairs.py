@@ -1,6 +1,6 @@
 """Pairs of points of a pitch curve: what is proved of the disc that touches it at one and passes through the other.
 
-Over a box, a pair of parameter intervals, all is told about its centre, with what the bounds of speed and turn allow.
+Over a box, a pair of parameter intervals, all is stated about its centre, with what the bounds of speed and turn allow.
 """
 
 from __future__ import annotations

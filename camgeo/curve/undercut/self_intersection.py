@@ -23,7 +23,7 @@ SHORT = 0.02  # of the period: parameter lengths over which points' differences 
 STEPS = 40
 MOST_PAIRS = 200_000  # looked at together
 NODES = 12  # of the quadrature of one panel
-SHARPER = 0.05  # of the size: paths of less are told better by their integral than by their ends' points
+SHARPER = 0.05  # of the size: paths of less are given better by their integral than by their ends' points
 PANEL_SHARPNESS = 1e-10  # of a panel's path: halves that agree with it so far are right to the last digits
 PANEL_HALVINGS = (
     8  # at the most; what crossings leave is held against contact at every node (`camgeo.curve.undercut.trim`)

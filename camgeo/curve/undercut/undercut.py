@@ -52,7 +52,7 @@ def undercuts(curve: Curve) -> tuple[Undercut, ...]:
     A `Parallel` is a roller's contour inside its pitch curve, or outside it in a ring, which is looked at run through
     the other way; any other shape is that of a flat face. A stretch that is lost for both reasons is reported for each.
     Raises CurveError where freedom from undercut can be neither proved nor refuted, UndercutError where the extent
-    cannot be told or more than `MOST_TOLD` stretches run backwards.
+    cannot be found or more than `MOST_TOLD` stretches run backwards.
 
     What finds the extent is imported where there is one: most contours are sound.
     """

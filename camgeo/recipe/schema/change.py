@@ -200,7 +200,11 @@ def _scalar(value: object, path: str, file: str) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int):
-        return str(value)
+        try:
+            return str(value)
+        except ValueError:  # Python writes none of thousands of digits
+            remedy = "give one of a few digits"
+            raise RecipeErrors([RecipeError(file, 0, 0, path, "a number of too many digits", None, remedy)]) from None
     if isinstance(value, float) and math.isfinite(value):
         return spelled(value)
     if isinstance(value, str):

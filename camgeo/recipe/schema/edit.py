@@ -6,7 +6,9 @@ import math
 import re
 from typing import TYPE_CHECKING, Any
 
+from camgeo.common.errors import CallError
 from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
+from camgeo.recipe.schema.quantity import parted
 from camgeo.recipe.schema.scalars import Complaint, read_number
 from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Source, is_empty, keys, read_source, scalars
 
@@ -22,9 +24,9 @@ _NAME = "recipe"  # of a text in errors
 def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float]) -> str:
     """Put numbers in the place of others in a recipe's text, by paths such as `cam.shaft[0]`.
 
-    A number is written as briefly as reads back exactly. Raises ValueError for a path at which no number stands, for
-    one whose number an alias shares with other fields, and for a number that is not finite; RecipeErrors for a text
-    that is no YAML.
+    A number is written as briefly as reads back exactly, in the recipe's unit: that of the old one goes with it. Raises
+    CallError for a path at which no number stands, for one whose number an alias shares with other fields, and for a
+    number that is not finite; RecipeErrors for a text that is no YAML.
     """
     source = _source(recipe)
     found = list(scalars(source.root))
@@ -32,14 +34,14 @@ def with_values(recipe: str | Source, values: collections.abc.Mapping[str, float
     changes = []
     for path, value in values.items():
         if path not in places:
-            raise ValueError(f"no number at {path}")
+            raise CallError(f"no number at {path}")
         scalar = places[path]
         try:
-            read_number(scalar.text)
+            read_number(parted(scalar.text)[0])
         except Complaint as complaint:
-            raise ValueError(f"no number at {path}: {complaint.problem}") from None
+            raise CallError(f"no number at {path}: {complaint.problem}") from None
         if shared := [other for other, node in found if node is scalar and other != path]:
-            raise ValueError(f"an alias shares the number at {path} with {shared[0]}")
+            raise CallError(f"an alias shares the number at {path} with {shared[0]}")
         changes.append((scalar, spelled(value)))
     starts = line_starts(source.text)
     text = source.text
@@ -71,10 +73,10 @@ def without(recipe: str | Source, section: str) -> str:
 
 
 def spelled(value: float) -> str:
-    """Write a number so that it reads back exactly; raises ValueError where it is not finite."""
+    """Write a number so that it reads back exactly; raises CallError where it is not finite."""
     value = float(value)
     if not math.isfinite(value):
-        raise ValueError(f"{value} cannot stand in a recipe")
+        raise CallError(f"{value} cannot stand in a recipe")
     return repr(value).removesuffix(".0")
 
 

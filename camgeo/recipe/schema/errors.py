@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import escaped
@@ -40,6 +40,10 @@ class RecipeError:
         given = f", given {self.value}" if self.value is not None else ""
         remedy = f"; {self.remedy}" if self.remedy else ""
         return f"{place}:{field} {self.problem}{given}{remedy}"
+
+    def without_place(self, file: str) -> RecipeError:
+        """Give the fault of a text without lines that anybody has seen, under another name than a file's."""
+        return replace(self, file=file, line=0, column=0)
 
 
 class RecipeErrors(KinError):  # noqa: N818 - it carries several errors

@@ -92,7 +92,8 @@ class Form:
 class Field:
     """One key of a table. Bounds are in the recipe's own units and degrees, as written.
 
-    `formerly` is the key's former name, `former_choices` are pairs of a former choice and the present one.
+    `formerly` is the key's former name, `former_choices` are pairs of a former choice and the present one;
+    `later_choices`, words or mappings with that key, are refused as `later` of a table are.
     """
 
     name: str
@@ -109,15 +110,24 @@ class Field:
     choices: tuple[str, ...] = ()
     variable: str = "t"
     table: Table | None = None  # of a mapping, or of each segment of a motion
-    unit: Kind | None = None  # of the coefficients of harmonics, or of a form of its own
+    unit: Kind | None = None  # of the coefficients of harmonics, of a list of numbers, or of a form of its own
     form: Form | None = None  # of a field of Kind.OWN
+    most: int = MOST_COEFFICIENTS  # entries of a list of numbers
     formerly: str = ""
     former_choices: tuple[tuple[str, str], ...] = ()
+    later_choices: tuple[tuple[str, str], ...] = ()
 
     @property
     def noun(self) -> str:
         """What the field holds, for messages: `a length`."""
         return self.form.noun if self.form else self.kind.value
+
+    @property
+    def entry(self) -> Field:
+        """The field of one entry of a list of numbers: coefficients, unless the list has bounds of its own."""
+        unit, bounded = self.unit or Kind.NUMBER, self.at_least is not None
+        least, most = (self.at_least, self.at_most) if bounded else (-MOST_COEFFICIENT, MOST_COEFFICIENT)
+        return Field("", unit, "", at_least=least, at_most=most)
 
     @property
     def inner(self) -> Table:
@@ -175,12 +185,12 @@ class Table:
     """The keys of a mapping.
 
     Of `alternatives` exactly one is given; each names the keys that must come with it. `later` are keys that this
-    version recognises and refuses.
+    version recognises and refuses, each with what it would make, if there is a word for that.
     """
 
     fields: tuple[Field, ...]
     alternatives: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    later: tuple[str, ...] = ()
+    later: tuple[tuple[str, str], ...] = ()
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -197,6 +207,11 @@ class Table:
         return next(item for item in self.fields if item.name == name)
 
 
+def not_yet(made: str) -> str:
+    """Say that a key is known and refused: `grooves are not made yet`."""
+    return f"{made} are not made yet" if made else "not available in this version"
+
+
 def length(name: str, about: str, *, required: bool = False, default: str = "") -> Field:
     """Make the field of a length above 0, in the recipe's unit."""
     return Field(name, Kind.LENGTH, about, required, default=default, above=0, at_most=MOST)
@@ -207,7 +222,7 @@ def coordinate(name: str, about: str, *, required: bool = False, default: str = 
     return Field(name, Kind.LENGTH, about, required, default=default, at_least=-MOST, at_most=MOST)
 
 
-def mapping(name: str, about: str, *fields: Field, later: tuple[str, ...] = ()) -> Field:
+def mapping(name: str, about: str, *fields: Field, later: tuple[tuple[str, str], ...] = ()) -> Field:
     """Make the field of a mapping with these fields."""
     return Field(name, Kind.TABLE, about, table=Table(fields, later=later))
 

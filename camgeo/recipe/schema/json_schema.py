@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from camgeo.recipe.schema.fields import (
     MOST,
-    MOST_COEFFICIENTS,
     MOST_TEXT,
     Field,
     Kind,
     Table,
     length,
 )
+from camgeo.recipe.schema.quantity import ANGLES, LENGTHS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
 # Texts that are numbers all the same: 1e-3, which YAML 1.1 takes for a text, fractions and plain arithmetic. What the
 # signs mean is for `load` to say.
-_NUMBER_TEXT = r"^(?=.*([0-9]|pi))([-+*/(). ]|[0-9]([eE][+-]?[0-9])?|pi)+$"
+_NUMBER_TEXT = r"(?=.*([0-9]|pi))([-+*/(). ]|[0-9]([eE][+-]?[0-9])?|pi)+"
+_LENGTHS = {Kind.LENGTH, Kind.POINT, Kind.PAIR}
+_EITHER = {Kind.STROKE, Kind.ERROR, Kind.OUTPUT, Kind.MOTION, Kind.BACKLASH}  # a length or an angle
 _NAME = r"^[A-Za-z0-9_][A-Za-z0-9._-]{0,63}$"
 _RATIO = r"^[0-9]+(/[0-9]+)?$"
 
@@ -95,23 +97,27 @@ def _kind(field: Field) -> Schema:
             former = {"enum": [former for former, _ in field.former_choices], "deprecated": True}
             return {"anyOf": [words, former]} if field.former_choices else words
         case Kind.POINT:
-            return {"type": "array", "items": number_schema(), "minItems": 2, "maxItems": 2}
+            return {"type": "array", "items": number_schema(unit=Kind.LENGTH), "minItems": 2, "maxItems": 2}
         case Kind.PAIR:
             return {"type": "array", "items": number_schema(length("", "")), "minItems": 2, "maxItems": 2}
         case Kind.TRUTH:
             return {"type": "boolean"}
         case Kind.NUMBERS:
-            return {"type": "array", "items": number_schema(), "minItems": 1, "maxItems": MOST_COEFFICIENTS}
+            items = number_schema(None if field.at_least is None else field.entry)
+            return {"type": "array", "items": items, "minItems": 1, "maxItems": field.most}
         case Kind.HARMONICS:
-            return {"type": "object", "additionalProperties": number_schema()}
+            return {"type": "object", "additionalProperties": number_schema(unit=field.unit)}
         case Kind.TABLE:
             return table_schema(field.inner)
         case _:
             return number_schema(field)
 
 
-def number_schema(field: Field | None = None) -> Schema:
-    """Make the schema of a number within the bounds of its field."""
+def number_schema(field: Field | None = None, unit: Kind | None = None) -> Schema:
+    """Make the schema of a number within the bounds of its field, which as a text may carry a unit of its kind.
+
+    `unit` says of what kind a number without a field is.
+    """
     number: Schema = {"type": "number"}
     if field is not None:
         bounds = {"exclusiveMinimum": field.above, "minimum": field.at_least, "maximum": field.at_most}
@@ -122,7 +128,10 @@ def number_schema(field: Field | None = None) -> Schema:
                 number["not"] = {"multipleOf": 2}
     else:
         number["minimum"], number["maximum"] = -(MOST**2), MOST**2
-    return {"anyOf": [number, {"type": "string", "pattern": _NUMBER_TEXT}]}
+    kind = unit if field is None else field.unit or field.kind
+    units = [*(LENGTHS if kind in _LENGTHS | _EITHER else ()), *(ANGLES if kind in _EITHER | {Kind.ANGLE} else ())]
+    text = f"^{_NUMBER_TEXT}({'|'.join(units)})?$" if units else f"^{_NUMBER_TEXT}$"
+    return {"anyOf": [number, {"type": "string", "pattern": text}]}
 
 
 def one_of_schema(noun: str, tables: Mapping[str, Table]) -> Schema:

@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 from camgeo.recipe.schema.fields import (
     MOST,
-    MOST_COEFFICIENT,
-    MOST_COEFFICIENTS,
     MOST_HARMONIC,
     Field,
     Kind,
@@ -40,10 +38,9 @@ def _two(part: Field, reader: Reader, field: Field, node: Node, path: str) -> tu
 
 
 def read_numbers(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, ...] | None:
-    """Read the coefficients of a polynomial."""
-    part = Field("", Kind.NUMBER, "", at_least=-MOST_COEFFICIENT, at_most=MOST_COEFFICIENT)
-    items = reader.items(field, node, path, MOST_COEFFICIENTS)
-    values = [reader.field(part, item, join(path, i)) for i, item in enumerate(items)]
+    """Read a list of numbers, such as the coefficients of a polynomial."""
+    items = reader.items(field, node, path, field.most)
+    values = [reader.field(field.entry, item, join(path, i)) for i, item in enumerate(items)]
     return tuple(values) if values and None not in values else None
 
 

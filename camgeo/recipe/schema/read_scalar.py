@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.schema.errors import NEAR, NEARER, shown, suggestion
-from camgeo.recipe.schema.fields import Kind
-from camgeo.recipe.schema.scalars import Complaint, read_name, read_number, read_paragraph, read_ratio, read_whole
-from camgeo.recipe.schema.yaml_source import Scalar, described, written
+from camgeo.recipe.schema.fields import Kind, either, not_yet
+from camgeo.recipe.schema.quantity import UnitComplaint, holds_unit, is_metric, read_quantity, units_for
+from camgeo.recipe.schema.scalars import Complaint, read_name, read_paragraph, read_ratio, whole
+from camgeo.recipe.schema.yaml_source import Mapping, Scalar, described, entries, written
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,6 +37,11 @@ def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:
 
 def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | None:
     """Read one of a few words."""
+    asked = (node.text,) if isinstance(node, Scalar) else entries(node) if isinstance(node, Mapping) else ()
+    for word, made in field.later_choices:
+        if word in asked:
+            reader.fault(node.mark, path, not_yet(made), None, reader.wanted(field))
+            return None
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in field.choices:
         return None if scalar is None else scalar.text
@@ -58,12 +64,16 @@ def read_truth(reader: Reader, field: Field, node: Node, path: str) -> bool | No
 
 
 def read_numeric(reader: Reader, field: Field, node: Node, path: str) -> float | int | None:
-    """Read a number, check its bounds as written, and convert it."""
+    """Read a number in the recipe's unit or its own, check its bounds in the recipe's, and convert it."""
     scalar = _scalar(reader, field, node, path)
     if scalar is None:
         return None
     try:
-        value = read_whole(scalar.text) if field.kind is Kind.INTEGER else read_number(scalar.text)
+        value = read_quantity(scalar.text, reader.unit(field.unit or field.kind))
+        value = whole(value) if field.kind is Kind.INTEGER else value
+    except UnitComplaint as complaint:
+        _refuse_unit(reader, field, scalar, path, complaint.unit)
+        return None
     except Complaint as complaint:
         _complain(reader, field, scalar, path, complaint)
         return None
@@ -71,7 +81,24 @@ def read_numeric(reader: Reader, field: Field, node: Node, path: str) -> float |
         reader.fault(node.mark, path, problem, written(scalar), reader.wanted(field))
         return None
     reader.numbers[path] = field
-    return value if field.kind is Kind.INTEGER else value * reader.scale(field.kind)
+    if field.kind is Kind.INTEGER:
+        return value
+    scale = reader.scale(field.kind)
+    if scale == reader.mm != 1.0 and is_metric(scalar.text):
+        return read_quantity(scalar.text, "mm")  # 12 mm are 12 mm, which standards count on, and not 12/25.4 * 25.4
+    return value * scale
+
+
+def _refuse_unit(reader: Reader, field: Field, scalar: Scalar, path: str, unit: str) -> None:
+    """Note a unit that a number of this field does not take, with those that it does."""
+    own = reader.unit(field.unit or field.kind)
+    if taken := units_for(own):
+        problem = f"'{unit}' is no unit of {'an angle' if own == 'degrees' else 'a length'}"
+        remedy = f"give {either(taken)}, or a number alone, which is in {own}"
+    else:
+        problem, meaning = "carries a unit", f": {field.about}" if field.about else ""
+        remedy = f"give {field.wanted()}{f' in {own}' if own else ''} without a unit{meaning}"
+    reader.fault(scalar.mark, path, problem, written(scalar), remedy)
 
 
 def read_formula(reader: Reader, field: Field, node: Node, path: str) -> str | None:
@@ -88,8 +115,11 @@ def read_formula(reader: Reader, field: Field, node: Node, path: str) -> str | N
         remedy = reader.wanted(field)
         if _behind(reader, scalar) == "," and text.count("(") > text.count(")"):
             remedy = "a formula with a comma in it needs quotes inside braces"
-        mark = _inside(reader, scalar, error.column)
-        reader.fault(mark, path, error.message, shown(text), remedy)
+        mark, problem = _inside(reader, scalar, error.column), error.message
+        if holds_unit(text):
+            own = reader.unit(field.unit or Kind.LENGTH)
+            problem, remedy = "a formula carries no units", f"give its numbers alone, in {own}"
+        reader.fault(mark, path, problem, shown(text), remedy)
         return None
     return text
 

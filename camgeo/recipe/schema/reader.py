@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.recipe.schema.errors import RecipeError, shown, suggestion
-from camgeo.recipe.schema.fields import Field, Kind, Table, either, elsewhere
+from camgeo.recipe.schema.fields import Field, Kind, Table, either, elsewhere, not_yet
 from camgeo.recipe.schema.yaml_source import (
     Mapping,
     Scalar,
@@ -136,7 +136,7 @@ class Reader:
                 value = self.field(field, given[field.name], below)
                 if value is not None:
                     values[field.name] = value
-            elif field.required:
+            elif field.required and not _asks_later(table, given):
                 self.fault(node.mark, below, "missing", None, f"{self.wanted(field)}: {field.about}")
         return values
 
@@ -171,9 +171,9 @@ class Reader:
             below = join(path, name)
             if name in known or name in table.former:
                 continue
-            if name in table.later:
+            if name in (later := dict(table.later)):
                 remedy = f"leave it out; the keys here are {either(known, 'and')}"
-                self.fault(key.mark, below, "not available in this version", None, remedy)
+                self.fault(key.mark, below, not_yet(later[name]), None, remedy)
             elif name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
             else:
@@ -184,7 +184,7 @@ class Reader:
     def _refuse_alternatives(self, table: Table, given: dict[str, Node], node: Mapping, path: str) -> None:
         names = [name for name, _ in table.alternatives]
         chosen = [name for name, _ in table.alternatives if name in given]
-        if names and not chosen and not any(name in given for name in table.later):
+        if names and not chosen and not _asks_later(table, given):
             self.fault(node.mark, path, f"needs {either(tuple(names))}", None, "give exactly one of them")
         for name in chosen[1:]:
             problem = f"cannot be combined with {self._key(path, chosen[0])}"
@@ -249,6 +249,11 @@ class Reader:
             self.fault(node.mark, path, f"more than {most} entries", str(len(node.items)), f"at most {most} are read")
             return ()
         return node.items
+
+
+def _asks_later(table: Table, given: dict[str, Node]) -> bool:
+    """Whether a mapping is of something that is not made yet: what it lacks besides is not missed."""
+    return any(name in given for name, _ in table.later)
 
 
 def kind_of(node: Node | None, tables: collections.abc.Mapping[str, Table]) -> str:

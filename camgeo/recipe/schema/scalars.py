@@ -24,7 +24,8 @@ _NOT_NUMBERS = (
     (re.compile(r"[+-]?0[xob][0-9a-f_]+", re.IGNORECASE), "write it in decimal"),
     (re.compile(r"[+-]?[0-9][0-9_]*_[0-9_]*(?:\.[0-9_]*)?"), "write it without underscores"),
     (re.compile(r"[+-]?[0-9]*,[0-9]+"), "a decimal takes a point, not a comma"),
-    (re.compile(r"[+-]?[0-9.]+ ?(?:mm|cm|m|in|inch|\"|deg|°|rad|degrees?)"), "write the number without its unit"),
+    (re.compile(r"[+-]?[0-9]+ [0-9]+/[0-9]+"), "a mixed number takes a plus, such as 1+1/2"),
+    (re.compile(r".*[0-9.)] ?(?:mm|cm|in|inch|deg)\b.+"), "a unit stands once, behind the whole number"),
     (re.compile(r"[0-9]{4}-[0-9]{1,2}-[0-9]{1,2}.*", re.DOTALL), "this is a date"),
     (re.compile(r"true|false|yes|no|on|off|y|n", re.IGNORECASE), "this is a truth value"),
 )
@@ -62,6 +63,11 @@ def read_number(text: str) -> float:
         if hint is not None or not (_ARITHMETIC.fullmatch(left) or text == "pi"):
             raise Complaint("not a number", hint or "")
         value = _worked_out(text)
+    return within_range(value)
+
+
+def within_range(value: float) -> float:
+    """Give a number back; raises Complaint for one beyond what is worked with."""
     if not math.isfinite(value):
         raise Complaint("too large")
     if 0 < abs(value) < _LEAST:
@@ -86,9 +92,8 @@ def _worked_out(text: str) -> float:
         raise Complaint(problem) from None
 
 
-def read_whole(text: str) -> int:
-    """Read a whole number; raises Complaint."""
-    value = read_number(text)
+def whole(value: float) -> int:
+    """Give a whole number; raises Complaint for any other."""
     if value != math.floor(value):
         raise Complaint("not a whole number")
     return int(value)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from camgeo.cams.constant_diameter import ConstantDiameterCam
-    from camgeo.cams.disc import OscillatingFaceCam, OscillatingRoundCam, TranslatingFaceCam, TranslatingRoundCam
+    from camgeo.cams.disc_cams import OscillatingFaceCam, OscillatingRoundCam, TranslatingFaceCam, TranslatingRoundCam
     from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.checks.declared import CURVATURE
+from camgeo.checks.declared import BENT
 from camgeo.report.page.followers import SHAFT
 from camgeo.synthesis.design import intended
 
@@ -118,10 +118,10 @@ def along(recipe: Recipe, place: Array) -> Plot:
 def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller") -> Plot:
     """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
 
-    `touch` names what follows the pitch curve. Of a ring, which is undercut where it is hollow, no margin is told.
+    `touch` names what follows the pitch curve. Of a ring, which is undercut where it is hollow, no margin is reported.
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
-    found = next((check for check in design.checks if check.name == CURVATURE.name), None)
+    found = next((check for check in design.checks if check.name in BENT), None)
     unit, radius = length_unit(recipe), design.profile.roller_radius
     margin = ""
     if found is not None and found.value is not None and math.isfinite(found.value) and radius >= 0.0:

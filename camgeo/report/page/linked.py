@@ -158,15 +158,21 @@ def _labelled(body: Body, text: str) -> Body:
 
 
 def _frame(driven: Driven, low: float, reach: float, size: float) -> Body:
-    """Return the square frame about its middle, with the coupler's bar along u from `low` to `reach`."""
+    """Return the square frame about its middle, with the coupler's bar along u from `low` to `reach`.
+
+    A bar beyond the end of the frame's side hangs on an arm that prolongs this.
+    """
     w, middle = driven.mechanism.breadth, driven.mechanism.chain.frame(driven.solved)
     inner, outer = 0.5 * w, 0.5 * w + 1.8 * size
     square = Shape("follower", (box(-outer, -outer, outer, outer), box(-inner, -inner, inner, inner)), "square frame")
-    bars = []
-    if reach > outer:
-        bars.append(Shape("follower", (bar((inner + 0.9 * size, 0.0), (reach, 0.0), 1.5 * size),), "coupler"))
-    if low < -outer:
-        bars.append(Shape("follower", (bar((-inner - 0.9 * size, 0.0), (low, 0.0), 1.5 * size),), "coupler"))
+    bars, y, middle_of_side = [], driven.mechanism.linkage.joint_offset, inner + 0.9 * size
+    for side, end, needed in ((1.0, reach, reach > (0.0 if abs(y) > inner else outer)), (-1.0, low, low < -outer)):
+        if not needed:
+            continue
+        x = side * middle_of_side
+        bars.append(Shape("follower", (bar((x, y), (end, y), 1.5 * size),), "coupler"))
+        if abs(y) > inner:
+            bars.append(Shape("follower", (bar((x, np.copysign(inner, y)), (x, y), 1.5 * size),), "coupler"))
     return Body("frame", "follower", (square, *bars), _pose(middle))
 
 

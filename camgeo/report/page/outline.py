@@ -60,14 +60,14 @@ class Read:
 
 
 def read(recipe: Recipe, path: Path) -> Read | None:
-    """Read a drawing or a solid; None where no contour can be read from it, which a check of it tells."""
+    """Read a drawing or a solid; None where no contour can be read from it, which a check of it says."""
     from kin.judge.ring import faced
     from kin.read.errors import ReadError
     from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
 
     try:
         if kind_of(path) in SOLIDS:
-            found: Drawing | AnySolid = read_solid(path)
+            found: Drawing | AnySolid = read_solid(path, (), recipe.unstated(path))
             unit = 1.0
         else:
             found = drawing = read_drawing(path)
@@ -100,7 +100,7 @@ class Exact:
     """The exact contour at equal steps of the angle at which it is touched, `per` for each of `STEPS` steps.
 
     `point`, `normal` (STEPS * per, 2), `radius` of curvature and `curvature` (STEPS * per,) of the base curve, which is
-    the pitch curve of a roller; `kept` tells which points belong to the contour that is made.
+    the pitch curve of a roller; `kept` says which points belong to the contour that is made.
     """
 
     per: int

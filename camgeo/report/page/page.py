@@ -89,7 +89,7 @@ def data(recipe: Recipe, found: Content) -> dict[str, Any]:
 
 
 def _pose(body: Body, extent: float) -> list[dict[str, Any]]:
-    """Return x, y and angle of a body; a small movement is told as finely as a large one."""
+    """Return x, y and angle of a body; a small movement is reported as finely as a large one."""
     x, y, angle = body.pose.T
     rows = [packed(row, _fine(row, extent)) for row in (x, y)]
     return [*rows, packed(np.degrees(angle), _fine(np.degrees(angle), 90.0))]

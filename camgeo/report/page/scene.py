@@ -23,7 +23,7 @@ SEEN = 24  # a body's extent is taken from every so many places
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """Rings filled together by the even-odd rule; `role` tells what it is and so how it looks."""
+    """Rings filled together by the even-odd rule; `role` says what it is and so how it looks."""
 
     role: str
     rings: tuple[Ring, ...]

@@ -139,7 +139,8 @@ class Ask:
             return ""
         if field.kind is Kind.HARMONICS:
             return f"{length}^2" if path.startswith("cam.delta.") else length
-        return length if field.kind in _LENGTHS else "deg" if field.kind is Kind.ANGLE else ""
+        kind = field.unit or field.kind
+        return length if kind in _LENGTHS else "deg" if kind is Kind.ANGLE else ""
 
 
 def _axis(varied: Varied) -> Axis:

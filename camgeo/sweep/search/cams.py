@@ -68,7 +68,8 @@ class Cams:
         """Sort the fields that vary; `paths` are those of all columns, `count` is that of the angles."""
         cam, mm = recipe.cam, recipe.mm
         place = cam.shaft_at
-        columns = {recipe.present(path): column for column, path in enumerate(paths) if path.startswith("cam.")}
+        of_cam = ("cam.", "linkage.") if cam.by_linkage else "cam."
+        columns = {recipe.present(path): column for column, path in enumerate(paths) if path.startswith(of_cam)}
         shaft = tuple((columns.pop(f"cam.shaft[{i}]", None), place[i]) for i in (0, 1))
         terms = []
         for path in list(columns):

@@ -164,7 +164,7 @@ class Evaluator:
 
     @cached_property
     def scale(self) -> float:
-        """What the output is told in: mm as it is, rad in degrees."""
+        """What the output is reported in: mm as it is, rad in degrees."""
         linkage = self.recipe.linkage
         return 1.0 if linkage is not None and output_slides(linkage) else math.degrees(1.0)
 

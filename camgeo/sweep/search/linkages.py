@@ -34,6 +34,7 @@ class Lengths(NamedTuple):
     coupler: Array
     rocker: Array
     offset: Array
+    joint_offset: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +85,7 @@ class Loop:
     """What the loops of a kind come down to, (m, n) each.
 
     `side` is -1 for crossed. `x`, `y` are D in the frame's axes, `q` their squares' sum AD^2. `near` and `far` are
-    positive where the loop closes, and vanish at its limits. Each kind tells `output`, `frame` (theta_3 but for a
+    positive where the loop closes, and vanish at its limits. Each kind gives `output`, `frame` (theta_3 but for a
     constant, continuous round the turn) and their derivatives by the relative angle, the signed sine of the
     `transmission` angle at D, None where that is always a right angle, and the sine of the `force` angle, at least 0
     (`kin.linkage.forces`).
@@ -127,13 +128,13 @@ class Loop:
 class InvertedLoop(Loop):
     """The frame slides on a rocker: theta_3 and -theta_4 differ by a constant; x and q stand empty."""
 
-    dimensions: ClassVar[tuple[str, ...]] = ("ground", "rocker")
+    dimensions: ClassVar[tuple[str, ...]] = ("ground", "rocker", "joint_offset")
 
     @classmethod
     def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
         """Set the loops up."""
-        r1, _, r4, _ = lengths
-        y = cams.p - 0.5 * cams.breadth
+        r1, r4 = lengths.ground, lengths.rocker
+        y = cams.p - (0.5 * cams.breadth - lengths.joint_offset)
         return cls(side, cams, lengths, y, y, y, y + (r1 - r4), (r1 + r4) - y)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
@@ -183,10 +184,10 @@ class CouplerLoop(Loop):
     """The frame is the coupler: what a four-bar and a slider-crank share."""
 
     @staticmethod
-    def vector(cams: Support, coupler: Array, least: Array) -> tuple[Array, Array, Array, Array]:
+    def vector(cams: Support, lengths: Lengths, least: Array) -> tuple[Array, Array, Array, Array]:
         """Give x, y, q, and near for the least AD at which the loop closes, (m, 1)."""
-        y = cams.p - 0.5 * cams.breadth
-        x = (cams.breadth + coupler) - cams.p1
+        y = cams.p - (0.5 * cams.breadth - lengths.joint_offset)
+        x = (cams.breadth + lengths.coupler) - cams.p1
         yy = y * y
         return x, y, x * x + yy, (x - least) * (x + least) + yy
 
@@ -234,18 +235,18 @@ class CouplerLoop(Loop):
 class FourBarLoop(CouplerLoop):
     """The coupler's end D is on a rocker."""
 
-    dimensions: ClassVar[tuple[str, ...]] = ("ground", "coupler", "rocker")
+    dimensions: ClassVar[tuple[str, ...]] = ("ground", "coupler", "rocker", "joint_offset")
 
     @classmethod
     def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
         """Set the loops up."""
-        r1, r3, r4, _ = lengths
-        x, y, q, near = cls.vector(cams, r3, np.abs(r1 - r4))
+        r1, r4 = lengths.ground, lengths.rocker
+        x, y, q, near = cls.vector(cams, lengths, np.abs(r1 - r4))
         return cls(side, cams, lengths, x, y, q, near, (r1 + r4) ** 2 - q)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:
         """Least distance from binding."""
-        r1, _, r4, _ = (length[:, 0] for length in self.lengths)
+        r1, r4 = self.lengths.ground[:, 0], self.lengths.rocker[:, 0]
         margin = self._beyond(np.abs(r1 - r4), extreme)
         far, most = extreme(self.far), r1 + r4
         return np.minimum(margin, far / (np.sqrt(np.maximum(most * most - far, 0.0)) + most))
@@ -260,19 +261,20 @@ class FourBarLoop(CouplerLoop):
     @cached_property
     def second(self) -> Array:
         """Its second derivative."""
-        (r1, _, r4, _), rate, half = self.lengths, self.rate, self.half_second
+        r1, r4 = self.lengths.ground, self.lengths.rocker
+        rate, half = self.rate, self.half_second
         return (half + half - ((r1 * r1 + r4 * r4) - self.q) * rate * rate) / self.root
 
     @cached_property
     def _lean(self) -> Array:
         """Q + r4^2 - r1^2: twice r4 times the cosine of the angle at D, times the root of Q."""
-        r1, _, r4, _ = self.lengths
+        r1, r4 = self.lengths.ground, self.lengths.rocker
         return self.q - (r1 * r1 - r4 * r4)
 
     @cached_property
     def frame(self) -> Array:
         """theta_3, but for a constant."""
-        r1, _, r4, _ = self.lengths
+        r1, r4 = self.lengths.ground, self.lengths.rocker
         cosine, sine = self.turned(self.q + (r1 * r1 - r4 * r4), self.root)
         return np.arctan2(-cosine, sine) if self.side > 0 else np.arctan2(cosine, -sine)
 
@@ -305,12 +307,12 @@ class FourBarLoop(CouplerLoop):
 class SliderLoop(CouplerLoop):
     """The coupler's end D is on a slide, on the line at the height `offset`; far stands for near."""
 
-    dimensions: ClassVar[tuple[str, ...]] = ("coupler", "offset")
+    dimensions: ClassVar[tuple[str, ...]] = ("coupler", "offset", "joint_offset")
 
     @classmethod
     def of(cls, side: float, cams: Support, lengths: Lengths) -> Self:
         """Set the loops up."""
-        x, y, q, near = cls.vector(cams, lengths.coupler, np.abs(lengths.offset))
+        x, y, q, near = cls.vector(cams, lengths, np.abs(lengths.offset))
         return cls(side, cams, lengths, x, y, q, near, near)
 
     def margin(self, extreme: Callable[[Array], Array]) -> Array:

@@ -1,4 +1,4 @@
-"""The fewest pieces with which theory lets a curve be told within a tolerance, to leading order (docs/theory.md 3)."""
+"""The fewest pieces with which theory lets a curve be given within a tolerance, to leading order (docs/theory.md 3)."""
 
 from __future__ import annotations
 

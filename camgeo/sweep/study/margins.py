@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import CURVATURE, PRESSURE, REVERSAL, WALL
+from camgeo.checks.declared import BENT, PRESSURE, REVERSAL, WALL
 from camgeo.synthesis.design import intended
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def margins(recipe: Recipe, design: Design) -> list[Margin]:
 
 
 def _undercut(design: Design) -> list[Margin]:
-    check = next(check for check in design.checks if check.name == CURVATURE.name)
+    check = next(check for check in design.checks if check.name in BENT)
     if check.value is None:
         return []
     roller = design.profile.roller_radius

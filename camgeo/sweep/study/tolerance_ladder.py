@@ -2,9 +2,9 @@
 
 Each rung writes a file into a private folder and has it judged there, as an export does, then repeats the work to time
 it warm: the exact curve and its bounds are made once and are separated as the stages of the design. A ladder ends
-where the form cannot hold the tolerance, which is told with the reason and what can be held, or at a run (fit, write
-and judge) that takes longer than the patience that is given. An exact spline is the same whatever the tolerance: it has
-one rung.
+where the form cannot hold the tolerance, which is reported with the reason and what can be held, or at a run (fit,
+write and judge) that takes longer than the patience that is given. An exact spline is the same whatever the tolerance:
+it has one rung.
 """
 
 from __future__ import annotations

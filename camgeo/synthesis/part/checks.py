@@ -9,6 +9,7 @@ import numpy as np
 from camgeo.checks.declared import CHAMFER, LIGHTENING, WALL
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.measures import farthest
+from camgeo.curve.support import is_sharp
 from camgeo.synthesis.checks import slack
 from camgeo.synthesis.part.shapes import Opening, disc, strip
 from camgeo.synthesis.part.walls import Gap, contour_gap, inside_gap, outside_gap
@@ -74,7 +75,8 @@ def _chamfer_check(body: Body, contour: Curve, shaft_deg: Callable[[float], floa
     """Check that the contour is nowhere sharper than its chamfer: its parallel inside has no corners then."""
     chamfer = body.chamfer or 0.0
     if not contour.closed:
-        detail = "a trimmed contour has corners, along which no chamfer runs"
+        of = "sharp" if is_sharp(contour) else "trimmed"
+        detail = f"a {of} contour has corners, along which no chamfer runs"
         return Check(CHAMFER.name, ok=False, value=0.0, limit=chamfer, unit="mm", sense="at_least", detail=detail)
     radius, at = least_radius(contour)
     sharp = "the contour's least radius of curvature must be above the chamfer"

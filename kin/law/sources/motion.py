@@ -39,7 +39,7 @@ class Rest(NamedTuple):
 
 @dataclass(frozen=True)
 class Motion(Programme):
-    """Displacement S over [0, total] rad, mm or rad; `around` tells how the end is followed by the beginning.
+    """Displacement S over [0, total] rad, mm or rad; `around` says how the end is followed by the beginning.
 
     With 1 the motion repeats. With -1 it goes on as S(total) - S(t - total), as a constant-breadth cam does after its
     half turn. With None nothing is said.
@@ -110,7 +110,7 @@ class Motion(Programme):
             if low:
                 at = math.degrees(joint.at)
                 said = Joint(joint.at, tuple(low)).said(unit)
-                raise IntentError(f"the motion does not join: {said}", field, at)
+                raise IntentError(f"the motion does not join: {said}; {_remedy(joint.at, low[0][0])}", field, at)
         return self
 
     @cached_property
@@ -156,6 +156,12 @@ class Motion(Programme):
             return False
         begin, end = self.at_start(_SEAM_ORDER), self.at_end(_SEAM_ORDER)
         return bool((np.abs(end - begin) <= _JOIN * (1 + np.abs(begin).max())).all())
+
+
+def _remedy(at: float, order: int) -> str:
+    if order:
+        return "let both sides meet at one velocity, as laws from rest to rest do, or give one of them law: match"
+    return "let both sides meet at one displacement" if at else "let the motion end where it begins"
 
 
 def _raised(function: Stretch, by: float) -> Stretch:

@@ -53,7 +53,8 @@ def from_points(
     if around == 1 and len(angles) > 1 and angles[-1] - angles[0] > total - SAME_ANGLE:
         if abs(values[-1] - values[0]) > 1e-9 * max(1.0, float(np.abs(values).max())):
             raise IntentError(
-                f"the motion does not close: it is {values[0]:.6g} at the first point, {values[-1]:.6g} a turn later",
+                f"the motion does not close: it is {values[0]:.6g} at the first point, {values[-1]:.6g} a turn later; "
+                "give both the same displacement",
                 f"{field}[{len(values) - 1}]",
             )
         angles, values = angles[:-1], values[:-1]

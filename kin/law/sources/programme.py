@@ -112,8 +112,11 @@ def programme(segments: Sequence[Step], total: float, *, around: int | None = 1,
         raise IntentError("a motion needs at least one segment", field)
     for i, segment in enumerate(segments):
         if not (math.isfinite(segment.over) and segment.over > _ANGLE_TOLERANCE):
-            degrees = math.degrees(segment.over)
-            raise IntentError(f"the angle of a segment must be above 0, not {degrees:.6g} degrees", f"{field}[{i}]")
+            given, least = math.degrees(segment.over), math.degrees(_ANGLE_TOLERANCE)
+            problem = f"the angle of a segment must be above 0, not {given:.6g} degrees"
+            if given > 0.0:
+                problem = f"the angle of a segment, {given:.6g} degrees, is as good as none; give {least:.1g} or more"
+            raise IntentError(problem, f"{field}[{i}]")
     covered = math.fsum(segment.over for segment in segments)
     if not abs(covered - total) <= _ANGLE_TOLERANCE:
         raise IntentError(
@@ -236,11 +239,11 @@ def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Arra
     if state is None:
         first = parts[i] if way > 0 else other
         where = math.degrees(first.end)
-        raise IntentError(
-            f"two matched segments meet at {where:.6g} degrees: give the first one `at_end: {{v: ..., a: ...}}`",
-            first.field,
-            where,
-        )
+        problem = f"two matched segments meet at {where:.6g} degrees: give the first one `at_end: {{v: ..., a: ...}}`"
+        if other is parts[i]:
+            problem = "a matched segment that stands alone has no neighbour to match: "
+            problem += "add one, such as a dwell" if around == 1 else "add one, or give it `at_end: {v: 0, a: 0}`"
+        raise IntentError(problem, first.field, where)
     return sign * state
 
 

@@ -121,7 +121,8 @@ def _one_turn(
     apart, line = abs(float(rows.s[-1] - rows.s[0])), int(rows.lines[-1])
     if over > total - SAME_ANGLE:
         if apart > 2 * reading:
-            raise TableError(f"the motion does not close: {apart:.6g} off the first row, a turn later", field, line)
+            problem = f"the motion does not close: {apart:.6g} off the first row, a turn later"
+            raise TableError(f"{problem}; give this row the displacement of the first one", field, line)
         return rows.part(slice(None, -1)), None
     if total - over <= _GAP * step:
         return rows, None

@@ -26,7 +26,7 @@ def from_formula(
 ) -> Motion:
     """Make S = scale times a formula in t (radians) over [0, total].
 
-    Raises IntentError, with the angle, where the formula has no value or S, S', S'' no bound. How it closes is told
+    Raises IntentError, with the angle, where the formula has no value or S, S', S'' no bound. How it closes is said
     by `Motion.joints`.
     """
     knots, functions = pieces_of(formula, 0.0, total, field, formula.variables[0])

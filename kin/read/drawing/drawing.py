@@ -126,7 +126,7 @@ def drawing_of(
 ) -> Drawing:
     """Join what is to be cut, and what is engraved, in drawing units, to the contours of a drawing in mm.
 
-    `gap` in mm, by default GAP, or less in a small drawing; the rest is told as it is given. Heights may differ by as
+    `gap` in mm, by default GAP, or less in a small drawing; the rest is reported as it is. Heights may differ by as
     much as such a gap. Raises ReadError as the readers do.
     """
     scale = 1.0 if unit is None else unit

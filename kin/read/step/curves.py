@@ -135,7 +135,7 @@ class Conic(NamedTuple):
 class Spline(NamedTuple):
     """Spans of a B-spline in its own sense: plan (x, y), and heights as (z, 0), with the same weights.
 
-    `back` tells that the edge runs against it.
+    `back` says that the edge runs against it.
     """
 
     plan: Beziers

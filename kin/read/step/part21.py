@@ -42,7 +42,7 @@ class Enumeration(str):
 
 
 class Typed(NamedTuple):
-    """A value that tells its type, such as LENGTH_MEASURE(25.4)."""
+    """A value that states its type, such as LENGTH_MEASURE(25.4)."""
 
     name: str
     values: tuple[Value, ...]

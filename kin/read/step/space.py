@@ -226,7 +226,7 @@ def _units(file: Exchange, context: int) -> tuple[float, float | None]:
 
 
 def _unit(file: Exchange, number: int, depth: int = 0) -> float:
-    """Mm or rad in a unit: an SI unit, or one that is told by another."""
+    """Mm or rad in a unit: an SI unit, or one that is given by another."""
     records = file.instances[number]
     if "SI_UNIT" in records:
         prefix, name, *_ = file.values(number, "SI_UNIT", 2)

@@ -143,7 +143,7 @@ class _Body:
 
     @staticmethod
     def _reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:
-        """Box of a solid that may not be sound, if it can be told."""
+        """Box of a solid that may not be sound, if it can be found."""
         with suppress(ReadError):
             return _Body._one(file, solid).box
         return None

@@ -1,0 +1,50 @@
+"""What cams between two opposite contacts of one frame have in common: the motion over one half turn gives the other.
+
+Shu and Wu 2012: S(t + 180) = S(180) - S(t), since the contacts are a fixed distance apart.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from camgeo.cams.family import Cam
+from camgeo.cams.motion import MotionAsked, check_filled, motion_field
+from camgeo.recipe.schema.fields import Kind
+
+if TYPE_CHECKING:
+    from camgeo.cams.family import Intent
+    from camgeo.recipe.schema.reader import Reader, Values
+    from kin.law.joints import Joint
+    from kin.law.sources.motion import Motion
+
+MOTION = motion_field(
+    "motion", Kind.LENGTH, "motion over one half turn, 180 degrees; the other half follows from it", required=True
+)
+SWING = motion_field(
+    "swing",
+    Kind.ANGLE,
+    "swing of the frame over the shaft angle, in its sense, under a linkage of kind inverted-slider-crank",
+    longest=360,
+)
+
+
+class HalfTurnCam(Cam):
+    """A cam whose motion is given over one half turn."""
+
+    motion: MotionAsked
+
+    def half_turn(self) -> Motion:
+        """The motion over the half turn, which the other half meets turned round."""
+        return self.motion.motion(math.pi, "motion", -1)
+
+    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
+        """Those of the half turn; the other half has them too, turned round."""
+        return self.half_turn().joints
+
+
+def check_half_turn(cam: Values, reader: Reader, holding: str) -> None:
+    """Note segments that do not fill the half turn; `holding` the cam are its two contacts."""
+    why = f"{holding} hold the cam, so the other half turn's motion follows: S(t + 180) = S(180) - S(t)"
+    if "motion" in cam:
+        check_filled(cam["motion"], "cam.motion", math.pi, "one half turn, 180 degrees", reader, why=why)

@@ -1,0 +1,31 @@
+"""Errors that any room may raise: a call that makes no sense, and surroundings that refuse."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.common.terminal import escaped
+from kin.numeric.errors import KinError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+class CallError(KinError, ValueError):
+    """What a function was asked for cannot be: a file that is none, an unknown form; `faults` has a line for each."""
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__(*faults)
+        self.faults = faults
+
+    def __str__(self) -> str:
+        """Write the faults one a line."""
+        return "\n".join(self.faults)
+
+
+class SurroundingsError(KinError):
+    """What is needed around a run is missing or refuses: the disk, a permission, a lock; `path` is where."""
+
+    def __init__(self, message: str, path: Path) -> None:
+        super().__init__(f"{escaped(str(path))}: {message}")
+        self.path = path

@@ -1,0 +1,85 @@
+"""Numbers that carry their unit, such as `15 mm`, `3/4 in` and `30 deg`, as numbers in the unit of their field."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+
+from camgeo.recipe.schema.scalars import Complaint, read_number, within_range
+
+LENGTHS = {"mm": Fraction(1), "cm": Fraction(10), "in": Fraction(127, 5), "inch": Fraction(127, 5)}
+"""The units that a length may carry, in mm."""
+ANGLES = {"deg": Fraction(1)}
+"""The units that an angle may carry, in degrees."""
+
+_QUANTITY = re.compile(r"(.*(?:[0-9.)]|\bpi)) *((?!pi)[A-Za-zµ°\"'%][A-Za-zµ°\"'%/²³]*(?:\^[0-9])?)")
+_WITHIN = re.compile(rf"[0-9.)] *(?:{'|'.join((*LENGTHS, *ANGLES))})\b")
+_MOST = 80  # characters; a number of them has fewer
+_RATIONAL = re.compile(r"[+-]?(?:[0-9]+/[0-9]+|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)")
+_TAKEN = {"degrees": (ANGLES, "deg"), "mm": (LENGTHS, "mm"), "inch": (LENGTHS, "inch")}  # with the own one's name
+
+
+def units_for(own: str) -> tuple[str, ...]:
+    """Name the units that a number may carry where the field's own is `degrees`, `mm` or `inch`; none elsewhere."""
+    return tuple(_TAKEN[own][0]) if own in _TAKEN else ()
+
+
+def holds_unit(text: str) -> bool:
+    """Tell whether a known unit stands behind a number anywhere in a text."""
+    return _WITHIN.search(text) is not None
+
+
+def is_metric(text: str) -> bool:
+    """Tell whether a number carries a metric unit of length."""
+    return parted(text)[1] in {"mm", "cm"}
+
+
+def parted(text: str) -> tuple[str, str]:
+    """Part a text into its number and the unit behind it, which is empty where there is none.
+
+    What no number stands before is no unit: `0x1F` and `true` stay whole.
+    """
+    found = _QUANTITY.fullmatch(text) if len(text) <= _MOST else None
+    if found is None:
+        return text, ""
+    number, unit = found.groups()
+    return (number, unit) if unit in LENGTHS or unit in ANGLES or _is_number(number) else (text, "")
+
+
+def _is_number(text: str) -> bool:
+    try:
+        read_number(text)
+    except Complaint:
+        return False
+    return True
+
+
+def read_quantity(text: str, own: str) -> float:
+    """Read a number, with a unit or without, as one in the field's `own` unit; raises Complaint.
+
+    A unit turns the number as written, a decimal or a fraction, into the own unit and rounds it once: `0.75 in` where
+    mm are meant is 19.05. Arithmetic is worked out first. `own` is `degrees`, `mm` or `inch`; other fields take none.
+    """
+    number, unit = parted(text)
+    value = read_number(number)
+    if not unit:
+        return value
+    if unit not in units_for(own):
+        raise UnitComplaint(unit)
+    known, same = _TAKEN[own]
+    ratio = known[unit] / known[same]
+    if value == 0.0 or ratio == 1:
+        return value
+    exact = Fraction(number) if _RATIONAL.fullmatch(number) else Fraction(value)
+    try:
+        return within_range(float(exact * ratio))
+    except OverflowError:
+        raise Complaint("too large") from None
+
+
+class UnitComplaint(Complaint):
+    """A unit that a field does not take."""
+
+    def __init__(self, unit: str) -> None:
+        super().__init__(f"'{unit}' is no unit of it")
+        self.unit = unit

@@ -1,0 +1,322 @@
+"""The cam whose square frame, sliding on a rocker, swings by a law over the shaft angle (AS section 4, turned round).
+
+The rocker turns by psi from its mean direction, theta_4 = psi + 90 degrees, or psi - 90 where it is crossed, in the
+sense of the shaft: the swing of an oscillating yoke. The frame turns with it, so the relative angle of cam and frame is
+theta = phi - (psi - psi_0), and the loop r1 cos theta_4 = r4 - Y, theta_3 + theta_4 = 90 degrees (AS 24-27) gives
+
+    Y = r4 + k r1 sin psi,   S = Y + w/2,   k = 1 open, -1 crossed, r4 less the offset of the slide's line.
+
+Constant breadth, S(theta + 180) + S(theta) = w, is sin psi(theta + 180) + sin psi(theta) = -2 k r4/r1. So a law is free
+over half a turn of theta. With h its net rise that is half a turn and h of the shaft, and the law maps onto itself by
+
+    (phi, psi) -> (phi + 180 + psi* - psi, psi*),   sin psi* = -2 k r4/r1 - sin psi,
+
+(phi + 180 - 2 psi, -psi) for an oscillating yoke with r4 = 0. It begins where psi_0 + h is the image of psi_0, and both
+theta and phi rise with phi where psi' < 1 and psi' (1 + cos psi/cos psi*) < 1: psi' < 1/2 for that yoke.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.law.bounds import undecided
+from kin.law.formula.expression import FormulaError
+from kin.law.formula.formula import Formula
+from kin.law.joints import ORDERS, Joint, joints_of
+from kin.law.programme import IntentError
+from kin.law.segment import Constant, Series, Stretch
+from kin.law.sources.motion import Motion, joined
+from kin.numeric.angles import TURN
+from kin.numeric.elementary import Ball, BallJet, DomainError, Jet, asin, cos, sin
+from kin.numeric.newton import zeros
+from kin.numeric.taylor import compose, compose_balls
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
+
+__all__ = ["FrameSwing", "frame_swing", "span_of"]
+
+_SAME = 1e-9  # rad, within which a law fills its angle, as segments do
+_JOIN = 1e-9  # of velocities that meet
+_ULPS = 4.0  # by which an enclosure of a shaft angle begins
+_DOUBLINGS = 60
+_LOOKS = 64  # shaft angles at which the size of a derivative is looked at
+
+
+@dataclass(frozen=True, eq=False)
+class FrameSwing:
+    """psi - psi_0 over the shaft angle, rad, for half a turn of the relative angle; `ground` r1 and `rocker` r4, mm.
+
+    `rocker` is less the offset of the slide's line and may have either sign; `side` is 1 open, -1 crossed. Made by
+    `frame_swing`, which refuses laws that cannot be.
+    """
+
+    motion: Motion
+    ground: float
+    rocker: float
+    side: float
+
+    @property
+    def rise(self) -> float:
+        """Net rise h, rad."""
+        return float(self.motion.at_end(0)[0])
+
+    @property
+    def lean(self) -> float:
+        """-2 k r4/r1: the sum of the sines of psi and of its image."""
+        return -2.0 * self.side * self.rocker / self.ground
+
+    @property
+    def start(self) -> float:
+        """psi_0, rad: sin psi_0 + sin(psi_0 + h) is the lean."""
+        return math.asin(0.5 * self.lean / math.cos(0.5 * self.rise)) - 0.5 * self.rise
+
+    def output(self, phi: Array, order: int) -> Jet:
+        """theta_4 as jets over shaft angles phi (n,), any real numbers."""
+        turns = np.floor(phi / TURN) * TURN
+        phi, span = phi - turns, self.motion.total
+        swing = np.empty((order + 1, len(phi)))
+        early = phi <= span
+        if early.any():
+            swing[:, early] = self._swing(Jet.variable(phi[early], order)).c
+        if not early.all():
+            late = ~early
+            swing[:, late] = self._later(phi[late], order)
+        swing[0] += 0.5 * math.pi * self.side
+        return Jet(swing)
+
+    def _swing(self, phi: Jet) -> Jet:
+        return self.motion.on(phi) + self.start
+
+    def image(self, swing: Series) -> Series:
+        """psi* of psi."""
+        return asin(self.lean - sin(swing))
+
+    def _later(self, phi: Array, order: int) -> Array:
+        """Taylor coefficients (order + 1, n) of psi at shaft angles (n,) beyond the given law: of the law's image."""
+        span = self.motion.total
+
+        def over(first: Array) -> tuple[Array, Array]:
+            at = Jet.variable(first, 1)
+            swing = self._swing(at)
+            shaft = at + math.pi + self.image(swing) - swing
+            return shaft.c[0] - phi, shaft.c[1]
+
+        guess = (phi - span) * (span / (TURN - span))
+        first = zeros(over, np.zeros_like(phi), np.full_like(phi, span), np.clip(guess, 0.0, span), 1e-12)
+        at = Jet.variable(first, order)
+        swing = self._swing(at)
+        found = self.image(swing)
+        return _by(found, at + math.pi + found - swing)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Shaft angles of the law at which psi - psi_0 or its derivatives jump; at 0 it follows its own image."""
+        looks = self.output(np.linspace(0.0, TURN, _LOOKS, endpoint=False), ORDERS).derivatives()
+        before = Jet(self._later(np.array([TURN]), ORDERS)).derivatives()[:, 0]
+        before[0] -= self.start
+        size = np.abs(looks).max(axis=1)
+        return (*joints_of([(0.0, before, self.motion.at_start(ORDERS))], size), *self.motion.joints)
+
+    @cached_property
+    def half_turn(self) -> Motion:
+        """Lift S - S(0) over half a turn of the relative angle, mm."""
+        knots, functions = self.motion.motion.knots, self.motion.motion.functions
+        places = (knots - self.motion.derivatives(knots, 0)[0]).tolist()
+        places[0], places[-1] = 0.0, math.pi
+        made = [
+            Constant(self.lift(function.value)) if isinstance(function, Constant) else _Lifted(self, function, *ends)
+            for function, ends in zip(functions, pairwise(knots.tolist()), strict=True)
+        ]
+        return joined(places, made, -1)
+
+    def lift(self, moved: float) -> float:
+        """S - S(0) where the swing is psi_0 + `moved`, mm."""
+        return self.side * 2.0 * self.ground * math.cos(self.start + 0.5 * moved) * math.sin(0.5 * moved)
+
+
+@dataclass(frozen=True, eq=False)
+class _Lifted:
+    """S - S(0) over the relative angle, from a stretch of the swing between two shaft angles, in jet arithmetic."""
+
+    law: FrameSwing
+    function: Stretch
+    begin: float
+    end: float
+
+    def __call__(self, t: Series, /) -> Series:
+        """Give the lift: the swing at the shaft angle that belongs to t, its series turned round."""
+        if isinstance(t, BallJet):
+            return BallJet.of(compose_balls(self._ball_rows(*t.rows[0].bounds(), t.order), t.rows))
+        at = Jet.variable(self._shaft(t.c[0]), t.order)
+        moved = self.function(at)
+        return Jet(compose(_by(self._lift(moved), at - moved), t.c))
+
+    def _lift(self, moved: Series) -> Series:
+        half = moved * 0.5
+        return cos(half + self.law.start) * sin(half) * (2.0 * self.law.side * self.law.ground)
+
+    def _ball_rows(self, lower: Array, upper: Array, order: int) -> Ball:
+        at = BallJet.variable(self._shaft_beyond(lower, -1.0), self._shaft_beyond(upper, 1.0), order)
+        moved = self.function(at)
+        found, rate = self._lift(moved), (at - moved).derivative() if order else None
+        rows, factorial = [found.rows[0]], 1.0
+        for k in range(1, order + 1):
+            assert rate is not None
+            found = found.derivative() / BallJet.of(rate.rows[: order + 1 - k])
+            factorial *= k
+            rows.append(found.rows[0] * (1.0 / factorial))
+        return Ball(np.stack([row.mid for row in rows]), np.stack([row.rad for row in rows]))
+
+    def _shaft(self, theta: Array) -> Array:
+        """Shaft angles (n,) at relative angles (n,), within this stretch."""
+        low, high = np.full_like(theta, self.begin), np.full_like(theta, self.end)
+        both = Jet.variable(np.array([self.begin, self.end]), 0)
+        ends = (both - self.function(both)).c[0]
+
+        def over(phi: Array) -> tuple[Array, Array]:
+            at = Jet.variable(phi, 1)
+            relative = at - self.function(at)
+            return relative.c[0] - theta, relative.c[1]
+
+        share = np.clip((theta - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
+        found = zeros(over, low, high, low + share * (high - low), 2.0 * np.spacing(TURN))
+        return np.where(theta <= ends[0], low, np.where(theta >= ends[1], high, found))
+
+    def _shaft_beyond(self, theta: Array, way: float) -> Array:
+        """Shaft angles (n,) that are for certain not above (way -1), or not below, those at relative angles (n,)."""
+        phi, end = self._shaft(theta), self.begin if way < 0.0 else self.end
+        step = _ULPS * np.spacing(np.maximum(np.abs(phi), 1.0))
+        clip = np.maximum if way < 0.0 else np.minimum
+        for _ in range(_DOUBLINGS):
+            found = clip(phi + way * step, end)
+            at = BallJet.variable(found, found, 0)
+            low, high = (at - self.function(at)).rows[0].bounds()
+            open_ = (found != end) & ~((high <= theta) if way < 0.0 else (low >= theta))
+            if not open_.any():
+                return found
+            step = np.where(open_, 2.0 * step, step)
+        return np.where(open_, end, found)
+
+
+def _by(f: Jet, parameter: Jet) -> Array:
+    """Taylor coefficients (order + 1, n) of f by another parameter, both given as jets over one."""
+    rows, rate, factorial = [f.c[0]], parameter, 1.0
+    if f.order:
+        rate = parameter.derivative()
+    for k in range(1, parameter.order + 1):
+        f = f.derivative() / Jet(rate.c[: parameter.order + 1 - k])
+        factorial *= k
+        rows.append(f.c[0] / factorial)
+    return np.stack(rows)
+
+
+def span_of(text: str, scale: float) -> float:
+    """Shaft angle that a swing by a formula fills, `scale` times its value in rad at t rad: that value is t - pi."""
+    formula, low, high = Formula(text), 0.0, TURN
+    while low < (middle := 0.5 * (low + high)) < high:
+        try:
+            beyond = scale * formula(middle) <= middle - math.pi
+        except (FormulaError, DomainError):
+            beyond = True
+        low, high = (low, middle) if beyond else (middle, high)
+    return high
+
+
+def frame_swing(motion: Motion, ground: float, rocker: float, side: float, field: str = "swing") -> FrameSwing:
+    """Make the swing that a motion prescribes, in rad from 0, over the shaft angle of half a turn of the relative one.
+
+    Raises IntentError where the motion does not fill that angle, which is half a turn and its net rise; where the loop
+    does not close, or the shaft would have to turn back, for it or its image; and where velocities do not meet.
+    """
+    law = FrameSwing(motion.demand_joined(field, "rad"), ground, rocker, side)
+    rise = math.degrees(law.rise)
+    if not (abs(law.rise) < math.pi and abs(0.5 * law.lean) < math.cos(0.5 * law.rise)):
+        most = math.degrees(2.0 * math.acos(min(1.0, abs(0.5 * law.lean))))
+        raise IntentError(
+            f"the frame cannot swing by {rise:.9g} degrees on links of these lengths, only by less than {most:.9g}: "
+            "swing less, or give a longer ground or a rocker nearer to the joint's offset",
+            field,
+        )
+    span, covered = math.degrees(math.pi + law.rise), math.degrees(motion.total)
+    if abs(motion.total - (math.pi + law.rise)) > _SAME:
+        raise IntentError(
+            f"the motion covers {covered:.10g} degrees of the shaft; let it cover {span:.10g}, 180 and its net "
+            f"rise of {rise:.9g}: half a turn of the cam against the frame, the other half is its image",
+            field,
+        )
+    try:
+        for function, begin, end in zip(
+            motion.motion.functions, motion.motion.knots[:-1], motion.motion.knots[1:], strict=True
+        ):
+            _demand_possible(law, function, float(begin), float(end), field)
+    except DomainError as error:
+        raise IntentError(f"the swing is not defined: {error.operation}", field) from error
+    _demand_meeting(law, field)
+    return law
+
+
+def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: float, field: str) -> None:
+    """Prove that the loop closes over a stretch and its image, and that the shaft turns on through both."""
+
+    def swing(t: Series) -> Series:
+        return function(t) + law.start
+
+    def sine(t: Series) -> Series:
+        return law.lean - sin(swing(t))
+
+    def later(t: Series) -> Series:
+        at = swing(t)
+        return t + law.image(at) - at
+
+    quarter = 0.5 * math.pi
+    for what, limits in ((swing, {0: (-quarter, quarter)}), (sine, {0: (-1.0, 1.0)})):
+        found = undecided(what, begin, end, limits)
+        if found is not None:
+            at = math.degrees(found[1])
+            raise IntentError(
+                f"the frame swings so far that its loop does not close, near a shaft angle of {at:.6g} degrees or half "
+                "a turn of the cam on: swing less, or give a longer ground or a rocker nearer to the joint's offset",
+                field,
+                at,
+            )
+    for what, limits in ((swing, {1: (-math.inf, 1.0)}), (later, {1: (0.0, math.inf)})):
+        found = undecided(what, begin, end, limits)
+        if found is None:
+            continue
+        phi = np.linspace(begin, end, 2049)
+        jet = swing(Jet.variable(phi, 1))
+        most = 1.0 / (1.0 + np.cos(jet.c[0]) / np.cos(law.image(jet).c[0]))
+        worst = int(np.argmax(jet.c[1] / most))
+        at = math.degrees(float(phi[worst]))
+        raise IntentError(
+            f"the frame swings on with the shaft at {jet.c[1, worst]:.6g} of its speed at {at:.6g} degrees; from "
+            f"{most[worst]:.6g} on the shaft would have to turn back, there or half a turn of the cam on: spread the "
+            "swing over a larger angle, or swing less",
+            field,
+            at,
+        )
+
+
+def _demand_meeting(law: FrameSwing, field: str) -> None:
+    """Refuse velocities at both ends that are not each other's image."""
+    (_, first), (_, last) = law.motion.at_start(1), law.motion.at_end(1)
+    begin = law.start
+    # over the relative angle the lift's slopes are opposite: k r1 cos psi psi'/(1 - psi')
+    slope = -math.cos(begin) / math.cos(begin + law.rise) * first / (1.0 - first)
+    wanted = slope / (1.0 + slope) + 0.0  # no -0 in a message
+    if abs(last - wanted) > _JOIN * (1.0 + abs(first)):
+        end = math.degrees(law.motion.total)
+        raise IntentError(
+            f"the swing's velocity is {first:.9g} of the shaft's at its beginning, so it must be {wanted:.9g} at its "
+            f"end, {end:.6g} degrees, where it is {last:.9g}: else the contour would tear open; let it rest at both "
+            "ends, or make them meet",
+            field,
+            end,
+        )

@@ -1,0 +1,64 @@
+"""Recipes that come to no report are in the JSON of a call too, each in its place with its errors."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+
+from camgeo.cli.main import main
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SOUND = "cam: {kind: support, p: 25 + 2*cos(3*t)}\nexport: {tolerance: 0.05, files: [dxf]}\nverify: {angles: 24}\n"
+
+
+@pytest.fixture
+def recipes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "sound.yaml").write_text(SOUND)
+    (tmp_path / "kind.yaml").write_text("cam: {kind: suport}\n")
+    (tmp_path / "late.yaml").write_text(SOUND.replace("25 + 2*cos(3*t)", "25 + t"))
+
+
+@pytest.mark.usefixtures("recipes")
+@pytest.mark.parametrize("command", ["check", "export"])
+def test_every_recipe_of_a_call_is_in_its_json(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    paths = ["kind.yaml", "late.yaml", "sound.yaml", "none.yaml", ""]
+    assert main([command, "--json", *paths]) == 2
+    said = capsys.readouterr()
+    found = json.loads(said.out)
+    assert [one["recipe"] for one in found] == ["kind.yaml", "late", "sound", "none.yaml", ""]
+    assert [one["ok"] for one in found] == [False, False, True, False, False]
+    (kind,) = found[0]["errors"]
+    assert kind == {
+        "file": "kind.yaml",
+        "line": 1,
+        "column": 13,
+        "path": "cam.kind",
+        "problem": "not one of the choices",
+        "value": "'suport'",
+        "remedy": "did you mean support?",
+    }
+    assert found[1]["errors"][0]["path"] == "cam.p"
+    assert found[3]["errors"][0]["problem"] == "the file does not exist"
+    assert "'': an empty name of a file; give the path of a recipe" in said.err.splitlines()
+
+
+@pytest.mark.usefixtures("recipes")
+def test_a_kind_that_no_file_has_is_in_the_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "--json", "--only", "stl", "sound.yaml"]) == 2
+    said = capsys.readouterr()
+    (found,) = json.loads(said.out)
+    assert found["errors"][0]["problem"] == "lists no stl, which --only requests"
+    assert said.err == "sound.yaml:2:34: export.files: lists no stl, which --only requests\n"
+
+
+@pytest.mark.usefixtures("recipes")
+def test_one_recipe_twice_is_called_that(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "sound.yaml", "./sound.yaml"]) == 2
+    said = "camgeo: sound.yaml: the same recipe is named twice in this call; name it once\n"
+    assert capsys.readouterr().err == said
+    assert main(["export", "sound.yaml"]) == 0
