@@ -7,7 +7,7 @@ The rooms stand here, not the modules: within a room imports run in any order th
 from __future__ import annotations
 
 import ast
-from collections import Counter
+from functools import cache
 from typing import TYPE_CHECKING
 
 import pytest
@@ -67,6 +67,7 @@ def modules(package: str) -> dict[str, Path]:
     return found
 
 
+@cache
 def imported(path: Path, *, top_level_only: bool = False) -> set[str]:
     """Modules, and names of modules, that a file imports; at top level: as the file itself is imported."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
@@ -175,9 +176,3 @@ def test_no_room_is_crowded() -> None:
             if count > MOST:
                 crowded[str(folder.relative_to(ROOT))] = count
     assert not crowded
-
-
-def test_no_two_test_files_share_a_name() -> None:
-    # the folders of tests are no packages: pytest takes two files of one name for one module, and collects nothing
-    names = Counter(path.name for path in (ROOT / "tests").rglob("test_*.py"))
-    assert not [name for name, count in names.items() if count > 1]

@@ -99,6 +99,7 @@ def oracles() -> dict[str, tuple[Shape, Callable[[mp.mpf], mp.mpc]]]:
 ORACLES = oracles()
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ORACLES)
 def test_frame_is_that_of_forty_digits(name: str) -> None:
     shape, point = ORACLES[name]
@@ -128,6 +129,7 @@ def test_frame_is_that_of_forty_digits(name: str) -> None:
             assert row[:2, i] == pytest.approx(figures, rel=1e-10, abs=1e-10)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", CONTOURS)
 def test_bounds_hold_dense_samples(name: str) -> None:
     shape = CONTOURS[name]
@@ -284,6 +286,7 @@ def hollow_pitch() -> CentreShape:
     return CentreShape(displaced((14, 60, "cycloidal"), (-14, 60, "cycloidal"), (240,)), Translating.on(30.0))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("radius", [27.0, 40.0, 80.0])
 def test_a_ring_undercuts_where_its_pitch_curve_is_hollow(radius: float) -> None:
     """Speed sigma + R omega: what is left of the ring meets in corners, and is nowhere nearer than R to the pitch."""
@@ -344,6 +347,7 @@ def test_a_kink_inside_a_stretch_is_bounded_by_values_alone() -> None:
     assert found.room < 1e-9
 
 
+@pytest.mark.slow
 def test_least_sizes_leave_nothing_to_gain() -> None:
     """A hair below the least stem or the least prime circle the limit is broken."""
     law = displaced((24, 100, "modified-sine"), (40,), (-24, 140, "modified-trapezoid"), (80,))

@@ -186,6 +186,7 @@ SLIGHT = {
 }
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("usual", few(SLIGHT, 2))
 @pytest.mark.parametrize("tolerance", [0.001, 0.1])
 def test_slight_figures_do_not_round_away(tmp_path, usual, tolerance):
@@ -268,6 +269,7 @@ def test_a_depth_of_cut_without_end_of_passes_is_refused():
         pipeline.check(slight)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("side", "safe"), [("top", 13), ("both", 12.5), ("bottom", 5)])
 def test_a_hub_stays_and_what_is_not_milled_is_named(tmp_path, side, safe):
     part = HUBBED % f", side: {side}"
@@ -287,6 +289,7 @@ def test_a_hub_stays_and_what_is_not_milled_is_named(tmp_path, side, safe):
     assert sorted(told) == sorted(one.name for one in foreseen(recipe) if one.file == "c.ngc")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("old", "new", "check"),
     [
