@@ -157,7 +157,8 @@ def test_no_chamfer_runs_along_corners():
     check = next(one for one in made.checks if one.name == "chamfer")
     assert not check.ok
     assert check.detail == (
-        "a sharp contour has corners, along which no chamfer runs; leave it out, or give a reuleaux.rounding above 0.5 mm"
+        "a sharp contour has corners, along which no chamfer runs; leave it out, or give a reuleaux.rounding above "
+        "0.5 mm"
     )
     rounded = TRIANGLE.replace("breadth", "rounding: 0.51, breadth")
     made = designed(recipe_of(rounded + "part: {thickness: 8, chamfer: 0.5}\n"))

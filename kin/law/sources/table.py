@@ -128,8 +128,8 @@ def _one_turn(
         return rows, None
     if apart > 2 * reading:
         raise TableError(
-            f"the table ends after {math.degrees(over):.6g} degrees, {apart / rows.unit:.6g} off its first row: the rest of the "
-            "turn can be no dwell; add the rows that are missing",
+            f"the table ends after {math.degrees(over):.6g} degrees, {apart / rows.unit:.6g} off its first row: "
+            "the rest of the turn can be no dwell; add the rows that are missing",
             field,
             line,
         )
