@@ -188,7 +188,7 @@ class PointsAsked(MotionAsked):
             return programme([Dwell(total)], total, around=around, field=field)
         points, dwells = self._ends_of_dwells(total, around)
         theta, s = zip(*points, strict=True)
-        return from_points(theta, s, total, dwells=dwells, around=around, field=field)
+        return from_points(theta, s, total, dwells=dwells, around=around, field=field, unit=self.scale)
 
     def _ends_of_dwells(
         self, total: float, around: int | None
