@@ -177,6 +177,24 @@ def test_an_arm_keeps_its_pivot_and_swings_as_the_motion_says(name: str, rotatio
     assert (touch.imag < 0.0).all() == below
 
 
+def test_an_arm_whose_face_lies_beyond_its_pivot_does_not_cross_the_cam() -> None:
+    recipe = load_text(
+        "cam:\n  kind: disc\n  base_radius: 27\n  follower: {kind: flat, arm: {pivot: 45, face: -3}}\n"
+        "  motion: {lobe: {lift: 9, half: 65, powers: [2, 8, 14, 20, 26]}}\n",
+        "beyond.yaml",
+    )
+    with patch.object(curves, "rests", return_value=[]):
+        found = content(recipe, designed(recipe), [])
+    arm, cam = body(found, "arm"), shapely.Polygon(contour(found).vertices)
+    outline = arm.shapes[0].rings[0].points @ np.array([1.0, 1j])
+    shared = [
+        cam.intersection(shapely.Polygon(np.column_stack([at.real, at.imag]))).area
+        for turned, place, by in zip(places(arm), arm.pose, body(found, "cam").pose, strict=True)
+        for at in [(turned + outline * np.exp(1j * place[2])) * np.exp(-1j * by[2])]
+    ]
+    assert max(shared) < 0.01
+
+
 @BOTH
 def test_both_rollers_of_a_frame_stay_on_the_cam(rotation: str) -> None:
     recipe, found = drawn("yoke", rotation)
