@@ -60,6 +60,7 @@ def judged(text, points, bulges, tolerance=1e-4):
 # --- what is made -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 def test_every_format_holds_its_corners(text, tmp_path):
     files = "dxf, svg, step, stl, 3mf, glb, gcode, html, csv, {csv: {as: contacts}}, {csv: {as: polar}}"
