@@ -149,6 +149,9 @@ class TableAsked(MotionAsked):
         return _smoothed(self, total, field, around)
 
 
+_UNITS = {1.0: " mm", 25.4: " in", math.radians(1.0): " deg"}  # as a recipe may write them
+
+
 @lru_cache(maxsize=8)
 def _smoothed(asked: TableAsked, total: float, field: str, around: int | None) -> Motion:
     from kin.law.programme import IntentError
@@ -159,7 +162,8 @@ def _smoothed(asked: TableAsked, total: float, field: str, around: int | None) -
         first = f"{asked.file}, line {samples.lines[0]}: "
         _demand_zero(float(samples.s[0]), asked.reading, asked.scale, field, first)
     try:
-        return from_table(samples, asked.reading, total, around=around, field=field).motion
+        told = asked.scale, _UNITS[asked.scale]
+        return from_table(samples, asked.reading, total, around=around, field=field, told=told).motion
     except TableError as error:
         raise IntentError(f"{asked.file}, {error.message}", field, error.at_deg) from error
 

@@ -14,7 +14,7 @@ from support.cases import examples
 from camgeo.cams.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe import RecipeErrors, load_text
+from camgeo.recipe import RecipeErrors, load, load_text
 from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.fields import Kind, field_at
 from camgeo.recipe.schema.json_schema import table_schema
@@ -298,7 +298,7 @@ def with_noise(rows):
 
 def with_step(rows):
     return rows[:30] + [f"{2 * i},{float(rows[i].split(',')[1]) + 1:.3f}" for i in range(30, 91)], (
-        r"lift\.csv, line 31: the displacement steps from 9\.414 to 11 here"
+        r"lift\.csv, line 31: the displacement steps from 9\.414 mm to 11 mm here"
     )
 
 
@@ -338,6 +338,23 @@ def test_a_reading_that_the_rows_keep_mends_scatter(tmp_path):
     (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
     assert "give a reading error above that" in str(fault("{table: lift.csv, reading: 0.001}", tmp_path))
     recipe("{table: lift.csv, reading: 0.06}", tmp_path).cam.intent()
+
+
+@pytest.mark.parametrize(
+    ("units", "stem", "unit"), [("mm", "", "deg"), ("inch", "", "deg"), ("mm", "stem", "mm"), ("inch", "stem", "in")]
+)
+def test_scatter_is_told_in_the_unit_in_which_a_reading_is_given(units, stem, unit, tmp_path):
+    rows = [f"{k},{5 - 5 * math.cos(math.radians(k)) + 0.02 * math.sin(7 * k * k):.3f}" for k in range(0, 360, 2)]
+    (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
+    guide = "" if stem else ", arm: {length: 65, pivot: 80}"
+    base = f"units: {units}\ncam: {{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 8{guide}}}, motion: "
+    (tmp_path / "c.yaml").write_text(base + "{table: lift.csv}}\n", encoding="utf-8")
+    with pytest.raises(IntentError, match=rf"is \S+ {unit} off here, the reading error is 0\.001 {unit}; ") as caught:
+        load(tmp_path / "c.yaml").cam.intent()
+    asked = float(re.search(r"is (\S+) \w+ off here", caught.value.message)[1]) * 1.01
+    for reading in (f"{asked:.6f}", f"{asked:.6f} {unit}"):
+        (tmp_path / "c.yaml").write_text(f"{base}{{table: lift.csv, reading: {reading}}}}}\n", encoding="utf-8")
+        load(tmp_path / "c.yaml").cam.intent()
 
 
 def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):

@@ -315,6 +315,17 @@ def test_fine_tolerances_are_held(tmp_path, form):
     assert all(check.ok for check in files["step"][1].values())
 
 
+@pytest.mark.parametrize("hub", ["", ", hub: {diameter: 20, height: 5}"])
+def test_an_eccentric_circle_has_a_chamfer(tmp_path, hub):
+    """Its cone, whole, would have a seam; no other contour is a single circle."""
+    cam = "cam: {kind: support, p: 25 + 3*cos(t)}\n"
+    recipe = step_recipe(f"{{thickness: 8, bore: 10, chamfer: 1{hub}}}", cam=cam)
+    outcome = pipeline.check(recipe)
+    assert outcome.ok
+    chamfer = next(check for check in outcome.report["checks"] if check["name"] == "chamfer")
+    assert chamfer["value"] == pytest.approx(0.0, abs=1e-9)
+
+
 def test_a_chamfer_along_a_spline_is_refused():
     with pytest.raises(
         RecipeErrors, match=r"step\.as: the chamfer of a spline is not a spline, given 'spline'; give arcs"
