@@ -123,7 +123,9 @@ def least_arm(motion: Displacement, length: float, side: int, rising: float, fal
         if worst <= _BROKEN * length:
             break
         rows = np.vstack([rows, added])
-        shaft = _nearest(rows, np.array([length, 0.0]), _FEASIBLE * length)
+        before, shaft = shaft, _nearest(rows, np.array([length, 0.0]), _FEASIBLE * length)
+        if worst <= 2.0 * _FEASIBLE * length and bool((shaft == before).all()):
+            break  # a corner that is let pass is nearest, with all planes that it breaks at hand
     else:
         raise IntentError("the least prime circle of the arm was not found", "sizing")
     x, y = shaft
