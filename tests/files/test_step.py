@@ -317,7 +317,7 @@ def test_fine_tolerances_are_held(tmp_path, form):
 
 
 @pytest.mark.parametrize("hub", ["", ", hub: {diameter: 20, height: 5}"])
-def test_an_eccentric_circle_has_a_chamfer(tmp_path, hub):
+def test_an_eccentric_circle_has_a_chamfer(hub):
     """Its cone, whole, would have a seam; no other contour is a single circle."""
     cam = "cam: {kind: support, p: 25 + 3*cos(t)}\n"
     recipe = step_recipe(f"{{thickness: 8, bore: 10, chamfer: 1{hub}}}", cam=cam)

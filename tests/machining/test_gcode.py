@@ -395,10 +395,13 @@ def test_a_pass_a_micron_beside_another_costs_no_more(program, tmp_path, monkeyp
     monkeypatch.setattr("kin.judge.milling.signed_distance", counted)
 
     def shifted(by):  # a centre of the first pass moved, within what controls take
-        return lambda text: nth(r"I(\S+) J", 12, lambda m: f"I{float(m[1]) + by:.5f} J")(text)
+        return nth(r"I(\S+) J", 12, lambda m: f"I{float(m[1]) + by:.5f} J")
 
     assert failures(program, tmp_path, shifted(-0.0004))[0] == set()
-    gouges = {by: next(c for c in failures(program, tmp_path, shifted(by))[1].checks if c.name == "gouge").value for by in (0.0004, -0.0004)}
+    gouges = {
+        by: next(c for c in failures(program, tmp_path, shifted(by))[1].checks if c.name == "gouge").value
+        for by in (0.0004, -0.0004)
+    }
     assert max(asked) < 1000
     assert max(gouges.values()) < 0.0004
 

@@ -135,8 +135,8 @@ def _one_turn(rows: Samples, task: _Task, field: str) -> tuple[Samples, Dwelling
         return rows, None
     if apart > 2 * reading:
         raise TableError(
-            f"the table ends after {math.degrees(over):.6g} degrees, {task.tell(apart)} off its first row: the rest of the "
-            "turn can be no dwell; add the rows that are missing",
+            f"the table ends after {math.degrees(over):.6g} degrees, {task.tell(apart)} off its first row: the rest of "
+            "the turn can be no dwell; add the rows that are missing",
             field,
             line,
         )
@@ -303,7 +303,8 @@ class _Smoother:
         worst = int(np.argmax(np.abs(off)))
         return TableError(
             f"the rows scatter about any smooth curve: the closest one is {self.task.tell(reached, 3)} off here, the "
-            f"reading error is {self.task.tell(self.task.reading)}; smooth the table, or give a reading error above that",
+            f"reading error is {self.task.tell(self.task.reading)}; smooth the table, or give a reading error "
+            "above that",
             self.field,
             int(rows.lines[worst]),
         )
