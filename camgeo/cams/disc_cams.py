@@ -130,8 +130,8 @@ class RoundCam(DiscCam, GuidedCam):
 
     def _resized(self, out: float, scale: float) -> dict[str, Any]:
         """Base radius and radius for a smaller roller on the same pitch curve, scaled."""
-        if not self.radius > out:
-            raise GrownError("the roller's radius", self.radius)
+        if out > 0.0 and not self.radius > out:  # a knife edge can become a roller, and be scaled
+            raise GrownError(f"the {self.roller_field}" if self.touch == "shoe" else "the roller's radius", self.radius)
         base, radius = self.base_radius + self.metal * out, self.radius - out
         return {"base_radius": scale * base, "radius": scale * radius}
 

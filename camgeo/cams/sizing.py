@@ -158,7 +158,7 @@ def _base(cam: RoundCam, prime: float) -> float:
     base = prime - cam.metal * cam.touch_radius
     if not base > 0.0:
         raise IntentError(
-            f"the least prime circle, {prime:.6g} mm, lies within the roller; give a smaller roller or a base radius",
+            f"the least prime circle, {prime:.6g} mm, lies within the roller: a smaller one would do",
             "sizing",
         )
     return base

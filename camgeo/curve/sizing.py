@@ -123,7 +123,10 @@ def least_arm(motion: Displacement, length: float, side: int, rising: float, fal
         if worst <= _BROKEN * length:
             break
         rows = np.vstack([rows, added])
-        shaft = _nearest(rows, np.array([length, 0.0]), _FEASIBLE * length)
+        to, before = np.array([length, 0.0]), shaft
+        shaft = _nearest(rows, to, _FEASIBLE * length)
+        if bool((shaft == before).all()):  # a corner that breaks a plane at hand, and was let pass
+            shaft = _nearest(rows, to, 0.5 * _BROKEN * length)
     else:
         raise IntentError("the least prime circle of the arm was not found", "sizing")
     x, y = shaft

@@ -45,7 +45,7 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
     if isinstance(outline, Polygon):
         raise TypeError("a solid has no polygons")
     up = gp_Dir(0.0, 0.0, 1.0)
-    whole = _circle(outline)
+    whole = circle_of(outline)
     if whole is not None:
         (x, y), radius = whole
         circle = gp_Circ(gp_Ax2(point((x, y), z), up, gp_Dir(1.0, 0.0, 0.0)), radius)
@@ -152,7 +152,7 @@ def centre_of(start: Array, end: Array, bulge: float) -> Array:
     return centre
 
 
-def _circle(outline: ArcSpline) -> tuple[tuple[float, float], float] | None:
+def circle_of(outline: ArcSpline) -> tuple[tuple[float, float], float] | None:
     """Centre and radius of an outline of two halves of a circle."""
     if outline.count != 2 or not bool((outline.bulges == 1.0).all()):
         return None

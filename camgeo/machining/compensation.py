@@ -62,8 +62,14 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
     try:
         grown = cam.grown(out, scale)
     except GrownError as error:
-        what = f"the metal is enlarged by {out / recipe.mm:.6g}, {error.args[0]} is {error.args[1] / recipe.mm:.6g}"
-        raise recipe.error(field, what, None, "give less") from error
+        name, radius = error.args
+        what = f"the metal is enlarged by {out / recipe.mm:.6g}, "
+        if radius:
+            raise recipe.error(field, f"{what}{name} is {radius / recipe.mm:.6g}", None, "give less") from error
+        what += "and a knife edge has no radius to be smaller by that"
+        least = f"{0.5 * by.kerf / recipe.mm:.6g}"
+        remedy = f"leave kerf out, give a clearance of at least {least} too, or a roller"
+        raise recipe.error(field, what, None, remedy) from error
     body = None
     try:
         if design.body is not None:

@@ -14,7 +14,7 @@ from support.cases import examples
 from camgeo.cams.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe import RecipeErrors, load_text
+from camgeo.recipe import RecipeErrors, load, load_text
 from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.schema.fields import Kind, field_at
 from camgeo.recipe.schema.json_schema import table_schema
@@ -300,7 +300,7 @@ def with_noise(rows):
 
 def with_step(rows):
     return rows[:30] + [f"{2 * i},{float(rows[i].split(',')[1]) + 1:.3f}" for i in range(30, 91)], (
-        r"lift\.csv, line 31: the displacement steps from 9\.414 to 11 here"
+        r"lift\.csv, line 31: the displacement steps from 9\.414 mm to 11 mm here"
     )
 
 
@@ -371,13 +371,33 @@ def test_faults_of_rows_are_told_as_the_table_has_them(head, units, key, tmp_pat
         s[1:-1:2] += 0.05
         return s
 
-    assert "line 46: the row does not lie on a smooth curve with its neighbours: it is 5.2, about 5" in told(slipped)
-    assert "line 181: the motion does not close: 0.5 off the first row, a turn later" in told(unclosed)
+    unit = "deg" if "arm" in head else "in"
+    assert f"line 46: the row does not lie on a smooth curve with its neighbours: it is 5.2 {unit}, about 5" in told(
+        slipped
+    )
+    assert f"line 181: the motion does not close: 0.5 {unit} off the first row, a turn later" in told(unclosed)
     message = told(scattered)
-    assert ", the reading error is 0.001, both in the table's unit" in message
-    assert 0.02 < float(re.search(r"the closest one is (\S+) off here", message)[1]) < 0.05
+    assert f", the reading error is 0.001 {unit}" in message
+    assert 0.02 < float(re.search(r"the closest one is (\S+) \w+ off here", message)[1]) < 0.05
     angles, values = angles[:100], values[:100]
-    assert f"{values[-1]:.3f} off its first row: the rest of the turn can be no dwell" in told(np.copy)
+    assert f"{values[-1]:.3f} {unit} off its first row: the rest of the turn can be no dwell" in told(np.copy)
+
+
+@pytest.mark.parametrize(
+    ("units", "stem", "unit"), [("mm", "", "deg"), ("inch", "", "deg"), ("mm", "stem", "mm"), ("inch", "stem", "in")]
+)
+def test_scatter_is_told_in_the_unit_in_which_a_reading_is_given(units, stem, unit, tmp_path):
+    rows = [f"{k},{5 - 5 * math.cos(math.radians(k)) + 0.02 * math.sin(7 * k * k):.3f}" for k in range(0, 360, 2)]
+    (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
+    guide = "" if stem else ", arm: {length: 65, pivot: 80}"
+    base = f"units: {units}\ncam: {{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 8{guide}}}, motion: "
+    (tmp_path / "c.yaml").write_text(base + "{table: lift.csv}}\n", encoding="utf-8")
+    with pytest.raises(IntentError, match=rf"is \S+ {unit} off here, the reading error is 0\.001 {unit}; ") as caught:
+        load(tmp_path / "c.yaml").cam.intent()
+    asked = float(re.search(r"is (\S+) \w+ off here", caught.value.message)[1]) * 1.01
+    for reading in (f"{asked:.6f}", f"{asked:.6f} {unit}"):
+        (tmp_path / "c.yaml").write_text(f"{base}{{table: lift.csv, reading: {reading}}}}}\n", encoding="utf-8")
+        load(tmp_path / "c.yaml").cam.intent()
 
 
 def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):

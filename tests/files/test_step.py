@@ -22,6 +22,7 @@ from camgeo.files.solid import Solid
 from camgeo.files.step import write_step
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.output import pipeline
 from camgeo.output.job import Job
 from camgeo.output.step import _solid
 from camgeo.recipe import RecipeErrors, read
@@ -317,6 +318,16 @@ def test_fine_tolerances_are_held(tmp_path, form):
     recipe = step_recipe("{thickness: 8, bore: 12}", f"{{step: {{as: {form}, tolerance: 1.0e-6}}}}")
     _, files = files_of(recipe, tmp_path)
     assert all(check.ok for check in files["step"][1].values())
+
+
+@pytest.mark.parametrize("hub", ["", ", hub: {diameter: 20, height: 5}"])
+def test_an_eccentric_circle_has_a_chamfer(hub):
+    """Its cone, whole, would have a seam; no other contour is a single circle."""
+    cam = "cam: {kind: support, p: 25 + 3*cos(t)}\n"
+    recipe = step_recipe(f"{{thickness: 8, bore: 10, chamfer: 1{hub}}}", cam=cam)
+    outcome = pipeline.check(recipe)
+    assert outcome.ok
+    assert any(check["name"] == "chamfer" and check["ok"] for check in outcome.report["checks"])
 
 
 def test_a_chamfer_along_a_spline_is_refused():

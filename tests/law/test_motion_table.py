@@ -222,15 +222,15 @@ def climbing(theta, s, lines):
 @pytest.mark.parametrize(
     ("change", "line", "message"),
     [
-        (outlier, 51, "the row does not lie on a smooth curve with its neighbours: it is 10.05, about "),
-        (step, 51, "the displacement steps from 9.648 to 11 here"),
+        (outlier, 51, "the row does not lie on a smooth curve with its neighbours: it is 10.05 mm, about "),
+        (step, 51, "the displacement steps from 9.648 mm to 11 mm here"),
         (noise, None, "the rows scatter about any smooth curve: the closest one is 0.0"),
         (back, 51, "the angles must rise; 47.94"),
         (twice, 51, "the angles must rise; 49 stands twice"),
         (gap, 54, "rows are missing between 49 and 53 degrees; the steps beside it are 1"),
-        (unfinished, 200, "the table ends after 199 degrees, 17.299 off its first row: the rest of the turn can be"),
+        (unfinished, 200, "the table ends after 199 degrees, 17.299 mm off its first row: the rest of the turn can be"),
         (hole, 51, "the displacement is not finite"),
-        (climbing, 361, "the motion does not close: 3 off the first row, a turn later"),
+        (climbing, 361, "the motion does not close: 3 mm off the first row, a turn later"),
     ],
 )
 def test_what_is_no_motion_is_refused_with_its_line(change, line, message):

@@ -183,6 +183,34 @@ def test_more_than_there_is(files, cam, message):
     assert message in str(caught.value)
 
 
+KNIFE = "cam: {kind: disc, base_radius: 30, follower: {kind: knife-edge}, motion: {formula: 4*(1 - cos(t))}}\n"
+SHOE = KNIFE.replace("knife-edge", "shoe, radius: 6")
+
+
+def test_a_knife_edge_has_no_radius_to_give():
+    with pytest.raises(RecipeErrors) as caught:
+        pipeline.check(recipe_of("{dxf: {kerf: 0.2}}", cam=KNIFE))
+    (error,) = caught.value.errors
+    assert error.problem.endswith("enlarged by 0.1, and a knife edge has no radius to be smaller by that")
+    assert error.remedy == "leave kerf out, give a clearance of at least 0.1 too, or a roller"
+    for files, cam in (
+        ("dxf", KNIFE),
+        ("{dxf: {kerf: 0.2, clearance: 0.1}}", KNIFE),
+        ("{dxf: {kerf: 0.2}}", KNIFE.replace("knife-edge", "roller, radius: 6")),
+    ):
+        assert pipeline.check(recipe_of(files, cam=cam)).ok
+    with pytest.raises(RecipeErrors, match="the shoe radius is 6; give less"):
+        pipeline.check(recipe_of("{dxf: {kerf: 13}}", cam=SHOE))
+
+
+@pytest.mark.parametrize("guide", ["", ", arm: {length: 60, pivot: 66}"])
+def test_the_cam_of_a_knife_edge_shrinks(guide):
+    cam = KNIFE.replace("knife-edge", f"knife-edge{guide}")
+    outcome = pipeline.check(recipe_of("{dxf: {shrinkage: 1.5}}, {svg: {clearance: 0.1, shrinkage: 0.4}}", cam=cam))
+    assert outcome.ok
+    assert len(outcome.report["files"]) == 2
+
+
 def test_what_a_linkage_is_not_judged_by():
     outcome = pipeline.check(recipe_of("dxf, {dxf: {kerf: 0.2}}", cam=FRAME))
     assert outcome.ok

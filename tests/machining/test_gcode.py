@@ -24,6 +24,7 @@ from camgeo.recipe import read
 from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
+from kin.contour.nearest import signed_distance
 from kin.judge.contour_checks import Limits
 from kin.judge.milling import Milling, milled
 from kin.judge.verify import verify
@@ -371,6 +372,28 @@ def moved(by):
         return nth(r"X(\S+)", 8, lambda m: f"X{float(m[1]) + by:.5f}")(text)
 
     return in_last_pass(changed)
+
+
+def test_a_pass_a_micron_beside_another_costs_no_more(program, tmp_path, monkeypatch):
+    """A path that runs beside the edge is measured piece against piece, and is not cut into ever smaller ones."""
+    asked = []
+
+    def counted(chain, points):
+        asked.append(len(points))
+        return signed_distance(chain, points)
+
+    monkeypatch.setattr("kin.judge.milling.signed_distance", counted)
+
+    def shifted(by):  # a centre of the first pass moved, within what controls take
+        return nth(r"I(\S+) J", 12, lambda m: f"I{float(m[1]) + by:.5f} J")
+
+    assert failures(program, tmp_path, shifted(-0.0004))[0] == set()
+    gouges = {
+        by: next(c for c in failures(program, tmp_path, shifted(by))[1].checks if c.name == "gouge").value
+        for by in (0.0004, -0.0004)
+    }
+    assert max(asked) < 1000
+    assert max(gouges.values()) < 0.0004
 
 
 def straight_in(text):

@@ -79,3 +79,33 @@ def test_a_corner_too_small_for_a_file_is_refused_with_the_least(sides: int, uni
     assert float(found[1]) * mm * 2.0 * math.sin(math.pi / (2 * sides)) == pytest.approx(1e-5, rel=1e-5)
     report = camgeo.check(camgeo.load(text.replace("SIZE", found[1])))
     assert report.ok, report.table()
+
+
+def test_the_pivot_of_an_arm_is_found_where_the_rows_cross_at_a_joint() -> None:
+    """The nearest corner breaks a plane by rounding alone, however often that plane is added."""
+    text = """
+cam:
+  kind: disc
+  follower: {kind: knife-edge, arm: {length: 64.4, side: leading}}
+  motion:
+    - {rise: 5.5, over: 85, law: parabolic}
+    - {dwell: 50}
+    - {return: 5.5, over: 175, law: polynomial-345}
+    - {dwell: 50}
+  sizing: {pressure-angle: {at_most: 40}}
+"""
+    design = camgeo.design(camgeo.load(text))
+    assert design.ok
+    assert design.figures["pressure-angle"].value == pytest.approx(40.0, abs=1e-6)
+
+
+def test_a_prime_circle_within_the_roller_is_told_what_does() -> None:
+    text = (
+        "cam: {kind: disc, sizing: {pressure-angle: {at_most: 40}}, follower: {kind: roller, radius: SIZE}, "
+        "motion: [{rise: 34, over: 180, law: cubic}, {to: 0, over: 180, law: trapezoid}]}\npart: {thickness: 8}\n"
+    )
+    with pytest.raises(camgeo.RecipeErrors) as caught:
+        camgeo.design(camgeo.load(text.replace("SIZE", "18")))
+    (error,) = caught.value.errors
+    assert error.problem.endswith("lies within the roller: a smaller one would do")
+    assert camgeo.design(camgeo.load(text.replace("SIZE", "4"))).ok

@@ -134,7 +134,9 @@ def split(law: Law, share: float, field: str = "law") -> Law:
     u = np.linspace(0.0, 1.0, 33)
     s = law.motion.derivatives(u, 0)[0]
     if np.abs(s + s[::-1] - 1.0).max() > 1e-12:
-        raise IntentError(f"{law.name} is not symmetric: its acceleration cannot be split", f"{field}.split")
+        raise IntentError(
+            f"{law.name} is not symmetric: its acceleration cannot be split; leave split out", f"{field}.split"
+        )
     if share == 0.5:
         return law
     before, after = 2 * share, 2 * (1 - share)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _LEAST_ROWS = 8
 _MOST_SPANS = 1000
+_UNITS = {1.0: " mm", 25.4: " in", math.radians(1.0): " deg"}  # as recipes may write them
 _GAP = 1.5  # of the median of the five steps about it
 _LEAST_DWELL = math.radians(10)  # equal rows over less than that may be the top of a nose, rounded
 _ONE_BY_ONE = 300_000  # rows times counts that are tried one after another; beyond that the next to hold is halved
@@ -69,14 +70,14 @@ def from_table(
     _demand_rows(rows, total, field)
     if not (math.isfinite(reading) and reading > 0):
         raise IntentError(f"the reading error must be above 0, not {reading:.6g}", f"{field}.reading")
-    rows, event = _one_turn(rows, total, around, reading, field)
+    rows, event = _one_turn(rows, _Task(rows, reading, total, around), field)
     demand_whole(rows, total, around, field)
     task = _Task(rows, reading, total, around)
     found = _found(task) if dwells is None else _given(task, dwells, field)
     if event is not None:
         found = merged(sorted([*found, event]), len(rows.s))
     _demand_even(rows, found, field)
-    smoother = _Smoother(reading, spans, field)
+    smoother = _Smoother(task, spans, field)
     if around == -1:
         smoother.step, smoother.image = 2, (total, float(rows.s[0] + rows.s[-1]))
     motion = laid(rows, found, total, around, smoother)
@@ -90,6 +91,10 @@ class _Task(NamedTuple):
     reading: float
     total: float
     around: int | None
+
+    def tell(self, value: float, digits: int = 6) -> str:
+        """A displacement in the table's own unit, as a message has it."""
+        return f"{value / self.rows.unit:.{digits}g}{_UNITS.get(self.rows.unit, '')}"
 
 
 def _demand_rows(rows: Samples, total: float, field: str) -> None:
@@ -111,25 +116,24 @@ def _demand_rows(rows: Samples, total: float, field: str) -> None:
         raise TableError(f"the table covers more than {math.degrees(total):.6g} degrees", field, int(rows.lines[i]))
 
 
-def _one_turn(
-    rows: Samples, total: float, around: int | None, reading: float, field: str
-) -> tuple[Samples, Dwelling | None]:
+def _one_turn(rows: Samples, task: _Task, field: str) -> tuple[Samples, Dwelling | None]:
     """Rows of a repeating motion without a closing one; and the dwell that the table leaves out."""
-    if around != 1:
+    total, reading = task.total, task.reading
+    if task.around != 1:
         return rows, None
     over, step = float(rows.theta[-1] - rows.theta[0]), float(np.median(np.diff(rows.theta)))
     apart, line = abs(float(rows.s[-1] - rows.s[0])), int(rows.lines[-1])
     if over > total - SAME_ANGLE:
         if apart > 2 * reading:
-            problem = f"the motion does not close: {apart / rows.unit:.6g} off the first row, a turn later"
+            problem = f"the motion does not close: {task.tell(apart)} off the first row, a turn later"
             raise TableError(f"{problem}; give this row the displacement of the first one", field, line)
         return rows.part(slice(None, -1)), None
     if total - over <= _GAP * step:
         return rows, None
     if apart > 2 * reading:
         raise TableError(
-            f"the table ends after {math.degrees(over):.6g} degrees, {apart / rows.unit:.6g} off its first row: "
-            "the rest of the turn can be no dwell; add the rows that are missing",
+            f"the table ends after {math.degrees(over):.6g} degrees, {task.tell(apart)} off its first row: the rest of "
+            "the turn can be no dwell; add the rows that are missing",
             field,
             line,
         )
@@ -208,7 +212,7 @@ def _given(task: _Task, dwells: Sequence[tuple[float, float]], field: str) -> li
         level = float(0.5 * (s.min() + s.max()))
         if s.max() - s.min() > 2 * reading:
             line = int(rows.lines[index[int(np.argmax(np.abs(s - np.median(s))))] % n])
-            raise TableError(f"the row is not part of a dwell at {float(np.median(s)) / rows.unit:.6g}", field, line)
+            raise TableError(f"the row is not part of a dwell at {task.tell(float(np.median(s)))}", field, line)
         turns = ends[0] // n
         found.append(Dwelling(ends[0] - turns * n, ends[1] - turns * n, level))
     return sorted(found)
@@ -241,7 +245,7 @@ class _Smoother:
     Of rows that are laid a second time, upside down, `image` has the angle of the half and what the two add up to.
     """
 
-    reading: float
+    task: _Task
     spans: int | None
     field: str
     step: int = 1
@@ -268,7 +272,7 @@ class _Smoother:
 
         def holds(count: int) -> bool:
             off = nearest(rows.theta, rows.s, count * step, ends, between)[2]
-            return bool(np.abs(off).max(initial=0.0) <= self.reading * (1 + 1e-9))
+            return bool(np.abs(off).max(initial=0.0) <= self.task.reading * (1 + 1e-9))
 
         low = min(most, max(8, _ONE_BY_ONE // max(1, len(rows.s))))
         for count in range(1, low + 1):
@@ -291,13 +295,13 @@ class _Smoother:
         fourth = np.abs(np.diff(s, 4)) if len(s) > 4 else np.zeros(1)
         peak, usual = int(np.argmax(fourth)), float(np.median(fourth))
         reached = float(np.abs(off).max())
-        if len(s) > 8 and fourth[peak] > _ISOLATED * max(usual, self.reading / 4):
+        if len(s) > 8 and fourth[peak] > _ISOLATED * max(usual, self.task.reading / 4):
             return self._single(rows, peak + 2)
         worst = int(np.argmax(np.abs(off)))
         return TableError(
-            f"the rows scatter about any smooth curve: the closest one is {reached / rows.unit:.3g} off here, the "
-            f"reading error is {self.reading / rows.unit:.6g}, both in the table's unit; smooth the table, or give a "
-            "reading error above that",
+            f"the rows scatter about any smooth curve: the closest one is {self.task.tell(reached, 3)} off here, the "
+            f"reading error is {self.task.tell(self.task.reading)}; smooth the table, or give a reading error "
+            "above that",
             self.field,
             int(rows.lines[worst]),
         )
@@ -313,8 +317,8 @@ class _Smoother:
         """Say which row stands out, or where the table steps, near row i."""
         s = rows.s
 
-        def there(k: int, value: float) -> float:
-            return self._written(float(rows.theta[k]), float(value)) / rows.unit
+        def there(k: int, value: float) -> str:
+            return self.task.tell(self._written(float(rows.theta[k]), float(value)), 7)
 
         near = range(max(i - 2, 2), min(i + 3, len(s) - 2))
         expected = {k: (4 * (s[k - 1] + s[k + 1]) - s[k - 2] - s[k + 2]) / 6 for k in near}
@@ -327,8 +331,8 @@ class _Smoother:
         whole = float(np.abs(np.diff(s[max(best - 6, 0) : best + 7], 4)).max())
         if left[best] < 0.2 * whole:
             return TableError(
-                f"the row does not lie on a smooth curve with its neighbours: it is {there(best, s[best]):.7g}, about "
-                f"{there(best, expected[best]):.7g} is expected",
+                f"the row does not lie on a smooth curve with its neighbours: it is {there(best, s[best])}, about "
+                f"{there(best, expected[best])} is expected",
                 self.field,
                 int(rows.lines[best]),
             )
@@ -337,7 +341,7 @@ class _Smoother:
         jump = step[local] - 0.5 * (step[local - 1] + step[local + 1])
         k = int(local[np.argmax(np.abs(jump))]) + 1
         return TableError(
-            f"the displacement steps from {there(k - 1, s[k - 1]):.7g} to {there(k, s[k]):.7g} here",
+            f"the displacement steps from {there(k - 1, s[k - 1])} to {there(k, s[k])} here",
             self.field,
             int(rows.lines[k]),
         )
