@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.linkage import DwellAsked
     from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.schema.errors import RecipeErrors
     from kin.law.support_function import Lift
     from kin.linkage.extremes import Figures
-    from kin.linkage.mechanism import Mechanism
+    from kin.linkage.mechanism import Mechanism, OutsideError
     from kin.numeric.arrays import Array
     from kin.numeric.longest_window import Dwell
 
@@ -39,17 +40,29 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
     Raises RecipeErrors where the shaft does not lie within the cam, or a dyad's output would not swing.
     """
     from kin.law.programme import IntentError
-    from kin.linkage.mechanism import Mechanism
+    from kin.linkage.mechanism import Mechanism, OutsideError
 
     asked = recipe.linkage
     if asked is None:
         raise ValueError(f"{recipe.name}: there is no linkage")
     try:
         return Mechanism(asked.made(), lift, breadth, tuple(dyad.made() for dyad in asked.dyads))
+    except OutsideError as error:
+        raise _outside(recipe, error) from error
     except IntentError as error:
         part = "linkage" if error.field.startswith("dyads") else "cam"
         field = f"{part}.{error.field}"
         raise recipe.error(field if field in recipe.marks else part, error.message) from error
+
+
+def _outside(recipe: Recipe, error: OutsideError) -> RecipeErrors:
+    """Point at what places the shaft: the base radius of a cam that has one, which moves every face outwards alike."""
+    if "cam.base_radius" in recipe.marks:
+        more = error.depth / recipe.mm
+        return recipe.error("cam.base_radius", error.message, None, f"give one larger by more than {more:.6g}")
+    if "cam.shaft" in recipe.marks:
+        return recipe.error("cam.shaft", error.message, None, "place it within the cam")
+    return recipe.error("cam", error.message, None, "give shaft, a point within the cam")
 
 
 # --- checks before any file -------------------------------------------------------------------------------------------
