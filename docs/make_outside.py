@@ -32,12 +32,14 @@ from kin.judge.layers import volume
 from kin.read.files import read_drawing
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from camgeo.recipe.recipe import Recipe
 
 ROOT = Path(__file__).parents[1]
 RECIPES = ("reuleaux", "shu-wu", "as-figure-9-1", "w-figure-9")
 DRAWINGS = (("dxf", "arcs"), ("dxf", "spline"), ("dxf", "polyline"), ("svg", "arcs"), ("svg", "polyline"))
-SETS = ("print-yoke", "print-four-bar", "print-double-roller")
+SETS = ("print-roller", "print-arm", "print-constant-diameter", "print-yoke", "print-four-bar", "print-double-roller")
 BED = "0x0,400x0,400x400,0x400"  # mm; a set that is laid out in one file is wider than most printers' own
 SOLIDS = ("stl", "3mf", "step")
 PATIENCE = 300  # seconds for one program and one file
@@ -92,7 +94,6 @@ class Sample:
     cut: float
     volume: float
     box: tuple[float, float]
-    mm: float
 
 
 @dataclass(frozen=True)
@@ -116,29 +117,42 @@ class Row:
         return f"| {' | '.join(cells)} |"
 
 
-def samples(name: str, folder: Path) -> list[Sample]:
-    """Make all files of a shipped recipe."""
-    recipe = load(ROOT / "recipes" / f"{name}.yaml")
-    requests = [FileRequest(kind, as_, "R2010" if kind == "dxf" else None) for kind, as_ in DRAWINGS]  # type: ignore[arg-type] # they are
-    requests += [FileRequest(kind) for kind in SOLIDS]  # type: ignore[arg-type] # they are
+def samples(
+    recipe: Recipe,
+    folder: Path,
+    drawings: Sequence[tuple[str, str]] = DRAWINGS,
+    solids: Sequence[str] = SOLIDS,
+) -> list[Sample]:
+    """Make the files of a recipe."""
+    requests = [FileRequest(kind, as_, "R2010" if kind == "dxf" else None) for kind, as_ in drawings]  # type: ignore[arg-type] # they are
+    requests += [FileRequest(kind) for kind in solids]  # type: ignore[arg-type] # they are
     recipe = replace(recipe, export=replace(recipe.export, files=tuple(requests)), dynamics=None, sweep=None)
     outcome = pipeline.export(recipe, folder)
     if not outcome.ok or outcome.folder is None:
-        raise SystemExit(f"{name}: a check fails")
+        raise SystemExit(f"{recipe.name}: a check fails")
     return [_sample(recipe, outcome.folder / file["path"], file) for file in outcome.report["files"]]
 
 
 def _sample(recipe: Recipe, path: Path, file: dict[str, object]) -> Sample:
     intent = intended(recipe, designed(recipe))
-    drawing = read_drawing(path.with_name(f"{recipe.name}-arcs.dxf"))
-    contour = drawing.contour
+    drawing = read_drawing(
+        next(
+            path.parent / f"{recipe.name}{end}"
+            for end in ("-arcs.dxf", ".dxf")
+            if (path.parent / f"{recipe.name}{end}").exists()
+        )
+    )
+    contour, holes = drawing.contour, sorted(hole.area for hole in drawing.holes)
     area, perimeter, _ = exact_area(contour, intent)
-    cut = area - sum(hole.area for hole in drawing.holes)
+    touched = area
+    if intent.outer is not None:  # of a ring the largest hole is the opening, which its area counts already
+        touched, holes = 0.25 * math.pi * intent.outer**2 - area, holes[:-1]
+    cut = area - sum(holes)
     thickness = recipe.part.thickness or 0.0
     solid = volume(intent.layers, intent.cross_holes, area, perimeter) if intent.layers else cut * thickness
     x0, y0, x1, y1 = contour.box
     form = f"{path.suffix[1:]}" + (f" ({file['as']})" if file.get("as") else "")
-    return Sample(recipe.name, path, form, int(file["pieces"]), area, cut, solid, (x1 - x0, y1 - y0), recipe.mm)  # type: ignore[call-overload,arg-type] # plain JSON
+    return Sample(recipe.name, path, form, int(file["pieces"]), touched, cut, solid, (x1 - x0, y1 - y0))  # type: ignore[call-overload,arg-type] # plain JSON
 
 
 def run(*command: object, folder: Path | None = None) -> str:
@@ -212,15 +226,23 @@ def prusa(made: list[Sample], work: Path) -> list[Row]:
         target.unlink(missing_ok=True)
         sliced = run("prusa-slicer", "--export-gcode", "--layer-height", "0.2", "-o", target, one.path)
         layers = target.read_text().count(";LAYER_CHANGE") if target.exists() else 0
-        words = re.findall(r"[^\n]*(?:error|warning|repaired)[^\n]*", sliced, re.IGNORECASE)
-        note = "; ".join([f"manifold: {whole[1]}" if whole else "not opened", f"{layers} layers", *words[:1]])
+        note = "; ".join(
+            [f"manifold: {whole[1]}" if whole else "not opened", f"{layers} layers", *_warnings(sliced)[:1]]
+        )
         rows.append(Row("PrusaSlicer", one, "volume", float(volume_said[1]) if volume_said else None, one.volume, note))
     return rows
 
 
+def _warnings(said: str) -> list[str]:
+    return re.findall(r"[^\n]*(?:error|warning|repaired)[^\n]*", said, re.IGNORECASE)
+
+
 def slicing_of_sets(work: Path) -> list[str]:
     """PrusaSlicer on the mechanisms that are printed as sets: one row for each."""
-    rows = ["| recipe | bodies | manifold | volume | layers of 0.2 mm |", "| --- | --- | --- | --- | --- |"]
+    rows = [
+        "| recipe | bodies | manifold | volume | layers of 0.2 mm | filament, cm^3 | time | it warns |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- |",
+    ]
     for name in SETS:
         outcome = pipeline.export(load(ROOT / "recipes" / f"{name}.yaml"), work / "out")
         path = work / "out" / name / f"{name}-parts.3mf"
@@ -230,7 +252,7 @@ def slicing_of_sets(work: Path) -> list[str]:
         whole, volumes = re.findall(r"manifold = (\w+)", said), re.findall(r"volume = ([\d.]+)", said)
         target = work / "set.gcode"
         target.unlink(missing_ok=True)
-        run(
+        sliced = run(
             "prusa-slicer",
             "--export-gcode",
             "--bed-shape",
@@ -243,13 +265,17 @@ def slicing_of_sets(work: Path) -> list[str]:
             target,
             path,
         )
-        layers = target.read_text().count(";LAYER_CHANGE") if target.exists() else 0
-        rows.append(f"| {name} | {len(whole)} | {whole.count('yes')} | {sum(map(float, volumes)):.6g} | {layers} |")
+        text = target.read_text() if target.exists() else ""
+        used = re.search(r"filament used \[cm3\] = ([\d.]+)", text)
+        time = re.search(r"printing time \(normal mode\) = (.+)", text)
+        cells = [name, len(whole), whole.count("yes"), f"{sum(map(float, volumes)):.6g}", text.count(";LAYER_CHANGE")]
+        cells += [used[1] if used else "", time[1] if time else "", "; ".join(_warnings(sliced)) or "nothing"]
+        rows.append(f"| {' | '.join(map(str, cells))} |")
     return rows
 
 
-def inkscape(made: list[Sample], _: Path) -> list[Row]:
-    """Width and height of the layer CUT in mm, the breadth of its line taken off.
+def inkscape(made: list[Sample], work: Path) -> list[Row]:
+    """Width and height of the layer CUT in mm, in a copy that is filled, as the outline of a line is rounded.
 
     Inkscape gives to six digits what is seen of a layer.
     """
@@ -257,10 +283,12 @@ def inkscape(made: list[Sample], _: Path) -> list[Row]:
     for one in made:
         if one.path.suffix != ".svg":
             continue
-        said = run("inkscape", "--query-all", one.path)
+        copy = work / one.path.name
+        drawn = one.path.read_text(encoding="utf-8")
+        copy.write_text(re.sub(r"fill:none;stroke:[^;]*;stroke-width:[\d.]+", "fill:#000", drawn), encoding="utf-8")
+        said = run("inkscape", "--query-all", copy)
         found = re.search(r"^CUT,[^,]+,[^,]+,([\d.]+),([\d.]+)", said, re.MULTILINE)
-        line = float(re.findall(r"stroke-width:([\d.]+)", one.path.read_text())[0]) * one.mm
-        width, height = (float(value) / PX - line for value in found.groups()) if found else (math.nan, math.nan)
+        width, height = (float(value) / PX for value in found.groups()) if found else (math.nan, math.nan)
         meant = one.box[0]
         note = f"height {height:.6g}, {height / one.box[1] - 1.0:+.1e}" if found else "not opened"
         rows.append(Row("Inkscape", one, "width", width if found else None, meant, note))
@@ -316,10 +344,12 @@ span by span it is right, and that is what is reported.)
 
 def main() -> None:
     """Write docs/outside.md."""
+    from outside_followers import section
+
     text = [HEAD]
     with tempfile.TemporaryDirectory() as name:
         work = Path(name)
-        made = [one for recipe in RECIPES for one in samples(recipe, work / "out")]
+        made = [one for name in RECIPES for one in samples(load(ROOT / "recipes" / f"{name}.yaml"), work / "out")]
         for program, (command, ask, opened) in PROGRAMS.items():
             if shutil.which(command) is None:
                 text.append(f"\n## {program}\n\nNot installed where this was written.\n")
@@ -332,7 +362,9 @@ def main() -> None:
             text.append("| recipe | file | what | measured | off | it says |\n| --- | --- | --- | --- | --- | --- |")
             text += [row.cells() for row in rows]
             if program == "PrusaSlicer":
-                text += ["\nThe sets to print, all bodies in one 3MF (volumes in mm^3):\n", *slicing_of_sets(work)]
+                told = "The sets to print, all bodies in one 3MF, sliced with the settings that the program brings"
+                text += [f"\n{told} (volumes in mm^3):\n", *slicing_of_sets(work)]
+        text += section(work)
     (ROOT / "docs" / "outside.md").write_text("\n".join(text) + "\n", encoding="utf-8")
 
 

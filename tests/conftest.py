@@ -1,21 +1,34 @@
-"""Pytest's own fixtures that tests of the plugin need, and how property tests choose their examples.
+"""What a quick run takes of all tests, and what every run of them needs.
 
-A run repeats the last one's examples, so that a change is judged by what it changes; `HYPOTHESIS_PROFILE=explore` looks
-for new ones, and what it finds becomes an example of its own. A quick run takes a quarter of them; any other, such as
-`pytest -m slow`, takes all, and every property test counts as slow in it.
+Rows: a test marked `thin(n)` runs on a diagonal of its rows, those whose places in its parameters add up to a multiple
+of n; the others are slow. A table of n cams by n faults so has each fault once, and each cam.
+
+Property tests: a run repeats the last one's examples, so that a change is judged by what it changes;
+`HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes an
+eighth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
+
+Time: compiled modules are kept even where the shell asks for none (PYTHONDONTWRITEBYTECODE), since every process that
+a test starts would compile the house anew; one thread for linear algebra, as the processes of xdist share the cores;
+and what was there before the first test is not looked through for garbage again and again.
 """
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
+import sys
 
 import mpmath
 import pytest
 from hypothesis import settings
-from support.cases import FULL
+from support.cases import FULL, thinned_out
 
 pytest_plugins = ["pytester"]
+
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # nothing has imported numpy yet
 
 # A run in the background of a shell is born deaf to interrupts, and so would be the processes that tests interrupt.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -23,7 +36,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 QUICK = "not slow"
 DIGITS = 50  # of mpmath
-settings.register_profile("quick", derandomize=True, deadline=None, max_examples=FULL // 4)
+settings.register_profile("quick", derandomize=True, deadline=None, max_examples=FULL // 8)
 settings.register_profile("repeat", derandomize=True, deadline=None, max_examples=FULL)
 settings.register_profile("explore", deadline=None, max_examples=FULL)
 
@@ -41,7 +54,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    if config.getoption("markexpr") != QUICK:
-        for item in items:
-            if item.get_closest_marker("hypothesis"):
-                item.add_marker(pytest.mark.slow)
+    full = config.getoption("markexpr") != QUICK
+    chance = [item for item in items if full and item.get_closest_marker("hypothesis")]
+    for item in [*chance, *thinned_out(items)]:
+        item.add_marker(pytest.mark.slow)
+
+
+def pytest_collection_finish() -> None:
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 20)

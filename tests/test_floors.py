@@ -7,6 +7,7 @@ The rooms stand here, not the modules: within a room imports run in any order th
 from __future__ import annotations
 
 import ast
+from functools import cache
 from typing import TYPE_CHECKING
 
 import pytest
@@ -66,6 +67,7 @@ def modules(package: str) -> dict[str, Path]:
     return found
 
 
+@cache
 def imported(path: Path, *, top_level_only: bool = False) -> set[str]:
     """Modules, and names of modules, that a file imports; at top level: as the file itself is imported."""
     tree = ast.parse(path.read_text(encoding="utf-8"))

@@ -1,6 +1,6 @@
 """Questions after a kind: code asks a linkage or a dyad for what it needs by name, not which one it is.
 
-A family of kinds has its row in FAMILIES, with the files that may ask and how often. What counts as a question is
+A family of kinds has its row in `families`, with the files that may ask and how often. What counts as a question is
 said by `questions`, and tried on planted sources. The tables from class to maker have an entry for every class.
 """
 
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, make_dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
@@ -49,53 +50,64 @@ def classes_in(room: str, base: str) -> frozenset[str]:
         found |= more
 
 
-FAMILIES = {
-    "linkages": Family(
-        classes=frozenset(
-            [
-                *("FourBar", "InvertedSliderCrank", "SliderCrank", "RRR", "RRP", "RPR"),
-                *("FourBarLinkage", "InvertedSliderCrankLinkage", "SliderCrankLinkage"),
-                *("RRRDyad", "RRPDyad", "RPRDyad"),
-            ]
+NAMES = ("linkages", "cams", "followers")
+
+
+@cache
+def families() -> dict[str, Family]:
+    return {
+        "linkages": Family(
+            classes=frozenset(
+                [
+                    *("FourBar", "InvertedSliderCrank", "SliderCrank", "RRR", "RRP", "RPR"),
+                    *("FourBarLinkage", "InvertedSliderCrankLinkage", "SliderCrankLinkage"),
+                    *("RRRDyad", "RRPDyad", "RPRDyad"),
+                ]
+            ),
+            kinds=frozenset(["four-bar", "inverted-slider-crank", "slider-crank", "rrr", "rrp", "rpr"]),
+            nouns=frozenset(["linkage", "dyad", "loop"]),
+            exempt={
+                # what a recipe may say, and what is made of it
+                "camgeo/recipe/linkage.py": 8,
+                "camgeo/recipe/starter.py": 1,
+                # one table each from class to maker, and its look-ups
+                "camgeo/assembly/linked.py": 3,
+                "camgeo/report/page/linked.py": 2,
+                "camgeo/sweep/search/linkages.py": 2,
+            },
         ),
-        kinds=frozenset(["four-bar", "inverted-slider-crank", "slider-crank", "rrr", "rrp", "rpr"]),
-        nouns=frozenset(["linkage", "dyad", "loop"]),
-        exempt={
-            # what a recipe may say, and what is made of it
-            "camgeo/recipe/linkage.py": 8,
-            "camgeo/recipe/starter.py": 1,
-            # one table each from class to maker, and its look-ups
-            "camgeo/assembly/linked.py": 3,
-            "camgeo/report/page/linked.py": 2,
-            "camgeo/sweep/search/linkages.py": 2,
-        },
-    ),
-    "cams": Family(
-        classes=classes_in("camgeo/cams", "Cam"),
-        kinds=frozenset(CAMS),
-        nouns=frozenset(["cam"]),
-        exempt={"camgeo/recipe/starter.py": 1},
-        home="camgeo/cams/",
-    ),
-    "followers": Family(
-        classes=classes_in("kin/follower", "Follower") | {"Translating", "Oscillating", "Arm"},
-        kinds=frozenset(DRAWN),
-        nouns=frozenset(["follower", "guide", "touch"]),
-        # one table each from follower to maker
-        exempt={"camgeo/assembly/build.py": 1, "camgeo/report/page/content.py": 1},
-        home="kin/follower/",
-    ),
-}
+        "cams": Family(
+            classes=classes_in("camgeo/cams", "Cam"),
+            kinds=frozenset(CAMS),
+            nouns=frozenset(["cam"]),
+            exempt={"camgeo/recipe/starter.py": 1},
+            home="camgeo/cams/",
+        ),
+        "followers": Family(
+            classes=classes_in("kin/follower", "Follower") | {"Translating", "Oscillating", "Arm"},
+            kinds=frozenset(DRAWN),
+            nouns=frozenset(["follower", "guide", "touch"]),
+            # one table each from follower to maker
+            exempt={"camgeo/assembly/build.py": 1, "camgeo/report/page/content.py": 1},
+            home="kin/follower/",
+        ),
+    }
 
 
 LINED = ast.expr | ast.stmt | ast.pattern  # what has a line
+# what a question is made of: the cases of `_asks`
+ASKING = (
+    ast.Call | ast.Attribute | ast.MatchClass | ast.MatchValue | ast.Compare | ast.Dict | ast.Tuple | ast.List | ast.Set
+)
 
 
 def questions(source: str, family: Family) -> list[int]:
     """Lines that ask for a kind: by isinstance, match, type(), a probe, a comparison, or a table of kinds."""
-    return sorted(
-        node.lineno for node in ast.walk(ast.parse(source)) if _asks(node, family) and isinstance(node, LINED)
-    )
+    return asked(list(ast.walk(ast.parse(source))), family)
+
+
+def asked(nodes: list[ast.AST], family: Family) -> list[int]:
+    return sorted(node.lineno for node in nodes if _asks(node, family) and isinstance(node, LINED))
 
 
 def _asks(node: ast.AST, family: Family) -> bool:
@@ -149,11 +161,26 @@ def sources() -> Iterator[tuple[str, str]]:
             yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", FAMILIES)
-def test_nobody_asks_which_kind_it_is(name: str) -> None:
-    family = FAMILIES[name]
-    found = ((path, questions(text, family)) for path, text in sources() if not path.startswith(family.home))
-    asking = {path: lines for path, lines in found if lines}
+@pytest.fixture(scope="module")
+def all_asking() -> dict[str, dict[str, list[int]]]:
+    """Lines that ask, of each file, for each family: every file is read once."""
+    found: dict[str, dict[str, list[int]]] = {name: {} for name in NAMES}
+    for path, text in sources():
+        nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ASKING)]
+        for name, family in families().items():
+            lines = [] if path.startswith(family.home) else asked(nodes, family)
+            if lines:
+                found[name][path] = lines
+    return found
+
+
+def test_the_families_have_their_names() -> None:
+    assert tuple(families()) == NAMES
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nobody_asks_which_kind_it_is(name: str, all_asking: dict[str, dict[str, list[int]]]) -> None:
+    family, asking = families()[name], all_asking[name]
     assert {path: lines for path, lines in asking.items() if path not in family.exempt} == {}
     assert {path: len(asking.get(path, [])) for path in family.exempt} == family.exempt
 
@@ -185,8 +212,8 @@ def test_nobody_asks_which_kind_it_is(name: str) -> None:
     ],
 )
 def test_each_way_of_asking_is_found(planted: str) -> None:
-    assert len(questions(planted, FAMILIES["linkages"])) >= 1
-    assert questions(f"def f(chosen):\n    return None\n{planted}", FAMILIES["linkages"])[0] >= 3
+    assert len(questions(planted, families()["linkages"])) >= 1
+    assert questions(f"def f(chosen):\n    return None\n{planted}", families()["linkages"])[0] >= 3
 
 
 @pytest.mark.parametrize(
@@ -204,7 +231,7 @@ def test_each_way_of_asking_is_found(planted: str) -> None:
     ],
 )
 def test_what_is_no_question_is_none(innocent: str) -> None:
-    assert questions(innocent, FAMILIES["linkages"]) == []
+    assert questions(innocent, families()["linkages"]) == []
 
 
 # --- tables from class to maker ---------------------------------------------------------------------------------------
@@ -234,7 +261,7 @@ def test_the_tables_have_an_entry_for_every_class() -> None:
     assert missing() == {"page": set(), "bodies": set(), "sweep": set()}
     assert kinds(four_bar) == set(get_args(four_bar.Linkage))
     assert kinds(dyad) == set(get_args(dyad.Dyad))
-    assert {kind.__name__ for kind in kinds(four_bar) | kinds(dyad)} <= FAMILIES["linkages"].classes
+    assert {kind.__name__ for kind in kinds(four_bar) | kinds(dyad)} <= families()["linkages"].classes
 
 
 @pytest.mark.parametrize(("module", "rooms"), [(four_bar, {"page", "bodies", "sweep"}), (dyad, {"page", "bodies"})])

@@ -42,6 +42,7 @@ def compared(old, new, recipe):
     return done.returncode, done.stdout.splitlines()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="no commits here")
 def test_a_commit_and_itself_are_alike(recipe):
     status, lines = compared("HEAD", "HEAD", recipe)
@@ -49,6 +50,7 @@ def test_a_commit_and_itself_are_alike(recipe):
     assert status == 0
 
 
+@pytest.mark.slow
 def test_a_planted_change_is_found(recipe, tmp_path):
     tree = tmp_path / "changed"
     for package in ("camgeo", "kin"):

@@ -171,7 +171,7 @@ def _reached(scene: Scene, file: FileRequest) -> bool:
 
 
 def _ringed(scene: Scene, file: FileRequest) -> bool:
-    return scene.recipe.part.outer is not None and _contour(scene, file)
+    return scene.recipe.part.outer is not None and _contour(scene, file) and file.kind != "gcode"
 
 
 def _bored(scene: Scene, file: FileRequest) -> bool:
@@ -336,8 +336,8 @@ ARCS = Declared("arcs", ("mm",), of_file=_program)
 RAPID = Declared("rapid", ("", "faults"), of_file=_program)
 DEPTH = Declared("depth", ("mm",), of_file=_program)
 DIRECTION = Declared("direction", ("", "faults"), of_file=_program)
-ENTRY = Declared("entry", ("deg",), of_file=_program)
-GOUGE = Declared("gouge", ("mm",), of_file=_program)
+ENTRY = Declared("entry", ("deg",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
+GOUGE = Declared("gouge", ("mm",), of_file=_program, field="manufacture.start", remedy=remedies.other_entry)
 BORE = Declared("bore", ("mm",), of_file=_bored, why_not=_no_bore, field="part.bore")
 OUTER = Declared("outer", ("mm",), of_file=_ringed, field="part.outer")
 HOLES = Declared("holes", ("mm",), of_file=_drilled, field="part")

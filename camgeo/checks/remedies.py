@@ -51,6 +51,13 @@ def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Rec
     return f"a chamfer below {downward(value)} {check['unit']}" if value > 0.0 else NO_CHAMFER
 
 
+def other_entry(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell where else the cutter may come to the path; nothing of a hub that is cut into, or of no milling."""
+    if check["value"] is None or recipe.manufacture is None:
+        return ""
+    return "another manufacture.start, or a smaller manufacture.lead_in"
+
+
 NO_CHAMFER = "no chamfer, or a contour without corners"
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve.extremes import least
+from camgeo.curve.extremes import least, surely_positive
 from camgeo.curve.face import FaceShape
 from camgeo.curve.rates import cut, stretches
 from kin.law.programme import IntentError
@@ -130,6 +130,8 @@ class SwingingFace(_Face):
                 "pivot to shaft; at 90 the contact reaches the pivot, and only angles between 0 and 90 can be driven",
                 "follower.arm",
             )
+        if surely_positive(self._rate, stretches(self.motion)):
+            return
         slowest = least(self._rate, stretches(self.motion))
         if not slowest.value > 0.0:
             raise IntentError(

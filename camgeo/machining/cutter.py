@@ -1,8 +1,9 @@
 """The path of a round cutter's centre about a contour, and the metal that it does not reach (docs/manufacture.md).
 
-The path is the contour's parallel outside, exact in the moving frame. Whether the cutter reaches everything is the
-question whether a roller of its radius, with the contour for its pitch curve run through the other way, undercuts: the
-same proofs decide it, of the bends of hollow stretches and of the gaps between far-apart ones.
+The path is the contour's parallel on the side without metal, exact in the moving frame: outside a disc, inside the
+opening of a ring. Whether the cutter reaches everything is the question whether a roller of its radius undercuts, with
+the contour for its pitch curve (of a disc run through the other way): the same proofs decide it, of the bends of hollow
+stretches and of the gaps between far-apart ones.
 """
 
 from __future__ import annotations
@@ -12,11 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.curve.backwards import Backwards
+from camgeo.curve.backwards import Backwards, runs_backwards
 from camgeo.curve.curve import Curve, Run
 from camgeo.curve.parallel import Parallel
 from camgeo.curve.support import is_sharp
-from camgeo.curve.undercut.causes import UndercutError, causes
+from camgeo.curve.undercut.causes import UndercutError, causes, in_ring
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.bound import Bound
 from camgeo.fit.pieces import ArcSpline
@@ -72,18 +73,20 @@ def cutter_path(contour: Curve, radius: float) -> CutterPath:
 
     Raises UndercutError where no single path is left of it, CurveError where what is reached cannot be proved.
     """
-    outside = Parallel(contour.shape, -radius)
+    ring = in_ring(contour)
+    inward = radius if ring else -radius
+    beside = Parallel(contour.shape, inward)
     if isinstance(contour.shape, Parallel):  # one parallel in place of two: nothing is added up and taken off again
-        outside = Parallel(contour.shape.base, contour.shape.distance - radius)
+        beside = Parallel(contour.shape.base, contour.shape.distance + inward)
     if is_sharp(contour):  # about a corner the parallel is an arc
-        return CutterPath(Curve.whole(outside), radius)
-    whole = CutterPath(Curve(outside, contour.runs), radius, corners=not contour.closed)
-    if is_convex(contour) or radius <= rolled_by(contour):
+        return CutterPath(Curve.whole(beside), radius)
+    whole = CutterPath(Curve(beside, contour.runs), radius, corners=not contour.closed)
+    if no_hollow(contour) or radius <= rolled_by(contour):
         return whole
     if not contour.closed:
         across = 2.0 * rolled_by(contour)
         raise UndercutError(f"a trimmed contour with hollows takes a cutter no wider than its roller, {across:.6g} mm")
-    turned = Curve.whole(Parallel(Backwards(contour.shape), radius))
+    turned = Curve.whole(Parallel(contour.shape if ring else Backwards(contour.shape), radius))
     why = causes(turned)
     if why.none:
         return whole
@@ -91,26 +94,24 @@ def cutter_path(contour: Curve, radius: float) -> CutterPath:
     from camgeo.curve.undercut.undercut import stretches
 
     what = remains(turned, why)
-    lost = tuple(_forward(cut) for cut in stretches(turned, why, what))
+    lost = stretches(turned, why, what)
+    lost = lost if ring else tuple(_forward(cut) for cut in lost)
     if not what.corners:
         raise UndercutError("the cutter comes to no place of the contour")
     if what.pieces > 1:
         raise UndercutError("the cutter does not come through to all of the contour", lost[0].at)
-    runs = tuple(
-        Run(-run.high, -run.low, tuple(-b for b in reversed(run.breaks)), closed=False)
-        for run in reversed(kept_runs(turned, what))
-    )
-    return CutterPath(Curve(outside, runs), radius, lost=lost)
+    kept = kept_runs(turned, what)
+    return CutterPath(Curve(beside, tuple(kept) if ring else runs_backwards(kept)), radius, lost=lost)
 
 
-def is_convex(contour: Curve) -> bool:
-    """Whether a contour is proved to turn left throughout."""
-    return bool((contour.cells.rows[2] >= 0.0).all())
+def no_hollow(contour: Curve) -> bool:
+    """Whether the metal is proved to have no hollow: a disc's contour turns left throughout, no ring's opening does."""
+    return not in_ring(contour) and bool((contour.cells.rows[2] >= 0.0).all())
 
 
 def rolled_by(contour: Curve) -> float:
-    """Radius of the roller that has touched all of a contour from outside, mm; 0 for that of a flat face."""
-    return max(contour.shape.distance, 0.0) if isinstance(contour.shape, Parallel) else 0.0
+    """Radius of the roller that has touched all of a contour, mm; 0 for that of a flat face."""
+    return abs(contour.shape.distance) if isinstance(contour.shape, Parallel) else 0.0
 
 
 def _forward(cut: Undercut) -> Undercut:

@@ -7,16 +7,19 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import LEAST_ROOM, REACH
-from camgeo.curve.backwards import least_hollow
+from camgeo.curve.curve import CurveError
 from camgeo.curve.undercut.causes import UndercutError
-from camgeo.machining.cutter import cutter_path, is_convex
+from camgeo.fit.arcs import fit_arcs
+from camgeo.machining.cutter import cutter_path, no_hollow
+from camgeo.synthesis.checks import hollow_radius
 from camgeo.synthesis.design import intended
 from camgeo.synthesis.part.as_intent import holes_of
 from kin.judge.check import Check, failed
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
-    from camgeo.machining.cutter import CutterPath
+    from camgeo.fit.pieces import ArcSpline
+    from camgeo.machining.cutter import CutterPath, Fit
     from camgeo.recipe.machining import Manufacture
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
@@ -35,7 +38,7 @@ class RoundHole(NamedTuple):
 
 
 def path_of(recipe: Recipe, design: Design, further: float = 0.0) -> CutterPath:
-    """Path of the cutter's centre, or one `further` out; raises as `cutter_path` does."""
+    """Path of the cutter's centre, or one `further` off the metal; raises as `cutter_path` does."""
     contour, asked = _milled(recipe, design)
     return cutter_path(contour, asked.radius + further)
 
@@ -46,12 +49,25 @@ def _milled(recipe: Recipe, design: Design) -> tuple[Curve, Manufacture]:
     return design.contour, recipe.manufacture
 
 
+def path_arcs(recipe: Recipe, path: CutterPath, tolerance: float, fitted: Fit = fit_arcs) -> ArcSpline:
+    """Arcs within a tolerance of the cutter's path; raises RecipeErrors where it stays in a point.
+
+    So it does in a hollow arc of the cutter's own radius.
+    """
+    try:
+        return path.within(tolerance, fitted)
+    except CurveError as error:
+        given = f"{2.0 * path.radius / recipe.mm:.6g} {recipe.units}"
+        remedy = "give one a little larger or smaller"
+        raise recipe.error("manufacture.cutter", f"the path of its centre: {error}", given, remedy) from error
+
+
 def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | None]:
     """Check how deep metal is left where the cutter does not reach; its path, None where there is no single one."""
     contour, asked = _milled(recipe, design)
     told = "no hollow"
-    if not is_convex(contour):
-        radius, at = least_hollow(contour)
+    if not no_hollow(contour):
+        radius, at = hollow_radius(recipe.cam, contour)
         told = f"least hollow radius {radius:.6g} mm at {design.position.shaft_deg(at):.6g} deg"
     try:
         path = path_of(recipe, design)
@@ -99,6 +115,8 @@ def unmilled(recipe: Recipe, design: Design) -> list[tuple[str, str]]:
     """Name what of the part a program leaves unmade, with the reason: it cuts through a disc, straight down."""
     part = recipe.part
     found = list(milled_holes(recipe, design)[1])
+    if part.outer is not None:
+        found.append(("outline", f"the stock comes with it, a disc {part.outer / recipe.mm:.6g} across"))
     if part.hub is not None:
         found.append(("hub", "the stock comes with it, its disc as thick as part.thickness"))
     if part.set_screw is not None:
@@ -150,6 +168,7 @@ def milling_intent(recipe: Recipe, design: Design) -> Intent:
         thickness=recipe.part.thickness or 0.0,
         depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
         climb=asked.direction == "climb",
+        inside=recipe.cam.metal < 0,
         standing=check.limit or 0.0 if lost else 0.0,
         hub=None if top is None else (0.5 * top.diameter, top.height),
     )

@@ -58,6 +58,15 @@ def begun_at(path: ArcSpline, direction: float) -> ArcSpline:
     return ArcSpline(points, bulges, path.bound)
 
 
+def bend_at_begin(path: ArcSpline) -> float:
+    """Least radius, mm, of the two pieces that meet where a path begins; infinite where both are straight."""
+    points, bulges = path.points, path.bulges
+    ends = np.stack([points[1 % len(points)] - points[0], points[0] - points[-1]])
+    chords, at = np.hypot(*ends.T), np.abs(bulges[[0, -1]])
+    with np.errstate(divide="ignore"):
+        return float((0.25 * chords * (1.0 + at**2) / at).min())
+
+
 def circle(centre: tuple[float, float], radius: float, direction: float) -> ArcSpline:
     """A circle in four arcs, begun in a direction (rad)."""
     angle = direction + 0.5 * math.pi * np.arange(4)

@@ -41,13 +41,13 @@ def _tool_path(job: Job, request: FileRequest) -> tuple[list[Check], list[Cutout
     if asked is None or not asked.layer or request.kind != "dxf" or request.compensation is not None:
         return [], []
     from camgeo.files.dxf import Cutout
-    from camgeo.machining.milling import reach_check
+    from camgeo.machining.milling import path_arcs, reach_check
 
     with job.clock.stage("cutter path"):
         check, path = reach_check(job.recipe, job.design)
         if path is None:
             return [check], []
-        arcs = path.within(job.tolerance(request))
+        arcs = path_arcs(job.recipe, path, job.tolerance(request))
     return [check], [Cutout("TOOLPATH", arcs.mirrored() if job.recipe.rotation == "ccw" else arcs)]
 
 

@@ -1,4 +1,4 @@
-"""Programs for milling machines: the cutter's path round the contour, and round holes that are wide enough."""
+"""Programs for milling machines: the cutter's path along the contour, and round holes that are wide enough."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from camgeo.fit.cache import Outlines
 from camgeo.fit.pieces import ArcSpline
 from camgeo.machining.gcode import Cutting, places, plain, rounding, write_gcode
-from camgeo.machining.milling import clear_of_hub, few_passes, milled_holes, path_of, reach_check, unmilled
-from camgeo.machining.toolpath import begun_at, circle, depths, led, passes
+from camgeo.machining.milling import clear_of_hub, few_passes, milled_holes, path_arcs, path_of, reach_check, unmilled
+from camgeo.machining.toolpath import begun_at, bend_at_begin, circle, depths, led, passes
 from camgeo.output.job import Made
 from kin.judge.check import about
 
@@ -72,19 +72,21 @@ def _outline(job: Job, path: CutterPath, tolerance: float) -> ArcSpline:
             raise TypeError("a path is made of arcs")
         return outline
 
-    return path.within(tolerance, fitted)
+    return path_arcs(job.recipe, path, tolerance, fitted)
 
 
 def _round(job: Job, asked: Manufacture, rough: ArcSpline | None, fine: ArcSpline) -> list[Pass]:
-    """Passes round the contour."""
+    """Passes along the contour: round a disc, within a ring."""
     thickness = job.recipe.part.thickness
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
+    outside = job.recipe.cam.metal > 0
 
     def loop(path: ArcSpline) -> Loop:
         begun = begun_at(path, asked.start)
         drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
-        return led(drawn, asked.lead, outside=True, clockwise=asked.direction == "climb")
+        lead = asked.lead if outside else min(asked.lead, 0.5 * bend_at_begin(drawn))
+        return led(drawn, lead, outside=outside, clockwise=(asked.direction == "climb") == outside)
 
     return passes(None if rough is None else loop(rough), loop(fine), asked, thickness)
 

@@ -252,7 +252,7 @@ def check_files(values: Values, reader: Reader) -> None:
     listed = requests(files)
     names = [request.filename("NAME", listed) for request in listed]
     ring = is_ring(values)
-    if not ring and any(request.kind == "gcode" for request in listed):
+    if any(request.kind == "gcode" for request in listed):
         check_slight(values, reader)
     for i, (file, request) in enumerate(zip(files, listed, strict=True)):
         path = file["path"]
@@ -267,9 +267,7 @@ def check_files(values: Values, reader: Reader) -> None:
         elif request.parts == "all" and "part.bore" not in reader.marks:
             remedy = "give part.bore, such as {hexagon: 10}, or leave `parts: all` out"
             reader.fault_at(path, "a mechanism needs a bore for its shaft", None, remedy)
-        if request.kind == "gcode" and ring:
-            reader.fault_at(path, "a program for a ring is not made", None, "leave gcode out")
-        elif request.kind == "gcode":
+        if request.kind == "gcode":
             check_milling(path, reader)
         if request.kind == "step" and request.as_ != "arcs" and "part.chamfer" in reader.marks:
             remedy = "give arcs, whose chamfers are exact cones, or leave part.chamfer out"

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from camgeo.recipe.schema.reader import Reader, Values
 
-_OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
+OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
+"""Keys of a part that a ring cannot have."""
 
 
 def check_ring(values: Values, reader: Reader) -> None:
@@ -21,11 +22,9 @@ def check_ring(values: Values, reader: Reader) -> None:
     if not given:
         remedy = "give part.outer, or leave track out"
         reader.fault_at("cam.track", "a ring needs part.outer, the diameter of its outline", "internal", remedy)
-    for name in _OF_A_DISC:
+    for name in OF_A_DISC:
         if f"part.{name}" in reader.marks:
             reader.fault_at(f"part.{name}", "belongs to a disc on a shaft, not to a ring", None, "leave it out")
-    if "manufacture.layer" in reader.marks:
-        reader.fault_at("manufacture.layer", "the cutter's path in a ring is not made", None, "leave it out")
 
 
 def is_ring(values: Values) -> bool:

@@ -9,6 +9,7 @@ from camgeo.cams.families import FAMILIES
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.linkage import LINKAGES
 from camgeo.recipe.recipe import RECIPE
+from camgeo.recipe.ring import OF_A_DISC
 from camgeo.recipe.schema.errors import suggestion
 from camgeo.recipe.schema.fields import Field, Kind, Table, either
 
@@ -25,7 +26,7 @@ Given: TypeAlias = dict[str, "str | Given"]  # the text of a field, or the field
 class _Starter:
     """A title, the kind of cam, the fields of the cam that are given, and those of the top level besides.
 
-    `unfit` are fields of its follower that do not go with the others, and are not shown.
+    `unfit` are fields of the follower, the part or the top level that do not go with the others, and are not shown.
     """
 
     title: str
@@ -105,6 +106,18 @@ _STARTERS = {
     ),
     "disc-shoe": _disc("a curved shoe on a stem", "30", "10", {"kind": "shoe", "radius": "60"}),
     "disc-knife-edge": _disc("a knife edge on a stem", "30", "12", {"kind": "knife-edge"}),
+    "disc-ring": _Starter(
+        "A ring for a roller that runs inside it, on a stem.",
+        "disc",
+        {
+            "track": "internal",
+            "base_radius": "60",
+            "follower": {"kind": "roller", "radius": "9"},
+            "motion": _DWELLS.format("12"),
+        },
+        {"part": {"thickness": "8", "outer": "170", "bolts": {"count": "6", "circle": "158", "hole": "5"}}},
+        unfit=(*OF_A_DISC, "mechanism"),
+    ),
     "constant-diameter": _Starter(
         "A cam between two opposite rollers of one frame, from its motion over one half turn.",
         "constant-diameter",
@@ -211,7 +224,8 @@ def _recipe(chosen: _Starter) -> Table:
     fields = (replace(item, table=kinds.get(item.name, item.table)) for item in RECIPE.fields)
     if linkage:
         return Table(tuple(fields))
-    unfit = {"dwell", "output_error", *(() if "plate" in FAMILIES[chosen.kind].cam.offers else ("linkage",))}
+    unfit = {*chosen.unfit, "dwell", "output_error"}
+    unfit |= set() if "plate" in FAMILIES[chosen.kind].cam.offers else {"linkage"}
     return Table(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
 
 
@@ -223,16 +237,19 @@ def _with_forms(table: Table, chosen: _Starter) -> Table:
         if not isinstance(value, dict) or item.form is None or not item.form.tables:
             return item
         found = _kinded(f"the kind of {item.name}", item.form.tables, str(value["kind"]))
-        fields = tuple(one for one in found.fields if one.name not in chosen.unfit)
-        return replace(item, table=replace(found, fields=fields))
+        return replace(item, table=_without(found, set(chosen.unfit)))
 
     return replace(table, fields=tuple(map(shown, table.fields)))
 
 
 def _leave_out(item: Field, unfit: set[str]) -> Field:
-    if item.name != "verify" or item.table is None:
+    if item.name not in {"verify", "part"} or item.table is None:
         return item
-    return replace(item, table=Table(tuple(one for one in item.table.fields if one.name not in unfit)))
+    return replace(item, table=_without(item.table, unfit))
+
+
+def _without(table: Table, unfit: set[str]) -> Table:
+    return replace(table, fields=tuple(item for item in table.fields if item.name not in unfit))
 
 
 def _kinded(about: str, tables: Mapping[str, Table], kind: str) -> Table:

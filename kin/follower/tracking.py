@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from kin.follower.guide import Guide
     from kin.numeric.arrays import Array, Indices
 
-SHARE = 1e-3  # of the error, to which it is found
+SHARE = 1e-6  # of the error, to which it is found
 RESOLUTION = 1e-12  # of a radian, or of the cam's extent: what rounding leaves of nothing
 OUTWARD = 1.0 + 1e-9  # by which bounds are widened against their own rounding
 MOST_CUTS = 30

@@ -148,8 +148,7 @@ def judge_contour(contour: Contour, intent: Intent, phi: Array, limits: Limits, 
     if intent.mechanism is not None:
         linkage, more = _judge_linkage(contour, intent, phi, limits, slack=slack, uneven=uneven)
         checks += more
-    standing = 0.0 if intent.milling is None else intent.milling.standing
-    judged_contour = _contour_check(found, intent.follower, limits.tolerance, slack, standing)
+    judged_contour = _contour_check(found, intent, limits.tolerance, slack)
     return Findings(judged, found, (judged_contour, *checks), linkage)
 
 
@@ -163,12 +162,12 @@ def _less_sure(judged: Judged, follower: Follower, uneven: float) -> Judged:
     return judged._replace(motion=judged.motion.less_sure(follower.motion_limit(uneven)), play=play)
 
 
-def _contour_check(
-    found: Deviation, follower: Follower, tolerance: float, slack: float, standing: float = 0.0
-) -> Check:
-    """Check both sides of a contour against the tolerance; outside as much more may stand as a cutter may leave."""
+def _contour_check(found: Deviation, intent: Intent, tolerance: float, slack: float) -> Check:
+    """Check both sides of a contour against the tolerance; on the cutter's, as much more may stand as it may leave."""
     worst, parameter = found.worst
-    worst = max(worst - standing, found.inside) if standing else worst
+    milling, follower = intent.milling, intent.follower
+    if milling is not None and milling.standing:
+        worst = max(worst - milling.standing, found.outside if milling.inside else found.inside)
     detail = f"{found.outside:.3g} mm outside, {found.inside:.3g} mm inside the exact contour"
     if found.rounds != 1:
         detail = f"the contour goes {found.rounds} times round the exact one; {detail}"

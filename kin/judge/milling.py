@@ -2,7 +2,7 @@
 
 z is 0 at the top of the stock and falls into it. A cut is what the cutter does between coming down and going up again:
 an arc of entry, a closed path, an arc of exit. The deepest path of each contour decides what it is; the one that holds
-all others is milled from outside, the others are holes.
+all others is milled from outside, the others are holes. Of a ring all are holes.
 """
 
 from __future__ import annotations
@@ -17,10 +17,14 @@ from kin.contour.arcs import cross, dot
 from kin.contour.nearest import nearest, signed_distance
 from kin.contour.offset import TightError, parallel
 from kin.judge.check import Check, at_most, failed
+from kin.judge.ring import goes_round
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, arcs_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
     from kin.contour.arcs import Arcs
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array
@@ -43,6 +47,7 @@ class Milling:
     climb         a right-handed cutter meets the metal climbing
     standing      how far metal may stand outside the contour where the cutter does not reach
     hub           radius and height of the metal about the shaft that stands on the stock; None without
+    inside        the contour is the opening of a ring about the shaft; no path runs round its outline
     """
 
     radius: float
@@ -51,6 +56,7 @@ class Milling:
     climb: bool = True
     standing: float = 0.0
     hub: tuple[float, float] | None = None
+    inside: bool = False
 
 
 class Cut(NamedTuple):
@@ -82,7 +88,7 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
     last = [feature[-1] for feature in features]
     loops = [arcs_of(cut.loop) for cut in last]
     sizes = [abs(_area(loop)) for loop in loops]
-    outer = int(np.argmax(sizes))
+    outer = None if milling.inside else int(np.argmax(sizes))
     edges = []
     for k, (cut, loop) in enumerate(zip(last, loops, strict=True)):
         inward = 1.0 if (_area(loop) > 0.0) == (k == outer) else -1.0
@@ -91,8 +97,9 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
         except TightError as error:
             raise ReadError("open", f"the cutter's path from line {cut.loop[0].line}: {error}", path) from error
         edges.append(edge if edge.area > 0.0 else edge.reversed())
-    contour = edges[outer]
-    holes = tuple(edge for k, edge in enumerate(edges) if k != outer)
+    chosen = _opening(edges, path) if outer is None else outer
+    contour = edges[chosen]
+    holes = tuple(edge for k, edge in enumerate(edges) if k != chosen)
     checks = (
         _cutter_check(program, milling),
         _arcs_check(program),
@@ -102,7 +109,15 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
         _entry_check(features),
         _hub_check(program, milling) or _gouge_check(features, edges, outer, milling, tolerance),
     )
-    return Milled(contour, holes, checks, len(last[outer].loop))
+    return Milled(contour, holes, checks, len(last[chosen].loop))
+
+
+def _opening(edges: Sequence[Contour], path: Path) -> int:
+    """Which of the edges goes round the shaft; a ring may have holes that are larger."""
+    found = next((k for k, edge in enumerate(edges) if goes_round(edge)), None)
+    if found is None:
+        raise ReadError("empty", "the program mills no opening about the shaft, in which the follower runs", path)
+    return found
 
 
 def _cuts(program: Program) -> list[Cut]:
@@ -263,7 +278,7 @@ def _rounds(loop: Arcs, middle: Array) -> int:
     return round(float(np.arctan2(cross(away, after), dot(away, after)).sum()) / (2.0 * np.pi))
 
 
-def _direction_check(features: list[list[Cut]], outer: int, milling: Milling) -> Check:
+def _direction_check(features: list[list[Cut]], outer: int | None, milling: Milling) -> Check:
     """Check on which side the cutter meets the metal: to climb it goes clockwise round the part, not so in holes."""
     bad = []
     for k, feature in enumerate(features):
@@ -292,7 +307,7 @@ def _entry_check(features: list[list[Cut]]) -> Check:
 
 
 def _gouge_check(
-    features: list[list[Cut]], edges: list[Contour], outer: int, milling: Milling, tolerance: float
+    features: list[list[Cut]], edges: list[Contour], outer: int | None, milling: Milling, tolerance: float
 ) -> Check:
     """Check that on all its ways below the top the cutter keeps clear of the edge that it is to leave."""
     worst, detail = -np.inf, ""

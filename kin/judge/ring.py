@@ -35,14 +35,14 @@ def faced(outline: Contour, holes: Sequence[Contour], outer: float | None, toler
     """
     if outer is None:
         return Faced(outline, tuple(holes), ())
-    opening = next((k for k, hole in enumerate(holes) if _goes_round(hole)), None)
+    opening = next((k for k, hole in enumerate(holes) if goes_round(hole)), None)
     if opening is None:
         raise ReadError("empty", "the ring has no opening about the shaft, in which its follower runs", path)
     rest = tuple(hole for k, hole in enumerate(holes) if k != opening)
     return Faced(holes[opening], rest, (round_check("outer", outline, outer, tolerance),))
 
 
-def _goes_round(contour: Contour) -> bool:
+def goes_round(contour: Contour) -> bool:
     """Whether a contour encloses the shaft."""
     points = contour.sample(LOOKS)
     after = np.roll(points, -1, axis=0)

@@ -156,8 +156,6 @@ def _of_program(path: Path, intent: Intent, limits: Limits, units: float | None)
 
     if intent.milling is None:
         raise ReadError("unsupported", "how the part is milled is not given", path)
-    if intent.outer is not None:
-        raise ReadError("unsupported", "a program that mills a ring is not judged", path)
     program = read_gcode(path)
     _demand_same(program.units_mm, units, path)
     done = milled(program, intent.milling, limits.tolerance)

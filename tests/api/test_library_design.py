@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from support.cases import few
 
 import camgeo
 
@@ -19,11 +20,12 @@ ROOT = Path(__file__).parents[2]
 NAMES = ("shu-wu", "fourier", "w-law", "oscillating-yoke", "as-figure-1", "slider-crank", "reuleaux")
 
 
-@pytest.fixture(scope="module", params=NAMES)
+@pytest.fixture(scope="module", params=few(NAMES, 2))
 def design(request: pytest.FixtureRequest) -> camgeo.Design:
     return camgeo.design(camgeo.load(ROOT / "recipes" / f"{request.param}.yaml"))
 
 
+@pytest.mark.thin(4)
 def test_the_motion_is_that_of_the_table(design: camgeo.Design, tmp_path: Path) -> None:
     recipe = design.recipe.replace({"verify.angles": 48, "export.files": ["csv"]})
     report = camgeo.export(recipe, tmp_path)
@@ -187,6 +189,7 @@ def test_a_pickle_is_the_same_design(design: camgeo.Design) -> None:
     assert again.checks == design.checks
 
 
+@pytest.mark.thin(3)
 def test_it_shows_itself(design: camgeo.Design) -> None:
     svg, html = design._repr_svg_(), design._repr_html_()
     assert svg.startswith("<svg")

@@ -101,6 +101,7 @@ def made(name: str) -> tuple[Recipe, Design, Assembly]:
     return build(SHAPES[name] + (HUBS + PART.partition("\n")[2] if name.endswith("hubs") else PART))
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str) -> None:
     import shapely
@@ -121,6 +122,7 @@ def test_every_body_is_one_closed_piece_with_the_volume_of_its_plates(name: str)
         assert solid.volume == pytest.approx(volume, rel=2e-3), member.name
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", few(SHAPES, 3))
 def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
     """shapely sees no overlap where kin's search has proved that there is none."""
@@ -138,6 +140,7 @@ def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
                         assert first.distance(second) >= least, (one.name, other.name, phi)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) -> None:
     assembly = made(name)[2]
@@ -154,6 +157,7 @@ def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) 
             assert overlap <= 4 * math.pi * largest * 0.5 * assembly.sizes.press + 1e-3, (one.name, other.name)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair", *OFF, *GUIDED], 2))
 def test_nothing_meets_at_any_angle(name: str) -> None:
     checks = collision_checks(made(name)[2])
@@ -165,6 +169,7 @@ def test_nothing_meets_at_any_angle(name: str) -> None:
     assert checks[0].value == 0.2
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", SHAPES)
 def test_rates_are_those_of_the_places(name: str) -> None:
     phi, h = np.array([0.4, 2.0, 4.4]), 1e-5
@@ -184,6 +189,7 @@ def carried(assembly: Assembly, name: str, point: tuple[float, float]) -> np.nda
     return np.column_stack([x + point[0] * c - point[1] * s, y + point[0] * s + point[1] * c])
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("name", "one", "point", "other", "there"),
     [
@@ -264,6 +270,7 @@ def test_a_single_flat_face_is_exact_and_says_what_holds_it() -> None:
     assert "gravity or a spring" in assembly.remarks[0]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", GUIDED)
 def test_what_touches_the_cam_on_a_guide_touches_it_at_every_angle(name: str) -> None:
     """shapely: no farther from the cam than the fit of the contour, and no deeper in it."""
@@ -382,6 +389,7 @@ def test_a_shaft_that_is_let_pass_turns_the_cam_and_one_that_slips_is_not(bore: 
             drives(recipe.part, clearance, off)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["yoke", *(pytest.param(name, marks=pytest.mark.slow) for name in ("double roller", "slider-crank"))]
 )
@@ -488,6 +496,7 @@ def test_sizes_that_do_not_go_together_are_refused(asked: MechanismAsked, field:
     assert " inch" in "".join(caught.value.told(25.4, "inch"))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("name", "old", "new", "field", "part"),
     [
@@ -519,6 +528,7 @@ def test_what_finds_no_room_is_refused_at_its_field(name: str, old: str, new: st
     assert caught.value.field == field
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("name", "old", "new", "field", "part", "remedy", "mended"),
     [

@@ -74,6 +74,7 @@ def test_the_faces_of_the_yoke_in_its_file_are_the_breadth_and_the_clearance_apa
     assert solid.bounds[0, 2] == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_counter_clockwise_and_inch_are_the_same_bodies(tmp_path: Path, yoke: pipeline.Outcome) -> None:
     import trimesh
 
@@ -195,6 +196,7 @@ verify: {angles: 24}
 """
 
 
+@pytest.mark.slow
 def test_the_set_of_a_roller_on_a_stem_is_complete_and_nothing_meets(tmp_path: Path) -> None:
     outcome = pipeline.export(load_text(ROLLER, "roller.yaml"), tmp_path)
     assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]

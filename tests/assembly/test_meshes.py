@@ -109,6 +109,7 @@ def test_plates_become_one_closed_body_of_their_volume(name, precision):
     assert np.array_equal(again.triangles, mesh.triangles)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("precision", few([SINGLE, DECIMALS], 2), ids=["stl", "3mf"])
 def test_crossing_walls_that_go_on_through_storeys_leave_no_slivers(precision):
     """Arms of a base: each storey by itself would round the corners where they cross in its own way."""

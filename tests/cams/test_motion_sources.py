@@ -66,6 +66,7 @@ def fault(motion, folder, **of):
 # --- each source ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     "motion",
     [
@@ -278,6 +279,7 @@ def test_a_table_of_a_law_comes_back_within_its_reading(law, stroke, over, place
     assert off.max() <= 3 * reading
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_rows(tmp_path):
     angles = np.linspace(0, 180, 100_000)
     written(tmp_path, angles, 10 * (1 - np.cos(np.radians(angles))), "{:.6f},{:.4f}")
@@ -415,6 +417,7 @@ def test_what_no_plate_can_do_is_refused_at_its_field(motion, path, message, men
     recipe(mended, tmp_path).cam.intent()
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("stroke", [1e-7, 1e-3, 2.0])
 def test_a_rise_over_a_hundredth_of_a_degree_is_exact_or_fails_its_check(stroke, tmp_path):
     form = f"{stroke}*max(0, min(1, (t - 1)/{math.radians(0.01)!r}))"
@@ -433,6 +436,7 @@ def test_kin_s_own_error_keeps_its_angle(tmp_path):
     assert caught.value.at_deg == 180
 
 
+@pytest.mark.slow
 def test_a_sweep_reads_the_table_and_its_best_design_finds_it_from_its_own_folder(tmp_path, monkeypatch, capsys):
     written(tmp_path, HALF, sampled(HALF))
     vary = "{cam.base_radius: {from: 38, to: 44, steps: 3}, cam.motion.reading: [0.001, 0.002]}"

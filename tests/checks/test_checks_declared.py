@@ -184,6 +184,7 @@ def of_text(text: str) -> tuple[dict[str, Any], ...]:
     return tuple(pipeline.check(load_text(text, "cam.yaml")).report["checks"])
 
 
+@pytest.mark.slow
 def test_what_is_declared_is_made_and_what_is_made_is_declared() -> None:
     checks = [check for text in MORE.values() for check in of_text(text)]
     assert {check["name"] for check in checks} == set(CHECKS) - {READABLE.name}

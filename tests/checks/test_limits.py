@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.cases import few
+from support.cases import examples, few
 
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
@@ -123,6 +123,7 @@ def test_every_figure_has_a_recipe_here() -> None:
     assert set(HAVE) == set(FIGURES)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("text", "sign", "sense"),
     few([(text, *side) for side in ((1.0, "at_most"), (-1.0, "at_least")) for text in sorted(set(HAVE.values()))], 4),
@@ -148,6 +149,7 @@ def test_limits_hold_and_fail_at_the_figure_itself(text: str, sign: float, sense
         assert not report_of(text, said)["ok"] if not ok else report_of(text, said)["ok"] or not alone
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("text", sorted(set(HAVE.values())))
 def test_limits_are_foreseen(text: str) -> None:
     recipe = loaded(text, wide(text))
@@ -307,6 +309,7 @@ SLIGHT = ROLLER.replace("625", "20")
 FINE = "export: {tolerance: 0.0001, "
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize(
     ("text", "name", "bound", "said", "change"),
     [
@@ -412,7 +415,7 @@ def test_every_limit_is_declared() -> None:
 COEFFICIENTS = st.lists(st.integers(-30, 30), min_size=3, max_size=3)
 
 
-@settings(deadline=None, max_examples=10)
+@settings(deadline=None, max_examples=examples(10))
 @given(COEFFICIENTS, COEFFICIENTS, st.floats(-2, 2), st.sampled_from(["at_least", "at_most"]))
 def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int], share: float, sense: str) -> None:
     """Figures against dense samples of the support function, and each limit held as plain arithmetic has it."""

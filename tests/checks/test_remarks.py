@@ -43,6 +43,7 @@ def test_a_sound_recipe_has_none(text: str) -> None:
     assert names(text) == []
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("text", "found"),
     [

@@ -149,6 +149,7 @@ def test_what_moves_as_one_is_looked_at_once():
         assert found.evaluations == 1
 
 
+@pytest.mark.slow
 def test_allowed_pairs():
     bodies = [
         mover("pin", disc(0, 0, 2.001), Turning(3.0)),
@@ -399,6 +400,7 @@ def cams(tmp_path_factory):
     return found
 
 
+@pytest.mark.slow
 def test_pivot_lies_inside_the_disc_of_figure_5_and_outside_that_of_figure_9(cams):
     """W 1984: the follower's pivot, 60 mm from the shaft, is covered by the disc of Figure 5; Figure 9's clears it."""
     pin = mover("pivot", disc(60, 0, 2.5), Still())

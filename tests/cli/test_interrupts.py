@@ -87,6 +87,7 @@ def assert_quiet(found: tuple[int, str]) -> None:
     assert found == (130, "camgeo: interrupted\n")
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("times", [1, 2])
 @pytest.mark.parametrize("delay", [0.0, 0.03, 0.3])
 def test_several_recipes(tmp_path: Path, delay: float, times: int) -> None:
@@ -104,6 +105,7 @@ def test_several_recipes_at_any_moment(tmp_path: Path, jobs: str) -> None:
         assert_quiet(interrupted(["check", *paths, "--jobs", jobs], 0.02 * step))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_sweep(tmp_path: Path, jobs: str) -> None:
     path = tmp_path / "many.yaml"

@@ -111,6 +111,7 @@ export: {tolerance: 0.01, files: [{dxf: {as: spline}}, {dxf: {as: polyline}}, st
 """
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["shu-wu", "rabinowitz", "reuleaux-nine", "w-booth", "w-ellipse", None])
 def test_the_checks_of_a_run_are_foreseen(name: str | None, tmp_path: Path) -> None:
     path = RECIPES / f"{name}.yaml" if name else tmp_path / "flat.yaml"
@@ -130,6 +131,7 @@ manufacture: {{cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 5
 """
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("holes", ["holes: true", "holes: false"])
 @pytest.mark.parametrize(
     "part",
@@ -441,6 +443,7 @@ def run_two(pytester: Pytester, *arguments: str) -> pytest.RunResult:
         return pytester.runpytest_subprocess("-p", "xdist", "-p", "camgeo.pytest_plugin", "-n", "2", *arguments)
 
 
+@pytest.mark.slow
 def test_with_several_processes(project: Pytester) -> None:
     project.makeini(INI + "testpaths = nowhere cams/..\n")
     add(project, "poor", SMALL + "verify: {motion_error: 0.001}\n")

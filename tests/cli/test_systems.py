@@ -133,6 +133,7 @@ def test_no_more_processes_than_there_is_work_for(
     assert workers.needed(wanted, items) == started
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("method", ["as it is", "spawn"])
 def test_two_recipes_take_two_processes(method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from concurrent.futures import ProcessPoolExecutor
@@ -174,6 +175,7 @@ def test_work_under_spawn(monkeypatch: pytest.MonkeyPatch) -> None:
     assert dict(workers.at_once(double, range(5), 150)) == {number: 2 * number for number in range(5)}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.parametrize("ended", [signal.SIGTERM, signal.SIGKILL])
 @pytest.mark.parametrize("fork", ["True", "False"])

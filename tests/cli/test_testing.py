@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
-import ezdxf
 import numpy as np
 import pytest
 from support.camfiles import (
@@ -20,6 +19,7 @@ from support.camfiles import (
     write_lines,
     write_stl,
 )
+from support.heavy import ezdxf
 
 from camgeo import testing
 from camgeo.recipe import RecipeErrors, load

@@ -406,6 +406,7 @@ CURVES = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("control", CURVES.values(), ids=CURVES.keys())
 @pytest.mark.parametrize("weights", [(1, 1, 1, 1), (1, 3, 0.5, 2)])
 def test_unrolled_pieces_turn_one_way_and_their_support_is_that_of_the_curve(
@@ -457,9 +458,11 @@ def rose(size: float = 1.0) -> Contour:
     return Contour.from_pieces(turning(beziers))
 
 
-@pytest.mark.parametrize("contour", [rose(), ellipse().contour], ids=["spline", "ellipse"])
+@pytest.mark.thin(3)
+@pytest.mark.parametrize("made", [rose, lambda: ellipse().contour], ids=["spline", "ellipse"])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6, 1e-8])
-def test_arcs_along_a_spline_keep_their_promise(contour: Contour, tolerance: float) -> None:
+def test_arcs_along_a_spline_keep_their_promise(made: Callable[[], Contour], tolerance: float) -> None:
+    contour = made()
     chain, owner = contour.as_arcs(tolerance)
     assert (np.diff(owner) >= 0).all()
     assert (np.abs(chain.turns()) < 1e-10).all()
@@ -480,6 +483,7 @@ def test_arcs_along_curves_with_inflections_cusps_and_vanishing_derivatives(cont
     assert off.max() <= 1e-7
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("size", [2e-5, 2e4])
 def test_arcs_along_a_spline_are_as_close_on_a_cam_of_a_micrometre(size: float) -> None:
     contour = rose(size)

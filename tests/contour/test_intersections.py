@@ -147,6 +147,7 @@ def test_a_long_contour_far_from_convex_without_a_crossing() -> None:
     assert len(crossings(Contour.from_vertices(np.concatenate([out, nearer]))).point) > 0
 
 
+@pytest.mark.slow
 def test_a_scribble_is_told_in_bounded_time_and_memory() -> None:
     points = np.random.default_rng(1).random((3000, 2)) * 100.0
     assert len(crossings(Contour.from_vertices(points)).point) > 200

@@ -34,6 +34,7 @@ def least_of_pairs(curve, count=700):
     return radius.min()
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("share", [0.5, 0.8, 0.95])
 @pytest.mark.parametrize("e", [1.0, 40.0])
 def test_the_waist_of_booths_lemniscate(share, e):
@@ -63,6 +64,7 @@ def test_the_neck_of_a_pear_is_a_double_normal():
     assert neck.half <= least_of_pairs(curve) <= 1.001 * neck.half
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("place", [0.0, 0.3, 1.234])
 def test_opposite_notches_make_a_neck(place):
     # on a circle of 30 mm, about as narrow as their shoulders allow
@@ -132,6 +134,7 @@ def test_where_newtons_method_has_not_come_to_is_no_neck(monkeypatch, steps):
     assert neck.half == pytest.approx(LENGTH * math.sqrt(0.38), rel=2e-9)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("share", few([0.98, 0.999, 1.0 - 1e-6], 2))
 def test_a_waist_almost_folded_is_measured(share):
     # bent on its outer side to a hundredth of its width and less

@@ -99,6 +99,7 @@ def oracles() -> dict[str, tuple[Shape, Callable[[mp.mpf], mp.mpc]]]:
 ORACLES = oracles()
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ORACLES)
 def test_frame_is_that_of_forty_digits(name: str) -> None:
     shape, point = ORACLES[name]
@@ -128,6 +129,7 @@ def test_frame_is_that_of_forty_digits(name: str) -> None:
             assert row[:2, i] == pytest.approx(figures, rel=1e-10, abs=1e-10)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", CONTOURS)
 def test_bounds_hold_dense_samples(name: str) -> None:
     shape = CONTOURS[name]
@@ -284,6 +286,7 @@ def hollow_pitch() -> CentreShape:
     return CentreShape(displaced((14, 60, "cycloidal"), (-14, 60, "cycloidal"), (240,)), Translating.on(30.0))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("radius", [27.0, 40.0, 80.0])
 def test_a_ring_undercuts_where_its_pitch_curve_is_hollow(radius: float) -> None:
     """Speed sigma + R omega: what is left of the ring meets in corners, and is nowhere nearer than R to the pitch."""
@@ -344,6 +347,7 @@ def test_a_kink_inside_a_stretch_is_bounded_by_values_alone() -> None:
     assert found.room < 1e-9
 
 
+@pytest.mark.slow
 def test_least_sizes_leave_nothing_to_gain() -> None:
     """A hair below the least stem or the least prime circle the limit is broken."""
     law = displaced((24, 100, "modified-sine"), (40,), (-24, 140, "modified-trapezoid"), (80,))
@@ -372,6 +376,25 @@ def test_signs() -> None:
     theta = np.array([50.0, 210.0]) * DEGREE
     assert np.sign(inline().pressure_angle(theta)).tolist() == [1.0, -1.0]
     assert (offset(10.0).pressure_angle(theta) < offset(0.0).pressure_angle(theta)).all()
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_face_may_swing_nearly_as_fast_as_the_cam_turns(side: int) -> None:
+    """A cycloid of stroke h over 120 degrees swings back by 3 h/pi per turn of the cam at the most."""
+    limit = math.pi / 3.0
+    SwingingFace.on(motion(limit * (1.0 - 1e-9)), 10.0, 90.0, 5.0, side)
+    with pytest.raises(IntentError, match=r"1(\.0+\d*)? times as fast as the cam turns"):
+        SwingingFace.on(motion(limit * (1.0 + 1e-9)), 10.0, 90.0, 5.0, side)
+
+
+def test_a_slow_swing_needs_no_search_for_its_fastest(monkeypatch: pytest.MonkeyPatch) -> None:
+    def searched(*_: object) -> None:
+        raise AssertionError("searched")
+
+    monkeypatch.setattr("camgeo.curve.disc.least", searched)
+    SwingingFace.on(motion(0.2), 10.0, 90.0, 5.0, 1)
+    with pytest.raises(AssertionError, match="searched"):
+        SwingingFace.on(motion(1.2), 10.0, 90.0, 5.0, 1)
 
 
 @pytest.mark.parametrize(

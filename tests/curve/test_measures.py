@@ -65,6 +65,7 @@ def test_a_limacon_has_its_closed_area() -> None:
     assert found.perimeter == pytest.approx(float(mp.quad(speed, [0, mp.pi, 2 * mp.pi])), rel=1e-13)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", CONTOURS)
 def test_against_the_polygon_and_dense_samples(name: str) -> None:
     curve = Curve.whole(CONTOURS[name])
@@ -98,6 +99,7 @@ def test_of_a_trimmed_contour() -> None:
     )
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", CONTOURS)
 def test_polar_radii_lie_on_the_contour(name: str) -> None:
     curve = Curve.whole(CONTOURS[name])

@@ -149,6 +149,7 @@ def test_flat_faces_leave_the_body_of_their_half_planes(mean, terms):
         check_chain(whole, curve)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("mean", "cos", "sin", "backwards", "left"),
     [
@@ -167,6 +168,7 @@ def test_swallowtails_that_run_into_each_other(mean, cos, sin, backwards, left):
     check_same(curve, dual_body(whole.shape), 2e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(["parabolic", "harmonic", "modified-sine", "polynomial-345"], 4))
 def test_curvature_that_jumps(name):
     whole = breadth(1.0, name)
@@ -175,6 +177,7 @@ def test_curvature_that_jumps(name):
     check_same(curve, dual_body(whole.shape), 2e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("shape", "e"), [(STAR, e) for e in (4.0, 5.0, 8.0, 12.0)])
 def test_rollers_leave_the_eroded_body(shape, e):
     whole = roller(shape, e)
@@ -183,6 +186,7 @@ def test_rollers_leave_the_eroded_body(shape, e):
     check_same(curve, eroded(shape, e), 2e-4)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("e", [19.0, 19.3, 19.6])
 def test_a_bulb_too_small_for_the_roller_goes_with_its_neck(e):
     # both the bulb's end and the neck are too tight: one stretch is lost, and one corner left
@@ -297,6 +301,7 @@ def test_a_neck_leaves_two_corners_and_two_pieces():
         assert body.boundary.distance(shapely.Point(corner.point)) < 1e-3
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("shift", [0.0, 1.0, 2.5, 4.0])
 def test_the_origin_of_the_parameter_does_not_matter(shift):
     turned = waves(20.0, (5, 5.0, 5 * shift), (2, 2.0, np.pi / 2 + 2 * shift))
@@ -368,6 +373,7 @@ FITS: dict[str, tuple[Any, Any]] = {
 }
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("form", few(FITS, 3))
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4])

@@ -96,6 +96,7 @@ def test_depth_follows_its_law_however_small(margin):
         assert u.depth == pytest.approx(margin**2 / 48.0, rel=max(margin, 1e-3))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("base", "name"), [(5.0, "parabolic"), (1.0, "modified-sine"), (1.0, "harmonic")])
 def test_depth_is_the_lost_motion_of_a_flat_face(base, name):
     curve = breadth(base, name)
@@ -158,6 +159,7 @@ def test_eight_swallowtails_below_rounding_are_told_apart():
         assert cut.end - cut.start == pytest.approx(2.0 * np.sqrt(6.0 * lack / bend), rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("e", [4.0, 5.0, 8.0])
 def test_lobes_too_sharp_for_the_roller(e):
     found = undercuts(roller(STAR, e))
@@ -191,6 +193,7 @@ def test_depth_of_a_roller_is_how_far_it_hangs_free():
         assert u.depth == pytest.approx(np.hypot(apart[..., 0], apart[..., 1]).min(axis=1).max() - e, abs=1e-5)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("excess", [1e-9, 1e-6, 1e-3, 0.1, 0.5])
 def test_the_neck_of_booths_lemniscate(excess):
     # m^2/l^2 = 0.9: the waist is sqrt(0.2) l, the ends have a radius of 60.06 mm

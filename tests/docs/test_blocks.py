@@ -71,6 +71,7 @@ def test_a_recipe_is_read(text):
     read(text.encode(), "shown.yaml")
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("text", few(of("yaml", whole=True), 4))
 def test_a_recipe_is_made_and_passes(text):
     recipe = read(text.encode(), "shown.yaml")

@@ -117,6 +117,7 @@ def test_an_oscillator_has_finite_figures(figures):
 # --- response ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("order", [1, 3, 17])
 @pytest.mark.parametrize("zeta", DAMPINGS)
 @pytest.mark.parametrize("r", RATIOS)
@@ -143,6 +144,7 @@ def test_close_to_resonance(r):
     assert np.abs(got - want).max() <= 1e-10 * np.abs(want).max()
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 1.0, 2.0])
 @pytest.mark.parametrize("r", [1.25, 11.3, 350.3, 1e4 + 0.3, 1e5 + 0.3])
 def test_a_cycloidal_rise_and_what_rings_on_in_the_dwell(r, zeta):
@@ -279,6 +281,7 @@ def test_a_rate_of_the_preload_spring_adds_its_force_and_its_stiffness():
     assert force.least == pytest.approx((150.0 - 3e3 * 1e-2) * 2e5 / 2.03e5, rel=1e-9)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("r", [5.3, 60.3, 2000.3, 1e5 + 0.3])
 @pytest.mark.parametrize("zeta", [0.0, 0.02, 1.5])
 def test_extremes_are_those_of_a_dense_sampling(r, zeta):

@@ -185,6 +185,7 @@ def stiff(ratio, zeta, rpm=300.0, preload=0.0, mass=0.4):
     return Train(mass, 2.0 * zeta * mass * natural, mass * natural**2, preload)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("zeta", [1e-4, 0.1, 1.0])
 @pytest.mark.parametrize("ratio", [1.3, 123.0, 1e3 + 0.3, 1e5 + 0.3])
 def test_play_takes_no_more_places_the_stiffer_the_train(ratio, zeta):
@@ -197,6 +198,7 @@ def test_play_takes_no_more_places_the_stiffer_the_train(ratio, zeta):
     assert found.places < 1_000_000
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("zeta", [1e-4, 0.1, 1.0])
 @pytest.mark.parametrize("ratio", [1.3, 123.3, 1e3 + 0.3, 1e5 + 0.3])
 def test_a_turn_under_a_spring_is_bounded_too(ratio, zeta):
@@ -253,6 +255,7 @@ def test_an_instant_is_where_the_search_begins_if_the_state_has_ended_there():
 # --- a second opinion -------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rpm", "damping", "play"),
     few(
@@ -283,6 +286,7 @@ def test_an_implicit_solver_sees_the_same_turn(rpm, damping, play):
         assert found.turns[0].least == pytest.approx(other.force.min(), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_the_implicit_solver_sees_the_same_steady_state():
     pytest.importorskip("scipy")
     motion = Cycloid(1.0, 1e-2)
@@ -314,6 +318,7 @@ def test_too_much_work_for_an_explicit_solver_is_told():
 # --- float ------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("zeta", few([0.01, 0.3, 0.9, 1.0, 2.0], 2))
 @pytest.mark.parametrize("order", [1, 3])
 def test_float_of_a_harmonic_drive_begins_where_its_amplitude_reaches_the_preload(order, zeta):
@@ -404,6 +409,7 @@ def test_what_is_said_of_a_range_holds_inside_it():
     assert tight > 0.9  # the bound says something
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("ratio", "zeta"), [(1e3 + 0.3, 1e-5), (1e5 + 0.3, 1e-6)])
 def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(ratio, zeta):
     train = stiff(ratio, zeta, preload=150.0)
@@ -424,6 +430,7 @@ def test_the_speed_that_floats_is_looked_for_at_resonances_below_it():
     assert high / low < 1.1
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("ratio", "zeta"), [(1.3, 1.0), (123.3, 0.03), (1e3 + 0.3, 0.01), (1e5 + 0.3, 0.01)])
 def test_ordinary_and_stiff_trains_are_settled_within_the_budget(ratio, zeta):
     train = stiff(ratio, zeta, preload=150.0)

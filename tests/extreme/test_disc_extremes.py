@@ -87,6 +87,7 @@ def recipe(touching, base, rows):
     return load_text(touching.recipe(base, rows, f"export: {{tolerance: {TOLERANCE}, files: [dxf]}}\n"), "cam.yaml")
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("name", PASSING)
 def test_it_passes(name: str, tmp_path: Path) -> None:
     touching, base, rows = PASSING[name]
@@ -115,6 +116,7 @@ def test_it_is_refused(name: str) -> None:
     assert error.line > 0
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", FAILING)
 def test_it_fails_before_a_file_is_made(name: str) -> None:
     touching, base, rows, check = FAILING[name]
@@ -123,6 +125,7 @@ def test_it_fails_before_a_file_is_made(name: str) -> None:
     assert check in {found["name"] for found in report["checks"] if not found["ok"]}
 
 
+@pytest.mark.slow
 def test_a_knife_edge_that_is_thrown_over_half_a_turn() -> None:
     """Its bounds of the turn are infinite, and stay so."""
     touching = Touching("knife-edge", pivot=50.0, length=55.0, sense=1)
@@ -130,6 +133,7 @@ def test_a_knife_edge_that_is_thrown_over_half_a_turn() -> None:
     pipeline.check(recipe(touching, 20.0, rows))
 
 
+@pytest.mark.slow
 def test_a_size_that_only_a_radius_of_curvature_bounds() -> None:
     """A knife edge on a line through the shaft sets no least size of its own."""
     text = (

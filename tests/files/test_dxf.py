@@ -4,12 +4,12 @@ import os
 import subprocess
 import sys
 
-import ezdxf
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.heavy import ezdxf
 from support.places import TESTS
 from support.splines import closed_spline, periodic_spline
 

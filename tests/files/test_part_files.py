@@ -5,13 +5,12 @@ import math
 import subprocess
 import sys
 
-import ezdxf
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
-from support.heavy import manifold3d, trimesh
+from support.heavy import ezdxf, manifold3d, trimesh
 from support.parts import CAM, files_of, found, recipe_of
 from support.places import TESTS
 
@@ -70,6 +69,7 @@ def test_drawing_has_each_feature_on_its_layer_as_cad_likes_it(tmp_path):
     assert "camgeo mark: 0.4 deep" in comments
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("version", ["R12", "R2000", "R2013"])
 @pytest.mark.parametrize("bore", ["{hexagon: 12, at: 30}", "12, flat: {across: 10.5, at: 45}"])
 def test_shaped_bores_in_any_version(tmp_path, version, bore):
@@ -100,6 +100,7 @@ def test_inch_drawing_is_in_inches_and_its_solid_in_millimetres(tmp_path):
     assert mesh.is_watertight
 
 
+@pytest.mark.slow
 def test_counter_clockwise_mirrors_every_feature(tmp_path):
     (tmp_path / "cw").mkdir()
     (tmp_path / "ccw").mkdir()
@@ -180,6 +181,7 @@ def test_regions_with_holes_are_covered_once(count, corners, turn, random):
     covers_once(SQUARE, holes)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("corners", few([3, 4, 5, 7, 24], 3))
 @pytest.mark.parametrize("turn", [0.0, 0.5, math.pi / 4])
 @pytest.mark.parametrize("side", [3, 5, 9])
@@ -212,6 +214,7 @@ def expected_volume(side):
     return disc_volume + hub - 8 * (bore + 3 * math.pi * 1.6**2) - screw - mark
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("side", ["top", "bottom", "both"])
 def test_solid_by_trimesh_manifold3d_and_closed_forms(tmp_path, side):
     part = (
@@ -251,6 +254,7 @@ def test_solid_by_trimesh_manifold3d_and_closed_forms(tmp_path, side):
     assert np.abs(slanted - math.sqrt(0.5)).max() < 2e-3
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("bore", ["{square: 9, at: 20}", "{hexagon: 10}", "10, flat: {across: 9, at: 70}"])
 def test_screw_and_bolts_through_the_hub_of_a_shaped_bore(tmp_path, bore):
     part = (

@@ -2,9 +2,9 @@
 
 import math
 
-import ezdxf
 import numpy as np
 import pytest
+from support.heavy import ezdxf
 from support.parts import files_of, found, recipe_of
 
 from camgeo.curve.curve import Curve
@@ -39,6 +39,7 @@ def volume(recipe, design):
     return 8 * (math.pi * 65**2 - area - HOLES)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 @pytest.mark.parametrize("form", ["arcs", "spline", "polyline"])
 def test_a_drawing_shows_outline_opening_and_holes(tmp_path, form, rotation):
@@ -70,6 +71,7 @@ def test_solids_have_the_volume_of_the_ring(tmp_path):
         assert {"outer", "holes", "thickness", "volume", "contour", "motion"} <= set(checks)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_step_file_has_the_volume_of_the_ring(tmp_path, form):
     pytest.importorskip("OCP")
@@ -103,6 +105,7 @@ def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
     assert checks["motion"].ok
 
 
+@pytest.mark.slow
 def test_a_trimmed_ring_tells_the_motion_that_is_lost(tmp_path):
     recipe = ring("{outer: 130}", CAM.format("  undercut: trim\n", 40, 160).replace("36\n", "30\n"), files="dxf")
     _, checks = found(recipe)

@@ -86,6 +86,7 @@ def kinds_in(path):
 # --- what is written ------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @kernel
 @pytest.mark.parametrize("form", ["arcs", "spline", "exact"])
 def test_a_plain_disc_in_each_form(tmp_path, form):
@@ -124,6 +125,7 @@ def test_every_feature_is_exact_and_is_found(tmp_path):
     assert found["B_SPLINE_CURVE_WITH_KNOTS"] == 2  # where the set screw meets hub and bore
 
 
+@pytest.mark.slow
 @kernel
 @pytest.mark.parametrize("side", few(["bottom", "both"], 2))
 def test_hubs_on_other_sides_mirrored(tmp_path, side):
@@ -251,6 +253,7 @@ def test_a_moved_corner_of_the_contour_is_caught(tmp_path):
     assert failures(path, recipe, design, 0.001) & {"watertight", "contour"}
 
 
+@pytest.mark.thin(2)
 @kernel
 @pytest.mark.parametrize(
     ("change", "check"),
@@ -307,6 +310,7 @@ def test_a_tolerance_below_rounding_is_refused(tmp_path):
         write_step(tmp_path / "x.step", outline, Solid(5.0, 0.0, 5.0, None, None, [], None), tolerance=1e-10)
 
 
+@pytest.mark.slow
 @kernel
 @pytest.mark.parametrize("form", few(["arcs", "spline"], 2))
 def test_fine_tolerances_are_held(tmp_path, form):

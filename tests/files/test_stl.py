@@ -116,6 +116,7 @@ def area(points):
     return sum(x[i - 1] * y[i] - x[i] * y[i - 1] for i in range(len(x))) / 2
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("bore", [None, 8.0])
 def test_solid_is_closed_oriented_and_of_exact_volume(tmp_path, shape, bore):

@@ -85,6 +85,7 @@ def sampled(data, count=9):
 # --- written and read back --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("form", ["arcs", "polyline", "spline"])
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_every_form_is_the_cam_by_a_second_reader_too(tmp_path, form, rotation):

@@ -65,6 +65,7 @@ def test_arcs_grow_as_the_third_root_of_the_tolerance_down_to_the_floor():
         assert count <= 1.03 * counts[1e4] * (0.995e4 / usable) ** (1.0 / 3.0)
 
 
+@pytest.mark.slow
 def test_a_finer_grid_has_the_share_of_a_density_that_is_known():
     """Between extrema of curvature of an ellipse, against quadrature on a grid of a million."""
     curve = curve_of("w-ellipse")

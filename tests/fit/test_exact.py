@@ -136,6 +136,7 @@ def test_what_is_no_closed_rational_spline(control: np.ndarray, weights: np.ndar
         RationalSpline(2, control, weights, Bound(0.0, 0.0))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(POLYNOMIALS, 3))
 def test_shipped_recipes_through_the_file(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES / f"{name}.yaml")
@@ -176,6 +177,7 @@ def second_opinion(path: Path) -> tuple[int, np.ndarray]:
     return degree, np.array([tuple(p) for p in points])[:, :2]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("rotation", few(["cw", "ccw"], 3))
 @pytest.mark.parametrize(
     ("text", "order"),
@@ -344,6 +346,7 @@ def test_a_harmonic_below_rounding_is_left_out_and_counted() -> None:
     assert polynomial(f"25 + {many}").order > 10
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("small", "told"),
     [

@@ -170,6 +170,7 @@ def some(count: int) -> int:
     return max(5, min(200, 3_000 // count))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_polygon_is_proved_full_and_small(case: Case, tolerance: float) -> None:
     curve = Curve.whole(case.shape)
@@ -181,6 +182,7 @@ def test_polygon_is_proved_full_and_small(case: Case, tolerance: float) -> None:
     assert polygon.count <= math.ceil(1.01 * least_vertices(curve, tolerance)) + 1 + case.breaks
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_arcs_are_proved_and_few(case: Case, tolerance: float) -> None:
     curve = Curve.whole(case.shape)
@@ -191,12 +193,14 @@ def test_arcs_are_proved_and_few(case: Case, tolerance: float) -> None:
     assert arcs.count <= 1.05 * least + 4 * (case.breaks + case.extrema)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("tolerance", few(TOLERANCES, 2))
 def test_spline_is_proved(case: Case, tolerance: float) -> None:
     spline = fit_spline(Curve.whole(case.shape), tolerance)
     check_proof(case, spline, spline_points(spline, some(spline.spans)), tolerance, 0.05)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("tolerance", TOLERANCES[:2])
 def test_curve_is_near_the_polygon_too(case: Case, tolerance: float) -> None:
     """The other half of the Hausdorff distance: no point of the contour is farther from every edge than promised."""
@@ -297,6 +301,7 @@ def needle(share: float, t: float) -> tuple[mp.mpf, mp.mpf, mp.mpf]:
     return a2 * c / r, b2 * s / r, a2 * b2 / r**3
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("thin", [2.0**-10, 2.0**-20, 2.0**-30, 2.0**-40])
 def test_a_flat_pair_that_is_almost_a_needle(thin: float) -> None:
     """The ellipse's radii of curvature, l thin to l/sqrt(thin): each within the rounding of the size, or its own."""

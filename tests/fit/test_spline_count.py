@@ -107,6 +107,7 @@ def test_no_span_of_a_right_length_does_better() -> None:
             assert np.abs(gap).max() > 0.98 * worst[0]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(CONTOURS, 4))
 def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> None:
     contour = designed(load(RECIPES / f"{name}.yaml")).contour
@@ -126,6 +127,7 @@ def test_shipped_contours_are_within_a_fifth_of_the_least_count(name: str) -> No
     assert np.mean(ratios) <= 1.16
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("tolerance", few([5e-4, 1.6e-4, 1e-5, 2e-6, 1e-6], 2))
 def test_where_sharing_does_not_settle_what_came_nearest_is_halved(tolerance: float) -> None:
     """A double roller in whose contour many places have no nearest cubic, and these move about as nodes are shared."""
@@ -148,6 +150,7 @@ def test_curves_missed_to_one_side_take_no_more_than_theory_does() -> None:
             assert found.count <= np.ceil(1.02 * totals * 10.0 ** (-exponent / 6)).sum() + 1
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("share", few([0.5, 0.98, 0.999], 4))
 @pytest.mark.parametrize("harmonic", [49, 97, 98, 99])
 def test_high_harmonics_near_undercut_are_held(harmonic: int, share: float) -> None:
@@ -165,6 +168,7 @@ def test_within_a_nanometre() -> None:
         assert found.count <= 1.2 * least_spline(curve, 1e-9)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", ["as-figure-2a", "w-law", "reuleaux"])
 def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
     contour = designed(load(RECIPES / f"{name}.yaml")).contour
@@ -179,6 +183,7 @@ def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
     assert abs(first[0] * last[1] - first[1] * last[0]) < 1e-11 * np.hypot(*first) * np.hypot(*last)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(["as-figure-2b", "reuleaux", "shu-wu", "w-booth"], 4))
 @pytest.mark.parametrize("times", [1.0, 2.0, 20.0])
 def test_any_tolerance_above_the_floor_is_held_after_a_few_attempts(

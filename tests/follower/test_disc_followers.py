@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+from support.brute_disc import peak
 from support.camfiles import arcs_through
 from support.cases import few
 from support.disc_followers import FOLLOWERS, contour, fitted, on_arm, on_stem
@@ -87,6 +88,7 @@ GUIDES = {
 }
 
 
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", GUIDES)
 def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
@@ -98,6 +100,7 @@ def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
         assert found == pytest.approx(expected, abs=1e-6 if radius else 1e-9)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", GUIDES)
 def test_knife_edge_and_shoe_contact_on_the_way_in(name, seed):
@@ -157,6 +160,7 @@ def spoilt(follower, seed, count=160, size=2e-3):
     return points + size * rng.uniform(-1.0, 1.0, points.shape)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", [name for name in FOLLOWERS if name != "shoe, trailing arm"])
 def test_the_greatest_error_is_proved_over_all_angles(name, seed):
@@ -164,19 +168,18 @@ def test_the_greatest_error_is_proved_over_all_angles(name, seed):
     points = spoilt(follower, seed)
     made = Contour.from_vertices(points) if seed % 2 else Contour.from_bulges(*arcs_through(points))
     judged = follower.judge(made, PHI).motion
-    dense = TURN / 40_000 * np.arange(40_000)
-    error = np.abs(follower.contact(made, dense) - follower.intended(dense))
     scale = 180.0 / np.pi if follower.unit == "deg" else 1.0
-    seen = scale * error.max()
+    seen = scale * peak(lambda phi: follower.contact(made, phi) - follower.intended(phi), 20_000)
     assert judged.extremes == "true"
     assert seen <= judged.bound * (1.0 + 1e-9)
-    assert seen >= judged.max * (1.0 - 2e-2)  # a corner may stand out between two samples; `there` is closer
-    assert judged.remainder <= 2e-3 * judged.max
+    assert seen >= judged.max * (1.0 - 1e-5)
+    assert judged.remainder <= 2e-6 * judged.max
     at = np.array([np.radians(judged.at_deg)])
     there = scale * np.abs(follower.contact(made, at) - follower.intended(at))[0]
     assert there == pytest.approx(judged.max, rel=1e-6)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("distance", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_the_limit_holds_on_parallel_contours_and_is_sharp(name, distance):
@@ -191,6 +194,7 @@ def test_the_limit_holds_on_parallel_contours_and_is_sharp(name, distance):
     assert found.worst[0] == pytest.approx(1e-3, rel=1e-4)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_dwells_are_told_and_how_flat_they_are(name):
     follower = FOLLOWERS[name]
@@ -286,6 +290,7 @@ def proved(follower, made, tolerance):
     assert deviation(made.as_arcs()[0], follower.envelope).worst[0] <= tolerance
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("width", [1.0, 0.1, 0.01])
 def test_a_rise_of_a_hundredth_of_a_degree_is_measured_as_any_other(width):
     """A wall almost along the line of travel: contact is found everywhere, limit and deviation are still right."""

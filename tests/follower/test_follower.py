@@ -84,6 +84,7 @@ def test_regular_polygon_where_the_given_angles_miss_the_worst(sides):
     assert np.abs(normals - motion.at_deg).min() < 1e-9
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("share", [0.1, 0.3, 0.5, 0.7])
 @pytest.mark.parametrize("count", [3, 7, 40])
 @pytest.mark.parametrize("turn", [0.0, -1e-17, 1e-17, 0.4, np.pi / 2])
@@ -222,6 +223,7 @@ PAIRS = {
 }  # fmt: skip
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize("count", [9, 100, 2000])
 def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
@@ -244,6 +246,7 @@ def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
     assert there[0, 1] - there[1, 1] == pytest.approx(judged.play.most, rel=1e-6)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("count", few([600, 1600], 2))
 @pytest.mark.parametrize("out", [1e-4, -1e-4])
 def test_errors_of_a_pair_are_settled_where_the_curvature_jumps(count, out):
@@ -384,6 +387,7 @@ def test_a_roller_that_meets_nothing():
         follower.judge(polygon(circle_points(8) + np.array([200.0, 0.0])), PHI)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(DOUBLES, 4, first=1))
 def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     """The exact contour moved outward and inward by e all round is the worst that e allows."""

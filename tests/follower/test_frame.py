@@ -76,6 +76,7 @@ def laid(mechanism, vertices, rest=WAYS[0]):
 # --- against plain geometry -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 def test_outputs_by_vertices(pair):
     """In every way of resting, at given shaft angles: the same output as of the turned vertices in a rigid frame."""
     mechanism, bench = pair
@@ -86,6 +87,7 @@ def test_outputs_by_vertices(pair):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * max(1.0, np.abs(expected).max()))
 
 
+@pytest.mark.thin(3)
 def test_the_verdict_by_vertices(pair):
     """Greatest error, rms, increment and play: nothing that dense sampling finds is missed, and nothing made up."""
     mechanism, bench = pair
@@ -137,6 +139,7 @@ def test_a_linkage_of_a_micrometre_and_of_a_kilometre(size):
         assert (play.least / size, play.most / size) == pytest.approx((other.least, other.most), abs=1e-11)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [-0.01, 0.004])
 def test_play_of_a_cam_that_is_smaller_or_larger_all_round(offset):
     vertices, bulges = arcs_through(cam(6000, 25.0 + offset))
@@ -163,6 +166,7 @@ def test_no_error_between_the_samples_is_missed():
     assert np.radians(one.max) == pytest.approx(sampled, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_exact_arcs_give_no_error():
     """A Reuleaux triangle with rounded corners, drawn as its six arcs: its lift jumps in p'' where the arcs meet."""
     lift = lift_reuleaux(3, BREADTH, 6.0)
@@ -231,6 +235,7 @@ def test_the_limit_is_the_sensitivity_times_the_tolerance(pair, tolerance):
     assert implied_limit(mechanism, tolerance) == pytest.approx(first_order, rel=max(0.2 * tolerance, 1e-6))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("tolerance", few([1e-3, 0.1], 2))
 def test_a_parallel_cam_uses_the_whole_limit_and_no_more(pair, tolerance):
     """All round outside by the tolerance: the four ways of resting are the four combinations of signs."""
@@ -289,6 +294,7 @@ def test_a_contour_that_turns_the_shaft_back():
 # --- dwells -----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("over", ["shaft", "relative"])
 def test_the_dwell_of_the_paper_from_a_file(over):
     """AS Figure 9: about 45 degrees of the relative angle around 3 pi/2; less over the shaft angle."""
@@ -306,6 +312,7 @@ def test_the_dwell_of_the_paper_from_a_file(over):
     assert verdict.error.dwell_flatness == pytest.approx(0.1, abs=2 * verdict.error.max)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("over", few(["shaft", "relative"], 2))
 def test_a_dwell_by_sampling(over):
     """On a spoilt cam each way of resting dwells for its own time; the samples' longest window tells how long."""
@@ -356,6 +363,7 @@ def wavy_range(a, b):
     return tuple(found)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("band", few([0.02, 0.2, 1.0, 3.0], 2))
 @pytest.mark.parametrize("count", [60, 3000])
 def test_the_longest_dwell_wherever_it_starts(band, count):
@@ -370,6 +378,7 @@ def test_the_longest_dwell_wherever_it_starts(band, count):
         assert np.ptp(inside) <= band * (1 + 1e-9)
 
 
+@pytest.mark.slow
 def test_flatness_is_the_range_over_the_intended_dwell():
     vertices, band = uneven(300, 0.02), np.radians(0.1)
     verdict = judge_frame(Contour.from_vertices(vertices), FOUR_BAR, SHAFT, 1e-3, band=band)

@@ -3,9 +3,9 @@
 import math
 from dataclasses import replace
 
-import ezdxf
 import numpy as np
 import pytest
+from support.heavy import ezdxf
 from support.parts import failures, files_of, recipe_of
 
 from camgeo.synthesis.design import intended
@@ -73,6 +73,7 @@ def test_untouched_it_holds(drawing, tmp_path):
     assert spoilt(drawing, tmp_path, lambda space: space) == set()
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("which", range(4))
 @pytest.mark.parametrize("angle", [0.0, 2.0])
 def test_hole_moved_by_three_tolerances(drawing, tmp_path, which, angle):
@@ -215,6 +216,7 @@ VARIANTS = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", VARIANTS)
 def test_fault_of_a_solid(solid, tmp_path, name):
     recipe, design, _ = solid

@@ -3,8 +3,6 @@
 The sound files are fits of curves that know nothing of the judge. A ring is drawn as its opening in a circle.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from support.camfiles import arcs_through, solid_triangles, write_dxf, write_stl
@@ -28,14 +26,13 @@ from camgeo.fit.spline import fit_spline
 from kin.follower.follower import Roller
 from kin.follower.guide import Translating
 from kin.judge.holes import round_hole
-from kin.judge.milling import Milling
 from kin.judge.verify import Intent, Limits, verify
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 
 OUTER = 200.0
 LIMITS = Limits(tolerance=1e-4)
-DENSE = TURN / 8000 * np.arange(8000)
+DENSE = TURN / 4000 * np.arange(4000)
 
 
 def intent(follower, **other):
@@ -57,6 +54,7 @@ def rotated(points, degrees):
     return points @ np.array([[c, s], [-s, c]])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_sound_file_passes(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -67,6 +65,7 @@ def test_a_sound_file_passes(tmp_path, name):
     assert verdict.pieces == made.count
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_spline_under_every_follower(tmp_path, name):
     follower, path = FOLLOWERS[name], tmp_path / "cam.dxf"
@@ -78,6 +77,7 @@ def test_a_spline_under_every_follower(tmp_path, name):
     assert verdict.motion.max <= follower.motion_limit(1e-5 + 1e-8)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -90,6 +90,7 @@ def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
         assert caught >= {"contour", "motion"}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("depth", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
@@ -130,6 +131,7 @@ MISTAKEN = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", MISTAKEN)
 def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
     name, meant = MISTAKEN[fault]
@@ -191,11 +193,6 @@ def test_a_ring_as_a_solid_of_faces(tmp_path):
     for outer, failed in ((40.0, set()), (40.002, {"outer", "volume"})):
         verdict = verify(path, Intent(follower, outer=outer, thickness=8.0), 30, LIMITS)
         assert {check.name for check in verdict.checks if not check.ok} == failed
-    asked = Intent(follower, outer=40.0)
-    program = tmp_path / "ring.gcode"
-    program.write_text("G21\n")
-    (only,) = verify(program, replace(asked, milling=Milling(3.0, 8.0, 4.0)), 30, LIMITS).checks
-    assert "a program that mills a ring is not judged" in only.detail
 
 
 def test_the_side_of_an_arm_is_not_lost_in_the_ring(tmp_path):

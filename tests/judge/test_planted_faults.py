@@ -4,7 +4,6 @@ The sound files come from formulas by numpy alone (`camfiles`). A fault that mov
 one that contact cannot feel must be seen in the contour.
 """
 
-import ezdxf
 import numpy as np
 import pytest
 from support.camfiles import (
@@ -18,6 +17,7 @@ from support.camfiles import (
     write_stl,
 )
 from support.cases import few
+from support.heavy import ezdxf
 
 from kin.follower.follower import DoubleRoller, RollerYoke, Yoke
 from kin.judge.verify import Intent, Limits, verify
@@ -76,6 +76,7 @@ def outward(points, k):
 # --- sound files ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("form", ["polyline", "arcs", "lines", "stl"])
 def test_a_sound_file_passes_every_check(tmp_path, cam, form):
     intent, points = cam
@@ -102,6 +103,7 @@ def test_a_sound_file_passes_every_check(tmp_path, cam, form):
 # --- drawings ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("depth", [0.02, -0.02])
 @pytest.mark.parametrize("k", [0, EDGES - 1])
 def test_a_vertex_moved(tmp_path, cam, depth, k):
@@ -114,6 +116,7 @@ def test_a_vertex_moved(tmp_path, cam, depth, k):
     assert ("motion" in found) == (depth > 0)
 
 
+@pytest.mark.thin(3)
 def test_a_vertex_moved_along_the_contour_until_it_turns_back(tmp_path, cam):
     intent, points = cam
     spoilt = points(EDGES)
@@ -121,6 +124,7 @@ def test_a_vertex_moved_along_the_contour_until_it_turns_back(tmp_path, cam):
     assert failures(write_dxf(tmp_path / "cam.dxf", spoilt), intent) & {"contour", "closed"}
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("factor", [-1.0, 0.0, 2.0])
 @pytest.mark.parametrize("rank", [0, 10])
 def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, cam, factor, rank):
@@ -139,6 +143,7 @@ def test_a_missing_segment(tmp_path, cam):
     assert failures(write_lines(tmp_path / "cam.dxf", points(400), leave_out=(123,)), intent) == {"closed"}
 
 
+@pytest.mark.thin(3)
 def test_a_reversed_segment(tmp_path, cam):
     """Two vertices of a polyline in the wrong order: within the tolerance everywhere, yet it runs back on itself."""
     intent, points = cam
@@ -150,6 +155,7 @@ def test_a_reversed_segment(tmp_path, cam):
     assert "turns back on itself" in contour.detail
 
 
+@pytest.mark.thin(3)
 def test_a_stretch_drawn_backwards(tmp_path, cam):
     intent, points = cam
     spoilt = points(EDGES)
@@ -163,30 +169,35 @@ def test_an_open_contour(tmp_path, cam):
     assert failures(path, intent) == {"closed"}
 
 
+@pytest.mark.thin(3)
 def test_a_contour_that_is_closed_by_a_chord(tmp_path, cam):
     """Twenty vertices left out: closed, but flat where it should be curved."""
     intent, points = cam
     assert "contour" in failures(write_dxf(tmp_path / "cam.dxf", points(EDGES)[:-40]), intent)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("scale", [1.001, 0.999])
 def test_scale(tmp_path, cam, scale):
     intent, points = cam
     assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "cam.dxf", scale * points(EDGES)), intent)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("degrees", [0.2, -0.2, 45.0])
 def test_a_turn(tmp_path, cam, degrees):
     intent, points = cam
     assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "cam.dxf", turned(points(EDGES), degrees)), intent)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("shift", [(0.01, 0.0), (0.0, -0.01)])
 def test_a_shift(tmp_path, cam, shift):
     intent, points = cam
     assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "cam.dxf", points(EDGES) + shift), intent)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("units", "stated"), [(1, 25.4), (5, 10.0), (6, 1000.0)])
 def test_wrong_units(tmp_path, cam, units, stated):
     intent, points = cam
@@ -199,12 +210,14 @@ def test_wrong_units(tmp_path, cam, units, stated):
     assert not verdict.ok
 
 
+@pytest.mark.thin(3)
 def test_no_units(tmp_path, cam):
     """Only the units are at fault: the rest is judged in those that were meant."""
     intent, points = cam
     assert failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), units=0), intent) == {"units"}
 
 
+@pytest.mark.thin(3)
 def test_inches_meant_and_inches_drawn(tmp_path, cam):
     intent, points = cam
     inches = Intent(intent.follower, mm=25.4, bore=10.0)
@@ -216,11 +229,13 @@ def test_inches_meant_and_inches_drawn(tmp_path, cam):
     assert "units" in failures(write_dxf(tmp_path / "not.dxf", inch, bores=[(0, 0, 5 / 25.4)]), inches)
 
 
+@pytest.mark.thin(3)
 def test_everything_drawn_twice(tmp_path, cam):
     intent, points = cam
     assert "closed" in failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), twice=True), intent)
 
 
+@pytest.mark.thin(3)
 def test_one_segment_drawn_twice(tmp_path, cam):
     intent, points = cam
     vertices = points(EDGES)
@@ -231,6 +246,7 @@ def test_one_segment_drawn_twice(tmp_path, cam):
     assert "closed" in failures(write_dxf(tmp_path / "cam.dxf", vertices, extra=once_more), intent)
 
 
+@pytest.mark.thin(3)
 def test_a_segment_of_no_length(tmp_path, cam):
     intent, points = cam
     vertices = points(EDGES)
@@ -238,6 +254,7 @@ def test_a_segment_of_no_length(tmp_path, cam):
     assert "closed" in failures(write_dxf(tmp_path / "cam.dxf", doubled), intent)
 
 
+@pytest.mark.thin(3)
 def test_a_mirrored_cam(tmp_path, cam):
     intent, points = cam
     mirrored = points(EDGES) * [1.0, -1.0]
@@ -249,6 +266,7 @@ def test_a_mirrored_cam(tmp_path, cam):
         assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "straight.dxf", points(EDGES)), meant)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "bores",
     [
@@ -265,6 +283,7 @@ def test_the_bore(tmp_path, cam, bores):
     assert failures(write_dxf(tmp_path / "cam.dxf", points(EDGES), bores=bores), intent) == {"bore"}
 
 
+@pytest.mark.thin(3)
 def test_a_bore_where_none_is_meant(tmp_path, cam):
     intent, points = cam
     none = Intent(intent.follower)
@@ -285,6 +304,7 @@ def test_an_angular_bore(tmp_path):
     assert failures(path, intent) == {"bore"}
 
 
+@pytest.mark.thin(3)
 def test_a_contour_that_crosses_itself(tmp_path, cam):
     intent, points = cam
     vertices = points(EDGES)
@@ -293,6 +313,7 @@ def test_a_contour_that_crosses_itself(tmp_path, cam):
     assert "closed" in failures(path, intent, Limits(tolerance=5e-3))
 
 
+@pytest.mark.thin(3)
 def test_a_drawing_cut_short(tmp_path, cam):
     intent, points = cam
     path = write_dxf(tmp_path / "cam.dxf", points(EDGES))
@@ -355,6 +376,7 @@ def test_two_contours_each_within_the_tolerance_can_jam_a_yoke(tmp_path):
     assert failures(narrow, intent, Limits(1e-3, play=1e-3)) == {"constant-breadth"}
 
 
+@pytest.mark.thin(3)
 def test_a_motion_limit_of_the_callers_own(tmp_path, cam):
     intent, points = cam
     path = write_dxf(tmp_path / "cam.dxf", points(EDGES))
@@ -384,6 +406,7 @@ def test_a_solid_with_a_triangle_missing(tmp_path, cam):
     assert "watertight" in found
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("which", [0, 5, -1])
 def test_a_solid_with_one_triangle_flipped(tmp_path, cam, which):
     intent, points = cam
@@ -392,6 +415,7 @@ def test_a_solid_with_one_triangle_flipped(tmp_path, cam, which):
     assert "watertight" in failures(write_stl(tmp_path / "cam.stl", triangles), intent)
 
 
+@pytest.mark.thin(3)
 def test_a_solid_turned_inside_out(tmp_path, cam):
     intent, points = cam
     assert "watertight" in failures(write_stl(tmp_path / "cam.stl", triangles_of(points(EDGES))[:, ::-1]), intent)
@@ -412,6 +436,7 @@ def test_a_solid_cut_short(tmp_path, cam, lost):
     assert failures(path, intent) == {"watertight"}
 
 
+@pytest.mark.thin(3)
 def test_a_solid_moved(tmp_path, cam):
     intent, points = cam
     aside = write_stl(tmp_path / "aside.stl", moved(triangles_of(points(EDGES)), 0.02, 0.0))
@@ -420,17 +445,20 @@ def test_a_solid_moved(tmp_path, cam):
     assert failures(raised, intent) == {"thickness"}
 
 
+@pytest.mark.thin(3)
 def test_a_solid_too_thick(tmp_path, cam):
     intent, points = cam
     assert failures(stl(tmp_path, points(EDGES), high=8.01), intent) == {"thickness"}
 
 
+@pytest.mark.thin(3)
 def test_a_solid_in_inches(tmp_path, cam):
     intent, points = cam
     path = write_stl(tmp_path / "cam.stl", triangles_of(points(EDGES)) / 25.4)
     assert {"contour", "motion", "thickness"} <= failures(path, intent)
 
 
+@pytest.mark.thin(3)
 def test_a_solid_whose_top_differs_from_its_bottom(tmp_path, cam):
     """One corner of the top moved: the walls lean, and the section halfway up tells half of it."""
     intent, points = cam
@@ -452,17 +480,20 @@ def test_a_solid_without_its_bore(tmp_path, cam):
     assert failures(write_stl(tmp_path / "cam.stl", fan), intent) == {"bore", "volume"}
 
 
+@pytest.mark.thin(3)
 def test_a_solid_with_a_wide_bore(tmp_path, cam):
     intent, points = cam
     assert {"bore", "volume"} <= failures(stl(tmp_path, points(EDGES), bore=5.05), intent)
 
 
+@pytest.mark.thin(3)
 def test_a_solid_scaled_or_turned(tmp_path, cam):
     intent, points = cam
     assert {"contour", "motion", "volume"} <= failures(stl(tmp_path, 1.001 * points(EDGES)), intent)
     assert {"contour", "motion"} <= failures(stl(tmp_path, turned(points(EDGES), 0.2)), intent)
 
 
+@pytest.mark.thin(3)
 def test_a_solid_with_a_corner_moved(tmp_path, cam):
     intent, points = cam
     spoilt = points(EDGES)
@@ -485,6 +516,7 @@ def test_a_missing_file_and_another_suffix_are_the_callers_affair(tmp_path, cam)
         verify(tmp_path / "cam.dxf", cam[0], 0, LIMITS)
 
 
+@pytest.mark.thin(3)
 def test_the_suffix_may_be_in_capitals(tmp_path, cam):
     intent, points = cam
     path = write_dxf(tmp_path / "CAM.DXF", points(EDGES))

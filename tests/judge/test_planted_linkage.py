@@ -101,6 +101,7 @@ def test_a_dwell_that_need_not_last_is_told_and_not_judged(tmp_path):
     assert verdict.linkage.error.dwell_flatness is None
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("share", [1.0, -1.0])
 def test_a_file_that_uses_its_whole_tolerance_passes(tmp_path, share):
     """Arcs all round outside or inside by the tolerance: the implied limit is reached and holds."""
@@ -110,6 +111,7 @@ def test_a_file_that_uses_its_whole_tolerance_passes(tmp_path, share):
     assert checks["linkage-error"].value == pytest.approx(checks["linkage-error"].limit, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_any_contour_within_the_tolerance_passes(tmp_path):
     """Corners scattered within the tolerance, by chance: whatever they do together, no check fails."""
     rng = np.random.default_rng(7)
@@ -141,6 +143,7 @@ def test_mirrored_drawings(tmp_path):
     assert failures(path, dataclasses.replace(INTENT, mirrored=True)) == set()
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("linkage", "dyads", "unit"),
     [
@@ -188,6 +191,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault(tmp_path, fault, form):
@@ -195,6 +199,7 @@ def test_a_fault(tmp_path, fault, form):
     assert caught <= failures(written(tmp_path, form, points()))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("form", few(FORMS, 3))
 @pytest.mark.parametrize("k", range(0, EDGES, 200))
 def test_metal_left_on_anywhere_is_felt_by_the_output(tmp_path, form, k):
@@ -204,6 +209,7 @@ def test_metal_left_on_anywhere_is_felt_by_the_output(tmp_path, form, k):
     assert checks["linkage-error"].value > checks["linkage-error"].limit
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("factor", [-1.0, 0.0, 2.0])
 def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, factor):
     """Metal on is felt by contact, metal off over a short chord is not: the contour tells of either."""
@@ -218,6 +224,7 @@ def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, factor):
     assert found >= {"contour", "motion", "linkage-error"}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", FORMS)
 def test_a_dwell_spoilt_by_a_bump_within_it(tmp_path, form):
     """Metal on where the output should stand still, which lifts it out of the band."""

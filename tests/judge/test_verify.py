@@ -1,10 +1,9 @@
 """The verdict as a whole: splines and ellipses, trimmed undercut, figures at the edge of their limits, what is said."""
 
-import ezdxf
 import numpy as np
 import pytest
 from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_dxf, write_stl
-from support.heavy import interpolate, shapely
+from support.heavy import ezdxf, interpolate, shapely
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
@@ -57,6 +56,7 @@ def supported(t, mean=25.0, amplitude=2.0):
 # --- curves of other kinds --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("count", "expected"), [(30, 1e-2), (120, 1e-4), (480, 1e-6)])
 def test_a_cubic_spline_in_a_yoke(tmp_path, count, expected):
     """Error measured by the verdict against the spline evaluated by scipy at 100 000 places."""
@@ -128,6 +128,7 @@ def test_a_circle_entity_under_one_roller(tmp_path):
 # --- on the edge ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("e", [1e-1, 1e-3, 1e-6])
 def test_a_contour_that_uses_the_whole_tolerance_just_holds(tmp_path, e):
     """A polygon with its corners outside a circle by exactly e, its edges inside by less."""
@@ -188,6 +189,7 @@ def halfplanes(lift, count):
     return np.column_stack([b[:, 1] - a[:, 1], a[:, 0] - b[:, 0]]) / cross[:, None]
 
 
+@pytest.mark.slow
 def test_a_trimmed_undercut_of_a_yoke(tmp_path):
     """p = 25 + 4 cos 3t has rho down to -7: three corners remain; the lift lost there is reported, not judged."""
     lift = lift_hypocycloid(3, 4.0, 50.0)
@@ -207,6 +209,7 @@ def test_a_trimmed_undercut_of_a_yoke(tmp_path):
     assert not named(verify(path, Intent(yoke, bore=10.0), 3600, Limits(1e-3)))["motion"].ok
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", [0.02, -0.02])
 def test_a_fault_on_a_trimmed_contour(tmp_path, fault):
     lift = lift_hypocycloid(3, 4.0, 50.0)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin.law.programme import LAWS, IntentError
 from kin.law.sources.laws import _MEMBERS, NAMES, boundary, named, scca, scca_motion, sines, split, trapezoid
@@ -190,7 +191,7 @@ def closed_form(b, c, x):
     return v, v * ca / (cv * (1 - x)), v / cv * math.pi * ca / min(b, d) / (1 - x) ** 2
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(b=SHARES, share=SHARES, x=st.one_of(st.just(0.0), st.floats(0.01, 0.9)))
 def test_any_member_has_nortons_peaks_and_joins(b, share, x):
     c = (1 - b) * share
@@ -277,7 +278,7 @@ def test_harmonics_with_free_weights():
     assert law.motion.derivatives(1.0, 2, -1)[:, 0] == pytest.approx([1, 0, 0], abs=1e-14)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.lists(st.floats(-5, 5), min_size=6, max_size=6))
 def test_polynomials_take_their_values_at_both_ends(values):
     start, end = values[:3], values[3:]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.cases import examples
 
 from kin.law import programme as today
 from kin.law.formula.formula import Formula
@@ -76,7 +77,7 @@ def test_a_return_runs_an_asymmetric_law_backwards():
     assert all(jump[0] >= 3 for joint in motion.joints for jump in joint.jumps)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 @given(
     st.lists(st.tuples(st.sampled_from(SMOOTH), st.floats(20, 100), st.floats(0.5, 30)), min_size=1, max_size=3),
     st.floats(0.2, 0.8),

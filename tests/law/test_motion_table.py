@@ -77,7 +77,7 @@ def test_a_lobe_ends_with_four_derivatives_at_rest():
             (2, 8, 8, 20, 26),
             (
                 "the powers of a lobe are 2 and four more whole numbers that rise to 100 at most, "
-                "such as 2-8-14-20-26, not 2-8-8-20-26"
+                "such as [2, 8, 14, 20, 26], not [2, 8, 8, 20, 26]"
             ),
         ),
     ],

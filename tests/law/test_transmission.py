@@ -102,6 +102,7 @@ def test_closing_equation(lam, mu, name):
     np.testing.assert_allclose(closing[0] / (4 * L**2 * math.sin(law.alpha) ** 2), 1, atol=1e-12)
 
 
+@pytest.mark.thin(3)
 @every_law
 def test_affinity(lam, mu, name):
     """W 4.9: (phi, psi) -> (phi - psi + delta, -psi) maps the law onto itself, slope -psi'/(1 - psi') included."""
@@ -124,6 +125,7 @@ def test_the_parameter_of_a_polar_angle(lam, mu, name):
     np.testing.assert_allclose(image, -law.at(tau, 0)[1][0], atol=1e-14)  # W 4.4
 
 
+@pytest.mark.thin(3)
 @every_law
 def test_chords_close_after_two_lambda_steps(lam, mu, name):
     """W section 6: chords of length 2 l sin(alpha), stepped round the pitch curve from anywhere, close."""
@@ -155,6 +157,7 @@ def test_shaft_angle_rises_and_turns_back_nowhere(lam, mu, name):
     assert psi[0] == pytest.approx(psi[1], abs=1e-14)
 
 
+@pytest.mark.thin(3)
 @every_law
 def test_the_law_over_the_shaft_angle_is_the_parametric_one(lam, mu, name):
     law = made(lam, mu, name)
@@ -170,6 +173,7 @@ def test_the_law_over_the_shaft_angle_is_the_parametric_one(lam, mu, name):
         np.testing.assert_allclose(over_shaft[k], true, atol=1e-9 * np.abs(true).max())
 
 
+@pytest.mark.thin(3)
 @every_law
 def test_enclosures_hold(lam, mu, name):
     law = made(lam, mu, name)
@@ -185,6 +189,7 @@ def test_enclosures_hold(lam, mu, name):
     assert psi.order == 4
 
 
+@pytest.mark.thin(3)
 @every_law
 def test_breaks_steady_stretches_and_known_arcs(lam, mu, name):
     law = made(lam, mu, name)

@@ -251,7 +251,7 @@ def test_the_line_of_force_pushes_the_output_on(linkage, pivot):
     assert np.abs(lever)[certain] == pytest.approx(sine[certain], abs=1e-6)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(linkages, pivots)
 def test_the_rate_of_the_shaft_is_the_lever_of_the_force_on_the_output(linkage, pivot):
     """phi' = lever of P / lever of the shaft, whatever the linkage: virtual work, from forces alone."""
@@ -345,6 +345,7 @@ def test_what_does_not_turn_says_where():
         mechanism(InvertedSliderCrank(20.0, 0.0)).relative(0.3)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("gap", few([1e-3, 1e-6, 1e-9, 1e-13, 0.0, -1e-13, -1e-9, -1e-6], 2))
 @pytest.mark.parametrize("limit", ["drawn in", "stretched"])
 def test_mobility_close_to_a_limit_position(gap, limit):
@@ -366,6 +367,7 @@ def test_mobility_close_to_a_limit_position(gap, limit):
 # Figures
 
 
+@pytest.mark.thin(3)
 def test_figures_against_dense_samples(driven):
     figures = driven.figures()
     theta = np.linspace(0, TURN, 20001)
@@ -457,6 +459,7 @@ def test_a_round_cam_about_its_centre_stands_still_and_rests_on_the_dead_centre(
 # Other lifts
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("kind", "dyads"),
     few([*((kind, ()) for kind in LINKAGES), ("four-bar", SIX_BAR), ("oscillating yoke", SIX_BAR)], 3),

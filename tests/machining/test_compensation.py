@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-import ezdxf
 import numpy as np
 import pytest
 from support.cases import few
-from support.heavy import shapely, trimesh
+from support.heavy import ezdxf, shapely, trimesh
 
 from camgeo.cli.main import main
 from camgeo.output import pipeline
@@ -53,6 +52,7 @@ def region(path, per_piece=30):
     return shapely.Polygon(drawing.contour.sample(per_piece), holes)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("cam", "part", "top"),
     few(
@@ -122,6 +122,7 @@ def test_an_exact_spline_of_a_parallel(tmp_path):
     assert report["files"][0]["measured_error"] < 1e-11
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("cam", few([SUPPORT, ROLLER, PAIR, SHU_WU], 2))
 def test_no_file_passes_for_another(tmp_path, cam):
     """A nominal file in the place of a compensated one, and the reverse, fails; so does half of the kerf."""
@@ -231,6 +232,7 @@ def test_from_the_command_line(tmp_path, capsys):
     capsys.readouterr()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cam", few([SUPPORT, ROLLER], 2))
 def test_solids_of_other_formats(tmp_path, cam):
     pytest.importorskip("OCP")

@@ -3,11 +3,10 @@
 from itertools import pairwise
 from pathlib import Path
 
-import ezdxf
 import numpy as np
 import pytest
 from support.cases import few
-from support.heavy import shapely
+from support.heavy import ezdxf, shapely
 
 from camgeo.curve.backwards import Backwards, least_hollow
 from camgeo.curve.curve import Curve, Run
@@ -81,6 +80,7 @@ def test_a_shape_run_backwards_is_the_same_shape(body):
         assert (here.turn <= bounds.turn_high).all()
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("body", "radius"),
     [(ROLLER, 3.0), (ROLLER, 8.0), (ROLLER, 18.0), (DWELLS, 5.0), (SHU_WU, 10.0), (REULEAUX, 1.0), (TRIMMED, 4.0)],
@@ -103,6 +103,7 @@ def _all(contour):
     return np.concatenate([np.linspace(run.low, run.high, 8001)[:-1] for run in contour.runs])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", few([5.2, 9.0, 40.0], 3))
 def test_what_a_cutter_leaves_in_a_hollow(radius):
     _, design = design_of(DEEP)
@@ -120,6 +121,7 @@ def test_what_a_cutter_leaves_in_a_hollow(radius):
     assert apart.min() == pytest.approx(radius, abs=0.011), "the cutter never cuts into the contour"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("top", few(["", "rotation: ccw\n"], 2))
 def test_the_path_on_a_layer_of_its_own(tmp_path, top):
     body = top + ROLLER + "name: c\nexport: {files: [dxf, {dxf: {as: spline}}]}\nverify: {angles: 36}\n"

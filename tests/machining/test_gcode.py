@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
 from support.heavy import shapely
+from support.milled import swept
 
 from camgeo.cli.main import main
 from camgeo.machining.gcode import places, rounding
@@ -51,35 +52,6 @@ def made(folder, **asked):
     outcome = pipeline.export(recipe, folder)
     assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
     return recipe, outcome, outcome.folder / "c.ngc"
-
-
-def swept(path, radius, per_arc=60):
-    """What is left of a sheet at the bottom, by words taken apart here and discs swept by shapely."""
-    at, mode, lines = {"X": 0.0, "Y": 0.0, "Z": 0.0}, 0, []
-    unit = 25.4 if "G20" in path.read_text() else 1.0
-    for line in path.read_text().splitlines():
-        words = {k: float(v) for k, v in re.findall(r"([GXYZIJ])(-?[0-9.]+)", re.sub(r"\(.*\)", "", line))}
-        if "G" in words and words["G"] <= 3:
-            mode = int(words["G"])
-        start = np.array([at["X"], at["Y"]])
-        at |= {k: unit * v for k, v in words.items() if k in at}
-        end = np.array([at["X"], at["Y"]])
-        if mode == 0 or not {"X", "Y"} & words.keys():
-            continue
-        if mode == 1:
-            points = np.stack([start, end])
-        else:
-            centre = start + unit * np.array([words["I"], words["J"]])
-            a, b = np.arctan2(*(start - centre)[::-1]), np.arctan2(*(end - centre)[::-1])
-            sweep = (b - a) % (2 * np.pi) if mode == 3 else -((a - b) % (2 * np.pi))
-            angle = a + sweep * np.linspace(0.0, 1.0, per_arc)
-            points = centre + np.hypot(*(start - centre)) * np.column_stack([np.cos(angle), np.sin(angle)])
-        lines.append((at["Z"], points))
-    bottom = min(z for z, _ in lines)
-    cut = [shapely.LineString(points).buffer(radius, quad_segs=500) for z, points in lines if z == bottom]
-    size = 2.0 * max(np.abs(points).max() for _, points in lines)
-    left = shapely.difference(shapely.box(-size, -size, size, size), shapely.union_all(cut))
-    return bottom, sorted(left.geoms, key=lambda part: part.area)
 
 
 @pytest.mark.parametrize(
@@ -214,6 +186,7 @@ SLIGHT = {
 }
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("usual", few(SLIGHT, 2))
 @pytest.mark.parametrize("tolerance", [0.001, 0.1])
 def test_slight_figures_do_not_round_away(tmp_path, usual, tolerance):
@@ -296,6 +269,7 @@ def test_a_depth_of_cut_without_end_of_passes_is_refused():
         pipeline.check(slight)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(("side", "safe"), [("top", 13), ("both", 12.5), ("bottom", 5)])
 def test_a_hub_stays_and_what_is_not_milled_is_named(tmp_path, side, safe):
     part = HUBBED % f", side: {side}"
@@ -315,6 +289,7 @@ def test_a_hub_stays_and_what_is_not_milled_is_named(tmp_path, side, safe):
     assert sorted(told) == sorted(one.name for one in foreseen(recipe) if one.file == "c.ngc")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("old", "new", "check"),
     [

@@ -100,6 +100,7 @@ def series(exact, t: float) -> list[mpmath.mpf]:
     return mpmath.taylor(exact, mpmath.mpf(t), ORDER)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_every_coefficient_is_right(name: str) -> None:
     function, exact, (least, greatest), ulps = FUNCTIONS[name]
@@ -111,6 +112,7 @@ def test_every_coefficient_is_right(name: str) -> None:
         assert max(abs(mpmath.mpf(a) - b) for a, b in zip(found[:, i], true, strict=True)) <= ulps * 2.0**-53 * size
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_ball_jet_holds_the_series_of_every_point_inside(name: str) -> None:
     function, exact, (least, greatest), _ = FUNCTIONS[name]

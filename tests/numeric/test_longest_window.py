@@ -182,6 +182,7 @@ def test_slopes_balance_about_a_flat_place_of_a_monotone_stretch():
     assert first[0].least == pytest.approx(math.pi - band / 2, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_an_interior_wiggle_smaller_than_the_band_is_within_the_dwell_and_a_larger_one_divides_it():
     """sin x + sin(3 x)/9, flat to the fourth order at pi/2, with a wiggle 0.02 high."""
     f = wave([0] * 20, [1.0, 0, 1 / 9, *[0] * 16, 0.01])

@@ -212,6 +212,7 @@ def test_an_output_that_stands_still_but_for_rounding_is_one_long_dwell(tmp_path
     assert {row["length_deg"] for row in linkage["dwells"]} == {360.0}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("over", "length"), [("shaft", 37.05), ("relative", 45.17)])
 def test_the_dwell_over_the_angle_asked_for_comes_first(over: str, length: float) -> None:
     report = pipeline.check(recipe("at_least: 36", f"over: {over}")).report
@@ -277,6 +278,7 @@ def test_what_would_bring_the_shaft_within_the_cam_does() -> None:
     designed(recipe("+ 40*cos(t)", "+ 40*cos(t)\n  shaft: [40, 0]", beside))
 
 
+@pytest.mark.slow
 def test_an_inch_recipe_says_the_same_in_inches(tmp_path: Path) -> None:
     slider = FOUR_BAR.replace("{kind: four-bar, ground: 80, coupler: 70, rocker: 105}", "{kind: slider-crank, %s}")
     slider = slider.replace("band: 0.1, at_least: 36", "band: %s")
@@ -302,6 +304,7 @@ def test_an_inch_recipe_says_the_same_in_inches(tmp_path: Path) -> None:
     assert "output_in" in columns
 
 
+@pytest.mark.slow
 def test_counter_clockwise_is_the_mirror_image_with_the_same_motion(tmp_path: Path) -> None:
     cw = pipeline.export(recipe(), tmp_path / "cw").report
     ccw = pipeline.export(recipe("name: four-bar", "name: four-bar\nrotation: ccw"), tmp_path / "ccw").report

@@ -130,6 +130,7 @@ def test_the_assembly_moves(tmp_path):
     assert {channel["target"]["node"] for channel in document["animations"][0]["channels"]} == {0, 2}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("kind", ["stl", "3mf", "glb"])
 def test_the_same_bytes_twice(tmp_path, kind):
     found = []

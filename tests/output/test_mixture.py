@@ -75,6 +75,7 @@ def test_changed_or_taken_away_by_hand(recipe: Path, capsys: pytest.CaptureFixtu
     assert said_of(capsys, "check", "cam.yaml", "--out", "elsewhere") == ""
 
 
+@pytest.mark.slow
 def test_studies_and_pages_too(recipe: Path) -> None:
     pytest.importorskip("matplotlib")
     assert main(["study", "cam.yaml", "--form", "arcs", "--patience", "0.001"]) == 0

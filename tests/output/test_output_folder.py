@@ -287,6 +287,7 @@ def steps_of_a_run(tmp_path):
         return failing.calls
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("times", [1, 2, 10**6])
 def test_any_step_may_fail(tmp_path, times):
     """Step k fails, alone or with those after it: old set or new one, at once where one failure is all."""
@@ -337,6 +338,7 @@ def cut_off(tmp_path_factory):
     pytest.fail("no swap was cut off")
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("times", [1, 10**6])
 def test_any_step_of_the_recovery_may_fail(tmp_path, cut_off, times):
     for first in range(1, 30):

@@ -9,10 +9,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 from unittest import mock
 
-import ezdxf
 import numpy as np
 import pytest
 from support.cases import few
+from support.heavy import ezdxf
 from support.places import SHIPPED as RECIPES
 
 from camgeo.common.clock import Clock
@@ -46,6 +46,7 @@ def test_there_are_recipes() -> None:
     assert len(RECIPES) >= 17
 
 
+@pytest.mark.thin(9)
 @pytest.mark.parametrize("path", few(RECIPES, 3), ids=lambda path: path.stem)
 def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> None:
     recipe = load(path)
@@ -81,6 +82,7 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
         assert 0.0 <= motion["at_deg"] < 360.0
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-10])
 def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> None:
     text = "{kind: double-roller, ratio: 2, arm: 55, roller_radius: 7, delta: {cos: {1: 130}, sin: {1: 60, 3: -14}}}"
@@ -262,6 +264,7 @@ def test_a_file_is_verified_to_its_own_tolerance(tmp_path: Path) -> None:
     assert [file["tolerance"] for file in report["files"]] == pytest.approx([0.005, 0.01])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("name", ["reuleaux", "reuleaux-nine", "as-figure-13-1", "w-figure-9"])
 def test_the_circle_drawn_for_reference_is_the_largest_about_the_shaft(name: str, tmp_path: Path) -> None:
     recipe = load(RECIPES[0].parent / f"{name}.yaml")

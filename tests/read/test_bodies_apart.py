@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-import ezdxf
 import numpy as np
 import pytest
+from support.heavy import ezdxf
 from support.meshfiles import HEIGHT, binary, in_3mf, ring, text
 from support.stepfiles import washer
 
@@ -32,6 +32,7 @@ def small(place, low, high):
     return ring(centre + 2.0 * unit(T), centre + 0.5 * unit(T), low, high)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("write", [binary, text, in_3mf])
 @pytest.mark.parametrize("heights", [(), (4.0,)])
 @pytest.mark.parametrize("name", PLACES)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import ezdxf
 import pytest
 from ezdxf.math import Matrix44
+from support.heavy import ezdxf
 
 from camgeo.cli.main import main
 from kin.read.drawing.svg import read_svg
@@ -102,6 +102,7 @@ def test_a_mesh_in_inches(exported):
     assert [one.height for one in large.sections] == [4.0]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "block",
     [
@@ -138,6 +139,7 @@ def test_a_block_that_moves_the_contour_is_caught(exported, outer):
     assert verified(exported, name) == 1
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "transform",
     ["rotate(360)", "rotate(-90) rotate(90)", "rotate(20, 7, -3) rotate(-20, 7, -3)", "skewX(30) skewX(-30)",

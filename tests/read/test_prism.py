@@ -134,6 +134,7 @@ def test_walls_with_corners_halfway_up(tmp_path, middle):
     assert "thickness" in failures(write_stl(path, leaning))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["%.6g", "%.8g", "%.6f", "%.9e", "%.17g"])
 def test_tilted_and_back_as_text_of_few_digits_or_many(tmp_path, form):
     triangles = tilted_and_back(triangles_of(), decimals(form))
@@ -178,6 +179,7 @@ def test_turned_about_the_shaft_in_single_precision_corner_by_corner(angle, size
 # --- faults: what rounding does not explain ---------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("share", [1.0, 0.002])
 @pytest.mark.parametrize("angle", [0.0, 1.0, 2.5])
 def test_walls_that_lean_by_twice_what_rounding_explains(tmp_path, angle, share):
@@ -253,6 +255,7 @@ def test_what_was_found_counts_into_every_figure(tmp_path):
     assert all(check.ok for check in judge_contour(solid.contour, YOKE, phi, tight).checks)
 
 
+@pytest.mark.slow
 def test_what_was_found_counts_for_a_linkage_as_well():
     lift = lift_from_fourier(25.0, {1: -18.0}, {1: 13 / 30 - 8.5, 3: 1.0, 5: 13 / 30})
     mechanism = Mechanism(FourBar(80.0, 70.0, 105.0), lift, 50.0)
@@ -302,6 +305,7 @@ def run(program, *words):
     subprocess.run([program, *map(str, words)], check=True, capture_output=True, timeout=100)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("form", ["asciistl", "binstl"])
 @pytest.mark.parametrize(("there", "back"), MOVED_BACK)
 def test_openscad_moves_it_and_back(tmp_path, form, there, back):

@@ -6,13 +6,13 @@ import logging
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-import ezdxf
 import numpy as np
 import pytest
 from ezdxf.enums import InsertUnits
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.heavy import ezdxf
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
@@ -209,6 +209,7 @@ def test_rational_and_plain_splines(tmp_path: Path) -> None:
     assert drawing.pieces == 4
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("degree", [2, 3, 5, 9, 11])
 def test_a_closed_spline_of_one_period(tmp_path: Path, degree: int) -> None:
     """Uniform knots, the first control points repeated at the end: as CAD systems write periodic splines."""

@@ -273,6 +273,7 @@ def test_a_wrong_hub_is_told_by_name(full, tmp_path):
     assert "set-screw" in failures(path, recipe, design)
 
 
+@pytest.mark.slow
 def test_counter_clockwise_is_drawn_mirrored(tmp_path):
     recipe, design, path, _ = made(FULL, tmp_path, more="rotation: ccw\n")
     assert failures(path, recipe, design) == set()

@@ -223,6 +223,7 @@ verify: {angles: 120}
         recipe(train.replace("preload: 8", "backlash: 0.1"), four_bar)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("train", [TRAIN, TRAIN.replace("preload: 150", "backlash: 0.02"), ""])
 def test_the_checks_are_foreseen(train: str) -> None:
     asked = recipe(train)

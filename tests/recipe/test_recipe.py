@@ -269,6 +269,7 @@ def test_aliases_stand_for_what_they_name() -> None:
     assert motion[0] == motion[1]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("ends", "mark"), [("\n", b""), ("\r\n", b""), ("\r", b""), ("\n", b"\xef\xbb\xbf")])
 def test_line_ends_and_a_byte_order_mark_change_nothing(ends: str, mark: bytes) -> None:
     for path in SHIPPED:
@@ -445,6 +446,7 @@ FIGURES = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> None:
     recipe = load(path)
@@ -455,7 +457,7 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
         theta = np.linspace(0, 2 * np.pi, 7201)
         p = intent.derivatives(theta, 2)
         low, high, radius = p[0].min(), p[0].max(), (p[0] + p[2]).min()
-        assert radius > 0
+        assert radius > 0 or path.stem == "reuleaux-irregular"  # of sharp corners
         papers = path.stem.startswith("as-") or path.stem in {"six-bar", "sweep-four-bar"}  # the paper's own shafts
         assert low - bore > (THIN if papers else WALL)
     elif isinstance(intent, Displacement):
@@ -600,6 +602,7 @@ def plain_yaml(text: str | bytes) -> dict:
     return yaml.load(text, Loader=Plain)  # a safe loader
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_the_json_schema_admits_what_is_shipped(path: Path) -> None:
     plain = plain_yaml(path.read_bytes())

@@ -120,6 +120,7 @@ def test_a_second_change_finds_its_way_after_the_first() -> None:
     assert with_values(once, {"cam.fourier.mean": 25, "cam.shaft[1]": 2}) == TEXT
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("path", few(SHIPPED, 3), ids=lambda path: path.stem)
 def test_every_number_of_a_shipped_recipe_can_be_replaced(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
@@ -232,6 +233,7 @@ def test_what_is_no_yaml_is_refused() -> None:
 # --- marks ------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("path", few(SHIPPED, 3), ids=lambda path: path.stem)
 def test_every_section_of_a_shipped_recipe_can_go(path: Path) -> None:
     text = path.read_text(encoding="utf-8")

@@ -50,12 +50,19 @@ def test_what_belongs_to_a_disc_is_refused(feature):
 
 
 def test_files_that_are_not_made_of_a_ring():
-    export = "export: {files: [gcode, {stl: {parts: all}}]}\nmanufacture: {cutter: 6, layer: true}\n"
-    assert faults(INTERNAL + OUTER + export) == [
-        ("export.files[0]", "a program for a ring is not made"),
-        ("export.files[1]", "the bodies round a ring are not made"),
-        ("manufacture.layer", "the cutter's path in a ring is not made"),
+    assert faults(INTERNAL + OUTER + "export: {files: [{stl: {parts: all}}]}\n") == [
+        ("export.files[0]", "the bodies round a ring are not made")
     ]
+
+
+def test_a_program_for_a_ring_needs_what_any_program_needs():
+    milling = "manufacture: {cutter: 6, layer: true, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 1e-9}\n"
+    assert faults(INTERNAL + OUTER + "export: {files: [gcode]}\n" + milling) == [
+        ("manufacture", "gcode needs safe_height"),
+        ("manufacture.depth_of_cut", "too little for a program"),
+    ]
+    sound = milling.replace("1e-9", "2, safe_height: 5")
+    assert load_text(INTERNAL + OUTER + "export: {files: [gcode, dxf]}\n" + sound, "ring.yaml").manufacture.layer
 
 
 def test_a_ring_is_sized_by_its_pressure_angle_alone():

@@ -64,6 +64,7 @@ TRAIN += "guide: {overhang: 30, length: 40, friction: 0.15}}"
 RISE, RETURN = "pressure-angle-rise", "pressure-angle-return"
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("offset", "rise", "back"),
     [
@@ -211,6 +212,7 @@ def test_any_follower_against_samples(kind: str, radius: int, offset: float, ris
             assert found["pivot-clearance"].value == pytest.approx(away, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_disc_that_passes_over_the_pivot_is_remarked() -> None:
     text = disc("kind: roller, radius: 8, arm: {length: 40, pivot: 45}", SWING, 40.0)
     value = figures(text, "pivot-clearance")["pivot-clearance"].value
@@ -330,6 +332,7 @@ YOKE = "cam: {kind: constant-diameter, base_radius: 20.0, roller_radius: 9, "
 YOKE += "motion: [{rise: 20, over: 80, law: cycloidal}, {dwell: 100}]}\n"
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("text", "rising", "falling"),
     [
@@ -369,6 +372,7 @@ def test_a_return_that_a_spring_drives_may_be_steeper() -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [
@@ -400,6 +404,7 @@ def test_a_guide_without_a_stem() -> None:
             load_text(disc(follower, more=TRAIN), "cam.yaml")
 
 
+@pytest.mark.slow
 def test_a_sweep_ranks_and_limits_by_them() -> None:
     from camgeo.sweep.search import evaluator
     from camgeo.sweep.search.ask import Ask

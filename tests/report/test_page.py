@@ -86,6 +86,7 @@ def made(request: pytest.FixtureRequest) -> Made:
 # --- the file ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(3)
 def test_the_page_is_one_sound_small_file_that_asks_for_nothing(made: Made) -> None:
     elements = parsed(made.text)
     assert len(made.text.encode("utf-8")) < MOST
@@ -232,6 +233,7 @@ def ring_of(found: Content) -> tuple[np.ndarray, np.ndarray]:
     return ring.points, ring.bulges
 
 
+@pytest.mark.slow
 def test_a_linkage_stands_as_kin_says_over_the_shaft_angle() -> None:
     made = of("as-figure-9-2a")
     mechanism = designed(made.recipe).driven.mechanism
@@ -277,6 +279,7 @@ def test_a_joint_off_the_mid_line_is_where_the_coupler_ends(tmp_path: Path, offs
         assert (np.abs(bar[:, 1]).min() < np.abs(on[:, 1]).max()) or len(bars) == 1
 
 
+@pytest.mark.slow
 def test_ccw_is_the_mirror_image_and_the_motion_stays() -> None:
     made = of("six-bar")
     mechanism = designed(made.recipe).driven.mechanism
@@ -329,6 +332,7 @@ def test_lengths_are_in_the_recipes_unit() -> None:
     assert {plot["unit"] for plot in made.data["plots"][:2]} == {"in", "in/rad"}
 
 
+@pytest.mark.slow
 def test_two_rollers_keep_their_distance_from_the_cam() -> None:
     made = of("w-law")
     cam = made.recipe.cam

@@ -51,6 +51,7 @@ SLIDE = """(() => {{
 }})()"""
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", SHOWN)
 def test_the_slider_moves_the_follower_by_the_right_amount(browser: Browser, tmp_path: Path, name: str) -> None:
     made = of(name)
@@ -124,6 +125,7 @@ def test_keys_and_buttons_turn_the_shaft(browser: Browser, tmp_path: Path) -> No
     assert page_.problems == []
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("name", "sense"), [("shu-wu", -1.0), ("w-law", 1.0)])
 def test_the_cam_can_be_dragged(browser: Browser, tmp_path: Path, name: str, sense: float) -> None:
     page_ = opened(browser, of(name), tmp_path)
@@ -137,6 +139,7 @@ def test_the_cam_can_be_dragged(browser: Browser, tmp_path: Path, name: str, sen
     assert (sense * degrees) % 360.0 == pytest.approx(50.0, abs=1.0)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("width", "dark"), [(360, False), (1280, True), (1600, False)])
 @pytest.mark.parametrize("name", ["shu-wu", "six-bar", "w-law"])
 def test_nothing_sticks_out_or_lies_over_its_neighbour(
@@ -171,6 +174,7 @@ def test_nothing_sticks_out_or_lies_over_its_neighbour(
         browser.size(1280, 800)
 
 
+@pytest.mark.slow
 def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser: Browser, tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
     text = of("shu-wu").text
@@ -211,6 +215,7 @@ def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser:
     assert not thread.is_alive()
 
 
+@pytest.mark.slow
 def test_it_prints_and_follows_the_colours(browser: Browser, tmp_path: Path) -> None:
     page_ = opened(browser, of("as-figure-9-2a"), tmp_path)
     assert page_.pdf().startswith(b"%PDF")

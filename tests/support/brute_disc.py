@@ -10,8 +10,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import ezdxf
 import numpy as np
+
+from support.heavy import ezdxf
 
 LAWS = {
     "cycloidal": lambda u: u - np.sin(2 * np.pi * u) / (2 * np.pi),
@@ -146,3 +147,19 @@ def _vertices(entity: Any, step: float) -> np.ndarray:
         else:
             parts.append(start + chord * share)
     return np.concatenate(parts)
+
+
+def peak(error, count, rounds=6):
+    """Greatest |error(phi)|, (k, n) of phi (n,), over a turn: from `count` angles, refined about the highest."""
+    phi = np.arange(count) * 2 * np.pi / count
+    value = np.abs(error(phi))
+    value = value.max(axis=0) if value.ndim == 2 else value
+    best, tops = float(value.max()), phi[np.argsort(value)[-12:]]
+    width = 2 * np.pi / count
+    for _ in range(rounds):
+        near = (tops[:, None] + np.linspace(-width, width, 21)).ravel()
+        value = np.abs(error(near))
+        value = (value.max(axis=0) if value.ndim == 2 else value).reshape(len(tops), 21)
+        tops = near.reshape(len(tops), 21)[np.arange(len(tops)), value.argmax(axis=1)]
+        best, width = max(best, float(value.max())), width / 10
+    return best

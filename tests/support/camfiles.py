@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import ezdxf
 import numpy as np
+
+from support.heavy import ezdxf
 
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
@@ -54,19 +55,33 @@ def arcs_through(points):
 
 
 def write_dxf(path, vertices, bulges=None, *, bores=((0.0, 0.0, 5.0),), units=4, closed=True, extra=None, twice=False):
-    document = ezdxf.new("R2010")
-    document.header["$INSUNITS"] = units
-    space = document.modelspace()
+    """The least text that is a DXF file; what is drawn besides, by `extra`, goes through ezdxf."""
     bulges = np.zeros(len(vertices)) if bulges is None else bulges
     rows = [(x, y, b) for (x, y), b in zip(vertices.tolist(), bulges.tolist(), strict=True)]
-    for _ in range(2 if twice else 1):
-        space.add_lwpolyline(rows, format="xyb", close=closed, dxfattribs={"layer": "CUT"})
-    for x, y, radius in bores:
-        space.add_circle((x, y), radius, dxfattribs={"layer": "BORE"})
     if extra:
+        document = ezdxf.new("R2010")
+        document.header["$INSUNITS"] = units
+        space = document.modelspace()
+        space.add_lwpolyline(rows, format="xyb", close=closed, dxfattribs={"layer": "CUT"})
+        for x, y, radius in bores:
+            space.add_circle((x, y), radius, dxfattribs={"layer": "BORE"})
         extra(space)
-    document.saveas(path)
+        document.saveas(path)
+        return path
+    contour = _entity("LWPOLYLINE", "CUT", "AcDbPolyline", (90, len(rows)), (70, int(closed)))
+    contour += "".join(f"10\n{x}\n20\n{y}\n" + (f"42\n{b}\n" if b else "") for x, y, b in rows)
+    holes = [
+        _entity("CIRCLE", "BORE", "AcDbCircle", (10, x), (20, y), (30, 0.0), (40, radius)) for x, y, radius in bores
+    ]
+    entities = [contour] * (2 if twice else 1) + holes
+    header = f"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1024\n9\n$INSUNITS\n70\n{units}\n0\nENDSEC\n"
+    path.write_text(f"{header}0\nSECTION\n2\nENTITIES\n{''.join(entities)}0\nENDSEC\n0\nEOF\n")
     return path
+
+
+def _entity(kind, layer, subclass, *tags):
+    rows = [(0, kind), (100, "AcDbEntity"), (8, layer), (100, subclass), *tags]
+    return "".join(f"{code}\n{value}\n" for code, value in rows)
 
 
 def write_lines(path, vertices, leave_out=(), backwards=()):

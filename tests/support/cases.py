@@ -9,7 +9,7 @@ from _pytest.mark import ParameterSet
 from hypothesis import settings
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
 
 FULL = 100  # examples of a property test that names no number, in a full run
@@ -29,4 +29,20 @@ def few(cases: Iterable[object], every: int = 2, *, first: int = 0) -> list[Para
 
 def examples(full: int) -> int:
     """How many examples a property test takes that takes `full` in a full run."""
-    return max(4, full * settings().max_examples // FULL)
+    return max(3, full * settings().max_examples // FULL)
+
+
+def thinned_out(items: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
+    """Rows of tests marked `thin(every)` that are left to the slow run: those off the diagonal of the parameters.
+
+    A row's place in a parameter is told by its name there, among the rows that are not slow anyway: the first stays.
+    """
+    seen: dict[str, list[dict[str, int]]] = {}
+    for item in items:
+        thin = item.get_closest_marker("thin")
+        if thin is not None and item.get_closest_marker("slow") is None:
+            names = item.callspec._idlist  # type: ignore[attr-defined]
+            places = seen.setdefault(item.nodeid.split("[")[0], [{} for _ in names])
+            number = sum(known.setdefault(name, len(known)) for name, known in zip(names, places, strict=True))
+            if number % thin.args[0]:
+                yield item

@@ -19,6 +19,7 @@ class Heavy:
 
 
 distributed = Heavy("distributed")
+ezdxf = Heavy("ezdxf")
 interpolate = Heavy("scipy.interpolate")
 lib3mf = Heavy("lib3mf")
 manifold3d = Heavy("manifold3d")

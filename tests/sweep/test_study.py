@@ -153,6 +153,7 @@ def test_an_undercut_recipe_is_told_and_fails(tmp_path: Path, capsys: pytest.Cap
     assert "undercut" in text
 
 
+@pytest.mark.slow
 def test_a_linkage_that_binds_fails_and_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recipe = tmp_path / "cam.yaml"
     recipe.write_text(
@@ -167,6 +168,7 @@ def test_a_linkage_that_binds_fails_and_is_told(tmp_path: Path, capsys: pytest.C
     assert next(margin["value"] for margin in found["margins"] if margin["name"] == "binding") < 0.0
 
 
+@pytest.mark.slow
 def test_a_study_that_fails_leaves_the_last_good_one(tmp_path: Path) -> None:
     recipe = tmp_path / "cam.yaml"
     call = ["study", str(recipe), "--out", str(tmp_path), "--form", "polyline", "--patience", "1e-9"]

@@ -48,6 +48,7 @@ def written(folder: Path, *, comment="", margin=1.0, rank="dwell", refine="false
     return path
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_what_was_found_is_said_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["sweep", str(written(tmp_path)), "--out", str(out)]) == 0
@@ -58,6 +59,8 @@ def test_what_was_found_is_said_in_one_line(tmp_path: Path, capsys: pytest.Captu
     assert said.out.count("\n") == 1
 
 
+@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.slow
 def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "-v"]) == 0
     said = capsys.readouterr().out
@@ -66,6 +69,7 @@ def test_verbose_tells_counts_and_designs(tmp_path: Path, capsys: pytest.Capture
     assert f"  best-1.yaml: cam.shaft[0] 15.8333, linkage.rocker 95\n    {FIRST}\n" in said
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_json_is_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "--json"]) == 0
     report = json.loads((tmp_path / "out" / "four-bar" / "sweep.json").read_text(encoding="utf-8"))
@@ -201,6 +205,7 @@ def test_an_interrupted_sweep_exits_130_and_goes_on_later(jobs: str, tmp_path: P
     assert run["designs_found"] + run["designs_computed"] == 825
 
 
+@pytest.mark.slow
 def test_progress_is_shown_on_a_terminal_and_taken_away_again(tmp_path: Path) -> None:
     script = tmp_path / "run.py"
     script.write_text(RUN)

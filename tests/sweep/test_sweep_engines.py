@@ -70,6 +70,7 @@ def hasty(scene, values):
 # --- equality ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", few(["processes", "as many as are worthwhile", "dask"], 3))
 def test_every_engine_writes_the_same_files(
     engine: str, cluster: LocalCluster, plain: dict[str, bytes], tmp_path: Path
@@ -87,6 +88,7 @@ def test_every_engine_writes_the_same_files(
     assert tree(tmp_path / "out") == plain
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("engine", ["serial", "processes", "dask"])
 def test_chunks_are_the_same_bytes_in_any_order_of_arrival(engine: str, cluster: LocalCluster) -> None:
     slow = Job(GRID, Aside(), hasty)

@@ -82,6 +82,7 @@ def assert_like(figures, wanted, row=0, tolerance=3e-6):
         assert figures[name][row] == pytest.approx(value, rel=tolerance, abs=tolerance), name
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("assembly", few(["open", "crossed"], 3))
 @pytest.mark.parametrize("shape", [CAM_2A, FOURIER, "hypocycloid: {cusps: 3, size: 2, breadth: 50}"])
 @pytest.mark.parametrize("linkage", list(PATHS))
@@ -172,6 +173,7 @@ def test_both_engines_give_the_same_bits():
         assert np.array_equal(column, both[1].figures[name], equal_nan=True), name
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("shape", "given"),
     [

@@ -203,6 +203,8 @@ def test_the_report_tells_what_was_asked_and_what_came_of_it(swept: Path) -> Non
     assert report["run"]["designs_per_second"] > 0
 
 
+@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.slow
 def test_lengths_are_told_in_the_recipes_unit(tmp_path: Path) -> None:
     text = "units: inch\n" + ask(margin=0.04).recipe.text
     inches = Ask.of(read(text.encode(), "x.yaml"))
@@ -225,6 +227,8 @@ def apart_by_hand(count: int) -> list[int]:
     return taken[:count]
 
 
+@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, tmp_path: Path) -> None:
     text = ask(refine="true").recipe.text.replace("keep: 3", "keep: 20")
@@ -241,6 +245,7 @@ def test_the_best_that_lie_apart_are_polished_and_equal_ones_are_one(jobs: int, 
     assert load(outcome.folder / "best-1.yaml").about.startswith(f"polished from design {best[0]['index']} of 825")
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) -> None:
     search(ask(), tmp_path, How(1), MEANS)
     before = (tmp_path / "four-bar" / "sweep.json").read_bytes()
@@ -253,6 +258,7 @@ def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) 
     assert outcome.work.computed == 0  # other limits, the same figures
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_a_users_own_files_are_left_alone(tmp_path: Path) -> None:
     folder = tmp_path / "four-bar"
     folder.mkdir()
@@ -273,6 +279,8 @@ def test_a_users_file_in_the_way_is_told_before_anything_is_computed(name: str, 
     assert [path.name for path in tmp_path.iterdir()] == ["four-bar"]
 
 
+@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.slow
 def test_fewer_best_designs_take_the_old_ones_away(tmp_path: Path) -> None:
     search(ask(), tmp_path, How(1), MEANS)
     text = ask().recipe.text.replace("keep: 3", "keep: 1")
@@ -280,6 +288,8 @@ def test_fewer_best_designs_take_the_old_ones_away(tmp_path: Path) -> None:
     assert sorted(path.name for path in (tmp_path / "four-bar").glob("*.yaml")) == ["best-1.yaml"]
 
 
+@pytest.mark.usefixtures("no_pictures")
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("package", "left_out"),
     [
@@ -375,6 +385,7 @@ def test_a_picture_has_room_for_long_names_and_notes() -> None:
     assert b"links[1]" in files["svg"]
 
 
+@pytest.mark.slow
 def test_a_curve_over_one_variable_is_drawn(tmp_path: Path) -> None:
     text = ask().recipe.text.replace("    linkage.rocker: {from: 95, to: 110, steps: 33}\n", "")
 

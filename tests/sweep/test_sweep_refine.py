@@ -82,6 +82,7 @@ def test_a_design_gets_better_within_its_ranges_and_limits(rank, limits, sense):
     assert again == after
 
 
+@pytest.mark.slow
 def test_a_design_that_breaks_a_limit_is_brought_within():
     asked = ask("transmission-angle: {at_least: 36}")
     given, before = start(asked, (18.0, 8.5, 105.0))
@@ -89,6 +90,7 @@ def test_a_design_that_breaks_a_limit_is_brought_within():
     assert polish(asked, given)[1]["transmission-angle"] >= 36
 
 
+@pytest.mark.slow
 def test_where_nothing_better_is_found_the_start_stays():
     asked = ask("dwell: {at_least: 170}")
     given, _ = start(asked, (18.0, 8.5, 105.0))

@@ -107,6 +107,7 @@ def reach_of_all(samples, band, row, k):
     return at
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("band", [0.01, 0.1, 0.6, 30.0])
 def test_no_window_reaches_farther(band):
     samples = sampled(*waves(5, 12, 40))
@@ -161,6 +162,7 @@ def exact(seed, m, row):
     return f
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("band", [0.003, 0.05, 0.4])
 def test_lengths_are_those_of_kin(band):
     m = 12
@@ -177,6 +179,7 @@ def test_the_error_falls_with_the_fourth_power_of_the_step():
     assert 8 < ratio < 32
 
 
+@pytest.mark.slow
 def test_where_nothing_can_be_written_the_compiled_engine_is_not_kept(monkeypatch):
     numba = pytest.importorskip("numba")
     compiler = numba.njit

@@ -58,6 +58,7 @@ def exported(text: str, folder: Path, files: str = FILES) -> dict[str, dict[str,
     return found
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", KINDS)
 def test_contacts_of_every_kind(name: str, tmp_path: Path) -> None:
     tables = exported(KINDS[name] + "verify: {angles: 720}\n", tmp_path)
@@ -93,6 +94,7 @@ def test_pressure_angles_are_those_of_the_limits(tmp_path: Path) -> None:
     assert -angle.min() == pytest.approx(most["pressure-angle-return"].value, abs=1e-4)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", ["roller", "flat", "arm", "plate", "knife edge"])
 @pytest.mark.parametrize("rotation", ["cw", "ccw"])
 def test_polar_radii_are_those_of_the_drawn_contour(kind: str, rotation: str, tmp_path: Path) -> None:

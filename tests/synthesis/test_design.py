@@ -37,6 +37,7 @@ def free(design: Design, words: str) -> float:
     return float(found[1])
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("rise", [37.2, 39.8, 42.4, 45.0, 47.6, 50.2])
 def test_the_base_radius_that_is_told_is_free_of_undercut(rise: float) -> None:
     larger = free(sharp(BREADTH, size=5.0, of=rise), "a base radius larger by more than")
@@ -44,6 +45,7 @@ def test_the_base_radius_that_is_told_is_free_of_undercut(rise: float) -> None:
     assert sharp(BREADTH, size=(5.0 + larger) * (1.0 - 1e-5), of=rise).contour is None
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("square", few([400.0, 497.3, 594.6, 789.2, 886.5], 3))
 def test_the_roller_radius_that_is_told_is_free_of_undercut(square: float) -> None:
     below = free(sharp(ROLLER, size=40.0, of=square), "a roller radius below")

@@ -37,6 +37,7 @@ def pitch(recipe, count=40_000):
         return z, first, np.abs(first) ** 3 / np.imag(first.conj() * second)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("rise", [40, 50, 60])
 def test_the_hollows_of_the_pitch_curve_hold_the_roller(rise):
     """Run through clockwise as the shaft turns, the curve bends to the left in its hollows."""
@@ -49,6 +50,7 @@ def test_the_hollows_of_the_pitch_curve_hold_the_roller(rise):
     assert told.ok == (hollow > 4.0)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("beyond", "sound"), [(-0.05, True), (0.05, False)])
 def test_a_roller_at_the_limit_against_all_its_own_positions(beyond, sound):
     """Contact is where no other place of the roller's centre lies nearer to the opening than its radius."""
@@ -92,6 +94,7 @@ def test_the_roller_that_would_do_does():
     assert all(check.ok for check in checks(ring(radius, base=float(said[2]) + radius)).values())
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("part", "wall", "pair"),
     [

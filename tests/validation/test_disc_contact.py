@@ -61,6 +61,7 @@ def test_the_exact_contour_of_a_case(name):
         assert follower.envelope.area_and_perimeter()[0] == pytest.approx(AREAS[name], abs=NINE)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-7])
 @pytest.mark.parametrize("name", CURVES)
 def test_contact_on_a_fit_keeps_the_intent(name, tolerance):
@@ -112,6 +113,7 @@ def test_d15_undercut():
     assert deviation(made.as_arcs()[0], follower.envelope).worst[0] < 1e-7
 
 
+@pytest.mark.slow
 def test_d16_sizing():
     """The smallest cams that hold their pressure angles are cams: the limit tells the least angle's cosine."""
     stem = least_stem(M02, 30 * DEGREE, 45 * DEGREE)

@@ -155,6 +155,7 @@ D02 = {
 }  # fmt: skip
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("eccentricity", D02)
 def test_d02_roller_offset(eccentricity):
     points, most, fewest, radius = D02[eccentricity]
@@ -247,6 +248,7 @@ D07 = {
 }  # fmt: skip
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", D07)
 def test_d07_arm(side):
     most, fewest, radius = D07[side]
@@ -277,6 +279,7 @@ D08 = {
 }  # fmt: skip
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", D08)
 def test_d08_arm_flat(side):
     radius, reach, lean, base = D08[side]
@@ -357,6 +360,7 @@ def test_d14_valve_flat():
     proved(recipe, design)
 
 
+@pytest.mark.slow
 def test_d14_valve_roller():
     recipe, design = made(f"base_radius: 18, follower: {{kind: roller, radius: 9}}, motion: {LOBE}")
     pitch, contour = pitch_of(design), contour_of(design)
@@ -455,6 +459,7 @@ def test_d16_sizing_of_a_stem():
 D16 = {"trailing": (16.727263336, 72.169575733, 12.668363853), "leading": (16.273179510, 66.057520228, 14.235604064)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("side", D16)
 def test_d16_sizing_of_an_arm(side):
     recipe, design = sized(35, 45, f", arm: {{length: 65, side: {side}}}", M07)

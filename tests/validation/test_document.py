@@ -8,6 +8,7 @@ import pytest
 LONG = ("test_wunderlich", "test_linkages")  # seconds each
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "topic", [pytest.param(topic, marks=pytest.mark.slow if topic in LONG else ()) for topic in ledger.TOPICS]
 )

@@ -130,6 +130,7 @@ def drawn(request):
     return Scene.of(request.param), FIGURES[request.param].loop(FINE)
 
 
+@pytest.mark.thin(3)
 def test_positions_and_both_derivatives_over_the_relative_angle(drawn):
     scene, loop = drawn
     motion = scene.mechanism.at(FINE, 2)
@@ -160,6 +161,7 @@ def test_the_motion_table_is_over_the_shaft_angle(workshop):
     assert np.abs(np.degrees(mistaken) - table["output_deg"]).max() > 4
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", DWELLING)
 @pytest.mark.parametrize("band", BANDS)
 def test_dwells_over_either_angle(name, band):
@@ -190,6 +192,7 @@ def test_the_papers_places_of_the_dwells_are_near_their_beginnings(name):
     assert deg(found.start + found.length / 2) - place > 20
 
 
+@pytest.mark.slow
 def test_two_rests_of_the_oscillating_yoke_are_true_ones(workshop):
     """S stands still for 60 degrees twice a turn, and the frame with it: the shaft turns 60 degrees meanwhile."""
     made = workshop.shipped("oscillating-yoke")

@@ -109,6 +109,7 @@ def rebuilt(name):
     return float(top / stroke), float(peak / stroke)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", sorted(SHAPES))
 def test_peaks_follow_from_the_shape_of_the_acceleration(name):
     velocity, acceleration, _ = peaks(name)
@@ -159,6 +160,7 @@ def test_ends_and_continuity(name):
     assert (law.peaks.jerk == INFINITE) is not smooth
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("name", sorted(set(SHAPES) - {"parabolic", "harmonic"}))
 def test_peaks_in_the_motion_table_of_a_cam(workshop, name):
     """h C_v/beta and h C_a/beta^2 for 5 mm in 120 degrees, read from the CSV."""

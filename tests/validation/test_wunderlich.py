@@ -297,11 +297,13 @@ def goldberg(workshop):
     return workshop.shipped("w-ellipse", "spline")
 
 
+@pytest.mark.thin(5)
 def test_equation_7_1_on_the_file(pitch):
     curve, e = pitch
     assert np.abs(curve.closing(np.linspace(0, 2 * PI, 3601))).max() <= 3 * e
 
 
+@pytest.mark.thin(2)
 def test_section_6_chord_polygon_closes_from_any_start(pitch):
     curve, e = pitch
     # each chord may add e / cos(75 deg)
@@ -354,6 +356,7 @@ def test_isoptic_circles(workshop, goldberg):
     assert np.ptp(isoptic_radii(goldberg.contour, PI / 2 + 0.05)) > 0.1
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("ratio", sorted(CONVEX))
 def test_convexity_limit(ratio):
     value, within = CONVEX[ratio]

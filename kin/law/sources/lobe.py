@@ -41,10 +41,10 @@ def lobe(
         )
     rising = all(int(k) == k for k in powers) and all(a < b for a, b in pairwise(powers))
     if len(powers) != 5 or powers[0] != 2 or not rising or powers[-1] > _GREATEST_POWER:
-        shown = "-".join(f"{k:g}" for k in powers)
+        shown = ", ".join(f"{k:g}" for k in powers)
         raise IntentError(
             f"the powers of a lobe are 2 and four more whole numbers that rise to {_GREATEST_POWER} at most, "
-            f"such as 2-8-14-20-26, not {shown}",
+            f"such as [2, 8, 14, 20, 26], not [{shown}]",
             f"{field}.powers",
         )
     flank, _ = Flank.of([int(k) for k in powers])
