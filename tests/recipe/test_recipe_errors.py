@@ -338,7 +338,7 @@ def test_what_is_no_length(written: str, message: str) -> None:
 def test_a_length_near_0_where_0_would_do() -> None:
     linkage = "linkage:\n  {ground: 60, rocker: 1e-31, kind: inverted-slider-crank}\n"
     assert told(SUPPORT + linkage) == [
-        "c.yaml:3:25: linkage.rocker: too small, given 1e-31; write 0, or the intended number"
+        "c.yaml:3:24: linkage.rocker: too small, given 1e-31; write 0, or the intended number"
     ]
     assert read((SUPPORT + linkage.replace("1e-31", "0")).encode(), "c.yaml").linkage
 
