@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from camgeo.checks.declared import DWELL, MOBILITY, REVERSAL
+from camgeo.common.rounding import upward
 from kin.judge.check import Check, failed
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.monotone import RoughError
@@ -58,8 +59,8 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
 def _outside(recipe: Recipe, error: OutsideError) -> RecipeErrors:
     """Point at what places the shaft: the base radius of a cam that has one, which moves every face outwards alike."""
     if "cam.base_radius" in recipe.marks:
-        more = error.depth / recipe.mm
-        return recipe.error("cam.base_radius", error.message, None, f"give one larger by more than {more:.6g}")
+        more = upward(error.depth / recipe.mm)
+        return recipe.error("cam.base_radius", error.message, None, f"give one larger by more than {more}")
     if "cam.shaft" in recipe.marks:
         return recipe.error("cam.shaft", error.message, None, "place it within the cam")
     return recipe.error("cam", error.message, None, "give shaft, a point within the cam")
@@ -147,7 +148,8 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
     except RoughError as error:
         at = math.degrees(error.at % TURN)
         problem = f"the motion changes too abruptly to be resolved, near a relative angle of {at:.6g} degrees"
-        remedy = "keep its loops farther from binding, or give p fewer waves"
+        other = "the motion a larger stroke" if "cam.base_radius" in recipe.marks else "p fewer waves"
+        remedy = f"keep its loops farther from binding, or give {other}"
         raise recipe.error("linkage", problem, None, remedy) from error
 
 

@@ -254,6 +254,21 @@ def test_what_cannot_be_is_refused(old: str, new: str, words: str, tmp_path: Pat
     assert not list(tmp_path.iterdir())
 
 
+def test_swings_that_are_lost_in_rounding_or_do_not_join() -> None:
+    text = FOUR_BAR.replace("support", "constant-breadth").replace("dwell: {band: 0.1, at_least: 36}\n", "")
+    text = text.replace(
+        "four-bar, ground: 80, coupler: 70, rocker: 105", "inverted-slider-crank, ground: 80, rocker: 0"
+    )
+    text = text.replace("  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  shaft: [18, 8.5]\n", "  base_radius: 40\n%s")
+    swing = "  swing: [{rise: %s, over: 120, law: cycloidal}, {dwell: %s}]\n"
+    with pytest.raises(RecipeErrors, match="or give the motion a larger stroke"):
+        designed(recipe(text=text % (swing % ("1e-9", "60.000000001"))))
+    designed(recipe(text=text % (swing % ("1e-4", "60.0001"))))
+    torn = "  swing: [{rise: 20, over: 100, law: cycloidal}, {rise: 9, over: 109, law: constant-velocity}]\n"
+    with pytest.raises(RecipeErrors, match=r"S' jumps from 0 to 4.73084 deg/rad at 100 degrees"):
+        designed(recipe(text=text % torn))
+
+
 def test_what_would_bring_the_shaft_within_the_cam_does() -> None:
     by_law = FOUR_BAR.replace("support", "constant-breadth").replace("dwell: {band: 0.1, at_least: 36}\n", "")
     by_law = by_law.replace(

@@ -335,6 +335,15 @@ def test_what_is_no_length(written: str, message: str) -> None:
     assert told(f"{SUPPORT}part:\n  thickness: {written}\n") == [f"c.yaml:3:14: part.thickness: {message}"]
 
 
+@pytest.mark.parametrize(
+    "cam", ["kind: disc, follower: {kind: flat}", "kind: constant-diameter, roller_radius: 5", "kind: support, p: 9"]
+)
+def test_a_key_of_another_kind_of_cam_is_no_slip_of_the_pen(cam: str) -> None:
+    found = told(f"cam: {{{cam}, swing: []}}")
+    about_swing = [line.partition("cam.swing: ")[2] for line in found if "cam.swing" in line]
+    assert about_swing == ["unknown key; it belongs under cam of kind constant-breadth"]
+
+
 def test_a_length_near_0_where_0_would_do() -> None:
     linkage = "linkage:\n  {ground: 60, rocker: 1e-31, kind: inverted-slider-crank}\n"
     assert told(SUPPORT + linkage) == [
