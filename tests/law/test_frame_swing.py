@@ -154,6 +154,17 @@ def test_a_polygon_turning_in_a_rigid_square_swings_by_the_law():
     assert found == pytest.approx(law.output(phi, 0).c[0], abs=1e-6)
 
 
+def test_what_rounding_leaves_of_a_rest_is_no_acceleration():
+    back = [
+        Move(87.8816 * DEG, LAWS["harmonic"], by=-11.7795 * DEG),
+        Move(68.5594 * DEG, LAWS["polynomial-4567"], by=-11.7795 * DEG),
+    ]
+    law = frame_swing(programme(back, 156.441 * DEG, around=None), 137.0, 0.0, 1.0)
+    ends = [end for joint in law.joints for k, *both in joint.jumps if k == 2 for end in both]
+    assert len(ends) == 4
+    assert sum(end == 0.0 for end in ends) == 2  # beside a harmonic end each, of about 0.43
+
+
 def test_what_hangs_on_the_rocker_is_solved_from_the_law():
     from kin.follower.frame import _Prescribed
 
