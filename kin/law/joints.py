@@ -49,5 +49,5 @@ def joints_of(meetings: Iterable[tuple[float, Array, Array]], size: Array) -> tu
     for at, before, after in meetings:
         jumps = np.flatnonzero(np.abs(after - before) > _JOIN * size)
         if len(jumps):
-            joints.append(Joint(at, tuple((int(k), told(before, k), told(after, k)) for k in jumps)))
+            joints.append(Joint(at, tuple((k, told(before, k), told(after, k)) for k in jumps.tolist())))
     return tuple(joints)
