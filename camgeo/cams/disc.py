@@ -163,6 +163,8 @@ def _size(cam: Values, reader: Reader) -> None:
     except IntentError as error:
         path = f"cam.{error.field}"
         remedy = "" if error.field.startswith("motion") else "give base_radius instead"  # no size mends a motion
+        if error.field.endswith(".pivot"):
+            remedy = "leave it out, or give base_radius in place of sizing"
         reader.fault_at(path if path in reader.marks else "cam.sizing", error.message, None, remedy)
         return
     cam["sized"] = replace(found, sizing=asked)

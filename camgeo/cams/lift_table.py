@@ -27,11 +27,15 @@ _FIELD = "table"
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of a table: angles of the cam in rad, displacements in mm or rad, and their lines in the file."""
+    """Rows of a table: angles of the cam in rad, displacements in mm or rad, and their lines in the file.
+
+    `unit` is one unit of the file's displacements, in mm or rad.
+    """
 
     theta: tuple[float, ...]
     s: tuple[float, ...]
     lines: tuple[int, ...]
+    unit: float
 
     def samples(self) -> Samples:
         """Give the rows as kin takes them."""
@@ -39,7 +43,7 @@ class Rows:
 
         from kin.law.sources.ring import Samples
 
-        return Samples(np.array(self.theta), np.array(self.s), np.array(self.lines, dtype=np.intp))
+        return Samples(np.array(self.theta), np.array(self.s), np.array(self.lines, dtype=np.intp), self.unit)
 
 
 def read_path(reader: Reader, field: Field, node: Node, path: str) -> str | None:
@@ -101,4 +105,6 @@ def _rows(text: str, angles: Angles, unit: Unit) -> tuple[Rows, float]:
     from kin.law.sources.table_text import read_table
 
     samples, place = read_table(text, angles=angles, unit=unit, field=_FIELD)
-    return Rows(tuple(samples.theta.tolist()), tuple(samples.s.tolist()), tuple(samples.lines.tolist())), place
+    return Rows(
+        tuple(samples.theta.tolist()), tuple(samples.s.tolist()), tuple(samples.lines.tolist()), samples.unit
+    ), place

@@ -157,7 +157,7 @@ def _smoothed(asked: TableAsked, total: float, field: str, around: int | None) -
     field, samples = f"{field}.table", asked.rows.samples()
     if around != 1 and len(samples.s):
         first = f"{asked.file}, line {samples.lines[0]}: "
-        _demand_zero(float(samples.s[0]), asked.reading, asked.scale, field, first)
+        _demand_zero(float(samples.s[0]), asked.reading, asked.rows.unit, field, first)
     try:
         return from_table(samples, asked.reading, total, around=around, field=field).motion
     except TableError as error:
@@ -188,7 +188,7 @@ class PointsAsked(MotionAsked):
             return programme([Dwell(total)], total, around=around, field=field)
         points, dwells = self._ends_of_dwells(total, around)
         theta, s = zip(*points, strict=True)
-        return from_points(theta, s, total, dwells=dwells, around=around, field=field)
+        return from_points(theta, s, total, dwells=dwells, around=around, field=field, unit=self.scale)
 
     def _ends_of_dwells(
         self, total: float, around: int | None

@@ -80,7 +80,7 @@ def size_arm(cam: OscillatingRoundCam, asked: Sizing, given: Mapping[str, float]
     motion, pivot, prime = _motion(cam), given.get("pivot"), 0.0
     if asked.angles is not None:
         if pivot is not None:
-            raise IntentError("the pivot is found with the pressure angle; leave `pivot` out", "sizing.pressure-angle")
+            raise IntentError("the pivot is found with the pressure angle", "follower.arm.pivot")
         arm = least_arm(motion, cam.length, cam.sense, *asked.angles)
         prime, pivot = arm.prime, arm.pivot
     elif pivot is None:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.read.gcode import ARC_MM
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
@@ -42,9 +44,11 @@ def places(tolerance: float, mm: float, lengths: Sequence[float] = ()) -> int:
 
     An end, a centre and so a radius are each off by up to 0.71, 0.71 and 1.42 of the last place's half, in a machine
     that takes the arc from any of them: together less than 2.5 times the last place. Nor do `lengths`, mm, by which
-    places lie apart (a pass above another, a rough path beside a fine one) lose more than `KEPT` of themselves.
+    places lie apart (a pass above another, a rough path beside a fine one) lose more than `KEPT` of themselves. And
+    however coarse the tolerance, a centre off by 0.71 of the last place makes the two radii of an arc differ by up to
+    1.42 of it: beyond `ARC_MM` controllers refuse the arc.
     """
-    last = min([SHARE * tolerance / 2.5, *(KEPT * one for one in lengths)])
+    last = min([SHARE * tolerance / 2.5, ARC_MM / 1.42, *(KEPT * one for one in lengths)])
     return max(math.ceil(-math.log10(last / mm)), LEAST_PLACES)
 
 

@@ -41,5 +41,5 @@ MECHANISM = (
     length("link", "thickness of arms, rockers and rods", default="the pin's diameter"),
     length("wall", "width of a frame's sides, and of the ring about a pin's hole", default="by the pin"),
     length("clip", "thickness of retaining discs and caps", default="2 mm, or by the pin"),
-    length("knob", "diameter of the knob", default="by the cam's size"),
+    length("knob", "width of the knob across flats", default="by the cam's size"),
 )

@@ -88,7 +88,7 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
             return None
         worst, value, rule, of = max(over, key=lambda row: row[1] - row[2])
         at_deg = degrees(worst.at)
-    told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for rollers, {kind}"
+    told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for {kind} followers"
     found = recipe.cam.less_pressure(design.intent, math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
     if found is not None:
         size, other = found

@@ -271,7 +271,7 @@ class _Machine:
         first, last = math.hypot(x - centre[0], y - centre[1]), math.hypot(x2 - centre[0], y2 - centre[1])
         if not abs(first - last) <= ARC_MM:
             raise self._refused(
-                number, f"the ends of the arc lie {first:.6g} and {last:.6g} mm from its centre", "range"
+                number, f"the ends of the arc lie {first:.9g} and {last:.9g} mm from its centre", "range"
             )
         if not min(first, last) > 0.0:
             raise self._refused(number, "an arc of radius 0", "range")

@@ -342,6 +342,44 @@ def test_a_reading_that_the_rows_keep_mends_scatter(tmp_path):
     recipe("{table: lift.csv, reading: 0.06}", tmp_path).cam.intent()
 
 
+@pytest.mark.parametrize(
+    ("head", "units", "key"),
+    [
+        ("kind: disc, base_radius: 40, follower: {kind: roller, radius: 8}", "inch", ""),
+        ("kind: disc, base_radius: 2, follower: {kind: roller, radius: 1}", "mm", ", units: inch"),
+        ("kind: disc, base_radius: 34, follower: {kind: roller, radius: 8, arm: {length: 65, pivot: 80}}", "mm", ""),
+    ],
+)
+def test_faults_of_rows_are_told_as_the_table_has_them(head, units, key, tmp_path):
+    angles = np.arange(0.0, 361.0, 2.0)
+    values = 5.0 * (1.0 - np.cos(np.radians(angles)))
+    reading = f"{{table: lift.csv, reading: {0.001 if not key else 0.0254}{key}}}"
+
+    def told(change):
+        written(tmp_path, angles, change(values.copy()))
+        return str(fault(reading, tmp_path, head=head, units=units))
+
+    def slipped(s):
+        s[45] += 0.2
+        return s
+
+    def unclosed(s):
+        s[-1] += 0.5
+        return s
+
+    def scattered(s):
+        s[1:-1:2] += 0.05
+        return s
+
+    assert "line 46: the row does not lie on a smooth curve with its neighbours: it is 5.2, about 5" in told(slipped)
+    assert "line 181: the motion does not close: 0.5 off the first row, a turn later" in told(unclosed)
+    message = told(scattered)
+    assert ", the reading error is 0.001, both in the table's unit" in message
+    assert 0.02 < float(re.search(r"the closest one is (\S+) off here", message)[1]) < 0.05
+    angles, values = angles[:100], values[:100]
+    assert f"{values[-1]:.3f} off its first row: the rest of the turn can be no dwell" in told(np.copy)
+
+
 def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "bytes.csv").write_bytes(b"0,0\n\x00\x01")

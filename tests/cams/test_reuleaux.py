@@ -60,6 +60,7 @@ def judged(text, points, bulges, tolerance=1e-4):
 # --- what is made -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 def test_every_format_holds_its_corners(text, tmp_path):
     files = "dxf, svg, step, stl, 3mf, glb, gcode, html, csv, {csv: {as: contacts}}, {csv: {as: polar}}"
@@ -156,7 +157,13 @@ def test_no_chamfer_runs_along_corners():
     made = designed(recipe_of(TRIANGLE + "part: {thickness: 8, chamfer: 0.5}\n"))
     check = next(one for one in made.checks if one.name == "chamfer")
     assert not check.ok
-    assert check.detail == "a sharp contour has corners, along which no chamfer runs"
+    assert check.detail == (
+        "a sharp contour has corners, along which no chamfer runs; leave it out, or give a reuleaux.rounding above "
+        "0.5 mm"
+    )
+    rounded = TRIANGLE.replace("breadth", "rounding: 0.51, breadth")
+    made = designed(recipe_of(rounded + "part: {thickness: 8, chamfer: 0.5}\n"))
+    assert next(one for one in made.checks if one.name == "chamfer").ok
 
 
 def test_corners_are_no_exact_spline(tmp_path):

@@ -83,7 +83,7 @@ def test_what_a_remark_tells() -> None:
     assert (pressure.rule, pressure.unit) == (45.0, "deg")
     assert pressure.value == pytest.approx(62.5453, abs=1e-4)
     assert pressure.at_deg == pytest.approx(134.30, abs=0.01)
-    assert pressure.sentence == "the pressure angle reaches 62.55 deg; up to 45 is the rule for rollers, oscillating"
+    assert pressure.sentence == "the pressure angle reaches 62.55 deg; up to 45 is the rule for oscillating followers"
     (outside,) = remarks("cam: {kind: support, p: 30, shaft: [40, 0]}\n")
     assert outside.sentence == "the shaft lies outside the contour by 10 mm"
     corner = "reuleaux: {sides: 3, breadth: 50}, shaft: [28.8675134594813, 0]"
@@ -102,7 +102,7 @@ def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: p
     out = capsys.readouterr().out
     *rest, line = out.splitlines()
     assert line.startswith("roller: ok")
-    assert "; remark: the pressure angle reaches 62.55 deg; up to 45 is the rule for rollers, oscillating" in line
+    assert "; remark: the pressure angle reaches 62.55 deg; up to 45 is the rule for oscillating followers" in line
     assert "; remark: part.thickness, 200 mm, is " in line
     (row,) = [text for text in rest if text.startswith("pressure-angle") and " remark " in text]
     assert row.split() == ["pressure-angle", "remark", "62.5453", "<=", "45", "deg", "134.30", "deg"]
@@ -112,7 +112,7 @@ def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: p
     assert set(report["remarks"][0]) == {"name", "value", "rule", "unit", "at_deg", "sentence"}
     page = (tmp_path / "out" / "roller" / "roller.html").read_text()
     assert page.count('<tr class="remark">') == 2
-    assert "up to 45 is the rule for rollers" in page
+    assert "up to 45 is the rule for oscillating followers" in page
     assert main(["check", str(path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)[0]["remarks"] == report["remarks"]
 

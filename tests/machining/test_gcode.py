@@ -1,5 +1,6 @@
 """Milling programs: what they leave, by a simulation of its own; what the reader refuses; planted faults."""
 
+import math
 import re
 import shutil
 import subprocess
@@ -27,7 +28,7 @@ from kin.judge.contour_checks import Limits
 from kin.judge.milling import Milling, milled
 from kin.judge.verify import verify
 from kin.read.errors import ReadError
-from kin.read.gcode import read_gcode
+from kin.read.gcode import ARC_MM, read_gcode
 
 SUPPORT = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
@@ -158,9 +159,23 @@ def test_inches(tmp_path):
     assert parts[0].area == pytest.approx(np.pi * (25.4**2 - 4 * (0.08 * 25.4) ** 2), rel=1e-4)
 
 
+def test_a_program_in_inches_of_a_coarse_tolerance_can_be_read(tmp_path):
+    text = (
+        "units: inch\ncam: {kind: disc, base_radius: 24.5, follower: {kind: roller, radius: 8, offset: -1.45},\n"
+        "  motion: [{rise: 20, over: 90, law: modified-sine}, {dwell: 30},\n"
+        "    {return: 20, over: 90, law: cycloidal}, {dwell: 150}]}\n"
+        "part: {thickness: 10, bore: 12}\nexport: {tolerance: 0.1, files: [gcode]}\nverify: {angles: 120}\n"
+        "manufacture: {cutter: 200, feed: 10, plunge: 10, spindle: 1000, depth_of_cut: 2, safe_height: 2}\n"
+    )
+    (tmp_path / "c.yaml").write_text(text, encoding="utf-8")
+    assert main(["export", str(tmp_path / "c.yaml"), "--out", str(tmp_path / "out")]) == 0
+
+
 def test_digits_follow_the_tolerance():
     assert (places(0.001, 1.0), places(0.01, 1.0), places(1e-6, 1.0), places(1.0, 1.0)) == (5, 4, 8, 3)
     assert places(0.0254, 25.4) == 5
+    # the radii at both ends of an arc differ by no more than controllers take, in inches too
+    assert [math.sqrt(2) * mm * 10.0 ** -places(3.0, mm) < ARC_MM for mm in (1.0, 25.4)] == [True, True]
     for tolerance in (0.001, 0.0023, 0.04):
         assert rounding(places(tolerance, 1.0), 1.0) <= 0.05 * tolerance
     assert depths(6.0, 2.5) == [-2.0, -4.0, -6.0]

@@ -294,6 +294,7 @@ def test_the_unit_where_none_is_given(kind: str, mm: str, inch: str) -> None:
         assert asked.filename("cam", recipe.export.files) == f"cam.{kind}"
 
 
+@pytest.mark.slow
 def test_bodies_of_a_mechanism_in_inch(tmp_path: Path) -> None:
     text = "cam: {kind: support, p: 25 + 2*cos(3*t)}\npart: {thickness: 6, bore: {square: 8}}\n"
     text += "export: {tolerance: 0.01, files: [{stl: {parts: all, units: inch}}, {3mf: {parts: all, units: inch}}]}\n"

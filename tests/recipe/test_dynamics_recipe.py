@@ -299,6 +299,7 @@ def test_a_spoilt_file_shows_in_its_own_run(tmp_path: Path) -> None:
     assert amplitudes[1] > 3.0 * amplitudes[0]
 
 
+@pytest.mark.slow
 def test_two_rollers_rattle_as_two_faces_of_the_same_motion_do() -> None:
     train = TRAIN.replace("preload: 150", "backlash: 0.05")
     motion = "motion: [{rise: 12, over: 80, law: modified-sine}, {dwell: 100}]}\n"

@@ -271,6 +271,7 @@ FLAT_PAIR = "cam: {kind: flat-pair, ratio: 2, arm: 30, roller_radius: 3, arc: {r
             ),
         ),
         ("cam: {kind: suport, p: 9}", "1:13: cam.kind: not one of the choices, given 'suport'; did you mean support?"),
+        ("cam: {kind: disk, p: 9}", "1:13: cam.kind: not one of the choices, given 'disk'; did you mean disc?"),
         (
             "cam: {kind: support}",
             "1:6: cam: needs p, fourier, reuleaux or hypocycloid; give exactly one of them",

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 DISC = "cam: {kind: disc, base_radius: 30, follower: {kind: roller, radius: 5}, motion: MOTION}\n"
+ARM = DISC.replace("radius: 5}", "radius: 5, arm: {length: 60, pivot: 70}}")
 BREADTH = "cam: {kind: constant-breadth, base_radius: 30, motion: MOTION}\n"
 PAIR = "cam: {kind: double-roller, ratio: 3, arm: 60, roller_radius: 8, arc: {radius: 75}}\n"
 RISE = "{rise: 10, over: 180, law: cycloidal}"
@@ -76,6 +77,33 @@ def faults(text: str) -> list[str]:
                 "give both the same displacement"
             ),
             "{points: [[0, 0], [90, 5], [180, 9], [360, 0]]}",
+        ),
+        (
+            "units: inch\n" + DISC,
+            "{points: [[0, 0], [90, 5], [180, 9], [360, 2]]}",
+            (
+                "cam.motion.points[3]: the motion does not close: it is 0 at the first point, 2 a turn later; "
+                "give both the same displacement"
+            ),
+            "{points: [[0, 0], [90, 5], [180, 9], [360, 0]]}",
+        ),
+        (
+            ARM,
+            "{points: [[0, 0], [90, 5], [180, 9], [360, 2]]}",
+            (
+                "cam.motion.points[3]: the motion does not close: it is 0 at the first point, 2 a turn later; "
+                "give both the same displacement"
+            ),
+            "{points: [[0, 0], [90, 5], [180, 9], [360, 0]]}",
+        ),
+        (
+            ARM,
+            "[{rise: 10, over: 180, law: cycloidal}, {return: 8, over: 180, law: cycloidal}]",
+            (
+                "cam.motion: the motion does not join: S jumps from 2 to 0 deg at 0 degrees; "
+                "let the motion end where it begins"
+            ),
+            f"[{RISE}, {BACK}]",
         ),
     ],
 )
@@ -142,3 +170,13 @@ def test_a_ring_with_holes_and_no_wall_says_what_would_do() -> None:
     (wall,) = (check for check in report.checks if check.name == "wall")
     assert not wall.ok
     assert "remedy   a part.outer larger by more than 40 mm" in report.explain(wall)
+
+
+def test_a_pivot_beside_the_pressure_angle_that_finds_it_says_what_would_do() -> None:
+    asked = ARM.replace("base_radius: 30", "sizing: {pressure-angle: {at_most: 30}}").replace(
+        "MOTION", f"[{RISE}, {BACK}]"
+    )
+    (told,) = faults(asked)
+    remedy = "leave it out, or give base_radius in place of sizing"
+    assert told == f"cam.follower.arm.pivot: the pivot is found with the pressure angle; {remedy}"
+    assert camgeo.design(camgeo.load(asked.replace(", pivot: 70", ""))).ok

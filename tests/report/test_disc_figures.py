@@ -306,6 +306,7 @@ HOLLOW = "[{rise: 20, over: 50, law: polynomial-4567}, {return: 20, over: 50, la
 HOLLOW += "{dwell: 130}, {dwell: 130}]"
 
 
+@pytest.mark.slow
 def test_wheel_and_cutter_in_a_hollow() -> None:
     text = disc("kind: roller, radius: 9", HOLLOW)
     radius = figures(text, "hollow-radius")["hollow-radius"].value

@@ -258,7 +258,8 @@ def test_a_linkage_stands_as_kin_says_over_the_shaft_angle() -> None:
     assert made.data["rests"][0][1] == pytest.approx(37.05, abs=0.01)
 
 
-@pytest.mark.parametrize("offset", [9.0, -40.0])
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("offset", [-40.0, 9.0])
 def test_a_joint_off_the_mid_line_is_where_the_coupler_ends(tmp_path: Path, offset: float) -> None:
     """An offset beyond the frame's side hangs the bar on an arm that prolongs the side."""
     text = (RECIPES / "as-figure-9-2a.yaml").read_text(encoding="utf-8")

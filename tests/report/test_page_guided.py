@@ -177,6 +177,24 @@ def test_an_arm_keeps_its_pivot_and_swings_as_the_motion_says(name: str, rotatio
     assert (touch.imag < 0.0).all() == below
 
 
+def test_an_arm_whose_face_lies_beyond_its_pivot_does_not_cross_the_cam() -> None:
+    recipe = load_text(
+        "cam:\n  kind: disc\n  base_radius: 27\n  follower: {kind: flat, arm: {pivot: 45, face: -3}}\n"
+        "  motion: {lobe: {lift: 9, half: 65, powers: [2, 8, 14, 20, 26]}}\n",
+        "beyond.yaml",
+    )
+    with patch.object(curves, "rests", return_value=[]):
+        found = content(recipe, designed(recipe), [])
+    arm, cam = body(found, "arm"), shapely.Polygon(contour(found).vertices)
+    outline = arm.shapes[0].rings[0].points @ np.array([1.0, 1j])
+    shared = [
+        cam.intersection(shapely.Polygon(np.column_stack([at.real, at.imag]))).area
+        for turned, place, by in zip(places(arm), arm.pose, body(found, "cam").pose, strict=True)
+        for at in [(turned + outline * np.exp(1j * place[2])) * np.exp(-1j * by[2])]
+    ]
+    assert max(shared) < 0.01
+
+
 @BOTH
 def test_both_rollers_of_a_frame_stay_on_the_cam(rotation: str) -> None:
     recipe, found = drawn("yoke", rotation)
@@ -233,6 +251,18 @@ def test_the_curvature_is_held_against_that_of_what_touches(name: str, limit: tu
     assert value == pytest.approx(limit[0])
     assert touch == limit[1]
     assert ("from undercut" in plot.note) == margin
+
+
+@pytest.mark.parametrize(
+    ("rounding", "note"), [("", "radius 0 about sharp corners"), (", rounding: 4", "from undercut")]
+)
+def test_a_sharp_corner_is_no_undercut(rounding: str, note: str) -> None:
+    recipe = load_text(f"cam: {{kind: support, reuleaux: {{sides: 3, breadth: 40{rounding}}}}}\n", "corners.yaml")
+    with patch.object(curves, "rests", return_value=[]):
+        found = content(recipe, designed(recipe), [])
+    (plot,) = (p for p in found.plots if p.title == "Radius of curvature")
+    assert note in plot.note
+    assert ("undercut" in plot.note) == bool(rounding)
 
 
 @pytest.mark.parametrize("name", ["roller", "shoe", "tilted face", "ring", "yoke"])

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _SHOWN = 60  # characters of a value that an error repeats
-NEAR, NEARER = 0.6, 0.8  # likeness of words that may be meant, and of those that are slips of the pen
+NEAR, NEARER = 0.6, 0.75  # likeness of words that may be meant, and of those that are slips of the pen
 _LONGEST_WORD = 40  # for which a near one is sought
 
 

@@ -214,7 +214,9 @@ def _face_on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple
     face = cast("OscillatingFaceCam", recipe.cam).face(cast("Displacement", design.intent))
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     at = (middle, -face.side * face.face)
-    return [*guided.on_arm(guided.face(0.0, -half, half, size), face, s, at, size), *found], plots
+    # a face that lies beyond the pivot's parallel is held at its near end: to its middle the arm would cross the cam
+    short = half if face.face < 0.0 else 0.0
+    return [*guided.on_arm(guided.face(0.0, -half, half, size), face, s, at, size, short=short), *found], plots
 
 
 def _roller_frame(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from camgeo.checks.declared import BENT
+from camgeo.curve.support import is_sharp
 from camgeo.report.page.followers import SHAFT
 from camgeo.synthesis.design import intended
 
@@ -127,6 +128,8 @@ def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller
     if found is not None and found.value is not None and math.isfinite(found.value) and radius >= 0.0:
         room = (found.value - radius) / recipe.mm
         margin = f"least radius {found.value / recipe.mm:.5g} {unit}, {room:.5g} {unit} from undercut"
+        if design.contour is not None and is_sharp(design.contour):
+            margin = "radius 0 about sharp corners, as the recipe has them"
     if radius:
         values = closed(exact.curvature[:: exact.per]) * recipe.mm
         limit = recipe.mm / radius

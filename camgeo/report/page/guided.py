@@ -110,14 +110,15 @@ class Arm(Protocol):
         ...
 
 
-def on_arm(touch: Touch, arm: Arm, s: Array, at: tuple[float, float], size: float) -> list[Body]:
+def on_arm(touch: Touch, arm: Arm, s: Array, at: tuple[float, float], size: float, *, short: float = 0.0) -> list[Body]:
     """Return the follower on an arm at swings s (n,); `at` is where the touch's axes stand in the arm's.
 
-    The arm's own x leads from the pivot to what touches, its travel is `side` times y.
+    The arm's own x leads from the pivot to what touches, its travel is `side` times y. It is drawn to a place that lies
+    `short` nearer the pivot than `at`.
     """
     angle = math.pi + arm.side * (arm.rest + s)
     (x, y), c, n = at, np.cos(angle), np.sin(angle)
-    end = (x, y + arm.side * touch.foot)
+    end = (x - short, y + arm.side * touch.foot)
     shape = Shape("follower", (bar((0.0, 0.0), end, WIDTH * size),), "arm")
     placed = poses(arm.pivot + x * c - y * n, x * n + y * c, angle + 0.5 * math.pi * arm.side)
     return [

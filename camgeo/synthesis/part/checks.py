@@ -53,7 +53,8 @@ def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Call
         limit = 0.0 if least is None else least
         thin = [pair for pair in pairs if not _holds(pair.gap.wall, least)]
         told = "; ".join(map(str, thin[:MOST_NAMED] or pairs[:1]))
-        more = f"; and {len(thin) - MOST_NAMED} more pairs" if len(thin) > MOST_NAMED else ""
+        left = len(thin) - MOST_NAMED
+        more = f"; and {left} more {'pair' if left == 1 else 'pairs'}" if left > 0 else ""
         worst = pairs[0].gap
         at_deg = None if worst.parameter is None else shaft_deg(worst.parameter)
         checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told + more))
@@ -76,7 +77,9 @@ def _chamfer_check(body: Body, contour: Curve, shaft_deg: Callable[[float], floa
     chamfer = body.chamfer or 0.0
     if not contour.closed:
         of = "sharp" if is_sharp(contour) else "trimmed"
-        detail = f"a {of} contour has corners, along which no chamfer runs"
+        detail = f"a {of} contour has corners, along which no chamfer runs; leave it out"
+        if of == "sharp":
+            detail += f", or give a reuleaux.rounding above {chamfer:.6g} mm"
         return Check(CHAMFER.name, ok=False, value=0.0, limit=chamfer, unit="mm", sense="at_least", detail=detail)
     radius, at = least_radius(contour)
     sharp = "the contour's least radius of curvature must be above the chamfer"

@@ -109,7 +109,7 @@ class Motion(Programme):
             low = [(k, a, b) for k, a, b in joint.jumps if k < 2 and abs(b - a) > _CLOSED * self._size]
             if low:
                 at = math.degrees(joint.at)
-                jump = Joint(joint.at, tuple(low))
+                jump = Joint(joint.at, tuple(low))  # angles are told in degrees, as recipes have them
                 said = jump.scaled(math.degrees(1.0)).said("deg") if unit == "rad" else jump.said(unit)
                 raise IntentError(f"the motion does not join: {said}; {_remedy(joint.at, low[0][0])}", field, at)
         return self

@@ -31,12 +31,14 @@ def from_points(
     dwells: Sequence[tuple[float, float]] = (),
     around: int | None = 1,
     field: str = "motion.points",
+    unit: float = 1.0,
 ) -> Motion:
     """Make the C4 quintic spline through displacements s at angles theta (rad, rising, in [0, total]).
 
     Each of `dwells` runs from a point to the next one (beyond `total` over the end), both of one displacement: there
     S rests, and S' = S'' = 0 at its ends. Without any, and `around` 1, the spline is periodic. Raises IntentError for
-    angles that do not rise, a dwell that no points bound, and too few or too many points.
+    angles that do not rise, a dwell that no points bound, and too few or too many points; it tells displacements in
+    `unit`, of so many mm or rad.
     """
     angles, values = np.asarray(theta, dtype=float), np.asarray(s, dtype=float)
     if angles.shape != values.shape or angles.ndim != 1 or len(angles) > MOST_POINTS:
@@ -53,8 +55,8 @@ def from_points(
     if around == 1 and len(angles) > 1 and angles[-1] - angles[0] > total - SAME_ANGLE:
         if abs(values[-1] - values[0]) > 1e-9 * max(1.0, float(np.abs(values).max())):
             raise IntentError(
-                f"the motion does not close: it is {values[0]:.6g} at the first point, {values[-1]:.6g} a turn later; "
-                "give both the same displacement",
+                f"the motion does not close: it is {values[0] / unit:.6g} at the first point, "
+                f"{values[-1] / unit:.6g} a turn later; give both the same displacement",
                 f"{field}[{len(values) - 1}]",
             )
         angles, values = angles[:-1], values[:-1]

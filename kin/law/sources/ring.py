@@ -27,15 +27,19 @@ _FOLDED = 1e-13  # rad: by so much at most folding by a turn rounds
 
 
 class Samples(NamedTuple):
-    """Angles (rad, rising), displacements, and the line of each in its file, each (n,)."""
+    """Angles (rad, rising), displacements, and the line of each in its file, each (n,).
+
+    `unit` is one unit of the file's displacements, in mm or rad: messages tell them as the file has them.
+    """
 
     theta: Array
     s: Array
     lines: NDArray[np.intp]
+    unit: float = 1.0
 
     def part(self, which: slice) -> Samples:
         """Some of the rows."""
-        return Samples(self.theta[which], self.s[which], self.lines[which])
+        return self._replace(theta=self.theta[which], s=self.s[which], lines=self.lines[which])
 
 
 class Dwelling(NamedTuple):
@@ -71,6 +75,7 @@ def laid(rows: Samples, dwells: Sequence[Dwelling], total: float, around: int | 
         np.concatenate([rows.theta[:-1], rows.theta[:-1] + total]),
         np.concatenate([rows.s[:-1], other]),
         np.concatenate([rows.lines[:-1], rows.lines[:-1]]),
+        rows.unit,
     )
     again = [Dwelling(d.first + n, d.last + n, rows.s[0] + rows.s[-1] - d.level) for d in dwells]
     knots, functions = _round(both, merged([*dwells, *again], 2 * n), 2 * total, fit)
@@ -106,7 +111,7 @@ def _round(rows: Samples, dwells: Sequence[Dwelling], turn: float, fit: Fit) -> 
         knots.append(_angle(rows, dwell.first, turn))
         functions.append(Constant(dwell.level))
         index = np.arange(dwell.last, after.first + 1)
-        part = Samples(rows.theta[index % n] + turn * (index // n), rows.s[index % n], rows.lines[index % n])
+        part = Samples(rows.theta[index % n] + turn * (index // n), rows.s[index % n], rows.lines[index % n], rows.unit)
         between = float(part.theta[0]), float(part.theta[-1])
         sites, spans = fit(part, Ends(dwell.level, after.level), between)
         knots += sites[:-1].tolist()

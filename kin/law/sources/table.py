@@ -121,15 +121,15 @@ def _one_turn(
     apart, line = abs(float(rows.s[-1] - rows.s[0])), int(rows.lines[-1])
     if over > total - SAME_ANGLE:
         if apart > 2 * reading:
-            problem = f"the motion does not close: {apart:.6g} off the first row, a turn later"
+            problem = f"the motion does not close: {apart / rows.unit:.6g} off the first row, a turn later"
             raise TableError(f"{problem}; give this row the displacement of the first one", field, line)
         return rows.part(slice(None, -1)), None
     if total - over <= _GAP * step:
         return rows, None
     if apart > 2 * reading:
         raise TableError(
-            f"the table ends after {math.degrees(over):.6g} degrees, {apart:.6g} off its first row: the rest of the "
-            "turn can be no dwell; add the rows that are missing",
+            f"the table ends after {math.degrees(over):.6g} degrees, {apart / rows.unit:.6g} off its first row: "
+            "the rest of the turn can be no dwell; add the rows that are missing",
             field,
             line,
         )
@@ -208,7 +208,7 @@ def _given(task: _Task, dwells: Sequence[tuple[float, float]], field: str) -> li
         level = float(0.5 * (s.min() + s.max()))
         if s.max() - s.min() > 2 * reading:
             line = int(rows.lines[index[int(np.argmax(np.abs(s - np.median(s))))] % n])
-            raise TableError(f"the row is not part of a dwell at {float(np.median(s)):.6g}", field, line)
+            raise TableError(f"the row is not part of a dwell at {float(np.median(s)) / rows.unit:.6g}", field, line)
         turns = ends[0] // n
         found.append(Dwelling(ends[0] - turns * n, ends[1] - turns * n, level))
     return sorted(found)
@@ -295,14 +295,15 @@ class _Smoother:
             return self._single(rows, peak + 2)
         worst = int(np.argmax(np.abs(off)))
         return TableError(
-            f"the rows scatter about any smooth curve: the closest one is {reached:.3g} off here, the reading error "
-            f"is {self.reading:.6g}; smooth the table, or give a reading error above that",
+            f"the rows scatter about any smooth curve: the closest one is {reached / rows.unit:.3g} off here, the "
+            f"reading error is {self.reading / rows.unit:.6g}, both in the table's unit; smooth the table, or give a "
+            "reading error above that",
             self.field,
             int(rows.lines[worst]),
         )
 
     def _written(self, theta: float, s: float) -> float:
-        """A displacement as the table has it."""
+        """A displacement on the side of the motion on which the table has it."""
         if self.image is None:
             return s
         half, total = self.image
@@ -313,7 +314,7 @@ class _Smoother:
         s = rows.s
 
         def there(k: int, value: float) -> float:
-            return self._written(float(rows.theta[k]), float(value))
+            return self._written(float(rows.theta[k]), float(value)) / rows.unit
 
         near = range(max(i - 2, 2), min(i + 3, len(s) - 2))
         expected = {k: (4 * (s[k - 1] + s[k + 1]) - s[k - 2] - s[k + 2]) / 6 for k in near}

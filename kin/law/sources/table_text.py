@@ -50,7 +50,7 @@ def read_table(
         places = max(places, _places(cells[1]))
     theta *= math.pi / 180 / (2 if angles == "crank" else 1)
     scale = {"mm": 1.0, "inch": MM_PER_INCH, "degrees": math.pi / 180}[unit]
-    return Samples(theta, s * scale, np.array([i for i, _ in kept], dtype=np.intp)), scale * 10.0**-places
+    return Samples(theta, s * scale, np.array([i for i, _ in kept], dtype=np.intp), scale), scale * 10.0**-places
 
 
 def _separator(lines: list[str]) -> str:
