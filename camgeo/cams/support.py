@@ -123,6 +123,14 @@ class SupportCam(FlatFacedCam):
             return "hypocycloid.breadth", 2.0
         return ("fourier.mean" if isinstance(self.shape, FourierShape) else "p"), 1.0
 
+    def free_of_undercut(self, free_at: float, mm: float) -> str:
+        """A larger cam; a Reuleaux polygon's corners are rounded, by less than half its breadth."""
+        shape, told = self.shape, super().free_of_undercut(free_at, mm)
+        if not isinstance(shape, ReuleauxShape) or shape.rounding + free_at < 0.5 * shape.breadth:
+            return told
+        breadth = 2.0 * (shape.rounding + free_at) / mm
+        return told.replace(" would", f" and a reuleaux.breadth of more than {upward(breadth)} would")
+
     def circles(self) -> tuple[Circle, ...]:
         """The base circle about the shaft, where the shaft does not stand on the contour."""
         return (Circle("base circle"),)

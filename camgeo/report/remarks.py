@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.checks.declared import BENT, PRESSURE
-from camgeo.common.rounding import downward, upward
+from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
@@ -262,6 +262,8 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     if distance > 0.0:
         return None
     told = f"the shaft lies outside the contour by {_length(recipe, -distance)}"
+    if -distance <= NOISE * design.profile.curve.size:
+        told = "the shaft lies on the contour"
     shaft = getattr(design.intent, "at", None)
     at_deg = degrees(at if shaft is None else float(shaft(at, 0)[0][0, 0]))
     return Remark("shaft-outside", distance, 0.0, "mm", told, at_deg)

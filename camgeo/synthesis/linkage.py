@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 import numpy as np
 
 from camgeo.checks.declared import DWELL, MOBILITY, REVERSAL
+from camgeo.common.rounding import upward
 from kin.judge.check import Check, failed
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.monotone import RoughError
@@ -22,9 +23,10 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.linkage import DwellAsked
     from camgeo.recipe.recipe import Recipe
+    from camgeo.recipe.schema.errors import RecipeErrors
     from kin.law.support_function import Lift
     from kin.linkage.extremes import Figures
-    from kin.linkage.mechanism import Mechanism
+    from kin.linkage.mechanism import Mechanism, OutsideError
     from kin.numeric.arrays import Array
     from kin.numeric.longest_window import Dwell
 
@@ -39,17 +41,29 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
     Raises RecipeErrors where the shaft does not lie within the cam, or a dyad's output would not swing.
     """
     from kin.law.programme import IntentError
-    from kin.linkage.mechanism import Mechanism
+    from kin.linkage.mechanism import Mechanism, OutsideError
 
     asked = recipe.linkage
     if asked is None:
         raise ValueError(f"{recipe.name}: there is no linkage")
     try:
         return Mechanism(asked.made(), lift, breadth, tuple(dyad.made() for dyad in asked.dyads))
+    except OutsideError as error:
+        raise _outside(recipe, error) from error
     except IntentError as error:
         part = "linkage" if error.field.startswith("dyads") else "cam"
         field = f"{part}.{error.field}"
         raise recipe.error(field if field in recipe.marks else part, error.message) from error
+
+
+def _outside(recipe: Recipe, error: OutsideError) -> RecipeErrors:
+    """Point at what places the shaft: the base radius of a cam that has one, which moves every face outwards alike."""
+    if "cam.base_radius" in recipe.marks:
+        more = upward(error.depth / recipe.mm)
+        return recipe.error("cam.base_radius", error.message, None, f"give one larger by more than {more}")
+    if "cam.shaft" in recipe.marks:
+        return recipe.error("cam.shaft", error.message, None, "place it within the cam")
+    return recipe.error("cam", error.message, None, "give shaft, a point within the cam")
 
 
 # --- checks before any file -------------------------------------------------------------------------------------------
@@ -134,7 +148,8 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
     except RoughError as error:
         at = math.degrees(error.at % TURN)
         problem = f"the motion changes too abruptly to be resolved, near a relative angle of {at:.6g} degrees"
-        remedy = "keep its loops farther from binding, or give p fewer waves"
+        other = "the motion a larger stroke" if "cam.base_radius" in recipe.marks else "p fewer waves"
+        remedy = f"keep its loops farther from binding, or give {other}"
         raise recipe.error("linkage", problem, None, remedy) from error
 
 

@@ -237,13 +237,9 @@ def frame_swing(motion: Motion, ground: float, rocker: float, side: float, field
     """
     law = FrameSwing(motion.demand_joined(field, "rad"), ground, rocker, side)
     rise = math.degrees(law.rise)
-    if not (abs(law.rise) < math.pi and abs(0.5 * law.lean) < math.cos(0.5 * law.rise)):
-        most = math.degrees(2.0 * math.acos(min(1.0, abs(0.5 * law.lean))))
-        raise IntentError(
-            f"the frame cannot swing by {rise:.9g} degrees on links of these lengths, only by less than {most:.9g}: "
-            "swing less, or give a longer ground or a rocker nearer to the joint's offset",
-            field,
-        )
+    # psi_0 and psi_0 + h, which are each other's image, within a quarter turn of 0
+    if not (abs(law.rise) < math.pi and abs(0.5 * law.lean) < math.cos(0.5 * law.rise) ** 2):
+        raise IntentError(_too_far(law), field)
     span, covered = math.degrees(math.pi + law.rise), math.degrees(motion.total)
     if abs(motion.total - (math.pi + law.rise)) > _SAME:
         raise IntentError(
@@ -260,6 +256,21 @@ def frame_swing(motion: Motion, ground: float, rocker: float, side: float, field
         raise IntentError(f"the swing is not defined: {error.operation}", field) from error
     _demand_meeting(law, field)
     return law
+
+
+def _too_far(law: FrameSwing) -> str:
+    """Say that a net rise cannot be, and what would let it be, as far as something would."""
+    half, aside = 0.5 * law.rise, abs(law.rocker)
+    room = math.cos(half) ** 2 if abs(law.rise) < math.pi else 0.0
+    most = math.degrees(2.0 * math.acos(math.sqrt(min(1.0, aside / law.ground))))
+    remedies = [f"swing by less than {most:.9g}"] if most else []
+    if room:
+        longer, nearer = aside / room, law.ground * room
+        remedies.append(f"give a ground above {longer:.9g} mm or a rocker within {nearer:.9g} mm of the joint's offset")
+    if not remedies:
+        remedies = [f"swing by less than 180 with a ground above {aside:.9g} mm"]
+    told = f"by {math.degrees(law.rise):.9g} degrees " if most or not room else ""
+    return f"the frame cannot swing {told}on links of these lengths: {', or '.join(remedies)}"
 
 
 def _demand_possible(law: FrameSwing, function: Stretch, begin: float, end: float, field: str) -> None:

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from kin.linkage.four_bar import Linkage
     from kin.numeric.arrays import Array, Indices
 
-__all__ = ["Mechanism", "Motion", "PlaceError"]
+__all__ = ["Mechanism", "Motion", "OutsideError", "PlaceError"]
 
 QUARTER = 0.5 * math.pi
 # Rounding of a lift's own constants, as a part of the breadth.
@@ -57,6 +57,15 @@ class PlaceError(BindingError):
 
     def __str__(self) -> str:
         return f"{self.message}, at a relative angle of {math.degrees(self.at % TURN):.6g} degrees"
+
+
+class OutsideError(IntentError):
+    """A shaft that lies outside the cam, by `depth` mm in the direction `at_deg`."""
+
+    def __init__(self, depth: float, at_deg: float) -> None:
+        what = f"the shaft lies outside the cam, by {depth:.6g} mm in the direction of {at_deg:.6g} degrees"
+        super().__init__(what, "shaft", at_deg)
+        self.depth = depth
 
 
 @dataclass(frozen=True, eq=False)
@@ -354,12 +363,7 @@ class Mechanism:
         of = pieces(cells(lambda x: self.lift.derivatives(x, 0), places, 1e-3 * _EDGE * self.breadth))
         least, at = of.least()
         if least < -_EDGE * self.breadth:
-            degrees = math.degrees(at) % 360
-            raise IntentError(
-                f"the shaft lies outside the cam, by {-least:.6g} mm in the direction of {degrees:.6g} degrees",
-                "shaft",
-                degrees,
-            )
+            raise OutsideError(-least, math.degrees(at) % 360)
 
 
 def _placed(error: BindingError, theta: Array) -> PlaceError:

@@ -86,6 +86,9 @@ def test_what_a_remark_tells() -> None:
     assert pressure.sentence == "the pressure angle reaches 62.55 deg; up to 45 is the rule for oscillating followers"
     (outside,) = remarks("cam: {kind: support, p: 30, shaft: [40, 0]}\n")
     assert outside.sentence == "the shaft lies outside the contour by 10 mm"
+    corner = "reuleaux: {sides: 3, breadth: 50}, shaft: [28.8675134594813, 0]"
+    (on,) = (x for x in remarks(f"cam: {{kind: support, {corner}}}\n") if x.name == "shaft-outside")
+    assert on.sentence == "the shaft lies on the contour"  # but for 3e-14 mm
     (keyway,) = remarks(INCH + KEYED % ("0.75", "din6885"))
     assert keyway.sentence.startswith("a bore of 0.75 in takes a metric keyway of DIN 6885, 6 mm wide")
     (coarse,) = remarks("cam: {kind: support, p: 30 + cos(t)}\nexport: {tolerance: 3}\n")

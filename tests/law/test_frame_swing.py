@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from functools import cache
 
@@ -153,6 +154,17 @@ def test_a_polygon_turning_in_a_rigid_square_swings_by_the_law():
     assert found == pytest.approx(law.output(phi, 0).c[0], abs=1e-6)
 
 
+def test_what_rounding_leaves_of_a_rest_is_no_acceleration():
+    back = [
+        Move(87.8816 * DEG, LAWS["harmonic"], by=-11.7795 * DEG),
+        Move(68.5594 * DEG, LAWS["polynomial-4567"], by=-11.7795 * DEG),
+    ]
+    law = frame_swing(programme(back, 156.441 * DEG, around=None), 137.0, 0.0, 1.0)
+    ends = [end for joint in law.joints for k, *both in joint.jumps if k == 2 for end in both]
+    assert len(ends) == 4
+    assert sum(end == 0.0 for end in ends) == 2  # beside a harmonic end each, of about 0.43
+
+
 def test_what_hangs_on_the_rocker_is_solved_from_the_law():
     from kin.follower.frame import _Prescribed
 
@@ -249,13 +261,43 @@ def beyond(rise, back):
         (lambda: moved(20.0, 30.0), (80.0, 0.0), "1.33333 of its speed at 15 degrees"),
         (lambda: moved(100.0, 270.0), (80.0, 55.0), "cannot swing by 100 degrees on links of these lengths"),
         (lambda: beyond(50.0, 20.0), (20.0, 18.0), "so far that its loop does not close, near a shaft angle of"),
-        (lambda: moved(20.0, 140.0, "parabolic"), (80.0, 85.0), "only by less than 0"),
+        (
+            lambda: moved(20.0, 140.0, "parabolic"),
+            (80.0, 85.0),
+            r"cannot swing on links of these lengths: give a ground",
+        ),
+        (lambda: moved(170.0, 200.0), (80.0, 85.0), "a ground above 11189"),
     ],
 )
 def test_swings_that_cannot_be(make, links, told):
     with pytest.raises(IntentError, match=told) as caught:
         frame_swing(make(), links[0], links[1], 1.0)
     assert caught.value.field == "swing"
+
+
+@pytest.mark.parametrize(
+    ("rise", "ground", "rocker", "does"),
+    [
+        (9.068, 80.0, 79.5, True),  # below 2 acos(sqrt(79.5/80)), above which psi would pass 90 degrees
+        (9.07, 80.0, 79.5, False),
+        (15.0, 106.821, 105.0, True),
+        (15.0, 106.819, 105.0, False),
+        (15.0, 80.0, 78.636, True),
+        (15.0, 80.0, 78.638, False),
+    ],
+)
+def test_the_bounds_that_a_refusal_names_are_where_it_ends(rise, ground, rocker, does):
+    told = None
+    try:
+        frame_swing(moved(rise, 0.75 * (180.0 + rise)), ground, rocker, 1.0)
+    except IntentError as error:
+        told = error.message
+    assert ("cannot swing" in str(told)) is not does
+    if not does:
+        most, above, within = (float(x) for x in re.findall(r"(?:than|above|within) ([0-9.]+)", told))
+        assert most == pytest.approx(2 * math.degrees(math.acos(math.sqrt(rocker / ground))), rel=1e-8)
+        assert above == pytest.approx(rocker / math.cos(0.5 * rise * DEG) ** 2, rel=1e-8)
+        assert within == pytest.approx(ground * math.cos(0.5 * rise * DEG) ** 2, rel=1e-8)
 
 
 def test_velocities_at_the_ends_are_each_others_image():

@@ -215,7 +215,7 @@ def test_a_half_turn_makes_a_constant_breadth_cam():
         ([dwell(100)], TURN, "the segments cover 100 degrees, 360 are wanted", "motion"),
         ([dwell(0), dwell(360)], TURN, "the angle of a segment must be above 0, not 0 degrees", "motion[0]"),
         ([rise(360, 0.0)], TURN, "the stroke of a segment must be a number other than 0, not 0", "motion[0]"),
-        ([rise(180, 5.0), to(180, 5.0)], TURN, "the motion is at 5 already; write a dwell", "motion[1].to"),
+        ([rise(180, 5.0), to(180, 5.0)], TURN, "the motion is there already; write a dwell", "motion[1].to"),
         (
             [Move(rad(360), named("cubic"), by=1.0, to=2.0)],
             TURN,

@@ -254,6 +254,45 @@ def test_what_cannot_be_is_refused(old: str, new: str, words: str, tmp_path: Pat
     assert not list(tmp_path.iterdir())
 
 
+def test_swings_that_are_lost_in_rounding_or_do_not_join() -> None:
+    text = FOUR_BAR.replace("support", "constant-breadth").replace("dwell: {band: 0.1, at_least: 36}\n", "")
+    text = text.replace(
+        "four-bar, ground: 80, coupler: 70, rocker: 105", "inverted-slider-crank, ground: 80, rocker: 0"
+    )
+    text = text.replace("  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  shaft: [18, 8.5]\n", "  base_radius: 40\n%s")
+    swing = "  swing: [{rise: %s, over: 120, law: cycloidal}, {dwell: %s}]\n"
+    with pytest.raises(RecipeErrors, match="or give the motion a larger stroke"):
+        designed(recipe(text=text % (swing % ("1e-9", "60.000000001"))))
+    designed(recipe(text=text % (swing % ("1e-4", "60.0001"))))
+    torn = "  swing: [{rise: 20, over: 100, law: cycloidal}, {rise: 9, over: 109, law: constant-velocity}]\n"
+    with pytest.raises(RecipeErrors, match=r"S' jumps from 0 to 4.73084 deg/rad at 100 degrees"):
+        designed(recipe(text=text % torn))
+
+
+def test_what_would_bring_the_shaft_within_the_cam_does() -> None:
+    by_law = FOUR_BAR.replace("support", "constant-breadth").replace("dwell: {band: 0.1, at_least: 36}\n", "")
+    by_law = by_law.replace(
+        "  p: sin(3*t) + 13/15*sin(3*t)*cos(2*t) + 25\n  shaft: [18, 8.5]\n", "  base_radius: 0.4\n%s"
+    )
+    by_law = "units: inch\n" + by_law % "  motion: [{return: 15 mm, over: 120, law: cycloidal}, {dwell: 60}]\n"
+    with pytest.raises(RecipeErrors) as caught:
+        designed(recipe(text=by_law))
+    found = str(caught.value)
+    assert "four-bar.yaml:5:16: cam.base_radius: the shaft lies outside the cam, by 4.84 mm" in found
+    more = float(found.rpartition("give one larger by more than ")[2])
+    assert more == pytest.approx(4.84 / 25.4, rel=1e-5)
+    designed(recipe("base_radius: 0.4", f"base_radius: {0.4 + 1.00001 * more}", by_law))
+    with pytest.raises(RecipeErrors, match="larger"):
+        designed(recipe("base_radius: 0.4", f"base_radius: {0.4 + 0.99999 * more}", by_law))
+
+    with pytest.raises(RecipeErrors, match="place it within the cam"):
+        designed(recipe("[18, 8.5]", "[28, 8.5]"))
+    beside = FOUR_BAR.replace("  shaft: [18, 8.5]\n", "").replace("+ 25", "+ 25 + 40*cos(t)")
+    with pytest.raises(RecipeErrors, match="give shaft, a point within the cam"):
+        designed(recipe(text=beside))
+    designed(recipe("+ 40*cos(t)", "+ 40*cos(t)\n  shaft: [40, 0]", beside))
+
+
 @pytest.mark.slow
 def test_an_inch_recipe_says_the_same_in_inches(tmp_path: Path) -> None:
     slider = FOUR_BAR.replace("{kind: four-bar, ground: 80, coupler: 70, rocker: 105}", "{kind: slider-crank, %s}")

@@ -290,3 +290,26 @@ def test_a_file_of_the_recipes_own_name_is_judged_by_its_own_tolerance(tmp_path:
     assert not pipeline.judged(recipe, [other.parent / "own.stl"], tolerance=0.001)["ok"]
     assert pipeline.judged(recipe, [other], tolerance=0.02)["ok"]
     assert {check["file"] for check in report["checks"] if not check["ok"]} == {"other.stl"}
+
+
+@pytest.mark.parametrize(
+    ("clearance", "rounding", "breadth", "told"),
+    [
+        (0.2, 0.2001, 50, "a reuleaux.rounding larger by more than 0.2 would"),
+        (
+            40,
+            40.0001,
+            80.001,
+            "a reuleaux.rounding larger by more than 40 and a reuleaux.breadth of more than 80 would",
+        ),
+    ],
+)
+def test_what_would_free_a_reduced_reuleaux_polygon_of_undercut(
+    clearance: float, rounding: float, breadth: float, told: str
+) -> None:
+    text = "cam: {kind: support, reuleaux: {sides: 5, breadth: %s, rounding: %s}}\n"
+    text += "export: {files: [{dxf: {clearance: %s}}]}"
+    refused = pipeline.check(read((text % (50, 0, clearance)).encode(), "c.yaml"))
+    (undercut,) = (x for x in refused.report["checks"] if x["name"] == "undercut-local" and x.get("file"))
+    assert told in undercut["detail"]
+    assert pipeline.check(read((text % (breadth, rounding, clearance)).encode(), "c.yaml")).ok

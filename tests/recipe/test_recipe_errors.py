@@ -319,7 +319,7 @@ def test_keys(body: str, message: str) -> None:
         ("2020-01-01", "not a number, given '2020-01-01'; this is a date"),
         ("1/0", f"divides by zero, given 1/0; {LENGTH}"),
         ("1e999", f"too large, given 1e999; {LENGTH}"),
-        ("-1e-31", "too small, given -1e-31; write 0, or the intended number"),
+        ("-1e-31", "too small, given -1e-31; give at least 1e-30"),  # 0 would not do
         ("1e-999", f"not above 0, given 1e-999; {LENGTH}"),
         ("0", f"not above 0, given 0; {LENGTH}"),
         ("-2", f"not above 0, given -2; {LENGTH}"),
@@ -334,6 +334,23 @@ def test_keys(body: str, message: str) -> None:
 )
 def test_what_is_no_length(written: str, message: str) -> None:
     assert told(f"{SUPPORT}part:\n  thickness: {written}\n") == [f"c.yaml:3:14: part.thickness: {message}"]
+
+
+@pytest.mark.parametrize(
+    "cam", ["kind: disc, follower: {kind: flat}", "kind: constant-diameter, roller_radius: 5", "kind: support, p: 9"]
+)
+def test_a_key_of_another_kind_of_cam_is_no_slip_of_the_pen(cam: str) -> None:
+    found = told(f"cam: {{{cam}, swing: []}}")
+    about_swing = [line.partition("cam.swing: ")[2] for line in found if "cam.swing" in line]
+    assert about_swing == ["unknown key; it belongs under cam of kind constant-breadth"]
+
+
+def test_a_length_near_0_where_0_would_do() -> None:
+    linkage = "linkage:\n  {ground: 60, rocker: 1e-31, kind: inverted-slider-crank}\n"
+    assert told(SUPPORT + linkage) == [
+        "c.yaml:3:24: linkage.rocker: too small, given 1e-31; write 0, or the intended number"
+    ]
+    assert read((SUPPORT + linkage.replace("1e-31", "0")).encode(), "c.yaml").linkage
 
 
 @pytest.mark.parametrize(

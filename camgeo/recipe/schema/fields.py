@@ -284,6 +284,12 @@ def elsewhere(root: Table, name: str, known: tuple[str, ...]) -> str:
     return f"the keys here are {either(known, 'and')}" if known else "there are no keys here"
 
 
+def of_other_kind(root: Table, path: str) -> bool:
+    """Tell whether a key that the kind of its mapping does not have is another kind's: `cam.swing` of a disc cam."""
+    parent, _, name = path.rpartition(".")
+    return any(group.split()[0] == parent and name in table.keys for group, _, table in _grouped(root))
+
+
 def _grouped(table: Table) -> list[tuple[str, str, Table]]:
     """Every table that a kind chooses: files before cams, linkages and their dyads."""
     forms: dict[str, Form] = {}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from camgeo.recipe.schema.errors import NEAR, NEARER, shown, suggestion
 from camgeo.recipe.schema.fields import Kind, either, not_yet
 from camgeo.recipe.schema.quantity import UnitComplaint, holds_unit, is_metric, read_quantity, units_for
-from camgeo.recipe.schema.scalars import Complaint, read_name, read_paragraph, read_ratio, whole
+from camgeo.recipe.schema.scalars import Complaint, SmallComplaint, read_name, read_paragraph, read_ratio, whole
 from camgeo.recipe.schema.yaml_source import Mapping, Scalar, described, entries, written
 
 if TYPE_CHECKING:
@@ -73,6 +73,10 @@ def read_numeric(reader: Reader, field: Field, node: Node, path: str) -> float |
         value = whole(value) if field.kind is Kind.INTEGER else value
     except UnitComplaint as complaint:
         _refuse_unit(reader, field, scalar, path, complaint.unit)
+        return None
+    except SmallComplaint as complaint:
+        remedy = complaint.instead if field.out_of_bounds(0.0) else complaint.remedy
+        reader.fault(node.mark, path, complaint.problem, written(scalar), remedy)
         return None
     except Complaint as complaint:
         _complain(reader, field, scalar, path, complaint)

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.recipe.schema.errors import RecipeError, shown, suggestion
-from camgeo.recipe.schema.fields import Field, Kind, Table, either, elsewhere, not_yet
+from camgeo.recipe.schema.fields import Field, Kind, Table, either, elsewhere, not_yet, of_other_kind
 from camgeo.recipe.schema.yaml_source import (
     Mapping,
     Scalar,
@@ -177,9 +177,8 @@ class Reader:
             elif name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
             else:
-                self.fault(
-                    key.mark, below, "unknown key", None, suggestion(name, known) or elsewhere(self.root, name, known)
-                )
+                remedy = "" if of_other_kind(self.root, below) else suggestion(name, known)
+                self.fault(key.mark, below, "unknown key", None, remedy or elsewhere(self.root, name, known))
 
     def _refuse_alternatives(self, table: Table, given: dict[str, Node], node: Mapping, path: str) -> None:
         names = [name for name, _ in table.alternatives]

@@ -45,6 +45,14 @@ class Complaint(ValueError):  # noqa: N818 - it never leaves the package
         self.remedy = remedy
 
 
+class SmallComplaint(Complaint):
+    """A number too near 0 to be worked with; `instead` is what would do where 0 would not."""
+
+    def __init__(self, least: float) -> None:
+        super().__init__("too small", "write 0, or the intended number")
+        self.instead = f"give at least {least:g}"
+
+
 def read_number(text: str) -> float:
     """Read a decimal number, a fraction such as 180/7 or plain arithmetic such as 15/25.4; raises Complaint."""
     if len(text) > _MOST_DIGITS:
@@ -71,7 +79,7 @@ def within_range(value: float) -> float:
     if not math.isfinite(value):
         raise Complaint("too large")
     if 0 < abs(value) < _LEAST:
-        raise Complaint("too small", "write 0, or the intended number")
+        raise SmallComplaint(_LEAST)
     return value
 
 

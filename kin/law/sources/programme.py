@@ -164,7 +164,7 @@ def _stroke(step: Move, part: _Part) -> float:
         raise IntentError("a segment has either a stroke or an absolute displacement", part.field)
     by = step.by if step.by is not None else step.to - part.level  # type: ignore[operator]
     if step.to is not None and abs(by) <= 1e-12 * max(abs(step.to), abs(part.level)):
-        raise IntentError(f"the motion is at {step.to:.6g} already; write a dwell", f"{part.field}.to")
+        raise IntentError("the motion is there already; write a dwell", f"{part.field}.to")
     _demand_stroke(by, part.field)
     return by
 
