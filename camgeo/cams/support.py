@@ -31,7 +31,7 @@ LOOKS = 72  # places at which the size of a formula's values is looked at
 LEAST_PART = 1e-9  # of its farthest point from the shaft: a cam with a smaller mean radius is lost in rounding
 LEAST_ANGLE = 0.1  # degrees: on a cam of 50 mm an arc of 0.09 mm
 ROUNDING = 1e-15  # of the same: a mean radius below it is 0
-LEAST_PIECE = 1e-5  # mm: chord of an arc that every file holds; the kernel of STEP takes points within 1e-7 mm as one
+LEAST_PIECE = 1e-9  # mm: chord of an arc that is one in a drawing; STEP, whose kernel needs more, says so itself
 
 
 @dataclass(frozen=True)
@@ -290,7 +290,9 @@ def check(cam: Values, reader: Reader) -> None:
     if {"sides", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] > 0.0:
         arc = 2.0 * math.sin(0.5 * _least_angle(**reuleaux))  # chord of a corner's arc of radius 1
         if arc * reuleaux["rounding"] < LEAST_PIECE * (1.0 - NOISE):
-            remedy = f"give at least {upward(LEAST_PIECE / arc / reader.mm)} {reader.units}"
+            remedy = (
+                f"give at least {upward(1.001 * LEAST_PIECE / arc / reader.mm)} {reader.units}"  # clear of rounding
+            )
             value = f"{reuleaux['rounding'] / reader.mm:g}"
             reader.fault_at("cam.reuleaux.rounding", "a corner smaller than a file can hold", value, remedy)
 

@@ -142,6 +142,7 @@ class Part:
 
 MOST_HOLES = 60
 LEAST_SIZE = 1e-3  # mm: of what is cut, drilled or stands; a file's reader takes much less for nothing
+THINNEST = 1e-6  # mm: of a body; the kernel of STEP takes points within 1e-7 mm as one
 _NO_SIZES = frozenset({"wall", "least"})  # what has to be left, which may be as little as one likes
 
 
@@ -346,8 +347,9 @@ def _sizes(part: Values, reader: Reader) -> None:
         value: Any = part
         for name in names:
             value = value.get(name, {})
-        if isinstance(value, float) and value < LEAST_SIZE * (1.0 - NOISE):
-            remedy = f"give at least {upward(LEAST_SIZE / reader.mm)} {reader.units}"
+        least = THINNEST if path == "part.thickness" else LEAST_SIZE
+        if isinstance(value, float) and value < least * (1.0 - NOISE):
+            remedy = f"give at least {upward(least / reader.mm)} {reader.units}"
             reader.fault_at(path, "smaller than a file can hold", f"{value / reader.mm:g}", remedy)
 
 

@@ -67,16 +67,16 @@ def test_a_corner_too_small_for_a_file_is_refused_with_the_least(sides: int, uni
         f"name: reuleaux\nunits: {units}\n"
         f"cam: {{kind: support, reuleaux: {{sides: {sides}, breadth: {50 / mm}, rounding: SIZE}}}}\n"
         f"part: {{thickness: {8 / mm}}}\n"
-        f"export: {{tolerance: {0.001 / mm}, files: [dxf, step]}}\nverify: {{angles: 60}}\n"
+        f"export: {{tolerance: {0.001 / mm}, files: [dxf, svg]}}\nverify: {{angles: 60}}\n"
     )
-    told = refusal(text.replace("SIZE", "1e-9"))
+    told = refusal(text.replace("SIZE", "1e-13"))
     found = re.fullmatch(
-        rf"recipe:3:\d+: cam.reuleaux.rounding: a corner smaller than a file can hold, given 1e-09; "
+        rf"recipe:3:\d+: cam.reuleaux.rounding: a corner smaller than a file can hold, given 1e-13; "
         rf"give at least (\S+) {units}",
         told,
     )
     assert found
-    assert float(found[1]) * mm * 2.0 * math.sin(math.pi / (2 * sides)) == pytest.approx(1e-5, rel=1e-5)
+    assert float(found[1]) * mm * 2.0 * math.sin(math.pi / (2 * sides)) == pytest.approx(1.001e-9, rel=1e-5)
     report = camgeo.check(camgeo.load(text.replace("SIZE", found[1])))
     assert report.ok, report.table()
 
