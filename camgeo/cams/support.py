@@ -290,9 +290,8 @@ def check(cam: Values, reader: Reader) -> None:
     if {"sides", "rounding"} <= reuleaux.keys() and reuleaux["rounding"] > 0.0:
         arc = 2.0 * math.sin(0.5 * _least_angle(**reuleaux))  # chord of a corner's arc of radius 1
         if arc * reuleaux["rounding"] < LEAST_PIECE * (1.0 - NOISE):
-            remedy = (
-                f"give at least {upward(1.001 * LEAST_PIECE / arc / reader.mm)} {reader.units}"  # clear of rounding
-            )
+            held = 1.001 * LEAST_PIECE / arc  # clear of rounding
+            remedy = f"give at least {upward(held / reader.mm)} {reader.units}"
             value = f"{reuleaux['rounding'] / reader.mm:g}"
             reader.fault_at("cam.reuleaux.rounding", "a corner smaller than a file can hold", value, remedy)
 
