@@ -359,11 +359,8 @@ DWELL = (
 
 def check_linkage(values: Values, reader: Reader) -> None:
     """Note the faults between a linkage, its dwells and the cam that drives it."""
-    if (
-        "cam.swing" in reader.marks
-        and reader.kinds["cam"] == "constant-breadth"
-        and reader.kinds["linkage"] not in TURNING
-    ):
+    swings = "swing" in values.get("cam", {})  # as the cam's kind has that key
+    if swings and reader.kinds["linkage"] not in TURNING:
         remedy = "give linkage: {kind: inverted-slider-crank, ground: 80, rocker: 0}, or motion in its place"
         reader.fault_at("cam.swing", "needs a linkage of kind inverted-slider-crank", None, remedy)
     if "linkage" not in reader.marks:

@@ -140,8 +140,8 @@ DESIGNS: list[tuple[str, str, Follow]] = [
     (swung(over=120), r"let it cover (\S+), 180 and its net rise", lambda span: swung(over=120, rest=span - 120)),
     (swung(over=70), r"spread the swing over a larger angle", lambda _: swung(over=115)),
     (swung(over=70), r"or swing less", lambda _: swung(9, over=70)),
-    (swung(rocker=85), r"or a rocker nearer to the joint's offset", lambda _: swung(rocker=15)),
-    (swung(rocker=85), r"give a longer ground", lambda _: swung(rocker=85, ground=120)),
+    (swung(rocker=85), r"or a rocker within (\S+) mm of the joint's offset", lambda by: swung(rocker=0.2 * by)),
+    (swung(rocker=85), r"give a ground above (\S+) mm", lambda by: swung(rocker=85, ground=1.4 * by)),
     (swung(law="{polynomial: [0, 1]}", rest=0, over=200), r"let it rest at both ends", lambda _: swung()),
     (swung(linkage="four-bar, coupler: 60"), r"give linkage: \{kind: inverted-slider-crank", lambda _: swung()),
     (

@@ -177,8 +177,10 @@ class Reader:
             elif name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
             else:
-                remedy = "" if of_other_kind(self.root, below) else suggestion(name, known)
-                self.fault(key.mark, below, "unknown key", None, remedy or elsewhere(self.root, name, known))
+                near = suggestion(name, known)
+                if name not in near and of_other_kind(self.root, below):
+                    near = ""  # it is no slip for another word, unless it is a part of that one
+                self.fault(key.mark, below, "unknown key", None, near or elsewhere(self.root, name, known))
 
     def _refuse_alternatives(self, table: Table, given: dict[str, Node], node: Mapping, path: str) -> None:
         names = [name for name, _ in table.alternatives]
