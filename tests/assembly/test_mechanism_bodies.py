@@ -140,7 +140,7 @@ def test_bodies_stand_apart_at_some_angles_by_another_means(name: str) -> None:
                         assert first.distance(second) >= least, (one.name, other.name, phi)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", SHAPES)
 def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) -> None:
     assembly = made(name)[2]
@@ -157,7 +157,7 @@ def test_what_is_pressed_together_overlaps_by_no_more_than_the_press(name: str) 
             assert overlap <= 4 * math.pi * largest * 0.5 * assembly.sizes.press + 1e-3, (one.name, other.name)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", few(["yoke, hubs", "flat pair", *OFF, *GUIDED], 2))
 def test_nothing_meets_at_any_angle(name: str) -> None:
     checks = collision_checks(made(name)[2])
@@ -169,7 +169,7 @@ def test_nothing_meets_at_any_angle(name: str) -> None:
     assert checks[0].value == 0.2
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize("name", SHAPES)
 def test_rates_are_those_of_the_places(name: str) -> None:
     phi, h = np.array([0.4, 2.0, 4.4]), 1e-5

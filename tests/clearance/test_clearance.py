@@ -170,6 +170,7 @@ def test_allowed_pairs():
         Slab(disc(0, 0, 1), (), 1.0, 1.0)
 
 
+@pytest.mark.slow
 def test_sliding_contact_keeps_to_its_tolerance():
     """An eccentric disc lifts a tappet's round end: they touch throughout, and slide."""
 

@@ -170,6 +170,7 @@ def forever(path: str) -> None:
         Path(path).unlink()
 
 
+@pytest.mark.slow
 def test_work_under_spawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(multiprocessing, "get_all_start_methods", lambda: ["spawn"])
     assert dict(workers.at_once(double, range(5), 150)) == {number: 2 * number for number in range(5)}

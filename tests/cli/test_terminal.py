@@ -153,6 +153,7 @@ def test_a_stem_that_is_reserved(tmp_path: Path, capsys: pytest.CaptureFixture[s
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("home", few(["/dev/null", "/dev/null/no", None], 3))
 def test_no_home_folder(recipe: Path, tmp_path: Path, home: str | None) -> None:
     surroundings = {key: value for key, value in os.environ.items() if key != "HOME" and not key.startswith("XDG_")}

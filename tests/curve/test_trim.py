@@ -373,7 +373,7 @@ FITS: dict[str, tuple[Any, Any]] = {
 }
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("form", few(FITS, 3))
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-4])

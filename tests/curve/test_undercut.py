@@ -96,6 +96,7 @@ def test_depth_follows_its_law_however_small(margin):
         assert u.depth == pytest.approx(margin**2 / 48.0, rel=max(margin, 1e-3))
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize(("base", "name"), [(5.0, "parabolic"), (1.0, "modified-sine"), (1.0, "harmonic")])
 def test_depth_is_the_lost_motion_of_a_flat_face(base, name):
@@ -184,6 +185,7 @@ def test_the_largest_roller_for_a_star():
     assert len(undercuts(roller(STAR, largest * (1.0 + 1e-9)))) >= 1
 
 
+@pytest.mark.slow
 def test_depth_of_a_roller_is_how_far_it_hangs_free():
     e = 8.0
     curve = roller(STAR, e)

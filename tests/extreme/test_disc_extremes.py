@@ -87,7 +87,7 @@ def recipe(touching, base, rows):
     return load_text(touching.recipe(base, rows, f"export: {{tolerance: {TOLERANCE}, files: [dxf]}}\n"), "cam.yaml")
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(20)
 @pytest.mark.parametrize("name", PASSING)
 def test_it_passes(name: str, tmp_path: Path) -> None:
     touching, base, rows = PASSING[name]

@@ -71,6 +71,7 @@ def test_solids_have_the_volume_of_the_ring(tmp_path):
         assert {"outer", "holes", "thickness", "volume", "contour", "motion"} <= set(checks)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("form", ["arcs", "spline"])
 def test_a_step_file_has_the_volume_of_the_ring(tmp_path, form):

@@ -366,6 +366,7 @@ def test_noise_is_read_or_refused(tmp_path, data, transform):
 # --- by the command ---------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_export_and_verify_by_the_command(tmp_path, capsys):
     recipe = tmp_path / "cam.yaml"
     recipe.write_text(

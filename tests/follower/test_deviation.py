@@ -85,6 +85,7 @@ def test_what_hangs_on_the_proof_is_decided_where_that_is_asked_for(bend: float)
     assert chain_deviation(CURVE, chain, tolerance, decide=True).worst.max() <= tolerance
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("count", "decided"), few([(FEW, True), (FEW + 1, False)], 2))
 def test_many_pieces_are_not_decided_one_by_one(count: int, decided: bool) -> None:
     chain = pieces(count)

@@ -76,7 +76,7 @@ def laid(mechanism, vertices, rest=WAYS[0]):
 # --- against plain geometry -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(12)
 def test_outputs_by_vertices(pair):
     """In every way of resting, at given shaft angles: the same output as of the turned vertices in a rigid frame."""
     mechanism, bench = pair
@@ -87,7 +87,7 @@ def test_outputs_by_vertices(pair):
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * max(1.0, np.abs(expected).max()))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(12)
 def test_the_verdict_by_vertices(pair):
     """Greatest error, rms, increment and play: nothing that dense sampling finds is missed, and nothing made up."""
     mechanism, bench = pair

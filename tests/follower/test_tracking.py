@@ -85,7 +85,7 @@ GUIDES: dict[str, tuple[Any, float, float]] = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("count", few([60, 140]))
 @pytest.mark.parametrize("name", GUIDES)
 def test_single_rollers_on_polygons_against_bisected_distances(name, count):
@@ -252,6 +252,7 @@ def frame(radius=8.0):
     return RollerYoke(radius, lift_from_fourier(40.0, {3: 3.0}, {5: 0.4}).law, 80.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", few([50, 131]))
 def test_opposite_rollers_on_polygons_against_bisected_distances(count):
     yoke = frame()

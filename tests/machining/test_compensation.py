@@ -84,6 +84,7 @@ def test_a_kerf_is_drawn_round_all_metal(tmp_path, cam, part, top):
         assert apart.min() == pytest.approx(abs(wanted), abs=2.5e-3)
 
 
+@pytest.mark.slow
 def test_shrinkage_and_clearance_in_a_solid(tmp_path):
     files = "stl, {stl: {shrinkage: 0.4}}, {stl: {shrinkage: 2, clearance: 0.25, tolerance: 0.002}}"
     _, report, folder = made(tmp_path, files, part=FULL)

@@ -163,6 +163,7 @@ def test_another_way_in_where_the_path_has_a_corner():
     assert pipeline.check(recipe_of(118, text.format(0))).ok
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("more", ["", ", layer: true"])
 def test_a_cutter_of_the_radius_of_a_dwell_is_refused(more):
     """Its centre would stay in a point while the contour turns."""

@@ -198,6 +198,7 @@ def test_the_words_of_a_program(made: Made) -> None:
     assert INCH * feeds[1] == pytest.approx(feeds[0], rel=1e-4)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("table", ["motion", "contacts", "polar", "inspection"])
 def test_the_columns_of_a_table(table: str, tmp_path: Path) -> None:
     rows = {}
@@ -252,6 +253,7 @@ def test_a_shifted_vertex_of_an_inch_drawing(made: Made, tmp_path: Path) -> None
     assert failures(made[0], spoilt) >= {"contour", "motion"}
 
 
+@pytest.mark.slow
 def test_a_mesh_has_the_unit_of_its_request(made: Made, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """An STL states no unit: that of the recipe's file of its name counts, or --units."""
     recipe, _, _ = made

@@ -277,6 +277,7 @@ def test_too_much_damping_is_told_with_what_will_do(stiffness: str) -> None:
     assert most == pytest.approx(20.0 * math.sqrt(0.4 * float(stiffness)), rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_spoilt_file_shows_in_its_own_run(tmp_path: Path) -> None:
     """A corner that stands out by 0.03 mm shortly before the dwell: the train of the file rings on, the other not."""
     import ezdxf

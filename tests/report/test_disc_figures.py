@@ -175,6 +175,7 @@ def sampled(text: str) -> tuple[Array, Array, Recipe]:
     return np.degrees(angle), spin, recipe
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=examples(40))
 @given(
     st.sampled_from(["stem", "trailing", "leading", "ring"]),
@@ -333,7 +334,7 @@ YOKE = "cam: {kind: constant-diameter, base_radius: 20.0, roller_radius: 9, "
 YOKE += "motion: [{rise: 20, over: 80, law: cycloidal}, {dwell: 100}]}\n"
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize(
     ("text", "rising", "falling"),
     [

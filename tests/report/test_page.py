@@ -102,6 +102,7 @@ def test_the_page_is_one_sound_small_file_that_asks_for_nothing(made: Made) -> N
     assert LOCAL in policy
 
 
+@pytest.mark.thin(4)
 def test_every_name_that_the_script_asks_for_is_there_and_every_control_has_a_label(made: Made) -> None:
     elements = parsed(made.text)
     ids = [a["id"] for _, a in elements.found if "id" in a]
@@ -464,6 +465,7 @@ def test_a_picture_is_an_svg_by_itself(tmp_path: Path, capsys: pytest.CaptureFix
     assert "other" not in {element.get("class") for element in root.iter()}
 
 
+@pytest.mark.slow
 def test_a_picture_is_a_png(tmp_path: Path) -> None:
     from PIL import Image
 
@@ -576,6 +578,7 @@ def test_the_watch_serves_each_version_and_goes_on_after_a_fault(tmp_path: Path)
         fetched(address[0])
 
 
+@pytest.mark.slow
 def test_a_watch_by_the_command_ends_with_130_on_an_interrupt(tmp_path: Path) -> None:
     import signal
 

@@ -51,7 +51,7 @@ SLIDE = """(() => {{
 }})()"""
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(16)
 @pytest.mark.parametrize("name", SHOWN)
 def test_the_slider_moves_the_follower_by_the_right_amount(browser: Browser, tmp_path: Path, name: str) -> None:
     made = of(name)

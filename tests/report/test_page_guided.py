@@ -160,6 +160,7 @@ def test_a_face_is_tangent_to_the_cam_where_it_is_touched(name: str, rotation: s
         assert np.real((seen - point[step]) * np.conj(normal[step])).max() < DRAWN_TO
 
 
+@pytest.mark.thin(4)
 @BOTH
 @pytest.mark.parametrize("name", [name for name in (*ROUND, *FLAT) if "arm" in name])
 def test_an_arm_keeps_its_pivot_and_swings_as_the_motion_says(name: str, rotation: str) -> None:

@@ -184,6 +184,7 @@ def test_a_missing_extra_exits_3_and_is_named_before_anything_is_computed(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", few(["1", "2"], 2))
 def test_an_interrupted_sweep_exits_130_and_goes_on_later(jobs: str, tmp_path: Path) -> None:
     script = tmp_path / "run.py"

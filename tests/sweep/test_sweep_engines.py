@@ -260,6 +260,7 @@ def killed(scene, values):
     return hills(scene, values)
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_ends_the_run_and_what_landed_stays(tmp_path: Path) -> None:
     deadly = Job(GRID, Aside(), killed)
     chunks = chunks_of(deadly, tmp_path)
