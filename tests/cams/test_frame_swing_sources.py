@@ -63,6 +63,7 @@ def test_a_formula() -> None:
     assert output(cam(rising), [95.0, 190.0]) == pytest.approx([5.0, 10.0], abs=1e-10)
 
 
+@pytest.mark.slow
 def test_points_and_a_table(tmp_path: Path) -> None:
     points = "{points: [[0, 0], [50, 4], [100, 15], [150, 20], [200, 20]]}"
     assert output(cam(points), [50.0, 100.0, 150.0, 180.0]) == pytest.approx([4.0, 15.0, 20.0, 20.0], abs=1e-10)
@@ -73,6 +74,7 @@ def test_points_and_a_table(tmp_path: Path) -> None:
     assert output(cam("{table: swing.csv}"), [70.0, 170.0], tmp_path) == pytest.approx([10.0, 20.0], abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_lobe() -> None:
     lobe = "{lobe: {lift: 2, half: 80, powers: [2, 8, 14, 20, 26]}}"
     text = cam(lobe).replace("base_radius: 60", "base_radius: 200").replace("ground: 100", "ground: 300")

@@ -183,6 +183,7 @@ def test_a_corner_stands_still_and_does_not_run_backwards():
     assert [r.end - r.start for r in found] == pytest.approx([math.pi / 3] * 3)
 
 
+@pytest.mark.slow
 def test_a_roller_as_large_as_an_arc_leaves_it_one_point():
     shape = Parallel(PitchShape(from_arc(3, 1, 60.0, 75.0, "convex")), 75.0)
     found = reversals(Curve.whole(shape))

@@ -340,6 +340,7 @@ def test_float_of_a_harmonic_drive_begins_where_its_amplitude_reaches_the_preloa
     assert found.rigid_rpm >= rigid * (1.0 - 1e-12)
 
 
+@pytest.mark.slow
 def test_float_of_a_rise_is_found_in_its_first_dip():
     """Rigid at 1092 rpm; the least force over the speed has dips, and the first to reach 0 counts."""
     train = Train(0.4, 20.0, 2e5, 150.0)

@@ -308,7 +308,7 @@ def arcs():
         )
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(10)
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):
     shown_as_measured(__name__, name)

@@ -347,6 +347,7 @@ def part_texts(draw):
     return "{" + ", ".join(keys) + "}"
 
 
+@pytest.mark.slow
 @settings(max_examples=examples(14), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(part_texts(), st.sampled_from(["cw", "ccw"]))
 def test_a_part_passes_every_check_or_is_refused_by_name(tmp_path, part, rotation):

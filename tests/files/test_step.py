@@ -255,7 +255,7 @@ def test_a_moved_corner_of_the_contour_is_caught(tmp_path):
     assert failures(path, recipe, design, 0.001) & {"watertight", "contour"}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @kernel
 @pytest.mark.parametrize(
     ("change", "check"),
@@ -284,6 +284,7 @@ def test_a_part_that_is_not_the_one_meant(tmp_path, busy, change, check):
     assert check in failures(path, recipe, design, 0.001)
 
 
+@pytest.mark.slow
 @kernel
 def test_the_part_meant_is_sound(tmp_path, busy):
     recipe, design = busy
@@ -321,6 +322,7 @@ def test_fine_tolerances_are_held(tmp_path, form):
     assert all(check.ok for check in files["step"][1].values())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hub", ["", ", hub: {diameter: 20, height: 5}"])
 def test_an_eccentric_circle_has_a_chamfer(hub):
     """Its cone, whole, would have a seam; no other contour is a single circle."""

@@ -223,6 +223,7 @@ def test_tolerance_below_rounding_is_refused_with_the_figure(fit) -> None:
     assert 1e-14 < caught.value.reached < 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", few(["fourier", "rabinowitz"], 2))
 def test_arcs_hold_their_floor_and_below_it_are_refused_with_it(name: str) -> None:
     curve = Curve.whole(SupportShape(LIFTS[name]))

@@ -363,7 +363,7 @@ def wavy_range(a, b):
     return tuple(found)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("band", few([0.02, 0.2, 1.0, 3.0], 2))
 @pytest.mark.parametrize("count", [60, 3000])
 def test_the_longest_dwell_wherever_it_starts(band, count):

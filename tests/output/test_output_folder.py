@@ -338,6 +338,7 @@ def cut_off(tmp_path_factory):
     pytest.fail("no swap was cut off")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("times", [1, 10**6])
 def test_any_step_of_the_recovery_may_fail(tmp_path, cut_off, times):

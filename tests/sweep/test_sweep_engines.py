@@ -171,6 +171,7 @@ def test_a_scheduler_that_is_none_is_told_at_once(address: str, message: str) ->
         next(engines.dask(job(), [0], address))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("says", [b"", b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n"])
 def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engines, "_PATIENCE", 1.0)
@@ -198,6 +199,7 @@ def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:
         next(engines.dask(job(), [0], address))
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_workers_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(engines, "_PATIENCE", 0.5)
     monkeypatch.setattr(engines, "_WORKERLESS", 2)

@@ -227,6 +227,7 @@ def apart_by_hand(count: int) -> list[int]:
     return taken[:count]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("jobs", [1, 2])

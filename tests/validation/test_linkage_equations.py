@@ -205,6 +205,7 @@ def test_a_mechanism_may_turn_back_without_any_limit():
     assert mobility.least_rate == pytest.approx(-0.20, abs=0.005)
 
 
+@pytest.mark.slow
 def test_the_papers_mechanisms_turn():
     rates = {name: Scene.of(name).mechanism.mobility().least_rate for name in FIGURES}
     for name, rate in rates.items():

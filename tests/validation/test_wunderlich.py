@@ -403,6 +403,7 @@ def test_figure_5_first_arc(workshop):
     assert np.degrees(np.arctan2(solution[1], solution[0])) == pytest.approx(30.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_equation_4_9_symmetry_of_a_law_by_contact_with_the_file(workshop):
     """(phi, psi) -> (phi - psi + delta, -psi)."""
     made = workshop.shipped("w-law")
