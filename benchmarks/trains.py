@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from camgeo.output import pipeline
-from camgeo.recipe import read
+from camgeo.recipe.loading import read
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "dynamics.md"

@@ -4,7 +4,7 @@
 imported when it is first asked for.
 """
 
-__version__ = "0.1.0"
+from camgeo.version import __version__
 
 TYPE_CHECKING = False  # as typing has it; importing that takes longer than all the rest
 if TYPE_CHECKING:
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
     from camgeo.api.report import Report
     from camgeo.api.run import check, export, verify
     from camgeo.recipe.recipe import Recipe
-    from camgeo.recipe.schema.errors import DeprecatedKeyWarning, RecipeErrors
+    from camgeo.schema.errors import DeprecatedKeyWarning, RecipeErrors
 
 _HOMES = {
     "Arc": "api.edges",
     "CallError": "api.errors",
     "CamgeoError": "api.errors",
     "Check": "api.check",
-    "DeprecatedKeyWarning": "recipe.schema.errors",
+    "DeprecatedKeyWarning": "schema.errors",
     "Design": "api.design",
     "Edges": "api.edges",
     "Figure": "api.check",
     "Line": "api.edges",
     "Recipe": "recipe.recipe",
-    "RecipeErrors": "recipe.schema.errors",
+    "RecipeErrors": "schema.errors",
     "Report": "api.report",
     "Spline": "api.edges",
     "check": "api.run",

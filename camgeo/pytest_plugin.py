@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from _pytest._code.code import TerminalRepr, TracebackStyle
 
     from camgeo.recipe.recipe import Recipe
-    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.expected_checks import Foreseen
 
 INI = "camgeo_recipes"
@@ -155,7 +155,8 @@ class Run:
 
     def load(self) -> None:
         """Read the recipe, or find its faults."""
-        from camgeo.recipe import RecipeErrors, load
+        from camgeo.recipe.loading import load
+        from camgeo.schema.errors import RecipeErrors
 
         try:
             self.recipe = load(self.path)
@@ -173,7 +174,7 @@ class Run:
         from camgeo import check, export
         from camgeo.api.log import unsaid
         from camgeo.common.errors import SurroundingsError
-        from camgeo.recipe import RecipeErrors
+        from camgeo.schema.errors import RecipeErrors
 
         assert self.recipe is not None
         # what the items that follow say, should an exception end this one

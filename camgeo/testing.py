@@ -240,7 +240,7 @@ def assert_recipe(recipe: AnyRecipe) -> Report:
     """
     __tracebackhide__ = True
     from camgeo import check
-    from camgeo.recipe import RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
 
     try:
         recipe = _loaded(recipe)
@@ -274,7 +274,8 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
 
 
 def _loaded(recipe: AnyRecipe) -> Recipe:
-    from camgeo.recipe import Recipe, load
+    from camgeo.recipe.loading import load
+    from camgeo.recipe.recipe import Recipe
 
     is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
     return recipe if isinstance(recipe, Recipe) else load(path_of("recipe", recipe))

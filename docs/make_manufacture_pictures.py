@@ -10,7 +10,7 @@ import matplotlib as mpl
 import numpy as np
 
 from camgeo.output import pipeline
-from camgeo.recipe import read
+from camgeo.recipe.loading import read
 from kin.judge.milling import Milling, milled
 from kin.read.gcode import arcs_of, read_gcode
 

@@ -43,8 +43,8 @@ FLOORS = {
         curve.undercut fit
         recipe
         cams
-        curve recipe.schema
-        common
+        curve schema
+        common version
     """,
 }
 WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep"}

@@ -20,9 +20,9 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 def test_the_version_stands_in_one_place():
     assert "version" not in PROJECT["project"]
     assert PROJECT["project"]["dynamic"] == ["version"]
-    assert PROJECT["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "camgeo.__version__"}
+    assert PROJECT["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "camgeo.version.__version__"}
     # a plain text: setuptools then reads it without importing the package
-    text = (ROOT / "camgeo" / "__init__.py").read_text(encoding="utf-8")
+    text = (ROOT / "camgeo" / "version.py").read_text(encoding="utf-8")
     assert re.findall(r'^__version__ = "(.*)"$', text, re.MULTILINE) == [camgeo.__version__]
 
 

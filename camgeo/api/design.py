@@ -17,7 +17,7 @@ from camgeo.api.loading import recipe_of
 from camgeo.api.log import staged, tell_checks
 from camgeo.common.arguments import number_of, numbers_of, spelled, text_of, whole_of
 from camgeo.common.clock import Clock
-from camgeo.recipe.schema.fields import MOST
+from camgeo.schema.fields import MOST
 from camgeo.synthesis.design import Design as Exact
 from camgeo.synthesis.design import designed
 

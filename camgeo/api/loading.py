@@ -7,12 +7,12 @@ from os import PathLike
 from typing import TYPE_CHECKING
 
 from camgeo.common.arguments import is_a, path_of
-from camgeo.recipe import Recipe
 from camgeo.recipe.loading import announced, load_silent, load_text
-from camgeo.recipe.schema.change import written
+from camgeo.recipe.recipe import Recipe
+from camgeo.schema.change import written
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.change import Value
+    from camgeo.schema.change import Value
 
 NAME = "recipe"  # of what has no file
 

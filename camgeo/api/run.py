@@ -13,7 +13,7 @@ from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.output import pipeline
 from camgeo.recipe.export import KINDS
-from camgeo.recipe.schema.fields import MOST
+from camgeo.schema.fields import MOST
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

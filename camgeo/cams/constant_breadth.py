@@ -10,11 +10,11 @@ from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Intent, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam
 from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.cams.motion import FormulaAsked
-from camgeo.recipe.schema.fields import Table, length
+from camgeo.schema.fields import Table, length
 
 if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked
-    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.schema.reader import Reader, Values
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
     from kin.law.sources.motion import Motion

@@ -14,12 +14,12 @@ import numpy as np
 from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Intent, Undercut
 from camgeo.cams.guided import GuidedCam
 from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
-from camgeo.recipe.schema.fields import Table, length
+from camgeo.schema.fields import Table, length
 
 if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked
     from camgeo.curve.moving_frame import Displacement, Translating
-    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.schema.reader import Reader, Values
     from kin.follower.follower import Follower as Judged
 
 

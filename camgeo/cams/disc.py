@@ -17,15 +17,15 @@ from camgeo.cams.disc_cams import (
 from camgeo.cams.family import UNDERCUT, Cam, Family
 from camgeo.cams.motion import check_whole_turn, motion_field
 from camgeo.cams.sizing import SIZING, Sizing, demand_kept
-from camgeo.recipe.schema.fields import Field, Form, Kind, Table, coordinate, length
-from camgeo.recipe.schema.json_schema import one_of_schema
-from camgeo.recipe.schema.reader import kind_of
-from camgeo.recipe.schema.yaml_source import Mapping as Written
-from camgeo.recipe.schema.yaml_source import entries
+from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length
+from camgeo.schema.json_schema import one_of_schema
+from camgeo.schema.reader import kind_of
+from camgeo.schema.yaml_source import Mapping as Written
+from camgeo.schema.yaml_source import entries
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 _SIDE = Field(
     "side",

@@ -22,12 +22,12 @@ from camgeo.cams.position import Position, SwingPosition
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
-from camgeo.recipe.schema.fields import length
+from camgeo.schema.fields import length
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.recipe.schema.reader import Values
+    from camgeo.schema.reader import Values
     from kin.follower.follower import Follower as Judged
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array

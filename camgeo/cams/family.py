@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
-from camgeo.recipe.schema.fields import Field, Kind
+from camgeo.schema.fields import Field, Kind
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme, Figure
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.recipe.schema.fields import Table
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.fields import Table
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
     from kin.follower.follower import Follower as Judged
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint

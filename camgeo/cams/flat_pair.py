@@ -20,7 +20,7 @@ from camgeo.cams.position import Position, SwingPosition
 from camgeo.curve.curve import Curve
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Values
+    from camgeo.schema.reader import Values
     from kin.follower.follower import Follower as Judged
     from kin.law.transmission import Transmission
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.family import Cam
 from camgeo.cams.motion import MotionAsked, check_filled, motion_field
-from camgeo.recipe.schema.fields import Kind
+from camgeo.schema.fields import Kind
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Intent
-    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.schema.reader import Reader, Values
     from kin.law.joints import Joint
     from kin.law.sources.motion import Motion
 

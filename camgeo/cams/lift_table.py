@@ -7,15 +7,15 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
-from camgeo.recipe.schema.fields import MOST_TEXT, Form
-from camgeo.recipe.schema.file_bytes import bytes_of
-from camgeo.recipe.schema.scalars import Complaint
-from camgeo.recipe.schema.yaml_source import Scalar, described
+from camgeo.schema.fields import MOST_TEXT, Form
+from camgeo.schema.file_bytes import bytes_of
+from camgeo.schema.scalars import Complaint
+from camgeo.schema.yaml_source import Scalar, described
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.fields import Field
-    from camgeo.recipe.schema.reader import Reader
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.fields import Field
+    from camgeo.schema.reader import Reader
+    from camgeo.schema.yaml_source import Node
     from kin.law.sources.ring import Samples
 
 Angles: TypeAlias = Literal["cam", "crank"]

@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.lift_table import FILE, Rows, Unit, read_rows
 from camgeo.cams.segments import read_segments, segment_table, segments_schema
-from camgeo.recipe.schema.fields import MOST, Field, Form, Kind, Table, mapping
-from camgeo.recipe.schema.json_schema import number_schema, table_schema
-from camgeo.recipe.schema.yaml_source import Mapping, Sequence, described, join
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table, mapping
+from camgeo.schema.json_schema import number_schema, table_schema
+from camgeo.schema.yaml_source import Mapping, Sequence, described, join
 
 if TYPE_CHECKING:
     from camgeo.cams.segments import MotionSegment
-    from camgeo.recipe.schema.fields import Schema
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
     from kin.law.sources.motion import Motion
 
 _ANGLE = 1e-9  # rad, within which the segments of a motion must fill their angle (as in kin.law.programme)

@@ -17,10 +17,10 @@ from camgeo.cams.family import (
     Unit,
 )
 from camgeo.cams.motion import MotionAsked, check_filled, motion_field
-from camgeo.recipe.schema.fields import Field, Kind, Table, length, mapping
+from camgeo.schema.fields import Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.schema.reader import Reader, Values
     from kin.law.joints import Joint
     from kin.law.transmission import Transmission
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.recipe.schema.errors import shown, suggestion
-from camgeo.recipe.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, either, mapping
-from camgeo.recipe.schema.json_schema import table_schema
-from camgeo.recipe.schema.yaml_source import Scalar, join
+from camgeo.schema.errors import shown, suggestion
+from camgeo.schema.fields import MOST, MOST_SEGMENTS, Field, Form, Kind, Table, either, mapping
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Scalar, join
 
 if TYPE_CHECKING:
     import kin.law.programme
-    from camgeo.recipe.schema.fields import Schema
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
     from kin.law.sources.programme import Step
 
 

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
-from camgeo.recipe.schema.fields import Field, Kind, length, mapping
+from camgeo.schema.fields import Field, Kind, length, mapping
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from camgeo.cams.family import Intent
     from camgeo.curve.curve import Shape
     from camgeo.curve.moving_frame import Displacement
-    from camgeo.recipe.schema.reader import Values
+    from camgeo.schema.reader import Values
 
 _SMALL = 1e-3  # of the radius of curvature that is asked for
 SLACK = 1e-9  # degrees, and of a radius: within this a limit is kept

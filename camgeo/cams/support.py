@@ -20,10 +20,10 @@ from camgeo.cams.family import (
 )
 from camgeo.cams.flat_faced import FlatFacedCam
 from camgeo.common.rounding import NOISE, upward
-from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length, mapping
+from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.schema.reader import Reader, Values
     from kin.law.support_function import Lift
 
 FREE = 3  # angles of a Reuleaux polygon that follow from the others

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
-    from camgeo.recipe.schema.errors import RecipeError
+    from camgeo.schema.errors import RecipeError
 
 PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
 
@@ -74,7 +74,7 @@ def result(recipe: Recipe, task: Task, progress: Progress | None = None) -> Resu
     """Run one recipe; a wrong recipe, the disk and a missing package are reported in the result, not raised."""
     from camgeo.api import run
     from camgeo.common.errors import SurroundingsError
-    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
 
     try:
         if task.out is None:

@@ -20,7 +20,7 @@ from camgeo.common.terminal import complain, escaped, open_streams, say, say_jso
 from camgeo.common.units import UNIT_MM
 from camgeo.output.mixture import mixtures
 from camgeo.recipe.export import KINDS
-from camgeo.recipe.schema.quantity import read_quantity
+from camgeo.schema.quantity import read_quantity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
     from camgeo.recipe.recipe import Recipe
-    from camgeo.recipe.schema.errors import RecipeError
+    from camgeo.schema.errors import RecipeError
 
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
@@ -80,7 +80,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _parser() -> argparse.ArgumentParser:
-    from camgeo import __version__
+    from camgeo.version import __version__
 
     parser = _Parser(
         prog="camgeo",
@@ -148,8 +148,8 @@ def _add_options(command: argparse.ArgumentParser, tolerance: str) -> None:
 
 def _length(text: str) -> str:
     """Give a length as written, which may carry its unit; that of one that does not is the recipe's."""
-    from camgeo.recipe.schema.fields import MOST
-    from camgeo.recipe.schema.scalars import Complaint
+    from camgeo.schema.fields import MOST
+    from camgeo.schema.scalars import Complaint
 
     try:
         value = read_quantity(text, "mm")
@@ -203,7 +203,7 @@ def _watch(arguments: argparse.Namespace) -> int:
     from camgeo.cli.recipes import load
     from camgeo.cli.watch import watch
     from camgeo.recipe.export import FileRequest
-    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
 
     if len(arguments.recipes) != 1 or arguments.json:
         _complain("--watch takes one recipe, and no --json")
@@ -240,7 +240,7 @@ def _loaded(
     Those others come second, by their place in the call, as a list of reports has them.
     """
     from camgeo.cli.recipes import load
-    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
 
     recipes: list[Recipe] = []
     refused: dict[int, dict[str, Any]] = {}
@@ -321,8 +321,8 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo.api.errors import CallError
     from camgeo.api.run import verify
     from camgeo.cli.recipes import load
-    from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.report.document import encoded
+    from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
 
     try:
@@ -379,8 +379,8 @@ def _new(arguments: argparse.Namespace) -> int:
 def _schema(_arguments: argparse.Namespace) -> int:
     """Print the JSON schema."""
     from camgeo.recipe.recipe import RECIPE
-    from camgeo.recipe.schema.json_schema import json_schema
     from camgeo.report.document import encoded
+    from camgeo.schema.json_schema import json_schema
 
     say_json(encoded(json_schema(RECIPE)))
     return OK

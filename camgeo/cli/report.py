@@ -50,8 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
     from camgeo.cli.recipes import load
     from camgeo.common.errors import SurroundingsError
     from camgeo.output.pipeline import shown
-    from camgeo.recipe.schema.errors import RecipeErrors
     from camgeo.report.page.page import page
+    from camgeo.schema.errors import RecipeErrors
 
     progress = Progress(Path(arguments.recipe).name)
     try:

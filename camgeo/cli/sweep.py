@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -
 def run(arguments: argparse.Namespace) -> int:
     """Sweep one recipe: 0 found, 1 nothing keeps the limits, 2 a wrong recipe, 3 the surroundings, 130 interrupted."""
     from camgeo.cli.recipes import load
-    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
     from camgeo.sweep.search.ask import Ask
 
     try:

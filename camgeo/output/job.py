@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.machining import Compensation
     from camgeo.recipe.recipe import Recipe
-    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
     from camgeo.synthesis.design import Design
     from kin.judge.check import Check
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from camgeo.recipe.schema.fields import length
+from camgeo.schema.fields import length
 
 
 @dataclass(frozen=True)

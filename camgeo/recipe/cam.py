@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.cams.families import FAMILIES
-from camgeo.recipe.schema.fields import Field, Form, Table
-from camgeo.recipe.schema.json_schema import one_of_schema
+from camgeo.schema.fields import Field, Form, Table
+from camgeo.schema.json_schema import one_of_schema
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Cam
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 CAMS: dict[str, Table] = {kind: family.table for kind, family in FAMILIES.items()}
 MADE = (

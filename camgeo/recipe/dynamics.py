@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from camgeo.common.rounding import downward
-from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, length, mapping
+from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.schema.reader import Reader, Values
 
 MOST_DAMPING = 10.0  # times critical, as in kin.dynamics.train
 

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
 from camgeo.recipe.ring import is_ring
-from camgeo.recipe.schema.errors import shown
-from camgeo.recipe.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
-from camgeo.recipe.schema.json_schema import table_schema
-from camgeo.recipe.schema.yaml_source import Mapping, Scalar, described, is_empty, join
+from camgeo.schema.errors import shown
+from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Mapping, Scalar, described, is_empty, join
 
 if TYPE_CHECKING:
     import collections.abc
 
-    from camgeo.recipe.schema.fields import Schema
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 
 Length: TypeAlias = Literal["mm", "inch"]

@@ -6,17 +6,17 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar
 
-from camgeo.recipe.schema.errors import suggestion
-from camgeo.recipe.schema.fields import MOST, Field, Form, Kind, Table, either
-from camgeo.recipe.schema.json_schema import table_schema
-from camgeo.recipe.schema.yaml_source import Mapping, described, entries, join, keys, scalars
+from camgeo.schema.errors import suggestion
+from camgeo.schema.fields import MOST, Field, Form, Kind, Table, either
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.yaml_source import Mapping, described, entries, join, keys, scalars
 
 if TYPE_CHECKING:
     import collections.abc
 
-    from camgeo.recipe.schema.fields import Schema
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 
 Value = TypeVar("Value")

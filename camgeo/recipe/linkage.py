@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
-from camgeo.recipe.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, length
-from camgeo.recipe.schema.json_schema import one_of_schema
-from camgeo.recipe.schema.yaml_source import join
+from camgeo.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, length
+from camgeo.schema.json_schema import one_of_schema
+from camgeo.schema.yaml_source import join
 
 if TYPE_CHECKING:
     import kin.linkage.dyad
     import kin.linkage.four_bar
     from camgeo.cams.family import Cam
-    from camgeo.recipe.schema.fields import Schema
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 
 Assembly: TypeAlias = Literal["open", "crossed"]

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.recipe import RECIPE, build, read_values
-from camgeo.recipe.schema.errors import DeprecatedKeyWarning, RecipeError, RecipeErrors
-from camgeo.recipe.schema.file_bytes import bytes_of
-from camgeo.recipe.schema.reader import Reader
-from camgeo.recipe.schema.readers import READERS
-from camgeo.recipe.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.recipe.schema.yaml_source import MAX_BYTES, read_source
+from camgeo.schema.errors import DeprecatedKeyWarning, RecipeError, RecipeErrors
+from camgeo.schema.file_bytes import bytes_of
+from camgeo.schema.reader import Reader
+from camgeo.schema.readers import READERS
+from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
+from camgeo.schema.yaml_source import MAX_BYTES, read_source
 
 if TYPE_CHECKING:
     from os import PathLike

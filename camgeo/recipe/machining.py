@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from camgeo.recipe.schema.fields import Field, Kind, Table, either, length
+from camgeo.schema.fields import Field, Kind, Table, either, length
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.schema.reader import Reader, Values
 
 
 @dataclass(frozen=True)

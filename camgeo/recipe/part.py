@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, Literal
 from camgeo.common.rounding import NOISE, upward
 from camgeo.recipe.din6885 import LEAST, key_for
 from camgeo.recipe.din6885 import MOST as WIDEST
-from camgeo.recipe.schema.errors import shown
-from camgeo.recipe.schema.fields import Field, Form, Kind, Table, length, mapping
-from camgeo.recipe.schema.json_schema import number_schema, table_schema
-from camgeo.recipe.schema.read_scalar import read_numeric
-from camgeo.recipe.schema.yaml_source import Scalar
+from camgeo.schema.errors import shown
+from camgeo.schema.fields import Field, Form, Kind, Table, length, mapping
+from camgeo.schema.json_schema import number_schema, table_schema
+from camgeo.schema.read_scalar import read_numeric
+from camgeo.schema.yaml_source import Scalar
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 
 @dataclass(frozen=True)

@@ -32,12 +32,12 @@ from camgeo.recipe.linkage import (
 from camgeo.recipe.machining import MANUFACTURE, Manufacture, check_allowance
 from camgeo.recipe.part import PART, build_part, check_part
 from camgeo.recipe.ring import check_ring
-from camgeo.recipe.schema.edit import with_values
-from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
-from camgeo.recipe.schema.fields import MOST, Field, Kind, Table, mapping, present
-from camgeo.recipe.schema.reader import kind_of
-from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Sequence, as_written, described, entries
 from camgeo.recipe.sweep import SWEEP, build_sweep, check_sweep
+from camgeo.schema.edit import with_values
+from camgeo.schema.errors import RecipeError, RecipeErrors
+from camgeo.schema.fields import MOST, Field, Kind, Table, mapping, present
+from camgeo.schema.reader import kind_of
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, as_written, described, entries
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -47,10 +47,10 @@ if TYPE_CHECKING:
     from camgeo.recipe.export import Export, FileRequest, Length
     from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.part import Part
-    from camgeo.recipe.schema.change import Value
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Mark
     from camgeo.recipe.sweep import Sweep
+    from camgeo.schema.change import Value
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Mark
 
 ANGLES, MOST_ANGLES = 3600, 1_000_000  # of a turn at which files are judged
 _MM = {"mm": 1.0, "inch": 25.4}
@@ -120,8 +120,8 @@ class Recipe:
         where the new recipe has faults; TypeError for a path that is no text.
         """
         from camgeo.recipe.loading import load_text
-        from camgeo.recipe.schema.change import changed
-        from camgeo.recipe.schema.yaml_source import read_source
+        from camgeo.schema.change import changed
+        from camgeo.schema.yaml_source import read_source
 
         is_a("path", path, (str, collections.abc.Mapping), "a str or a mapping from such")
         if not isinstance(path, str) and value is not None:
@@ -200,7 +200,7 @@ class Recipe:
     def text_with(self, values: collections.abc.Mapping[str, float]) -> str:
         """Give the recipe's text with other numbers by their paths, by former keys or present ones.
 
-        Raises CallError and RecipeErrors as `camgeo.recipe.schema.edit.with_values` does.
+        Raises CallError and RecipeErrors as `camgeo.schema.edit.with_values` does.
         """
         is_a("values", values, collections.abc.Mapping, "a mapping from paths to numbers")
         for path in values:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Reader, Values
+    from camgeo.schema.reader import Reader, Values
 
 OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
 """Keys of a part that a ring cannot have."""

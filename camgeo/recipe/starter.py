@@ -10,8 +10,8 @@ from camgeo.recipe.cam import CAMS
 from camgeo.recipe.linkage import LINKAGES
 from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.ring import OF_A_DISC
-from camgeo.recipe.schema.errors import suggestion
-from camgeo.recipe.schema.fields import Field, Kind, Table, either
+from camgeo.schema.errors import suggestion
+from camgeo.schema.fields import Field, Kind, Table, either
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal
 
 from camgeo.recipe.figures import FIGURES as EVERY
 from camgeo.recipe.figures import FORM, NEEDS, PRESENT, Limit, build_limits, there
-from camgeo.recipe.schema.errors import shown, suggestion
-from camgeo.recipe.schema.fields import (
+from camgeo.schema.errors import shown, suggestion
+from camgeo.schema.fields import (
     MOST_AXES,
     MOST_DESIGNS,
     MOST_STEPS,
@@ -22,13 +22,13 @@ from camgeo.recipe.schema.fields import (
     field_at,
     present,
 )
-from camgeo.recipe.schema.json_schema import number_schema, table_schema
-from camgeo.recipe.schema.yaml_source import Mapping, Sequence, described, entries, join, scalars
+from camgeo.schema.json_schema import number_schema, table_schema
+from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, scalars
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.fields import Schema
-    from camgeo.recipe.schema.reader import Reader, Values
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.fields import Schema
+    from camgeo.schema.reader import Reader, Values
+    from camgeo.schema.yaml_source import Node
 
 
 @dataclass(frozen=True)

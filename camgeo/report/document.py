@@ -7,13 +7,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from camgeo import __version__
 from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.recipe.export import NO_CONTOUR, NO_PART
 from camgeo.report.bound import is_strict, sign, words
 from camgeo.report.listed import listed
+from camgeo.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.linkage import DwellAsked
     from camgeo.recipe.recipe import Recipe
-    from camgeo.recipe.schema.errors import RecipeErrors
+    from camgeo.schema.errors import RecipeErrors
     from kin.law.support_function import Lift
     from kin.linkage.extremes import Figures
     from kin.linkage.mechanism import Mechanism, OutsideError

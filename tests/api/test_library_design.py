@@ -14,7 +14,7 @@ from support.cases import few
 import camgeo
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.change import Value
+    from camgeo.schema.change import Value
 
 ROOT = Path(__file__).parents[2]
 NAMES = ("shu-wu", "fourier", "w-law", "oscillating-yoke", "as-figure-1", "slider-crank", "reuleaux")

@@ -7,7 +7,7 @@ import pytest
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 STEM = "{kind: roller, radius: 8}"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from camgeo.recipe.loading import load_text, read
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:

@@ -5,7 +5,8 @@ import math
 import pytest
 
 from camgeo.output import pipeline
-from camgeo.recipe import RecipeErrors, load_text
+from camgeo.recipe.loading import load_text
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 BREADTH = "kind: constant-breadth, base_radius: 40"

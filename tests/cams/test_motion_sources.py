@@ -14,13 +14,14 @@ from support.cases import examples
 from camgeo.cams.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe import RecipeErrors, load, load_text
+from camgeo.recipe.loading import load, load_text
 from camgeo.recipe.recipe import RECIPE
-from camgeo.recipe.schema.fields import Kind, field_at
-from camgeo.recipe.schema.json_schema import table_schema
-from camgeo.recipe.schema.reader import Reader
-from camgeo.recipe.schema.readers import READERS
-from camgeo.recipe.schema.yaml_source import entries, read_source
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.fields import Kind, field_at
+from camgeo.schema.json_schema import table_schema
+from camgeo.schema.reader import Reader
+from camgeo.schema.readers import READERS
+from camgeo.schema.yaml_source import entries, read_source
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named
 from kin.law.sources.lobe import lobe

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import camgeo
-from camgeo.recipe.schema.fields import MOST
+from camgeo.schema.fields import MOST
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -221,7 +221,7 @@ def test_the_report_s_page_has_each_check() -> None:
 
 def test_fields_are_those_of_a_recipe() -> None:
     from camgeo.recipe.recipe import RECIPE
-    from camgeo.recipe.schema.fields import field_at
+    from camgeo.schema.fields import field_at
 
     for one in EVERY.values():
         for path in filter(None, (one.field, one.own_field)):

@@ -20,13 +20,13 @@ from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES, PRESENT
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.recipe import RECIPE
-from camgeo.recipe.schema.errors import RecipeErrors
-from camgeo.recipe.schema.json_schema import json_schema
 from camgeo.recipe.starter import KINDS, starter
 from camgeo.report.document import encoded
 from camgeo.report.failure import failure
 from camgeo.report.figures import of_design
 from camgeo.report.limits import limit_checks
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.json_schema import json_schema
 from camgeo.sweep.search.figures import REASONS, asked_of, evaluate
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen

@@ -13,9 +13,9 @@ import pytest
 from camgeo.output.job import Made
 from camgeo.output.pipeline import check
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.document import summary
 from camgeo.report.failure import remedy
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from support.places import RECIPES
 
 from camgeo import testing
 from camgeo.output import pipeline
-from camgeo.recipe import load
+from camgeo.recipe.loading import load
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 
 if TYPE_CHECKING:
@@ -471,7 +471,7 @@ def test_modules(request):
     manager = request.config.pluginmanager
     assert manager.has_plugin("camgeo.pytest_plugin") and not manager.has_plugin("camgeo-recipes")
     ours = {name for name in sys.modules if name.partition(".")[0] in ("camgeo", "kin")}
-    assert ours == {"camgeo", "camgeo.pytest_plugin"}
+    assert ours == {"camgeo", "camgeo.pytest_plugin", "camgeo.version"}
     heavy = ("numpy", "yaml", "ezdxf", "scipy", "shapely", "trimesh")
     assert not {name for name in heavy if name in sys.modules}
     assert "camgeo" not in "".join(request.config.getini("markers"))

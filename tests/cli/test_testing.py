@@ -22,7 +22,8 @@ from support.camfiles import (
 from support.heavy import ezdxf
 
 from camgeo import testing
-from camgeo.recipe import RecipeErrors, load
+from camgeo.recipe.loading import load
+from camgeo.schema.errors import RecipeErrors
 
 COUNT = 720
 TOP = 4 * COUNT + 3  # a triangle of the upper face

@@ -21,7 +21,7 @@ from support.cases import few
 from camgeo.checks.declared import CHECKS
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe import read
+from camgeo.recipe.loading import read
 from camgeo.recipe.starter import KINDS
 
 ROOT = Path(__file__).parents[2]

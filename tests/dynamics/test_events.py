@@ -11,7 +11,7 @@ from support.dynamics_oracle import Cycloid
 from support.integrated import integrated
 from support.places import ROOT
 
-from camgeo.recipe import load
+from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed, intended
 from kin.dynamics.drive import drives
 from kin.dynamics.events import FREE, LOWER, UPPER, Work, crossing

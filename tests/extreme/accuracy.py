@@ -21,8 +21,8 @@ import pytest
 from extreme_oracle import worst
 
 from camgeo.output import pipeline
-from camgeo.recipe import read
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.recipe.loading import read
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.read.drawing.dxf import read_dxf
 from kin.read.mesh.stl import read_stl

@@ -14,7 +14,7 @@ from support.brute_disc import Touching, motion, polygon
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
     from pathlib import Path

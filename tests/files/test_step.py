@@ -25,7 +25,8 @@ from camgeo.fit.pieces import ArcSpline, Bound
 from camgeo.output import pipeline
 from camgeo.output.job import Job
 from camgeo.output.step import _solid
-from camgeo.recipe import RecipeErrors, read
+from camgeo.recipe.loading import read
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.read.step.part21 import exchange
 from kin.read.step.step import read_step

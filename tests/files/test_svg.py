@@ -16,7 +16,7 @@ from camgeo.files.svg import write_svg
 from camgeo.fit.pieces import ArcSpline, Bound, BSpline, Polygon
 from camgeo.output.dispatch import make
 from camgeo.output.job import Job
-from camgeo.recipe import read
+from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed, intended
 from kin.contour.contour import Contour
 from kin.judge.contour_checks import Limits

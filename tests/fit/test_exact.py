@@ -25,8 +25,9 @@ from camgeo.fit.trigonometric import Polynomial, polynomial_of
 from camgeo.output.dispatch import make
 from camgeo.output.job import Job
 from camgeo.output.pipeline import export
-from camgeo.recipe import RecipeErrors, load, read
 from camgeo.recipe.export import FileRequest
+from camgeo.recipe.loading import load, read
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.law.formula.formula import Formula
 from kin.law.from_formula import lift_from_formula

@@ -9,7 +9,8 @@ from support.heavy import ezdxf, shapely, trimesh
 
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe import RecipeErrors, read
+from camgeo.recipe.loading import read
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed, intended
 from kin.judge.contour_checks import Limits
 from kin.judge.verify import verify

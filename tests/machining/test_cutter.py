@@ -13,7 +13,7 @@ from camgeo.curve.curve import Curve, Run
 from camgeo.curve.undercut.causes import UndercutError
 from camgeo.machining.cutter import cutter_path
 from camgeo.output import pipeline
-from camgeo.recipe import read
+from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed, intended
 from kin.contour.contour import Contour
 from kin.read.files import read_drawing

@@ -20,8 +20,8 @@ from camgeo.machining.gcode import places, rounding
 from camgeo.machining.milling import milling_intent
 from camgeo.machining.toolpath import depths
 from camgeo.output import pipeline
-from camgeo.recipe import read
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.recipe.loading import read
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 from kin.contour.nearest import signed_distance

@@ -20,9 +20,9 @@ from camgeo.machining.gcode import Cutting, write_gcode
 from camgeo.machining.milling import milling_intent
 from camgeo.machining.toolpath import Pass, begun_at, led
 from camgeo.output import pipeline
-from camgeo.recipe import read
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.recipe.loading import read
 from camgeo.report.failure import remedy
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
 from kin.contour.contour import Contour

@@ -13,8 +13,8 @@ import pytest
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
-from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.document import summary
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.linkage.mechanism import Mechanism
 from kin.numeric.monotone import RoughError

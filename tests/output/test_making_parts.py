@@ -15,8 +15,8 @@ from camgeo.fit.pieces import ArcSpline, Bound
 from camgeo.output.job import Job
 from camgeo.output.parts import make_parts
 from camgeo.recipe.export import FileRequest
-from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.document import Findings, document
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.read.mesh.threemf import read_placed
 

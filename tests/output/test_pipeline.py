@@ -19,8 +19,8 @@ from camgeo.common.clock import Clock
 from camgeo.output import pipeline
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load, read
-from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.document import finite
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
 from kin.judge.contour_checks import SPLINE_ERROR

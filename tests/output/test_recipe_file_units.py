@@ -23,8 +23,8 @@ from camgeo.output import pipeline
 from camgeo.output.job import Job
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.page import outline as page_outline
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from kin.read.files import read_drawing, read_solid
 from kin.read.gcode import read_gcode

@@ -22,7 +22,7 @@ from camgeo.files.three_mf import Item, write_3mf
 from camgeo.files.triangulate import sides
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from kin.read.files import ReadError, read_solid
 from kin.read.mesh.threemf import read_3mf, read_placed
 

@@ -12,8 +12,8 @@ import pytest
 from camgeo.output import pipeline
 from camgeo.recipe.dynamics import Dynamics
 from camgeo.recipe.loading import read
-from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.document import encoded
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
 
 if TYPE_CHECKING:

@@ -12,13 +12,12 @@ import pytest
 import camgeo
 from camgeo.cli.main import main
 from camgeo.output import pipeline
-from camgeo.recipe import RecipeErrors, load
 from camgeo.recipe.figures import FIGURES, FORMER, PRESENT
-from camgeo.recipe.loading import load_text
+from camgeo.recipe.loading import load, load_text
 from camgeo.recipe.recipe import RECIPE
-from camgeo.recipe.schema.errors import DeprecatedKeyWarning
-from camgeo.recipe.schema.fields import field_at, present
-from camgeo.recipe.schema.json_schema import json_schema
+from camgeo.schema.errors import DeprecatedKeyWarning, RecipeErrors
+from camgeo.schema.fields import field_at, present
+from camgeo.schema.json_schema import json_schema
 
 if TYPE_CHECKING:
     from pathlib import Path

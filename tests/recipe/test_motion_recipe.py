@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from camgeo.output import pipeline
-from camgeo.recipe import RecipeErrors, read
+from camgeo.recipe.loading import read
+from camgeo.schema.errors import RecipeErrors
 from kin.law.sources.laws import named, scca, split
 from kin.law.sources.programme import Dwell, Matched, Move, State, programme
 

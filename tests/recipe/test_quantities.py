@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.recipe import RECIPE
-from camgeo.recipe.schema.edit import with_values
-from camgeo.recipe.schema.errors import RecipeErrors
-from camgeo.recipe.schema.json_schema import json_schema
-from camgeo.recipe.schema.quantity import read_quantity
+from camgeo.schema.edit import with_values
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.json_schema import json_schema
+from camgeo.schema.quantity import read_quantity
 
 MM = {"mm": Fraction(1), "cm": Fraction(10), "in": Fraction(254, 10), "inch": Fraction(254, 10)}
 TAKEN = "give mm, cm, in or inch, or a number alone, which is in"

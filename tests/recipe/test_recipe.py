@@ -34,15 +34,16 @@ from camgeo.cams.pairs import ArcRoute, DeltaRoute, LawRoute, RosetteRoute
 from camgeo.cams.segments import MotionSegment, SccaLaw
 from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, ReuleauxShape, SupportCam
 from camgeo.curve.moving_frame import Displacement
-from camgeo.recipe import Recipe, RecipeErrors, load, read
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import Export, FileRequest
+from camgeo.recipe.loading import load, read
 from camgeo.recipe.machining import Compensation, Manufacture
 from camgeo.recipe.part import Part
-from camgeo.recipe.recipe import RECIPE, Verify
-from camgeo.recipe.schema.json_schema import json_schema
-from camgeo.recipe.schema.scalars import Complaint, read_number
+from camgeo.recipe.recipe import RECIPE, Recipe, Verify
 from camgeo.recipe.starter import KINDS, starter
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.json_schema import json_schema
+from camgeo.schema.scalars import Complaint, read_number
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named as named_law
 from kin.law.sources.programme import Dwell, Matched, RiseAndFall, State

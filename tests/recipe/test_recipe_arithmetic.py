@@ -10,10 +10,10 @@ import pytest
 from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.recipe import RECIPE
-from camgeo.recipe.schema.edit import with_values
-from camgeo.recipe.schema.errors import RecipeErrors
-from camgeo.recipe.schema.json_schema import json_schema
-from camgeo.recipe.schema.scalars import Complaint, read_number, whole
+from camgeo.schema.edit import with_values
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.json_schema import json_schema
+from camgeo.schema.scalars import Complaint, read_number, whole
 
 TEXT = (
     "cam: {{kind: constant-breadth, base_radius: {0}, "

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from camgeo.recipe.loading import load, load_text
-from camgeo.recipe.schema.change import changed, written
-from camgeo.recipe.schema.errors import RecipeErrors
-from camgeo.recipe.schema.yaml_source import read_source, scalars
+from camgeo.schema.change import changed, written
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.yaml_source import read_source, scalars
 
 ROOT = Path(__file__).parents[2]
 RECIPES = sorted((ROOT / "recipes").glob("*.yaml"))

@@ -13,10 +13,11 @@ from hypothesis import strategies as st
 from support.cases import few
 from support.places import SHIPPED
 
-from camgeo.recipe import RecipeErrors, load_text
-from camgeo.recipe.schema.edit import spelled, with_values, without
-from camgeo.recipe.schema.scalars import read_number
-from camgeo.recipe.schema.yaml_source import Scalar, read_source, scalars
+from camgeo.recipe.loading import load_text
+from camgeo.schema.edit import spelled, with_values, without
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.scalars import read_number
+from camgeo.schema.yaml_source import Scalar, read_source, scalars
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,8 +10,9 @@ import pytest
 import yaml
 
 from camgeo.cli.main import main
-from camgeo.recipe import RecipeError, RecipeErrors, load, read
-from camgeo.recipe.schema.yaml_source import MAX_ALIASES, MAX_BYTES, MAX_DEPTH, MAX_NODES
+from camgeo.recipe.loading import load, read
+from camgeo.schema.errors import RecipeError, RecipeErrors
+from camgeo.schema.yaml_source import MAX_ALIASES, MAX_BYTES, MAX_DEPTH, MAX_NODES
 from kin.law.formula.formula import Formula, FormulaError
 from kin.law.sources.laws import NAMES
 

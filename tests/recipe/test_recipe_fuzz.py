@@ -15,18 +15,19 @@ from hypothesis import strategies as st
 from support.cases import examples
 from support.places import SHIPPED as SHIPPED_FILES
 
-from camgeo.recipe import Recipe, RecipeErrors, read
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import FILES
 from camgeo.recipe.figures import bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
-from camgeo.recipe.recipe import RECIPE
-from camgeo.recipe.schema.edit import with_values, without
+from camgeo.recipe.loading import read
+from camgeo.recipe.recipe import RECIPE, Recipe
 from camgeo.recipe.starter import KINDS, starter
 from camgeo.recipe.sweep import FIGURES, RANGE
+from camgeo.schema.edit import with_values, without
+from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.fields import Table
+    from camgeo.schema.fields import Table
 
 STARTERS = {f"new {kind}": starter(kind).encode() for kind in KINDS}
 SHIPPED = STARTERS | {path.name: path.read_bytes() for path in SHIPPED_FILES}

@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from camgeo.recipe import Recipe, RecipeErrors, load_text
 from camgeo.recipe.linkage import (
     DwellAsked,
     FourBarLinkage,
@@ -17,8 +16,10 @@ from camgeo.recipe.linkage import (
     SliderCrankLinkage,
     output_slides,
 )
-from camgeo.recipe.recipe import Verify
+from camgeo.recipe.loading import load_text
+from camgeo.recipe.recipe import Recipe, Verify
 from camgeo.recipe.starter import starter
+from camgeo.schema.errors import RecipeErrors
 
 MM = 25.4
 DEG = math.pi / 180

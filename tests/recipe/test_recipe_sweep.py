@@ -6,13 +6,14 @@ import re
 
 import pytest
 
-from camgeo.recipe import Recipe, RecipeErrors, load_text
 from camgeo.recipe.figures import NEEDS, Limit
-from camgeo.recipe.recipe import RECIPE
-from camgeo.recipe.schema.edit import with_values
-from camgeo.recipe.schema.fields import MOST_AXES, MOST_VALUES, field_at
-from camgeo.recipe.schema.yaml_source import join
+from camgeo.recipe.loading import load_text
+from camgeo.recipe.recipe import RECIPE, Recipe
 from camgeo.recipe.sweep import FIGURES, Axis, Sweep
+from camgeo.schema.edit import with_values
+from camgeo.schema.errors import RecipeErrors
+from camgeo.schema.fields import MOST_AXES, MOST_VALUES, field_at
+from camgeo.schema.yaml_source import join
 
 HERE = {"", "linkage", "dwell", "face"}  # what a recipe with a linkage and a dwell has
 

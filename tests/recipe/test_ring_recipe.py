@@ -3,7 +3,7 @@
 import pytest
 
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 RING = (

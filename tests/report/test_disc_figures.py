@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
 from camgeo.report.figures import of_design
 from camgeo.report.limits import limit_checks
 from camgeo.report.remarks import remarks_of
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:

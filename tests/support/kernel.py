@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from camgeo.recipe import read
+from camgeo.recipe.loading import read
 from support.parts import CAM, files_of
 
 kernel = pytest.mark.skipif(importlib.util.find_spec("OCP") is None, reason="needs Open CASCADE: pip install '.[step]'")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from camgeo.output.dispatch import make
 from camgeo.output.job import Job
-from camgeo.recipe import read
+from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed, intended
 from kin.judge.contour_checks import Limits
 from kin.judge.verify import verify

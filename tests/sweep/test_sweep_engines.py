@@ -149,7 +149,7 @@ def test_a_fault_of_what_computes_comes_through(engine: str, cluster: LocalClust
 def test_workers_refuse_a_job_that_they_read_otherwise(
     engine: str, cluster: LocalCluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("camgeo.__version__", "99.0")
+    monkeypatch.setattr("camgeo.sweep.search.job.__version__", "99.0")
     how = How(2) if engine == "processes" else How(scheduler=cluster.scheduler_address)
     with pytest.raises(VersionsError, match="a worker has other versions than this run"):
         list(how.results(job(), [0, 1]))

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from support.sweepers import GRID, ask, calls, fail, hills, job
 
-import camgeo
 from camgeo.recipe.loading import read
 from camgeo.sweep.search import job as jobs
 from camgeo.sweep.search.ask import Ask
@@ -138,7 +137,7 @@ def test_the_key_changes_with_all_that_decides_the_outcome(monkeypatch: pytest.M
         Job(GRID, "another", hills),
         job(compute=fail),
     ]
-    for package in (camgeo, np):
+    for package in (jobs, np):
         monkeypatch.setattr(package, "__version__", "99.0")
         others_key = job().key
         monkeypatch.undo()

@@ -12,7 +12,7 @@ from support.places import ROOT
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from support.cases import few
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.undercut.bottleneck import OpenNeckError
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import Design, designed
 
 BREADTH = """\

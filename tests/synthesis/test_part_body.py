@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.parts import CAM, found, recipe_of
 
-from camgeo.recipe import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
 from camgeo.synthesis.part.body import body_of
 

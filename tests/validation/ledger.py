@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from camgeo.output import pipeline
-from camgeo.recipe import load, read
 from camgeo.recipe.export import FileRequest
+from camgeo.recipe.loading import load, read
 from camgeo.synthesis.design import designed
 from kin.read.drawing.dxf import read_dxf
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from ledger import ROOT, Workshop
 
-from camgeo.recipe import load
+from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:

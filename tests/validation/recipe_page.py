@@ -10,8 +10,8 @@ from camgeo.recipe.export import FILES
 from camgeo.recipe.figures import FIGURES, NEEDS, bounds
 from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.recipe.recipe import RECIPE
-from camgeo.recipe.schema.fields import Kind
 from camgeo.recipe.sweep import RANGE
+from camgeo.schema.fields import Kind
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "recipe.md"

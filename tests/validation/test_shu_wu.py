@@ -156,7 +156,8 @@ def test_polar_breadth_is_not_the_conjugate(section_5):
 def test_a_rise_that_does_not_rest_is_refused_with_the_jump():
     """S'(pi) = -S'(0) is what keeps the contour together: equation 4."""
     from camgeo.output.pipeline import check
-    from camgeo.recipe import RecipeErrors, read
+    from camgeo.recipe.loading import read
+    from camgeo.schema.errors import RecipeErrors
 
     text = (
         "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 180, law: {polynomial: [0, 1]}}]}\n"

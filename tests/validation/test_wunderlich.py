@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from ledger import Row
 
-from camgeo.recipe import RecipeErrors, read
+from camgeo.recipe.loading import read
+from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed, intended
 from kin.law.programme import IntentError
 

@@ -23,8 +23,8 @@ from camgeo.recipe.figures import (
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
 from camgeo.recipe.recipe import RECIPE, Recipe, Verify
-from camgeo.recipe.schema.fields import Kind, field_at
 from camgeo.recipe.sweep import FIGURES
+from camgeo.schema.fields import Kind, field_at
 from camgeo.sweep.search.figures import Evaluator, Scene, asked_of
 from camgeo.sweep.search.gather import Ranking
 from camgeo.sweep.search.plan import Axis, Plan, steps

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from camgeo.cams.flat_faced import is_constant_breadth
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.search.ends import least
 from camgeo.sweep.search.linkages import Support, angles
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import camgeo
 from camgeo.sweep.search.store import encode
+from camgeo.version import __version__
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Job:
 
 def versions(plan: Plan) -> dict[str, str]:
     """Versions that the figures depend on; scipy's only where it makes the plan."""
-    found = {"camgeo": camgeo.__version__, "numpy": np.__version__}
+    found = {"camgeo": __version__, "numpy": np.__version__}
     if plan.method == "sobol":
         import scipy
 

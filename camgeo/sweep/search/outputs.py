@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo import __version__
 from camgeo.files.errors import install
 from camgeo.recipe.figures import with_former
 from camgeo.recipe.sweep import FIGURES
@@ -18,6 +17,7 @@ from camgeo.sweep.search.gather import MOST_ROWS
 from camgeo.sweep.search.pictures import draw_best, draw_map
 from camgeo.sweep.search.recipes import curve_of, loaded, recipe_text
 from camgeo.sweep.search.table import as_csv, as_parquet, columns
+from camgeo.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.part import Part
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.search.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
 from camgeo.sweep.search.linkages import angles
 from kin.law.support_function import Lift

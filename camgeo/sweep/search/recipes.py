@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.recipe.loading import read
-from camgeo.recipe.schema.change import changed
-from camgeo.recipe.schema.edit import without
-from camgeo.recipe.schema.fields import MOST_TEXT
-from camgeo.recipe.schema.yaml_source import Mapping, read_source, scalars
+from camgeo.schema.change import changed
+from camgeo.schema.edit import without
+from camgeo.schema.fields import MOST_TEXT
+from camgeo.schema.yaml_source import Mapping, read_source, scalars
 from camgeo.sweep.search.pictures import Curve
 
 if TYPE_CHECKING:

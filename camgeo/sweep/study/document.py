@@ -5,9 +5,9 @@ from __future__ import annotations
 import platform
 from typing import TYPE_CHECKING, Any
 
-from camgeo import __version__
 from camgeo.report.document import aligned, in_units
 from camgeo.sweep.study.tolerance_ladder import Ended, Rung
+from camgeo.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

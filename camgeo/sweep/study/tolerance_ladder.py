@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from camgeo.output.dispatch import make
 from camgeo.output.job import Job
 from camgeo.recipe.export import FileRequest
-from camgeo.recipe.schema.errors import RecipeErrors
+from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.study.least_pieces import least_pieces
 
 if TYPE_CHECKING:

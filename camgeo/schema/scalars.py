@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from camgeo.recipe.schema.fields import MOST_LAMBDA, MOST_TEXT
+from camgeo.schema.fields import MOST_LAMBDA, MOST_TEXT
 
 _UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _NUMBER = re.compile(rf"[+-]?{_UNSIGNED.pattern}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.schema.fields import (
+from camgeo.schema.fields import (
     MOST,
     MOST_HARMONIC,
     Field,
@@ -12,11 +12,11 @@ from camgeo.recipe.schema.fields import (
     coordinate,
     length,
 )
-from camgeo.recipe.schema.yaml_source import Mapping, Sequence, described, entries, join, keys
+from camgeo.schema.yaml_source import Mapping, Sequence, described, entries, join, keys
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Reader
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.reader import Reader
+    from camgeo.schema.yaml_source import Node
 
 
 def read_point(reader: Reader, field: Field, node: Node, path: str) -> tuple[float, float] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.schema.fields import (
+from camgeo.schema.fields import (
     MOST,
     MOST_TEXT,
     Field,
@@ -12,12 +12,12 @@ from camgeo.recipe.schema.fields import (
     Table,
     length,
 )
-from camgeo.recipe.schema.quantity import ANGLES, LENGTHS
+from camgeo.schema.quantity import ANGLES, LENGTHS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from camgeo.recipe.schema.fields import Schema
+    from camgeo.schema.fields import Schema
 
 # Texts that are numbers all the same: 1e-3, which YAML 1.1 takes for a text, fractions and plain arithmetic. What the
 # signs mean is for `load` to say.

@@ -7,15 +7,15 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from camgeo.common.errors import CallError
-from camgeo.recipe.schema.errors import RecipeError, RecipeErrors
-from camgeo.recipe.schema.quantity import parted
-from camgeo.recipe.schema.scalars import Complaint, read_number
-from camgeo.recipe.schema.yaml_source import Mapping, Scalar, Source, is_empty, keys, read_source, scalars
+from camgeo.schema.errors import RecipeError, RecipeErrors
+from camgeo.schema.quantity import parted
+from camgeo.schema.scalars import Complaint, read_number
+from camgeo.schema.yaml_source import Mapping, Scalar, Source, is_empty, keys, read_source, scalars
 
 if TYPE_CHECKING:
     import collections.abc
 
-    from camgeo.recipe.schema.yaml_source import Mark, Node
+    from camgeo.schema.yaml_source import Mark, Node
 
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _NAME = "recipe"  # of a text in errors

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from camgeo.recipe.schema.reader import Reader
-    from camgeo.recipe.schema.yaml_source import Node
+    from camgeo.schema.reader import Reader
+    from camgeo.schema.yaml_source import Node
 
 Schema: TypeAlias = dict[str, Any]  # a JSON schema
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.schema.errors import NEAR, NEARER, shown, suggestion
-from camgeo.recipe.schema.fields import Kind, either, not_yet
-from camgeo.recipe.schema.quantity import UnitComplaint, holds_unit, is_metric, read_quantity, units_for
-from camgeo.recipe.schema.scalars import Complaint, SmallComplaint, read_name, read_paragraph, read_ratio, whole
-from camgeo.recipe.schema.yaml_source import Mapping, Scalar, described, entries, written
+from camgeo.schema.errors import NEAR, NEARER, shown, suggestion
+from camgeo.schema.fields import Kind, either, not_yet
+from camgeo.schema.quantity import UnitComplaint, holds_unit, is_metric, read_quantity, units_for
+from camgeo.schema.scalars import Complaint, SmallComplaint, read_name, read_paragraph, read_ratio, whole
+from camgeo.schema.yaml_source import Mapping, Scalar, described, entries, written
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.recipe.schema.fields import Field
-    from camgeo.recipe.schema.reader import Reader
-    from camgeo.recipe.schema.yaml_source import Mark, Node
+    from camgeo.schema.fields import Field
+    from camgeo.schema.reader import Reader
+    from camgeo.schema.yaml_source import Mark, Node
 
 
 def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:

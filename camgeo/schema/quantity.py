@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
-from camgeo.recipe.schema.scalars import Complaint, read_number, within_range
+from camgeo.schema.scalars import Complaint, read_number, within_range
 
 LENGTHS = {"mm": Fraction(1), "cm": Fraction(10), "in": Fraction(127, 5), "inch": Fraction(127, 5)}
 """The units that a length may carry, in mm."""

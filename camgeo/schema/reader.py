@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from camgeo.recipe.schema.errors import RecipeError, shown, suggestion
-from camgeo.recipe.schema.fields import Field, Kind, Table, either, elsewhere, not_yet, of_other_kind
-from camgeo.recipe.schema.yaml_source import (
+from camgeo.schema.errors import RecipeError, shown, suggestion
+from camgeo.schema.fields import Field, Kind, Table, either, elsewhere, not_yet, of_other_kind
+from camgeo.schema.yaml_source import (
     Mapping,
     Scalar,
     Sequence,
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import collections.abc
     from collections.abc import Callable
 
-    from camgeo.recipe.schema.yaml_source import Mark, Node, Source
+    from camgeo.schema.yaml_source import Mark, Node, Source
 
 # A mapping read by its table: fields that are absent or faulty are left out. What a field holds is settled by its kind.
 Values: TypeAlias = dict[str, Any]

@@ -9,9 +9,9 @@ from collections.abc import Mapping as AnyMapping
 from collections.abc import Sequence as AnySequence
 from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
-from camgeo.recipe.schema.edit import index_of, line_starts, spelled
-from camgeo.recipe.schema.errors import RecipeError, RecipeErrors, shown
-from camgeo.recipe.schema.yaml_source import (
+from camgeo.schema.edit import index_of, line_starts, spelled
+from camgeo.schema.errors import RecipeError, RecipeErrors, shown
+from camgeo.schema.yaml_source import (
     MAX_DEPTH,
     Mapping,
     Sequence,
@@ -23,7 +23,7 @@ from camgeo.recipe.schema.yaml_source import (
 )
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.yaml_source import Node, Source
+    from camgeo.schema.yaml_source import Node, Source
 
 Value: TypeAlias = "str | float | bool | AnySequence[Value] | AnyMapping[str, Value] | None"
 """What may stand in a recipe: a text, a number, a truth value, nothing, and lists and mappings of those."""

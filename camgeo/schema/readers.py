@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.schema.fields import Kind
-from camgeo.recipe.schema.read_list import (
+from camgeo.schema.fields import Kind
+from camgeo.schema.read_list import (
     read_harmonics,
     read_numbers,
     read_pair,
     read_point,
 )
-from camgeo.recipe.schema.read_scalar import read_choice, read_formula, read_numeric, read_text, read_truth
-from camgeo.recipe.schema.reader import Reader
+from camgeo.schema.read_scalar import read_choice, read_formula, read_numeric, read_text, read_truth
+from camgeo.schema.reader import Reader
 
 if TYPE_CHECKING:
-    from camgeo.recipe.schema.reader import Readers
+    from camgeo.schema.reader import Readers
 
 READERS: Readers = {
     Kind.TEXT: read_text,

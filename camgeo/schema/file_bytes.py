@@ -6,7 +6,7 @@ import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.schema.scalars import Complaint
+from camgeo.schema.scalars import Complaint
 
 if TYPE_CHECKING:
     from os import PathLike

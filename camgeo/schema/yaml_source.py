@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import yaml
 
-from camgeo.recipe.schema.errors import RecipeError, RecipeErrors, shown
+from camgeo.schema.errors import RecipeError, RecipeErrors, shown
 
 if TYPE_CHECKING:
     import collections.abc
