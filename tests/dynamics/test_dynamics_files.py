@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support import followers
 from support.integrated import integrated
+from support.programmes import Segment, law, programme
 
 from kin.contour.contour import Contour
 from kin.dynamics.drive import drives
@@ -17,7 +18,6 @@ from kin.follower.follower import DoubleRoller
 from kin.follower.guide import Arm, Line
 from kin.follower.support import bearing_of
 from kin.law.contacts import LEADING, TRAILING
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_delta
 
