@@ -190,7 +190,7 @@ def _findings(
     from camgeo.report.remarks import remarks_of
 
     with clock.stage("remarks"):
-        remarks = remarks_of(recipe, design)
+        remarks = remarks_of(recipe, design, checks, files)
     return Findings(
         tuple(checks),
         tuple(files),
