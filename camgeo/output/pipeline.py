@@ -187,10 +187,11 @@ def _findings(
             section = None if train is None else train.section
             checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
     from camgeo.curve.measures import measures
-    from camgeo.report.remarks import remarks_of
+    from camgeo.report.remarks import dwells_lost, remarks_of
 
     with clock.stage("remarks"):
         remarks = remarks_of(recipe, design, checks, files)
+        remarks += () if design.driven is None else dwells_lost(design.driven, files)
     return Findings(
         tuple(checks),
         tuple(files),

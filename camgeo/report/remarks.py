@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
+    from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check
 
 PRESSURE_RULE = {"oscillating": 45.0, "translating": 30.0}  # degrees: cam handbooks' rule of thumb for rollers
@@ -33,6 +34,7 @@ RETURN_RULE = 45.0  # degrees, where a spring holds the follower
 SHARE = 0.1  # of the stroke: an error as great as that is no small one
 LOOSE = 0.01  # of the stroke, or of the rollers' radius: a limit as great as that says little
 THICKEST, THINNEST = 2.0, 0.01  # of the cam's greatest radius
+LASTS = 0.95  # of an intended dwell: so much of it the file's lasts at least
 STILL = 1e-9  # of the cam's size: a motion that is none
 LOOKS = 1440  # places of a turn at which the stroke is looked at
 CLEAR = 0.05  # of the cam's size
@@ -289,6 +291,23 @@ def _output(recipe: Recipe, design: Design) -> list[Remark | None]:
             told = f"{what} is {value / swing:.3g} times the swing of the output" if swing else f"{what}: no swing"
             found.append(Remark(name, value * scale, SHARE * swing * scale, unit, told))
     return found
+
+
+def dwells_lost(driven: Driven, files: Sequence[FileResult]) -> tuple[Remark, ...]:
+    """Of each file whose dwell is a good part shorter than the intended one: the band's edge lies on a ripple."""
+    found = []
+    for file in files:
+        for made in () if file.linkage is None else file.linkage.dwells[:1]:
+            meant = math.degrees(driven.dwells[made.over][0].length)
+            if made.length_deg >= LASTS * meant:
+                continue
+            told = (
+                f"{file.path.name}: the output dwells for {made.length_deg:.5g} deg of the {meant:.5g} intended, as a "
+                "ripple fills the band: give a wider dwell.band or a smaller export.tolerance"
+            )
+            at = made.start_deg if made.over == "shaft" else None
+            found.append(Remark("dwell-shorter", made.length_deg, LASTS * meant, "deg", told, at))
+    return tuple(found)
 
 
 def _shaft(recipe: Recipe, design: Design) -> Remark | None:

@@ -187,9 +187,10 @@ def test_the_eccentric_is_one_circle_under_a_flat_face() -> None:
 
 
 def test_a_motion_repeated_is_one_part_turned() -> None:
-    third = segments((5, 50, "cycloidal"), (20,), (-5, 40, "polynomial-345"), (10,), total=TURN / 3)
+    rows = ((5, 50, "cycloidal"), (20,), (-5, 40, "polynomial-345"), (10,))
+    third = segments(*rows, total=TURN / 3)
     pitch = CentreShape(Displacement.of(third), Translating.on(40.0, 6.0))
-    whole = CentreShape(Displacement.of(third.repeated(3)), Translating.on(40.0, 6.0))
+    whole = CentreShape(Displacement.of(segments(*rows, *rows, *rows)), Translating.on(40.0, 6.0))
     assert (pitch.repeats, pitch.breaks.size, len(pitch.steady)) == (3, 12, 12)
     t = np.linspace(0.0, TURN, 301)
     assert pitch.sample(t).point == pytest.approx(whole.sample(t).point, abs=1e-13)
