@@ -215,7 +215,7 @@ class SwingingFace(OfLaw):
 
     def direct_limit(self, tolerance: float) -> float:
         """The same, degrees, at the pivot's distance."""
-        return float(np.degrees(tolerance / self.pivot))
+        return float(np.degrees(tolerance / self.face.pivot))
 
 
 @dataclass(frozen=True, eq=False)
