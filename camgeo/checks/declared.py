@@ -377,7 +377,14 @@ MOTION = Declared(
     in_frame=True,
 )
 BREADTH_MAX = Declared("breadth-max", ("mm",), of_file=_in_a_yoke, backlash=True, in_frame=True)
-FORM_CLOSURE = Declared("form-closure", ("mm", "deg"), of_file=_form_closed, backlash=True)
+FORM_CLOSURE = Declared(
+    "form-closure",
+    ("mm", "deg"),
+    of_file=_form_closed,
+    field="export.tolerance",
+    own_field="verify.motion_error",
+    backlash=True,
+)
 OUTPUT = Declared(
     "linkage-error",
     ("mm", "deg"),

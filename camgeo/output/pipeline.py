@@ -226,7 +226,8 @@ def _findings(
     from camgeo.report.remarks import dwells_lost, remarks_of
 
     with clock.stage("remarks"):
-        remarks = remarks_of(recipe, design) + (() if design.driven is None else dwells_lost(design.driven, files))
+        remarks = remarks_of(recipe, design, checks, files)
+        remarks += () if design.driven is None else dwells_lost(design.driven, files)
     return Findings(
         tuple(checks),
         tuple(files),
