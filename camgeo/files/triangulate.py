@@ -6,6 +6,8 @@ exactly for any doubles.
 Why checking the sense of each triangle is enough: the triangles are joined by their edges, and the edges left over are
 the region's boundary. If every triangle runs counter-clockwise, the map of this sheet into the plane turns nowhere
 over, and each point of the plane is covered as often as the boundary winds about it: once inside, not at all outside.
+A loop that winds twice about some point, as one does that overlaps itself, may get triangles too: the judge finds where
+the contour of a file crosses itself.
 """
 
 from __future__ import annotations
