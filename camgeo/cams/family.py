@@ -6,7 +6,7 @@ The rest of the package asks a cam by these names and never which family it is o
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.schema.fields import Field, Kind
@@ -49,12 +49,13 @@ class Profile:
     """The exact curve of a cam.
 
     `base` is what the motion describes, the pitch curve of a roller or the contour itself; `curve` is the contour,
-    `roller_radius` inside the base (0 for flat faces).
+    `roller_radius` inside the base (0 for flat faces). `extremes` keeps what `Cam.extremes` found.
     """
 
     base: Curve
     curve: Curve
     roller_radius: float
+    extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -183,15 +184,17 @@ class Cam(ABC):
         return {}
 
     def extremes(self, name: str, intent: Intent, profile: Profile) -> tuple[Extreme, Extreme] | None:
-        """Least and greatest value of one of `series`, None of one that there is not."""
+        """Least and greatest value of one of `series`, found once of a profile; None of one that there is not."""
         from camgeo.curve.extremes import greatest, least
         from camgeo.curve.rates import stretches
 
-        figure = self.series(intent, profile).get(name)
-        if figure is None:
-            return None
-        over = stretches(profile.base.shape)
-        return least(figure, over), greatest(figure, over)
+        if name not in profile.extremes:
+            figure = self.series(intent, profile).get(name)
+            if figure is None:
+                return None
+            over = stretches(profile.base.shape)
+            profile.extremes[name] = least(figure, over), greatest(figure, over)
+        return profile.extremes[name]
 
     # --- advice -------------------------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ formulas: a flat face on a line of travel `kin.follower.flat`, on an arm `kin.fo
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
@@ -98,12 +99,16 @@ class Closure:
     name     of the check on both, play and interference
     tight    name of a check on interference alone; None for none
     breadth  of a frame, mm: what is reported is how broad the contour is; None where play is
+    lever    play that is permitted for a permitted motion error of 1, mm or degrees; None where the tolerance sets it
+    radius   of the rollers, mm, beside which a play is small; None of a play that is an angle
     """
 
     limit: Callable[[float], float]
     name: str = "form-closure"
     tight: str | None = None
     breadth: float | None = None
+    lever: float | None = None
+    radius: float | None = None
 
     def detail(self, play: Play) -> str:
         """What the check reports of a play that was found."""
@@ -177,6 +182,10 @@ class Follower(ABC):
     @abstractmethod
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error, mm or degrees, of a contour within `tolerance` of the exact one."""
+
+    def direct_limit(self, tolerance: float) -> float:
+        """What `motion_limit` is at a pressure angle of 0, or on a face as far from the pivot as it reaches."""
+        return math.degrees(self.moved_by(tolerance)) if self.unit == "deg" else tolerance
 
 
 class OfLaw(Follower):

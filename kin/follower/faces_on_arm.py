@@ -214,6 +214,10 @@ class SwingingFace(OfLaw):
             raise ContactError("the intended contact reaches the pivot", float(phi[int(np.argmax(psi))]))
         return float(np.degrees(self.face.leeway(self.support, tolerance, grid(self.support.breaks)).max()))
 
+    def direct_limit(self, tolerance: float) -> float:
+        """The same, degrees, at the pivot's distance."""
+        return float(np.degrees(tolerance / self.pivot))
+
 
 @dataclass(frozen=True, eq=False)
 class FlatPair(OfTransmission):
@@ -237,7 +241,7 @@ class FlatPair(OfTransmission):
     @property
     def closure(self) -> Closure:
         """The angle by which the faces stand wider than they need."""
-        return Closure(self.play_limit)
+        return Closure(self.play_limit, lever=1.0)
 
     @cached_property
     def support(self) -> PairSupport:
@@ -284,6 +288,10 @@ class FlatPair(OfTransmission):
         """Greatest swing, degrees, that a shift of the contour by `tolerance` gives a face."""
         theta = grid(self.support.breaks)
         return float(np.degrees(max(face.leeway(self.support, tolerance, theta).max() for face in self.faces)))
+
+    def direct_limit(self, tolerance: float) -> float:
+        """The same, degrees, at the pivot's distance."""
+        return float(np.degrees(tolerance / self.faces[0].pivot))
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest play, degrees, from such shifts at both faces."""

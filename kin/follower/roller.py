@@ -159,7 +159,7 @@ class RollerYoke(_Guided):
     @property
     def closure(self) -> Closure:
         """The way that the frame can travel with the cam at rest."""
-        return Closure(self.play_limit)
+        return Closure(self.play_limit, lever=1.0, radius=self.radius)
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest play or interference, mm: what either roller may be off."""
@@ -194,7 +194,7 @@ class DoubleRoller(_Rollers, OfTransmission):
     @property
     def closure(self) -> Closure:
         """The gap at roller B while A is held in contact."""
-        return Closure(self.play_limit)
+        return Closure(self.play_limit, lever=float(np.radians(self.transmission.arm)), radius=self.radius)
 
     @cached_property
     def envelope(self) -> RollerEnvelope:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from support.integrated import integrated
+from support.programmes import Segment, law, programme
 
 from kin.contour.contour import Contour
 from kin.dynamics.drive import drives
@@ -15,7 +16,6 @@ from kin.follower.drive import OfFace, OfRoller
 from kin.follower.follower import DoubleRoller, FlatFace, FlatPair, Roller, RollerYoke, Yoke
 from kin.follower.guide import LEADING, TRAILING, Arm, Translating
 from kin.follower.support import bearing_of
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_delta
 

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from support.camfiles import circle_points, pitch_polar, roller_points, support_points
 from support.cases import examples, few
 from support.heavy import shapely, spatial
+from support.programmes import Segment, law, programme
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
@@ -14,7 +15,6 @@ from kin.follower.deviation import convex_deviation, deviation
 from kin.follower.envelope import FlatEnvelope, PairSupport, RollerEnvelope, TransmissionPitch
 from kin.follower.flat import FlatFace
 from kin.follower.projection import Inverse
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
 from kin.law.transmission import from_arc, from_delta, from_law
 

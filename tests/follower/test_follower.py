@@ -6,13 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.camfiles import arcs_through, circle_points, roller_points, support_points
 from support.cases import examples, few
+from support.programmes import Segment, law, programme
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.follower import ContactError, DoubleRoller, FlatFace, FlatPair, Roller, Yoke
 from kin.follower.guide import Arm
 from kin.law.piecewise import Piecewise
-from kin.law.programme import Segment, law, programme
 from kin.law.segment import Constant
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
 from kin.law.transmission import from_arc, from_delta, from_law

@@ -7,6 +7,7 @@ import pytest
 from support.brute_disc import peak
 from support.camfiles import arcs_through, write_dxf
 from support.cases import few
+from support.programmes import Segment, law, programme
 
 import kin.follower.roller
 from kin.contour.arcs import unit
@@ -17,7 +18,6 @@ from kin.follower.laws import ByLaw, BySwing
 from kin.judge.contour_checks import Intent, Limits
 from kin.judge.verify import verify
 from kin.law.piecewise import Piecewise
-from kin.law.programme import Segment, law, programme
 from kin.law.segment import Affine, Constant
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta, from_law

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_stl
 from support.cases import examples
+from support.solids import sound
 
 from kin.contour.contour import Contour
 from kin.follower.follower import DoubleRoller, Yoke
@@ -109,7 +110,7 @@ def test_tilted_in_single_precision_and_back(tmp_path, name):
     solid = read_stl(path)
     assert solid.prism
     assert 5e-7 < solid.uneven < 2e-5
-    assert solid.oriented
+    assert sound(solid)
     assert len(solid.contour) == len(POINTS[name])
     assert len(solid.holes) == 1
     assert solid.faces == (solid.z_min, solid.z_max)
@@ -128,7 +129,7 @@ def test_walls_with_corners_halfway_up(tmp_path, middle):
     solid = read_stl(path)
     assert solid.prism
     assert 5e-7 < solid.uneven < 2e-5
-    assert solid.oriented
+    assert sound(solid)
     assert not failures(path)
     leaning = triangles + np.where(np.abs(triangles[:, :, 2:] - middle) < 1.0, [1e-3, 0.0, 0.0], 0.0)
     assert "thickness" in failures(write_stl(path, leaning))
@@ -188,12 +189,12 @@ def test_walls_that_lean_by_twice_what_rounding_explains(tmp_path, angle, share)
     corners = np.unique(triangles[triangles[:, :, 2] > 4.0], axis=0)
     chosen = corners[: max(2, int(share * len(corners)))]
     at = (triangles[:, :, None] == chosen).all(axis=3).any(axis=2)
-    for factor, sound in ((0.5, True), (4.0, False)):
+    for factor, whole in ((0.5, True), (4.0, False)):
         off = factor * rounding(triangles.astype(np.float32))
         leaning = triangles + at[:, :, None] * off * np.array([np.cos(angle), np.sin(angle), 0.0])
         path = write_stl(tmp_path / "cam.stl", leaning)
-        assert read_stl(path).prism is sound
-        assert ("thickness" in failures(path)) is not sound
+        assert read_stl(path).prism is whole
+        assert ("thickness" in failures(path)) is not whole
 
 
 @pytest.mark.parametrize("form", ["%.6g", "%.9g"])

@@ -512,3 +512,13 @@ def test_a_3mf_needs_a_thickness(tmp_path, capsys):
     recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\nexport: {files: [3mf]}\n")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 2
     assert "3mf needs a thickness; give part.thickness, or leave 3mf out" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("encoding", ["rot13", "cp99999", "utf-7", "idna", "hex"])
+def test_encodings_that_are_none_or_are_not_read(plain, encoding):
+    recipe, _, sound, _ = plain
+    spoilt = rewritten(sound, lambda text: text.replace('encoding="UTF-8"', f'encoding="{encoding}"', 1))
+    with pytest.raises(ReadError, match=r"3dmodel\.model is not sound: "):
+        read_3mf(spoilt)
+    report = judged(recipe, [spoilt])
+    assert [check["name"] for check in report["checks"] if not check["ok"]] == ["readable"]

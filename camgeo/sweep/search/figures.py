@@ -42,7 +42,7 @@ Codes: TypeAlias = NDArray[np.uint8]
 REASONS = ("", "impossible", "undercut", "shaft-outside", "binds", "reverses", "limits")
 BLOCK = 11_520  # samples of a block: a dozen arrays of them stay in a cache of 1 MB
 _SAMPLES = 360
-_DWELLS = (DWELL, "dwell-relative")
+DWELLS = (DWELL, "dwell-relative")
 
 
 class Found(NamedTuple):
@@ -186,7 +186,7 @@ class Evaluator:
             here = {name: column[block] for name, column in figures.items()}
             index, windows = self._block(values[block], here, reason[block])
             kept.append((index + first, windows))
-        for name in _DWELLS:
+        for name in DWELLS:
             if name in figures:
                 figures[name][reason == BROKEN] = -np.inf
                 parts = [windows[name] for index, windows in kept if len(index)]
@@ -302,7 +302,7 @@ class Evaluator:
             figures["peak-acceleration"][index] = self.scale * greatest(np.abs(bent), smooth)
 
     def _windows(self, motion: _Motion) -> dict[str, Ends]:
-        names = [name for name in _DWELLS if name in self.wanted]
+        names = [name for name in DWELLS if name in self.wanted]
         if not names:
             return {}
         output = motion.output, motion.rate
