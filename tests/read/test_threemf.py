@@ -22,6 +22,7 @@ from camgeo.files.three_mf import Item, write_3mf
 from camgeo.files.triangulate import sides
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
+from camgeo.output.pipeline import judged
 from camgeo.schema.errors import RecipeErrors
 from kin.read.files import ReadError, read_solid
 from kin.read.mesh.threemf import read_3mf, read_placed
@@ -383,7 +384,7 @@ def test_a_damaged_model_is_told(plain, name):
     with pytest.raises(ReadError) as caught:
         read_3mf(spoilt)
     assert message in str(caught.value)
-    assert failures(spoilt, recipe, design) == {"watertight"}
+    assert failures(spoilt, recipe, design) == {"readable"}
 
 
 def archive_of(path, members):
