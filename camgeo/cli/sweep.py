@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from camgeo.sweep.search.run import Told
     from camgeo.sweep.search.search import Means, Outcome
 
-_EXTRAS = {"distributed": "dask", "numba": "fast"}  # of packages that are not in the extra `sweep`
+_EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
 _EVERY = 10.0  # seconds between lines of progress where there is no terminal
 _SAID = 5  # best designs that -v lists
 Number = TypeVar("Number", int, float)
