@@ -149,12 +149,17 @@ def _breadth(contour: Contour) -> Breadth:
     """Extremes of the breadth: the play of the contour in a yoke, over the whole turn."""
     import numpy as np
 
-    from kin.follower.follower import Yoke
+    from kin.follower.follower import follower_of
+    from kin.law.contacts import Flat, opposite
     from kin.law.support_function import lift_from_fourier
 
     # any breadth of the yoke and any intended motion would do, as only the play is asked for
     frame = float(contour.support(np.array([0.0, math.pi])).q.sum())
-    play = Yoke(lift_from_fourier(0.5 * frame, {}, {}), frame).judge(contour, np.zeros(1)).play
+    play = (
+        follower_of(opposite(Flat(), frame), lift_from_fourier(0.5 * frame, {}, {}).law)
+        .judge(contour, np.zeros(1))
+        .play
+    )
     assert play is not None
     return Breadth(frame - play.most, play.most_at_deg, frame - play.least, play.least_at_deg)
 
