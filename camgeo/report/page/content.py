@@ -138,7 +138,7 @@ def _faces(view: View[Translating, Flat], reach: float, size: float) -> _Drawing
 
 def _two_rollers(view: View[Oscillating, Roller], _: float, size: float) -> _Drawing:
     bodies, angles = double_roller(view, size)
-    return bodies, [curves.pressure(dict(zip(("roller A", "roller B"), angles, strict=True)))]
+    return bodies, [curves.pressure(view.recipe, dict(zip(("roller A", "roller B"), angles, strict=True)))]
 
 
 def _two_faces(view: View[Oscillating, Flat], _: float, size: float) -> _Drawing:
@@ -150,7 +150,7 @@ def _pressed(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array
     """Return what touches a cam about a centre, the displacement at the page's steps, the contact and the plot."""
     angle = view.pressure(SHAFT)
     touch = guided.touch_of(view.touch, angle, size)
-    plots = [curves.pressure({view.touch.word: angle}, SIGN)]
+    plots = [curves.pressure(view.recipe, {view.touch.word: angle}, SIGN)]
     return touch, view.travel(SHAFT)[0], [guided.touched(view.design.profile, size, touch.within)], plots
 
 
@@ -167,7 +167,7 @@ def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
 def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
     """Return the displacement, the run of the contact along a face, the contact, and plots of both."""
     place, angle = view.place(SHAFT), view.pressure(SHAFT)
-    plots = [curves.pressure({view.touch.word: angle}), curves.along(view.recipe, place)]
+    plots = [curves.pressure(view.recipe, {view.touch.word: angle}), curves.along(view.recipe, place)]
     margin = guided.MARGIN * size
     found = [guided.touched(view.design.profile, size)]
     return view.travel(SHAFT)[0], float(place.min()) - margin, float(place.max()) + margin, found, plots
@@ -200,7 +200,7 @@ def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Dr
     for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
         found.append(guided.touched(view.design.profile, size, radius, on=on, name=f"contact of {name}"))
         angles[name] = view.pressure(SHAFT + on)
-    return [*bodies, *found], [curves.pressure(angles, SIGN)]
+    return [*bodies, *found], [curves.pressure(view.recipe, angles, SIGN)]
 
 
 DRAWN: dict[Arrangement, Drawer[[float, float], _Drawing]] = dict(
