@@ -134,6 +134,11 @@ class Guide(Protocol):
         """Radius of the prime circle, mm: the centre's distance from the shaft at S = 0."""
         ...
 
+    @property
+    def datum(self) -> float:
+        """Position on the guide at S = 0: foot, mm, or rest, rad."""
+        ...
+
     def demand(self, least: float, greatest: float) -> None:
         """Raise IntentError where the frame breaks down between two displacements."""
         ...
@@ -179,6 +184,11 @@ class Translating:
     def prime(self) -> float:
         """Radius of the prime circle, mm."""
         return math.hypot(self.foot, self.offset)
+
+    @property
+    def datum(self) -> float:
+        """The foot."""
+        return self.foot
 
     def demand(self, least: float, greatest: float) -> None:  # noqa: ARG002
         """Raise IntentError where the centre would pass the shaft."""
@@ -239,6 +249,11 @@ class Oscillating:
     def prime(self) -> float:
         """Radius of the prime circle, mm."""
         return math.hypot(self.pivot * math.cos(self.rest) - self.length, self.pivot * math.sin(self.rest))
+
+    @property
+    def datum(self) -> float:
+        """The rest."""
+        return self.rest
 
     def demand(self, least: float, greatest: float) -> None:
         """Raise IntentError where the arm would point at the shaft or away from it."""
