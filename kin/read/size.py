@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 __all__ = ["MOST_BYTES", "MOST_PIECES", "contents", "demand_few_pieces", "oversize"]
 
 MOST_BYTES = {
-    "dxf": 12_000_000,
+    "dxf": 8_000_000,
     "svg": 12_000_000,
     "stl": 64_000_000,
     "3mf": 32_000_000,
