@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from camgeo.api.loading import recipe_of
 from camgeo.checks.declared import (
     BENT,
     CHECKS,
@@ -25,21 +25,23 @@ from camgeo.checks.declared import (
     UNDERCUT_LOCAL,
     WATERTIGHT,
 )
-from camgeo.common.arguments import is_a, number_of, path_of, spelled, whole_of
+from camgeo.common.arguments import number_of, path_of, spelled, whole_of
 from camgeo.common.errors import CallError
 from camgeo.recipe.recipe import MOST_ANGLES
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from os import PathLike
     from pathlib import Path
 
+    from camgeo.api.loading import RecipeSource
     from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
     from kin.contour.contour import Contour
     from kin.read.files import AnySolid, Drawing
 
     AnyPath: TypeAlias = str | PathLike[str]
-    AnyRecipe: TypeAlias = Recipe | str | PathLike[str]
 
 __all__ = [
     "Breadth",
@@ -101,7 +103,7 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
         assert_watertight(path)
         return 0.0
     drawing = _drawing(path, _length("gap", gap))
-    faults = [f"{fault.kind} {fault.entity} at ({fault.x:.6g}, {fault.y:.6g}) mm" for fault in drawing.faults]
+    faults = [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)} mm" for fault in drawing.faults]
     _no_faults(path, faults + _crossings(drawing.contour))
     return drawing.widest_gap
 
@@ -162,7 +164,7 @@ def _breadth(contour: Contour) -> Breadth:
 
 
 def assert_motion(
-    recipe: AnyRecipe,
+    recipe: RecipeSource,
     path: AnyPath,
     *,
     limit: float | None = None,
@@ -182,7 +184,7 @@ def assert_motion(
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
 
 
-def assert_contour(recipe: AnyRecipe, path: AnyPath, *, tolerance: float | None = None) -> float:
+def assert_contour(recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None) -> float:
     """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
 
     Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` as in `assert_motion`. Returns the
@@ -194,7 +196,7 @@ def assert_contour(recipe: AnyRecipe, path: AnyPath, *, tolerance: float | None 
 
 
 def _judged(
-    recipe: AnyRecipe,
+    recipe: RecipeSource,
     path: AnyPath,
     names: set[str],
     *,
@@ -206,7 +208,7 @@ def _judged(
     __tracebackhide__ = True
     from camgeo import verify as judged
 
-    path, recipe = path_of("path", path), _loaded(recipe)
+    path, recipe = path_of("path", path), recipe_of(recipe)
     swings = recipe.cam.unit == "deg"
     verify = recipe.verify
     if limit is not None:
@@ -233,7 +235,7 @@ def _judged(
 # --- a recipe ---------------------------------------------------------------------------------------------------------
 
 
-def assert_recipe(recipe: AnyRecipe) -> Report:
+def assert_recipe(recipe: RecipeSource) -> Report:
     """Assert that a recipe has no faults, and that every check of its exact curve and of its files holds.
 
     Makes and judges the files in a temporary folder. Returns the report, which as a mapping is what report.json holds.
@@ -243,7 +245,7 @@ def assert_recipe(recipe: AnyRecipe) -> Report:
     from camgeo.schema.errors import RecipeErrors
 
     try:
-        recipe = _loaded(recipe)
+        recipe = recipe_of(recipe)
         report = check(recipe)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
@@ -252,7 +254,7 @@ def assert_recipe(recipe: AnyRecipe) -> Report:
     return report
 
 
-def assert_no_undercut(recipe: AnyRecipe) -> float:
+def assert_no_undercut(recipe: RecipeSource) -> float:
     """Assert that the exact contour of a recipe has no undercut, local or global, also where it asks to trim it.
 
     Returns the least radius of curvature, in the recipe's units: of the contour for a flat face, of the pitch curve for
@@ -262,7 +264,7 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     from camgeo.report.document import Findings, document
     from camgeo.synthesis.design import designed
 
-    recipe = _loaded(recipe)
+    recipe = recipe_of(recipe)
     recipe = replace(recipe, cam=recipe.cam.refusing())
     design = designed(recipe)
     report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.joints))
@@ -271,14 +273,6 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     _all_hold(checks, report, recipe, recipe.name)
     radius: float = next(check["value"] for check in checks if check["name"] in BENT)
     return radius
-
-
-def _loaded(recipe: AnyRecipe) -> Recipe:
-    from camgeo.recipe.loading import load
-    from camgeo.recipe.recipe import Recipe
-
-    is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
-    return recipe if isinstance(recipe, Recipe) else load(path_of("recipe", recipe))
 
 
 def _length(name: str, value: float) -> float:
@@ -311,7 +305,7 @@ def _no_faults(path: Path, faults: list[str]) -> None:
 def _crossings(contour: Contour) -> list[str]:
     from kin.contour.intersections import crossings
 
-    return [f"the contour crosses or touches itself at ({x:.6g}, {y:.6g}) mm" for x, y in crossings(contour).point]
+    return [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in crossings(contour).point]
 
 
 def _contour(path: Path, mm: float | None) -> Contour:

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
+    from camgeo.api.loading import RecipeSource
     from camgeo.common.units import Units
-    from camgeo.recipe.recipe import Recipe
 
 
 def export(
-    recipe: Recipe,
+    recipe: RecipeSource,
     out: str | PathLike[str],
     *,
     only: Sequence[str] = (),
@@ -39,7 +39,7 @@ def export(
     it should be, CallError for a kind of which the recipe lists no file. A check that fails raises nothing: see
     `Report.ok`.
     """
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     called("progress", progress)
     only, folder = texts_of("only", only), path_of("out", out)
     listed = {request.kind for request in recipe.export.files}
@@ -50,15 +50,15 @@ def export(
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
-def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Report:
+def check(recipe: RecipeSource, *, progress: Callable[[str], None] | None = None) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     called("progress", progress)
     return _told(Report(recipe, pipeline.check(recipe, told=staged(recipe, progress)).report))
 
 
 def verify(
-    recipe: Recipe,
+    recipe: RecipeSource,
     file: str | PathLike[str],
     *files: str | PathLike[str],
     tolerance: float | None = None,
@@ -73,7 +73,7 @@ def verify(
     """
     from kin.read.files import SUFFIXES
 
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
     within = None if tolerance is None else number_of("tolerance", tolerance)
     if units is not None:

@@ -18,8 +18,8 @@ from support.sets import NAME, export
 
 from camgeo.cli.main import main
 from camgeo.common import system, workers
-from camgeo.common.errors import SurroundingsError
-from camgeo.output.output_folder import BusyError, Run
+from camgeo.common.errors import BusyError, SurroundingsError
+from camgeo.output.output_folder import Run
 
 GOOD = "cam: {kind: support, p: 25 + 2*cos(3*t)}\nexport: {tolerance: 0.01, files: [dxf]}\n"
 

@@ -163,7 +163,7 @@ def test_workers_refuse_a_job_that_they_read_otherwise(
     [
         ("tcp://127.0.0.1:1", "no Dask scheduler answers at tcp://127.0.0.1:1: "),
         ("nonsense", "nonsense is not the address of a Dask scheduler, such as tcp://host:8786"),
-        ("tcp://here:port", "no Dask scheduler answers at tcp://here:port: Port could not be cast"),
+        ("tcp://here:port", "tcp://here:port is not the address of a Dask scheduler, such as tcp://host:8786"),
     ],
 )
 def test_a_scheduler_that_is_none_is_told_at_once(address: str, message: str) -> None:

@@ -14,6 +14,7 @@ from camgeo.synthesis.checks import slack
 from camgeo.synthesis.part.shapes import Opening, disc, strip
 from camgeo.synthesis.part.walls import Gap, contour_gap, inside_gap, outside_gap
 from kin.judge.check import Check
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -35,7 +36,7 @@ class Pair(NamedTuple):
     def __str__(self) -> str:
         """Tell the pair, the wall and the place."""
         x, y = (coordinate if abs(coordinate) > ROUNDING else 0.0 for coordinate in self.gap.place)
-        place = "" if self.gap.place == NOWHERE else f" at ({x:.4g}, {y:.4g})"
+        place = "" if self.gap.place == NOWHERE else f" at {place_text(x, y, digits=4)}"
         return f"{self.one} and {self.other}: {self.gap.wall:.4g} mm{place}"
 
 

@@ -17,7 +17,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from kin.read.errors import ReadError
+from kin.read.errors import ReadError, xml_fault
 from kin.read.mesh.stl import LARGEST, Solid, solid_of
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def _parse(
     except KeyError as error:
         raise ReadError("syntax", f"the archive has no {name}", path) from error
     except expat.ExpatError as error:
-        raise ReadError("syntax", f"{name} is not sound: {error}", path) from error
+        raise ReadError("syntax", f"{name} is not sound: {xml_fault(error)}", path) from error
 
 
 def _feed(parser: expat.XMLParserType, stream: IO[bytes], most: int, name: str, path: Path) -> None:
