@@ -6,6 +6,7 @@ side on which the text is true.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from camgeo.cams.family import SMALLER_SWING
@@ -58,6 +59,40 @@ def other_entry(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) 
     return "another manufacture.start, or a smaller manufacture.lead_in"
 
 
+def stronger_spring(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell the preload at which contact holds as intended and with every file.
+
+    Against the spring's rate the train's stiffness passes k/(k + k_p) of a preload on to the contact.
+    """
+    train, worst = recipe.dynamics, _worst(check, report)
+    if train is None or train.preload is None or not worst < 0.0:
+        return ""
+    return f"a dynamics.preload of {upward(train.preload - worst * (1.0 + train.rate / train.stiffness))}"
+
+
+def smaller_wheel(check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+    """Tell the largest wheel that reaches into the hollows; nothing of a sharp one."""
+    value = check["value"]
+    return f"a manufacture.wheel of {downward(2.0 * value)} {check['unit']} or less" if value > 0.0 else ""
+
+
+def wider_face(check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+    """Tell the least width of a face that the contact does not leave."""
+    return f"a follower.width of {upward(check['value'])} {check['unit']} or more"
+
+
+def shorter_dwell(check: dict[str, Any], report: dict[str, Any], _recipe: Recipe) -> str:
+    """Tell the dwell that the output has as intended and with every file; nothing of a linkage that does not turn."""
+    worst = _worst(check, report)
+    return f"a dwell.at_least of {downward(worst)} or less, or a wider dwell.band" if worst > 0.0 else ""
+
+
+def _worst(check: dict[str, Any], report: dict[str, Any]) -> float:
+    """Least value of all checks of the same name, of the design and of files; nan where one has none."""
+    values = [one["value"] for one in report["checks"] if one["name"] == check["name"]]
+    return math.nan if None in values else min(values)
+
+
 NO_CHAMFER = "no chamfer, or a contour without corners"
 
 
@@ -70,11 +105,10 @@ def lone_ring(recipe: Recipe) -> bool:
 def smaller_bore(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
     """Tell which bore, or outline of a ring, leaves the wall; of a part with more the check itself names the edges."""
     value, limit, part = check["value"], check["limit"], recipe.part
-    outline = part.outer is not None and check.get("detail", "").startswith("opening and outline")  # the worst pair
-    if value is None or limit is None or not (part.plain or outline or lone_ring(recipe)):
+    if value is None or limit is None or not (part.plain or lone_ring(recipe)):
         return ""
     less = 2.0 * (limit - value)
-    if outline or lone_ring(recipe):
+    if lone_ring(recipe):
         return f"a part.outer larger by more than {upward(less)} {check['unit']}"
     if part.bore is None:
         return ""

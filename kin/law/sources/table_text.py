@@ -14,7 +14,7 @@ from kin.law.sources.table import TableError
 
 MM_PER_INCH = 25.4
 
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|nan|inf(?:inity)?)", re.IGNORECASE)
 _SEPARATORS = {";": "semicolons", "\t": "tabs", " ": "blanks", ",": "commas"}
 
 
