@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -129,7 +129,8 @@ def _changed(linkage: Linkage, loop: int, factor: float) -> Iterator[tuple[str, 
         return
     for name in ("coupler", "rocker", "ground"):
         if length := float(f"{factor * getattr(linkage, name, 0.0):.6g}"):
-            yield name, length, replace(linkage, **{name: length})
+            changes: dict[str, Any] = {name: length}
+            yield name, length, replace(linkage, **changes)
 
 
 def _dyad_changed(dyad: Dyad, factor: float) -> Iterator[tuple[str, float, Dyad]]:

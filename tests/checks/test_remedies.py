@@ -338,7 +338,7 @@ DESIGNS: list[tuple[str, str, Follow]] = [
         disc(
             40.0,
             "kind: roller, radius: 8",
-            "\npart: {bore: 20, wall: 3, dowel: {circle: 40, hole: 12}}",
+            "\npart: {bore: 20, wall: 3, dowel: {circle: 40, hole: 16}}",
         ),
         r"a part\.dowel\.hole below (\S+) mm would do",
         lambda below: disc(
