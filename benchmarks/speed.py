@@ -29,7 +29,8 @@ from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.recipe.loading import load
 from kin.contour.contour import Contour
-from kin.follower.follower import DoubleRoller, FlatPair, Yoke
+from kin.follower.follower import follower_of
+from kin.law.contacts import Flat, Roller, on_one_arm, opposite
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 
@@ -136,10 +137,12 @@ def judge() -> None:
     u, n = np.column_stack([np.cos(t), np.sin(t)]), np.column_stack([-np.sin(t), np.cos(t)])
     normal = radius[:, None] * u - slope[:, None] * n
     rolled = radius[:, None] * u - 8.0 * normal / np.hypot(normal[:, 0], normal[:, 1])[:, None]
+    faces = on_one_arm(2.0 * law.arm, None, Flat(), 0.5 * np.pi, 0.5 * law.alpha)
+    rollers = on_one_arm(booth.arm, booth.arm, Roller(8.0), np.pi, booth.alpha)
     for name, follower, points in (
-        ("yoke", Yoke(lift, breadth=50.0), flat),
-        ("flat pair", FlatPair(law), support),
-        ("double roller", DoubleRoller(booth, 8.0), rolled),
+        ("yoke", follower_of(opposite(Flat(), 50.0), lift.law), flat),
+        ("flat pair", follower_of(faces, law), support),
+        ("double roller", follower_of(rollers, booth), rolled),
     ):
 
         def contact(follower: object = follower, points: np.ndarray = points) -> None:

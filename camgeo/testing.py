@@ -21,6 +21,7 @@ from camgeo.checks.declared import (
     CONTOUR,
     MOTION,
     READABLE,
+    SECOND_OPINIONS,
     UNDERCUT_GLOBAL,
     UNDERCUT_LOCAL,
     WATERTIGHT,
@@ -150,12 +151,17 @@ def _breadth(contour: Contour) -> Breadth:
     """Extremes of the breadth: the play of the contour in a yoke, over the whole turn."""
     import numpy as np
 
-    from kin.follower.follower import Yoke
+    from kin.follower.follower import follower_of
+    from kin.law.contacts import Flat, opposite
     from kin.law.support_function import lift_from_fourier
 
     # any breadth of the yoke and any intended motion would do, as only the play is asked for
     frame = float(contour.support(np.array([0.0, math.pi])).q.sum())
-    play = Yoke(lift_from_fourier(0.5 * frame, {}, {}), frame).judge(contour, np.zeros(1)).play
+    play = (
+        follower_of(opposite(Flat(), frame), lift_from_fourier(0.5 * frame, {}, {}).law)
+        .judge(contour, np.zeros(1))
+        .play
+    )
     assert play is not None
     return Breadth(frame - play.most, play.most_at_deg, frame - play.least, play.least_at_deg)
 
@@ -170,28 +176,37 @@ def assert_motion(
     limit: float | None = None,
     tolerance: float | None = None,
     angles: int | None = None,
+    second_opinion: bool = False,
 ) -> Motion:
     """Assert that a file moves the recipe's follower as intended: position by contact, and play where it is held twice.
 
     `limit` of the motion error is in the recipe's units, in degrees for a follower that swings; without one it is that
     of the recipe, or what `tolerance` implies. `tolerance` of the contour is by default the recipe's for a file of that
-    name, else `export.tolerance`. `angles` takes the place of `verify.angles`. Returns the motion error.
+    name, else `export.tolerance`. `angles` takes the place of `verify.angles`. `second_opinion` asserts too what ezdxf,
+    shapely, trimesh and manifold3d say of the file (extra `check`). Returns the motion error.
     """
     __tracebackhide__ = True
-    motion = _judged(recipe, path, {MOTION.name, *BACKLASH}, limit=limit, tolerance=tolerance, angles=angles)["motion"]
+    names, more = {MOTION.name, *BACKLASH}, second_opinion
+    motion = _judged(recipe, path, names, limit=limit, tolerance=tolerance, angles=angles, second_opinion=more)[
+        "motion"
+    ]
     if motion is None:
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
 
 
-def assert_contour(recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None) -> float:
+def assert_contour(
+    recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, second_opinion: bool = False
+) -> float:
     """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
 
-    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` as in `assert_motion`. Returns the
-    greatest distance between the two, in the recipe's units.
+    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` and `second_opinion` as in
+    `assert_motion`. Returns the greatest distance between the two, in the recipe's units.
     """
     __tracebackhide__ = True
-    error: float = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance)["measured_error"]
+    error: float = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance, second_opinion=second_opinion)[
+        "measured_error"
+    ]
     return error
 
 
@@ -203,6 +218,7 @@ def _judged(
     limit: float | None = None,
     tolerance: float | None,
     angles: int | None = None,
+    second_opinion: bool = False,
 ) -> dict[str, Any]:
     """Judge a file and assert the checks of those names; its entry in the report."""
     __tracebackhide__ = True
@@ -220,10 +236,12 @@ def _judged(
             raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {spelled(angles)}")
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
-    report: dict[str, Any] = dict(judged(recipe, path, tolerance=tolerance))
+    report: dict[str, Any] = dict(judged(recipe, path, tolerance=tolerance, second_opinion=second_opinion))
     own = [check for check in report["checks"] if check.get("file") == path.name]
     if len(own) == 1 and own[0]["name"] in UNREAD:
         _all_hold(own, report, recipe, str(path))
+    if second_opinion:
+        names = names | {row.name for row in SECOND_OPINIONS}
     asked = [check for check in own if check["name"] in names]
     if not asked:
         raise AssertionError(f"{path}: the judge has made no check of {', '.join(sorted(names))}")
@@ -235,10 +253,11 @@ def _judged(
 # --- a recipe ---------------------------------------------------------------------------------------------------------
 
 
-def assert_recipe(recipe: RecipeSource) -> Report:
+def assert_recipe(recipe: RecipeSource, *, second_opinion: bool = False) -> Report:
     """Assert that a recipe has no faults, and that every check of its exact curve and of its files holds.
 
-    Makes and judges the files in a temporary folder. Returns the report, which as a mapping is what report.json holds.
+    Makes and judges the files in a temporary folder; `second_opinion` as in `assert_motion`. Returns
+    the report, which as a mapping is what report.json holds.
     """
     __tracebackhide__ = True
     from camgeo import check
@@ -246,7 +265,7 @@ def assert_recipe(recipe: RecipeSource) -> Report:
 
     try:
         recipe = recipe_of(recipe)
-        report = check(recipe)
+        report = check(recipe, second_opinion=second_opinion)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
     told: dict[str, Any] = dict(report)

@@ -21,9 +21,8 @@ def drawing(recipe: Recipe, exact: Exact) -> str:
     """Draw the exact cam with its follower at shaft angle 0 as one SVG."""
     from camgeo.report.page import svg
     from camgeo.report.page.content import content
-    from camgeo.report.page.page import asset
 
-    return svg.still(content(recipe, exact, ()).scene, 0, asset("drawing.css"), recipe.name)
+    return svg.still(content(recipe, exact, ()).scene, 0, recipe.name)
 
 
 def shown(picture: str, title: str, checks: Sequence[Check], *more: str) -> str:

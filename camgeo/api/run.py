@@ -30,31 +30,39 @@ def export(
     *,
     only: Sequence[str] = (),
     progress: Callable[[str], None] | None = None,
+    second_opinion: bool = False,
 ) -> Report:
     """Write a recipe's files into the folder `out`/<name>, read them back and judge them.
 
     Nothing is there but whole sets: files in which a check fails go to `out`/<name>.rejected. `only` names kinds of
-    files, such as "dxf"; others stay as they are. `progress` hears of each stage as it begins. Raises RecipeErrors
+    files, such as "dxf"; others stay as they are. `progress` hears of each stage as it begins. `second_opinion` has
+    ezdxf, shapely, trimesh and manifold3d look at the files too: more checks that can fail. Raises RecipeErrors
     where there is no such cam or a tolerance cannot be held, SurroundingsError where the disk or a package is not what
     it should be, CallError for a kind of which the recipe lists no file. A check that fails raises nothing: see
     `Report.ok`.
     """
     recipe = recipe_of(recipe)
     called("progress", progress)
+    is_a("second_opinion", second_opinion, bool, "a bool")
     only, folder = texts_of("only", only), path_of("out", out)
     listed = {request.kind for request in recipe.export.files}
     faults = [_unlisted(kind) for kind in only if kind not in listed]
     if faults and not listed.intersection(only):
         raise CallError(*faults)
-    outcome = pipeline.export(recipe, folder, only=only, told=staged(recipe, progress))
+    told = staged(recipe, progress)
+    outcome = pipeline.export(recipe, folder, only=only, told=told, second_opinion=second_opinion)
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
-def check(recipe: RecipeSource, *, progress: Callable[[str], None] | None = None) -> Report:
+def check(
+    recipe: RecipeSource, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False
+) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
     recipe = recipe_of(recipe)
     called("progress", progress)
-    return _told(Report(recipe, pipeline.check(recipe, told=staged(recipe, progress)).report))
+    is_a("second_opinion", second_opinion, bool, "a bool")
+    outcome = pipeline.check(recipe, told=staged(recipe, progress), second_opinion=second_opinion)
+    return _told(Report(recipe, outcome.report))
 
 
 def verify(
@@ -63,13 +71,15 @@ def verify(
     *files: str | PathLike[str],
     tolerance: float | None = None,
     units: Units | None = None,
+    second_opinion: bool = False,
 ) -> Report:
     """Judge drawings, solids and milling programs of any origin by a recipe's motion.
 
     They are held to `tolerance`, in the recipe's unit; without one to that of the recipe's file of the same name, or of
-    its export. `units` is that of files that state none. Raises RecipeErrors where there is no such cam, CallError for
-    what is no file of a known kind, UnitsError where a file states another unit than `units`. A file that cannot be
-    read raises nothing: that is a check that fails.
+    its export. `units` is that of files that state none. `second_opinion` has ezdxf, shapely, trimesh and manifold3d
+    look at the files too: more checks that can fail. Raises RecipeErrors where there is no such cam, CallError for what
+    is no file of a known kind, UnitsError where a file states another unit than `units`, SurroundingsError where one of
+    those libraries is missing. A file that cannot be read raises nothing: that is a check that fails.
     """
     from kin.read.files import SUFFIXES
 
@@ -78,6 +88,7 @@ def verify(
     within = None if tolerance is None else number_of("tolerance", tolerance)
     if units is not None:
         is_a("units", units, str, "a str")
+    is_a("second_opinion", second_opinion, bool, "a bool")
     told = {path: _no_file(path) for path in paths}
     found = [path for path in paths if not told[path]]
     faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
@@ -90,7 +101,8 @@ def verify(
     if faults:
         raise CallError(*faults)
     within = None if within is None else within * recipe.mm
-    report = pipeline.judged(recipe, paths, tolerance=within, units=None if units is None else UNIT_MM[units])
+    unit = None if units is None else UNIT_MM[units]
+    report = pipeline.judged(recipe, paths, tolerance=within, units=unit, second_opinion=second_opinion)
     return _told(Report(recipe, report, None, tuple(paths)))
 
 

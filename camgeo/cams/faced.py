@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from camgeo.curve.extremes import Figure
     from camgeo.curve.face import FaceShape
     from camgeo.curve.moving_frame import Displacement
+    from kin.law.piecewise import Piecewise
     from kin.numeric.arrays import Array
 
 LARGER_BASE = "a larger base radius, a smaller stroke, or the same over a wider angle"
@@ -47,6 +48,10 @@ class FacedCam(Cam):
             raise TypeError("a face on a guide takes a displacement over the shaft angle")
         whole = Curve.whole(face_shape(self.face(intent)))
         return Profile(whole, whole, 0.0)
+
+    def law(self, intent: Intent) -> Piecewise:
+        """The displacement."""
+        return cast("Displacement", intent).law()
 
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """Between the face's normal and its way."""

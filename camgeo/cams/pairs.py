@@ -157,6 +157,10 @@ class PairCam(Cam):
         leaf = Formula(route.text, ("x",))
         return transmission.from_rosette(self.lam, self.mu, self.arm, leaf, route.scale)
 
+    def law(self, intent: Intent) -> Transmission:
+        """The transmission."""
+        return cast("Transmission", intent)
+
     def joints(self, intent: Intent) -> tuple[Joint, ...]:
         """Those of the swing over 360/lambda degrees, where the recipe gives it, or D or an arc by a formula."""
         if not isinstance(self.route, LawRoute | DeltaFormulaRoute | CurveRoute):

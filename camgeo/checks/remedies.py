@@ -123,6 +123,20 @@ def nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str
     return f"{_tighter(check, report, recipe)}verify.motion_error above {upward(value)}"
 
 
+def exported_anew(_check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+    """Tell of the file that the recipe itself makes."""
+    return "the file that `camgeo export` writes from this recipe"
+
+
+def wider(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell of the tolerance that a contour keeps, measured between polygons within a tenth of the file's of it."""
+    anew = exported_anew(check, report, recipe)
+    tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check["file"]), None)
+    if check["value"] is None or tolerance is None:
+        return anew
+    return f"a tolerance of {upward(check['value'] + 0.2 * tolerance)}, or {anew}"
+
+
 def _tighter(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
     """Tell of the tolerance that would bring a motion error to its limit, and that there is another way."""
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)

@@ -114,6 +114,8 @@ def _parser() -> argparse.ArgumentParser:
     verify.add_argument("files", nargs="+", type=file_name, metavar="FILE")
     _add_options(verify, "for all the files, in the recipe's unit or with its own: 0.0005in")
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
+    text = "have ezdxf, shapely, trimesh and manifold3d look at the files too (extra `check`)"
+    verify.add_argument("--second-opinion", action="store_true", help=text)
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
     sweep_command.add_arguments(sweep)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
@@ -307,6 +309,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo.api.errors import CallError
     from camgeo.api.run import verify
     from camgeo.cli.recipes import load
+    from camgeo.common.errors import SurroundingsError
     from camgeo.report.document import encoded
     from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
@@ -315,7 +318,8 @@ def _verify(arguments: argparse.Namespace) -> int:
         recipe = _at(load(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
-        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units))
+        second = arguments.second_opinion
+        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, second_opinion=second))
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:
@@ -328,6 +332,9 @@ def _verify(arguments: argparse.Namespace) -> int:
     except RecipeErrors as errors:
         complain(str(errors))
         return WRONG
+    except SurroundingsError as error:
+        _complain(str(error))
+        return SURROUNDINGS
     if arguments.json:
         say_json(encoded(report))
     else:

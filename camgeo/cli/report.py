@@ -118,13 +118,12 @@ def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespac
 def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -> dict[str, bytes]:
     """Return the pictures that are asked for, at the step of the turn nearest to an angle."""
     from camgeo.report.page import svg
-    from camgeo.report.page.page import asset
     from camgeo.report.page.scene import STEPS
 
     step = round(at_deg / 360.0 * STEPS) % STEPS
     made = {}
     if "svg" in forms:
-        made[f"{PICTURE}.svg"] = svg.still(found.scene, step, asset("drawing.css"), recipe.name).encode("utf-8")
+        made[f"{PICTURE}.svg"] = svg.still(found.scene, step, recipe.name).encode("utf-8")
     if "png" in forms:
         from camgeo.report.page.png import png
 

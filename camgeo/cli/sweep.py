@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from camgeo.sweep.search.run import Told
     from camgeo.sweep.search.search import Means, Outcome
 
-_EXTRAS = {"distributed": "dask", "numba": "fast"}  # of packages that are not in the extra `sweep`
+_EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
+_EVERY = 10.0  # seconds between lines of progress where there is no terminal
 _SAID = 5  # best designs that -v lists
 Number = TypeVar("Number", int, float)
 
@@ -77,7 +78,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     from camgeo.sweep.search.run import How
     from camgeo.sweep.search.search import search
 
-    progress = Progress(ask.recipe.name)
+    progress = Progress(ask.recipe.name, _EVERY)
     how = How(arguments.jobs, arguments.scheduler)
     resume = "what was computed is kept; the same command continues from there"
     try:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Bound
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
+    from kin.contour.contour import Contour
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
@@ -39,7 +40,8 @@ class FileResult:
     """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
 
     `body` is the one that it is judged as. `perimeter` and `area` (mm, mm^2) are those of its contour as read,
-    `units` (mm) is the unit of its numbers, None where there are none or nothing was read.
+    `units` (mm) is the unit of its numbers, None where there are none or nothing was read; `contour` is that contour,
+    in mm and as if not mirrored.
     """
 
     path: Path
@@ -54,6 +56,7 @@ class FileResult:
     perimeter: float | None = None
     area: float | None = None
     units: float | None = None
+    contour: Contour | None = None
 
     @property
     def shows_cam(self) -> bool:

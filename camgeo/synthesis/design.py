@@ -46,8 +46,8 @@ class Design:
     """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file.
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
-    `driven` is the linkage, None without one; `body` the part where it has more than a round bore. `face` is how far
-    the faces of a pair stand beside the lines through its pivot, mm. `joints` are those of the motion.
+    `driven` is the linkage, None without one; `body` the part where it has more than a round bore. `joints` are those
+    of the motion.
     """
 
     intent: Intent
@@ -59,7 +59,6 @@ class Design:
     trimmed: bool
     driven: Driven | None = None
     body: Body | None = None
-    face: float = 0.0
     joints: tuple[Joint, ...] = ()
 
     @property
@@ -295,13 +294,14 @@ def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, 
 
 def intended(recipe: Recipe, design: Design) -> Judged:
     """What kin is given of the part: the follower with its law, and how the part is drawn."""
+    from kin.follower.follower import follower_of
     from kin.judge.contour_checks import DwellAsked
     from kin.judge.verify import Intent
 
     driven, asked = design.driven, recipe.dwell
     turns = driven is not None and driven.turns
     intent = Intent(
-        follower=recipe.cam.judged(design.intent, design.yoke_breadth, design.face),
+        follower=follower_of(design.follower.contacts, recipe.cam.law(design.intent), recipe.cam.metal),
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,

@@ -61,6 +61,7 @@ class Verdict:
     linkage         what the contour makes of the mechanism; None without one, or where it does not drive it all round
     perimeter, area of the outer contour as read, mm and mm^2
     units           mm in a unit of the file as it was read: as the file states, or else as it was given or meant
+    contour         that the follower touches, as read, in mm and as if not mirrored
     """
 
     kind: Kind
@@ -73,6 +74,7 @@ class Verdict:
     perimeter: float | None = None
     area: float | None = None
     units: float | None = None
+    contour: Contour | None = None
 
     @property
     def ok(self) -> bool:
@@ -113,6 +115,7 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits, units: float
         perimeter=one.contour.length,
         area=abs(one.contour.area),
         units=one.units,
+        contour=one.contour,
     )
 
 

@@ -14,7 +14,7 @@ from kin.law.bounds import highest, undecided
 from kin.law.feasibility import JOIN, checked, demand_leaf, demand_ratio, too_steep, too_wide
 from kin.law.formula.expression import FormulaError
 from kin.law.piecewise import Piecewise
-from kin.law.programme import IntentError, Programme
+from kin.law.programme import IntentError
 from kin.law.routes import FromArc, FromDelta, FromLeaf, steepness
 from kin.law.segment import Affine, Constant, Harmonics, Stretch
 from kin.law.transmission_law import Transmission
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kin.law.formula.formula import Formula
+    from kin.law.sources.motion import Motion
 
 __all__ = [
     "IntentError",
@@ -101,7 +102,7 @@ def from_law(
     lam: int,
     mu: int,
     arm: float,
-    programme: Programme,
+    programme: Motion,
     swing_of: Literal["arm", "pair"] = "arm",
     *,
     share: float = 1.0,

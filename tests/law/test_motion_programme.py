@@ -8,9 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from kin.law import programme as today
 from kin.law.formula.formula import Formula
-from kin.law.programme import IntentError, Segment
+from kin.law.programme import IntentError
 from kin.law.sources.laws import NAMES, named, scca, split
 from kin.law.sources.motion import Motion
 from kin.law.sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State, programme
@@ -37,24 +36,6 @@ def dwell(degrees):
 def closed(*segments):
     """Segments and a dwell that fills the turn."""
     return programme([*segments, Dwell(TURN - math.fsum(s.over for s in segments))], TURN)
-
-
-def test_rises_returns_and_dwells_are_todays_bit_by_bit():
-    ours = programme(
-        [rise(100, 20.0), dwell(60), rise(120, -20.0, "modified-trapezoid"), dwell(20), dwell(60)], TURN
-    ).motion
-    theirs = today.programme(
-        [
-            Segment("rise", rad(100), 20.0, today.law("modified-sine")),
-            Segment("dwell", rad(60)),
-            Segment("return", rad(120), 20.0, today.law("modified-trapezoid")),
-            Segment("dwell", rad(20)),
-            Segment("dwell", rad(60)),
-        ],
-        TURN,
-    ).motion
-    assert ours.functions == theirs.functions
-    assert (ours.knots == theirs.knots).all()
 
 
 def test_absolute_strokes_land_on_their_level():
@@ -178,16 +159,6 @@ def test_a_segment_by_formula_is_the_law_it_writes():
         closed(Given(rad(120), Formula("sqrt(u)", ("u",))))
 
 
-def test_repeated_motions_fill_the_turn():
-    part = programme([rise(50, 3.0), dwell(10), to(50, 0.0), dwell(10)], rad(120))
-    motion = part.repeated(3)
-    assert motion.total == pytest.approx(TURN, rel=1e-15)
-    theta = np.linspace(0.01, 2, 40)
-    for turn in range(3):
-        assert motion.derivatives(theta + turn * rad(120), 2) == pytest.approx(part.derivatives(theta, 2), abs=1e-12)
-    assert len(motion.rests) == 6
-
-
 def test_dwells_at_both_ends_are_one():
     motion = programme([dwell(30), rise(90, 4.0), to(120, 0.0), dwell(120)], TURN)
     assert [(math.degrees(r.begin), math.degrees(r.end)) for r in motion.rests] == [pytest.approx((240, 390))]
@@ -255,5 +226,4 @@ def test_a_motion_keeps_its_kind():
     motion = closed(rise(90, 3.0), to(90, 0.0))
     assert isinstance(motion.raised(2.0), Motion)
     assert motion.raised(2.0).rests[0].level == 2.0
-    assert motion.repeated(1) is motion
     assert motion.from_lowest() is motion

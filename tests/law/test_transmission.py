@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.programmes import Segment, law, programme
 
 from kin.law.formula.formula import Formula
-from kin.law.programme import IntentError, Segment, law, polynomial_law, programme
+from kin.law.programme import IntentError, polynomial_law
 from kin.law.transmission import from_arc, from_delta, from_law, from_rosette
 from kin.numeric.elementary import BallJet, Jet
 

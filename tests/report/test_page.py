@@ -18,7 +18,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 from support.cases import few
-from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
+from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, unpacked, wait
 
 from camgeo.cli.main import main
 from camgeo.cli.watch import watch
@@ -28,7 +28,7 @@ from camgeo.report.document import ROUNDING
 from camgeo.report.page import svg, tables
 from camgeo.report.page.content import content
 from camgeo.report.page.outline import MEASURED, read
-from camgeo.report.page.pack import packed, unpacked
+from camgeo.report.page.pack import packed
 from camgeo.report.page.page import LOCAL, RELOAD, data, encoded, page
 from camgeo.report.page.scene import STEPS
 from camgeo.synthesis.design import designed

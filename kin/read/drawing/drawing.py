@@ -83,7 +83,6 @@ class Drawing:
     version         of DXF, such as "AC1024", or "SVG"
     measurement     $MEASUREMENT: 0 English, 1 metric, None if not stated
     extents         $EXTMIN and $EXTMAX, mm; None if not stated
-    audit           messages of ezdxf's auditor, None if it was not asked
     engraved        what is engraved, counter-clockwise, if it was asked for
     """
 
@@ -99,7 +98,6 @@ class Drawing:
     version: str
     measurement: int | None
     extents: Box | None
-    audit: tuple[str, ...] | None
     engraved: tuple[Contour, ...] = ()
 
 
@@ -122,7 +120,6 @@ def drawing_of(
     version: str,
     measurement: int | None = None,
     extents: Box | None = None,
-    audit: tuple[str, ...] | None = None,
 ) -> Drawing:
     """Join what is to be cut, and what is engraved, in drawing units, to the contours of a drawing in mm.
 
@@ -162,7 +159,6 @@ def drawing_of(
         version=version,
         measurement=measurement,
         extents=extents,
-        audit=audit,
         engraved=scratched,
     )
 

@@ -52,7 +52,6 @@ def read_dxf(
     gap: float | None = None,
     layer: str | None = None,
     *,
-    audit: bool = False,
     engraved: bool = False,
 ) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
@@ -61,7 +60,6 @@ def read_dxf(
     layer   the one to cut. Default: CUT, with holes also from BORE, HOLES, MARK and 0, if there is something on CUT;
             else all layers but those of reference geometry. The outermost closed chain is the contour, those inside
             it are holes.
-    audit   have ezdxf's auditor look at the file too, which takes as long again
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
@@ -76,7 +74,6 @@ def read_dxf(
         drawn = everything(document, path)
         found = entities_to_cut(document, drawn, layer, path)
         marks = entities_engraved(drawn, path) if engraved else None
-        messages = tuple(e.message for e in document.audit().errors) if audit else None
         low, high = (document.header.get(name) for name in ("$EXTMIN", "$EXTMAX"))
         stated = low is not None and high is not None and low[0] <= high[0] and low[1] <= high[1]
         extents = Box(*(float(v) * scale for v in (*low[:2], *high[:2]))) if stated else None
@@ -90,7 +87,6 @@ def read_dxf(
         version=document.dxfversion,
         measurement=measurement,
         extents=extents,
-        audit=messages,
     )
 
 

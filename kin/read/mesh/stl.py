@@ -99,11 +99,6 @@ class Solid:
         return self.edges.open == 0 and self.edges.crowded == 0
 
     @property
-    def oriented(self) -> bool:
-        """Whether the mesh is closed and its triangles all face the same side."""
-        return self.closed and self.edges.misdirected == 0
-
-    @property
     def thickness(self) -> float:
         """Height of the part, mm."""
         return self.z_max - self.z_min
