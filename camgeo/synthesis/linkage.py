@@ -7,23 +7,23 @@ everywhere; where the linkage binds, the shaft has no angle, and the relative an
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
 from camgeo.checks.declared import DWELL, MOBILITY, REVERSAL
 from camgeo.common.rounding import upward
-from camgeo.recipe.linkage import RRPDyad, RRRDyad
+from camgeo.recipe.linkage import with_other_lengths
 from kin.judge.check import Check, failed
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.errors import KinError
 from kin.numeric.monotone import RoughError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
-    from camgeo.recipe.linkage import DwellAsked, Dyad, Linkage
+    from camgeo.recipe.linkage import DwellAsked, Linkage
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from kin.law.support_function import Lift
@@ -106,42 +106,11 @@ def _length_that_turns(recipe: Recipe, mechanism: Mechanism) -> str:
     if asked is None or asked.shaped(recipe.cam) is not recipe.cam:
         return ""
     for factor in CHANGES:
-        for path, length, changed in _changed(asked, mechanism.mobility().loop, factor):
+        for path, length, changed in with_other_lengths(asked, mechanism.mobility().loop, factor):
             if _turns(changed, mechanism):
                 unit = "in" if recipe.units == "inch" else "mm"
                 return f"with linkage.{path} {length / recipe.mm:.6g} {unit} it would turn"
     return ""
-
-
-def _changed(linkage: Linkage, loop: int, factor: float) -> Iterator[tuple[str, float, Linkage]]:
-    """Give the linkage with one length after the other of a loop times a factor, to six digits: path, length, linkage.
-
-    Loop 0 is the linkage's own, k that of its k-th dyad.
-    """
-    if loop:
-        dyads = linkage.dyads
-        for name, length, other in _dyad_changed(dyads[loop - 1], factor):
-            yield (
-                f"dyads[{loop - 1}].{name}",
-                length,
-                replace(linkage, dyads=(*dyads[: loop - 1], other, *dyads[loop:])),
-            )
-        return
-    for name in ("coupler", "rocker", "ground"):
-        if length := float(f"{factor * getattr(linkage, name, 0.0):.6g}"):
-            changes: dict[str, Any] = {name: length}
-            yield name, length, replace(linkage, **changes)
-
-
-def _dyad_changed(dyad: Dyad, factor: float) -> Iterator[tuple[str, float, Dyad]]:
-    """The same of a dyad's links."""
-    if isinstance(dyad, RRRDyad):
-        first, second = (float(f"{factor * length:.6g}") for length in dyad.links)
-        yield "links[0]", first, replace(dyad, links=(first, dyad.links[1]))
-        yield "links[1]", second, replace(dyad, links=(dyad.links[0], second))
-    elif isinstance(dyad, RRPDyad):
-        length = float(f"{factor * dyad.link:.6g}")
-        yield "link", length, replace(dyad, link=length)
 
 
 def _turns(linkage: Linkage, like: Mechanism) -> bool:
