@@ -105,10 +105,12 @@ def lone_ring(recipe: Recipe) -> bool:
 def smaller_bore(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
     """Tell which bore, or outline of a ring, leaves the wall; of a part with more the check itself names the edges."""
     value, limit, part = check["value"], check["limit"], recipe.part
-    if value is None or limit is None or not (part.plain or lone_ring(recipe)):
+    detail = check.get("detail", "")
+    outline = part.outer is not None and detail.startswith("opening and outline") and not detail.endswith(" would do")
+    if value is None or limit is None or not (part.plain or outline or lone_ring(recipe)):
         return ""
     less = 2.0 * (limit - value)
-    if lone_ring(recipe):
+    if outline or lone_ring(recipe):
         return f"a part.outer larger by more than {upward(less)} {check['unit']}"
     if part.bore is None:
         return ""

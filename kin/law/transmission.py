@@ -150,10 +150,10 @@ def from_arc(
     least = chord if side == "convex" else _least_concave(lam, mu, mean)
     rest = 2 * arm - height
     if side == "convex" and rest * _ABOVE < chord:  # with the middle of the arc 2 l from the shaft it is l for mu = 1
-        short = (chord**2 + rest**2) / (2 * rest) * _ABOVE
-        if radius <= short:
-            told = f"a convex arc needs a radius above {short:.9g} mm, not {radius:.9g} mm: its middle would lie "
-            raise IntentError(f"{told}2 l = {2 * arm:.9g} mm from the shaft, or farther", "arc.radius")
+        short = (chord**2 + rest**2) / (2 * rest)
+        if radius <= short * _ABOVE:
+            told = f"a convex arc needs a radius above {short:.9g} mm, not {radius:.9g} mm"
+            raise IntentError(f"{told}: its middle would lie 2 l or farther from the shaft", "arc.radius")
     if not (math.isfinite(radius) and (radius >= least if side == "convex" else radius > least)):
         raise IntentError(
             f"a {side} arc needs a radius of at least {least:.9g} mm to join the mean positions, not {radius:.9g} mm"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 import os
 import signal
 import socket
@@ -191,6 +192,22 @@ def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatc
         listener.shutdown(socket.SHUT_RDWR)
     for connection in accepted:
         connection.close()
+
+
+def test_distributed_prints_no_lines_of_its_own(caplog: pytest.LogCaptureFixture) -> None:
+    loggers = [logging.getLogger(name) for name in ("distributed.client", "tornado.application")]
+    for logger in loggers:
+        logger.addHandler(caplog.handler)
+    try:
+        with engines._quiet():
+            for logger in loggers:
+                logger.error("Failed to reconnect to scheduler")
+        assert not caplog.records
+        loggers[0].error("as before")
+        assert [record.getMessage() for record in caplog.records][:1] == ["as before"]
+    finally:
+        for logger in loggers:
+            logger.removeHandler(caplog.handler)
 
 
 def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:
