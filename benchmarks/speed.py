@@ -28,6 +28,7 @@ from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.recipe.loading import load
+from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
 from kin.follower.follower import follower_of
 from kin.law.contacts import Flat, Roller, on_one_arm, opposite
@@ -70,7 +71,9 @@ def fits() -> None:
     print("\nrecipe object to pieces at 1 um; target: 50 times sin and cos at as many points, or 5 ms if that is more")
     print(f"{'recipe':16} {'form':8} {'pieces':>6} {'ms':>7} {'target ms':>9} {'ratio':>6}")
     for path in sorted((ROOT / "recipes").glob("*.yaml"))[:: 12 if SMALL else 1]:
-        cam = load(path).cam
+        recipe = load(path)
+        cam = recipe.cam
+        print(f"{path.stem:16} {'designed':8} {'':6} {1e3 * median(lambda recipe=recipe: designed(recipe)):7.2f}")
         for name, fit in (("arcs", fit_arcs), ("polygon", fit_polygon), ("spline", fit_spline)):
 
             def whole(fit: Callable[[Curve, float], object] = fit, cam: object = cam) -> object:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
@@ -64,11 +64,32 @@ class FileResult:
         return self.body == "cam" and self.request.kind not in NO_PART and self.request.compensation is None
 
 
+RemarkName = Literal[
+    "acceleration-jump",
+    "coarse-tolerance",
+    "dwell-shorter",
+    "large-cutter",
+    "large-roller",
+    "loose-motion-error",
+    "loose-output-error",
+    "metric-keyway",
+    "no-motion",
+    "pivot-clearance",
+    "pressure-angle",
+    "shaft-outside",
+    "sharp-corner",
+    "sizing",
+    "thick",
+    "thin",
+    "wide-dwell-band",
+]
+
+
 @dataclass(frozen=True)
 class Remark:
     """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
 
-    name: str
+    name: RemarkName
     value: float | None
     rule: float | None
     unit: str

@@ -41,6 +41,7 @@ SIZE_SHARE = (
 )
 SIZED = np.linspace(0.0, TURN, 64)  # parameters at which the exact contour's size is looked at
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
+NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})  # of solids
 MOST_NAMED = 5  # faults named in a message
 OTHERS = (
     ("inches", 25.4),
@@ -101,7 +102,10 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits, units: float
         read = _of_program if kind == "gcode" else _of_solid if kind in SOLIDS else _of_drawing
         one = read(path, intent, limits, units)
     except ReadError as error:
-        unread = "watertight" if kind in SOLIDS else "closed" if error.reason in NOT_CLOSED else "readable"
+        if kind in SOLIDS:
+            unread = "readable" if error.reason in NOT_READ else "watertight"
+        else:
+            unread = "closed" if error.reason in NOT_CLOSED else "readable"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
     found = judge_contour(one.contour, intent, phi, limits, one.uneven)
     return Verdict(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.checks.declared import CHAMFER, LIGHTENING, WALL
+from camgeo.checks.declared import CHAMFER, LIGHTENING, MARK, WALL
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.measures import farthest
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from camgeo.curve.curve import Curve
-    from camgeo.synthesis.part.body import Body
+    from camgeo.synthesis.part.body import Body, Unmarked
 
 MOST_NAMED = 6  # pairs named in a message
 ROUND = {"bore": "part.bore", "bolt hole": "part.bolts.hole", "dowel": "part.dowel.hole"}  # openings and their keys
@@ -65,6 +65,8 @@ def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Call
         checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told))
     if body.chamfer is not None:
         checks.append(_chamfer_check(body, contour, shaft_deg))
+    if body.unmarked is not None:
+        checks.append(_mark_check(body.unmarked))
     if body.placed is not None:
         placed = body.placed
         count = len(placed.diameters)
@@ -119,6 +121,19 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
     if outer:
         told.append(f"a part.outer larger by more than {upward(outer)} mm")
     return f"; {' and '.join(told)} would do"
+
+
+def _mark_check(unmarked: Unmarked) -> Check:
+    """The check that fails as there is no room for a mark: how large it may be, or how large the wall."""
+    mark, fits = unmarked.mark, unmarked.fits
+    width = 0.0 if fits is None else fits.width
+    would = "; no other has any, leave it out"
+    if fits is not None:
+        would = f"; {{width: {downward(fits.width)} mm, length: {downward(fits.length)} mm}} has"
+    elif unmarked.wall > 0.0:
+        would = f"; a part.wall of {downward(unmarked.wall)} mm leaves some"
+    detail = f"no room on the ray at 0 for a mark {mark.width:.6g} mm wide and {mark.length:.6g} mm long{would}"
+    return Check(MARK.name, ok=False, value=mark.width, limit=width, unit="mm", sense="at_most", detail=detail)
 
 
 def _holds(wall: float, least: float | None) -> bool:
