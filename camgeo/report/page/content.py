@@ -145,7 +145,7 @@ def _faces(_: Recipe, design: Design, reach: float, size: float) -> tuple[list[B
 
 def _two_rollers(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
     bodies, angles = double_roller(cast("Transmission", design.intent), recipe.cam.touch_radius, size)
-    return bodies, [curves.pressure(dict(zip(("roller A", "roller B"), angles, strict=True)))]
+    return bodies, [curves.pressure(recipe, dict(zip(("roller A", "roller B"), angles, strict=True)))]
 
 
 def _two_faces(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
@@ -173,7 +173,8 @@ def _pressed(recipe: Recipe, design: Design, size: float) -> tuple[guided.Touch,
     s = design.position.rows(SHAFT, 0)[0]
     angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
     touch = TOUCHES[name](recipe.cam.touch_radius, angle, size)
-    return touch, s, [guided.touched(design.profile, size, touch.within)], [curves.pressure({name: angle}, SIGN)]
+    plots = [curves.pressure(recipe, {name: angle}, SIGN)]
+    return touch, s, [guided.touched(design.profile, size, touch.within)], plots
 
 
 def _on_stem(recipe: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
@@ -194,7 +195,7 @@ def _faced(recipe: Recipe, design: Design, size: float) -> tuple[Array, float, f
     s = design.position.rows(SHAFT, 0)[0]
     place = recipe.cam.contact_place(design.intent, design.profile)(SHAFT)
     angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
-    plots = [curves.pressure({_touching(design): angle}), curves.along(recipe, place)]
+    plots = [curves.pressure(recipe, {_touching(design): angle}), curves.along(recipe, place)]
     margin = guided.MARGIN * size
     return s, float(place.min()) - margin, float(place.max()) + margin, [guided.touched(design.profile, size)], plots
 
@@ -228,7 +229,7 @@ def _roller_frame(recipe: Recipe, design: Design, _: float, size: float) -> tupl
     for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
         found.append(guided.touched(design.profile, size, cam.touch_radius, on=on, name=f"contact of {name}"))
         angles[name] = cam.pressure_angle(design.intent, design.profile)(SHAFT + on)
-    return [*bodies, *found], [curves.pressure(angles, SIGN)]
+    return [*bodies, *found], [curves.pressure(recipe, angles, SIGN)]
 
 
 DRAWN: dict[str, _Drawn] = {

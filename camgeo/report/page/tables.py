@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from camgeo.checks.declared import CHECKS
 from camgeo.report.bound import sign
@@ -103,7 +104,8 @@ def written(report: dict[str, Any]) -> str:
                 _error(motion.get("rms"), file),
             ]
         body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
-        rows.append(f'<tr><th scope="row">{escape(file["path"])}</th>{body}</tr>')
+        link = f'<a href="{quote(file["path"])}">{escape(file["path"])}</a>'
+        rows.append(f'<tr><th scope="row">{link}</th>{body}</tr>')
     if not rows:
         return "<p>No files were made.</p>"
     unit = "in" if report["units"] == "inch" else "mm"

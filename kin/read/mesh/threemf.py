@@ -98,7 +98,7 @@ def read_placed(path: Path | str) -> tuple[Placed, ...]:
             model = _Model(path)
             _parse(archive, links.targets[0].lstrip("/"), model.start, model.end, path)
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
-        raise ReadError("syntax", f"not a sound 3MF file: its archive is damaged, or locked by a password", path) from error
+        raise ReadError("syntax", "not a sound 3MF file: its archive is damaged, or has a password", path) from error
     return model.placed()
 
 
