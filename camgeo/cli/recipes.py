@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.common.terminal import complain, escaped
 from camgeo.recipe.loading import load_silent
@@ -37,7 +37,7 @@ def in_one_folder(recipes: Sequence[Recipe]) -> list[str]:
     return [f"{escaped(str(recipe.path))}: {text.format(recipe.name)}" for recipe in twice]
 
 
-def unmade(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, Any]:
+def unmade(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, object]:
     """Make the entry of a recipe that came to no report, for machines."""
     listed = [asdict(error) for error in errors] or [{"problem": message}]
     return {"recipe": recipe, "ok": False, "errors": listed}
