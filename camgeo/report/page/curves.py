@@ -145,10 +145,10 @@ def along(recipe: Recipe, place: Array) -> Plot:
     return Plot("Contact on the face", unit, (Series("contact", place / recipe.mm),), dwells=True, note=note)
 
 
-def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller") -> Plot:
+def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
     """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
 
-    `touch` names what follows the pitch curve. Of a ring, which is undercut where it is hollow, no margin is reported.
+    Of a ring, which is undercut where it is hollow, no margin is reported.
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
     found = next((check for check in design.checks if check.name in BENT), None)
@@ -162,8 +162,15 @@ def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller
     if radius:
         values = closed(exact.curvature[:: exact.per]) * recipe.mm
         limit = recipe.mm / radius
-        series = (Series("curvature of the pitch curve", values),)
-        return Plot("Curvature of the pitch curve", f"1/{unit}", series, over, ((limit, touch),), note=margin)
+        series, touch = (Series("curvature of the pitch curve", values),), design.follower.contacts[0].touch.word
+        return Plot(
+            "Curvature of the pitch curve",
+            f"1/{unit}",
+            series,
+            over,
+            ((limit, touch),),
+            note=margin,
+        )
     values = closed(exact.radius[:: exact.per]) / recipe.mm
     return Plot("Radius of curvature", unit, (Series("radius of curvature", values),), over, ((0.0, ""),), note=margin)
 
