@@ -17,7 +17,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from kin.read.errors import ReadError
+from kin.read.errors import ReadError, xml_fault
 from kin.read.mesh.stl import LARGEST, Solid, solid_of
 from kin.read.size import oversize
 
@@ -32,7 +32,7 @@ CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02 "
 LINK = "http://schemas.openxmlformats.org/package/2006/relationships Relationship"
 MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 UNIT_MM = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
-MOST_BYTES = 1 << 27  # of a member of the archive when unpacked
+MOST_BYTES = 1 << 26  # of a member of the archive when unpacked
 # Models pack to a fifth or a tenth. What packs to next to nothing says the same over and over: so many times its packed
 # size, and a free allowance, are unpacked.
 MOST_UNPACKED, FREE_BYTES = 50, 1 << 18
@@ -102,7 +102,7 @@ def read_placed(path: Path | str) -> tuple[Placed, ...]:
             model = _Model(path)
             _parse(archive, links.targets[0].lstrip("/"), model.start, model.end, path)
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
-        raise ReadError("syntax", f"not a sound 3MF file: {error}", path) from error
+        raise ReadError("syntax", "not a sound 3MF file: its archive is damaged, or has a password", path) from error
     return model.placed()
 
 
@@ -132,7 +132,7 @@ def _parse(
     except ReadError:
         raise
     except (expat.ExpatError, LookupError, ValueError) as error:  # the last two of an encoding that expat does not have
-        raise ReadError("syntax", f"{name} is not sound: {error}", path) from error
+        raise ReadError("syntax", f"{name} is not sound: {xml_fault(error)}", path) from error
 
 
 def _feed(parser: expat.XMLParserType, stream: IO[bytes], most: int, name: str, path: Path) -> None:
