@@ -6,6 +6,7 @@ side on which the text is true.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from camgeo.cams.family import SMALLER_SWING
@@ -101,6 +102,15 @@ def wider(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
     if check["value"] is None or tolerance is None:
         return anew
     return f"a tolerance of {upward(check['value'] + 0.2 * tolerance)}, or {anew}"
+
+
+def looser(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+    """Tell which motion error would permit a play: the limits of both are proportional where the recipe gives it."""
+    given, value, limit = recipe.verify.motion_error, check["value"], check["limit"]
+    if given is None or value is None or not limit:
+        return ""
+    own = math.degrees(given) if recipe.cam.unit == "deg" else given / recipe.mm
+    return f"verify.motion_error above {upward(own * value / limit)}"
 
 
 def _tighter(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:

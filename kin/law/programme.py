@@ -57,8 +57,8 @@ class Peaks:
 class Law:
     """A normalised motion law s(u) on [0, 1] with its peaks.
 
-    A return runs the law backwards, s(1 - u). Of a symmetric law that is 1 - s(u), by which it falls; with `reverses` it
-    is not symmetric, or not known to be.
+    A return runs the law backwards, s(1 - u). Of a symmetric law that is 1 - s(u), by which it falls; one that is not
+    symmetric, or may not be, is marked `reverses`.
     """
 
     name: str

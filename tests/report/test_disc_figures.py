@@ -11,6 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.places import RECIPES
 
 from camgeo.recipe.loading import load_text
 from camgeo.report.figures import of_design
