@@ -13,7 +13,7 @@ from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
-from camgeo.report.document import Remark, of_displacements
+from camgeo.report.document import Remark, RemarkName, of_displacements
 from camgeo.report.figures import of_design
 from camgeo.synthesis.checks import hollow_radius
 from kin.law.joints import Joint
@@ -104,7 +104,7 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
         size, other = found
         against = _against(recipe, other, design)
         told += f"; {size} would keep it, but {against}" if against else f", which {size} keeps"
-    return Remark(PRESSURE.name, value, rule, "deg", told, at_deg)
+    return Remark("pressure-angle", value, rule, "deg", told, at_deg)
 
 
 def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
@@ -192,7 +192,7 @@ def _pivot(recipe: Recipe, design: Design) -> Remark | None:
     if found.value is None or found.value > 0.0:
         return None
     told = f"the disc passes over the arm's pivot, by {_length(recipe, -found.value)}"
-    return Remark(PIVOT_CLEARANCE, found.value, 0.0, "mm", told, found.at_deg)
+    return Remark("pivot-clearance", found.value, 0.0, "mm", told, found.at_deg)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
@@ -269,7 +269,7 @@ def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:
     )
 
 
-def _share(recipe: Recipe, name: str, asked: tuple[str, float], length: float) -> Remark | None:
+def _share(recipe: Recipe, name: RemarkName, asked: tuple[str, float], length: float) -> Remark | None:
     (what, value), rule = asked, SHARE * length
     if value <= rule:
         return None
@@ -283,8 +283,11 @@ def _output(recipe: Recipe, design: Design) -> list[Remark | None]:
         return []
     swing, unit = design.driven.figures.swing, design.driven.mechanism.unit
     scale = math.degrees(1.0) if unit == "deg" else 1.0
-    asked = [("loose-output-error", "verify.output_error", recipe.verify.output_error)]
-    asked.append(("wide-dwell-band", "dwell.band", None if recipe.dwell is None else recipe.dwell.band))
+    band = None if recipe.dwell is None else recipe.dwell.band
+    asked: tuple[tuple[RemarkName, str, float | None], ...] = (
+        ("loose-output-error", "verify.output_error", recipe.verify.output_error),
+        ("wide-dwell-band", "dwell.band", band),
+    )
     found: list[Remark | None] = []
     for name, what, value in asked:
         if value is not None and value > SHARE * swing:

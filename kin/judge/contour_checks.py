@@ -16,6 +16,7 @@ from kin.follower.projection import grid
 from kin.judge.check import Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import extremes, resolution
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -367,7 +368,7 @@ def round_check(name: str, contour: Contour, diameter: float, tolerance: float) 
     least, most = _distance_range(contour)
     across, box = 2.0 * float(np.sqrt(abs(contour.area) / np.pi)), contour.box
     worst = max(most - 0.5 * diameter, 0.5 * diameter - least, 0.5 * abs(across - diameter))
-    place = f"({0.5 * (box.x_min + box.x_max):.6g}, {0.5 * (box.y_min + box.y_max):.6g})"
+    place = place_text(0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max))
     detail = f"diameter {across:.9g} mm about {place}"
     return at_most(name, worst, tolerance, "mm", detail=detail, slack=ROUNDING * diameter)
 

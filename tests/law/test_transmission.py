@@ -516,7 +516,7 @@ def test_ratios_that_wunderlich_excludes(lam, mu, arm, field, message):
             lambda: from_arc(3, 1, L, 20.0),
             "arc.radius",
             None,
-            "a convex arc needs a radius of at least 51.9615242 mm to join the mean positions, not 20 mm",
+            "a convex arc needs a radius above 60 mm, not 20 mm: its middle would lie 2 l or farther from the shaft",
         ),
         (
             lambda: from_arc(3, 1, L, 59.5, "concave"),
@@ -541,7 +541,7 @@ def test_ratios_that_wunderlich_excludes(lam, mu, arm, field, message):
             lambda: from_arc(3, 1, L, 55.0),
             "arc.radius",
             None,
-            "the middle of the arc is 126.972244 mm from the shaft; it must lie between 0 and 2 l = 120 mm",
+            "a convex arc needs a radius above 60 mm, not 55 mm: its middle would lie 2 l or farther from the shaft",
         ),
         (
             lambda: from_rosette(4, 3, L, leaf("1 + 10*sin(pi*x)")),

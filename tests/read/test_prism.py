@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support import followers
 from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_stl
 from support.cases import examples
 from support.solids import sound
 
 from kin.contour.contour import Contour
-from kin.follower.follower import DoubleRoller, Yoke
 from kin.follower.frame import implied_limit
 from kin.judge.contour_checks import DwellAsked, judge_contour
 from kin.judge.verify import Intent, Limits, verify
@@ -35,8 +35,8 @@ POINTS = {
     "double roller": roller_points(EDGES, HOLLOW, 8.0),
 }
 INTENTS = {
-    "yoke": Intent(Yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0), bore=10.0, thickness=THICK),
-    "double roller": Intent(DoubleRoller(from_delta(*HOLLOW, {}), 8.0), bore=10.0, thickness=THICK),
+    "yoke": Intent(followers.yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0), bore=10.0, thickness=THICK),
+    "double roller": Intent(followers.double_roller(from_delta(*HOLLOW, {}), 8.0), bore=10.0, thickness=THICK),
 }
 LIMITS = Limits(tolerance=0.05)
 YOKE = INTENTS["yoke"]
@@ -263,7 +263,7 @@ def test_what_was_found_counts_for_a_linkage_as_well():
     contour = Contour.from_vertices(
         support_points(400, 25.0, ((1, -18.0, 13 / 30 - 8.5), (3, 0, 1.0), (5, 0, 13 / 30)))
     )
-    intent = Intent(Yoke(lift, 50.0), mechanism=mechanism, dwell=DwellAsked(0.01, 0.1))
+    intent = Intent(followers.yoke(lift, 50.0), mechanism=mechanism, dwell=DwellAsked(0.01, 0.1))
     phi = 2.0 * np.pi / 120 * np.arange(120)
     off = implied_limit(mechanism, 1e-3)
     sure, unsure = (judge_contour(contour, intent, phi, LIMITS, uneven).linkage for uneven in (0.0, 1e-3))

@@ -135,6 +135,15 @@ def test_a_disk_that_refuses_exits_3(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "four-bar: " in capsys.readouterr().err
 
 
+def test_a_file_named_sweep_is_told_with_what_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "out" / "four-bar"
+    folder.mkdir(parents=True)
+    (folder / "sweep").write_text("mine")
+    assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out")]) == 3
+    advice = "not a folder, where the sweep keeps its results: move it or remove it"
+    assert capsys.readouterr().err == f"camgeo: four-bar: {folder / 'sweep'}: {advice}\n"
+
+
 def test_a_full_disk_is_told_with_its_place(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -146,6 +146,8 @@ def arguments(text: str, at: int, kind: str) -> tuple[list[float], int]:
         if found is None:
             raise UnfitError("syntax", f"its path has {text[at : at + 20]!r} where a number of {kind} belongs")
         numbers.append(float(found[0]))
+        if math.isinf(numbers[-1]):
+            raise UnfitError("range", f"its path has {found[0]}, beyond all numbers of a drawing")
         at = found.end()
     return numbers, at
 

@@ -17,7 +17,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from kin.read.errors import ReadError
+from kin.read.errors import ReadError, xml_fault
 from kin.read.mesh.stl import LARGEST, Solid, solid_of
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ MOST_UNPACKED, FREE_BYTES = 50, 1 << 18
 # Vertices that no triangle has: up to a share of all, and a free allowance.
 LOOSE_SHARE, FREE_LOOSE = 0.5, 1000
 # Components may repeat one mesh, or nothing at all, without end: what all items together may hold.
-MOST_TRIANGLES = 1 << 24
+MOST_TRIANGLES = 2_000_000
 MOST_COMPONENTS = 1 << 14
 DEEPEST = 16  # of components within components
 BLOCK = 1 << 16
@@ -98,7 +98,7 @@ def read_placed(path: Path | str) -> tuple[Placed, ...]:
             model = _Model(path)
             _parse(archive, links.targets[0].lstrip("/"), model.start, model.end, path)
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError) as error:
-        raise ReadError("syntax", f"not a sound 3MF file: {error}", path) from error
+        raise ReadError("syntax", "not a sound 3MF file: its archive is damaged, or has a password", path) from error
     return model.placed()
 
 
@@ -119,14 +119,16 @@ def _parse(
     parser.StartElementHandler = start
     if end is not None:
         parser.EndElementHandler = end
+    if name not in archive.namelist():
+        raise ReadError("syntax", f"the archive has no {name}", path)
     try:
         with archive.open(name) as stream:
             packed = archive.getinfo(name).compress_size
             _feed(parser, stream, min(MOST_BYTES, MOST_UNPACKED * packed + FREE_BYTES), name, path)
-    except KeyError as error:
-        raise ReadError("syntax", f"the archive has no {name}", path) from error
-    except expat.ExpatError as error:
-        raise ReadError("syntax", f"{name} is not sound: {error}", path) from error
+    except ReadError:
+        raise
+    except (expat.ExpatError, LookupError, ValueError) as error:  # the last two of an encoding that expat does not have
+        raise ReadError("syntax", f"{name} is not sound: {xml_fault(error)}", path) from error
 
 
 def _feed(parser: expat.XMLParserType, stream: IO[bytes], most: int, name: str, path: Path) -> None:
