@@ -264,6 +264,8 @@ def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser:
         browser.problems.clear()
         browser.open(address[0] + "#deg=45")
         browser.wait("document.getElementById('fault')?.hidden")
+        assert browser.ask("document.querySelectorAll('th a').length") > 0
+        assert browser.ask("document.querySelectorAll('th a[href]').length") == 0  # the server has no files
         path.write_text("half", encoding="utf-8")
         browser.wait("document.getElementById('fault').textContent === 'a.yaml:1:1: <nothing>'")
         assert not browser.ask("document.getElementById('fault').hidden")
