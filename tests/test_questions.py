@@ -83,7 +83,7 @@ def families() -> dict[str, Family]:
             classes=classes_in("camgeo/cams", "Cam"),
             kinds=frozenset(CAMS),
             nouns=frozenset(["cam"]),
-            exempt={"camgeo/recipe/starter.py": 1, "camgeo/report/figures.py": 1, "camgeo/synthesis/checks.py": 2},
+            exempt={"camgeo/recipe/starter.py": 1},
             home="camgeo/cams/",
         ),
         "followers": Family(
@@ -96,37 +96,18 @@ def families() -> dict[str, Family]:
             ),
             nouns=frozenset(["follower", "guide", "touch", "contact"]),
             exempt={
-                # what the record of a follower says of itself
-                "camgeo/cams/family.py": 3,
-                "camgeo/cams/guided.py": 2,
                 # of round touches which is drawn, and whose radius a set may give
                 "camgeo/assembly/build.py": 1,
                 "camgeo/assembly/guided.py": 2,
                 "camgeo/report/page/guided.py": 2,
             },
-            home=("kin/follower/", "kin/law/contacts.py"),
+            home=("kin/follower/", "kin/law/contacts.py", "camgeo/cams/"),
         ),
         "intents": Family(
             classes=frozenset(["Lift", "Transmission", "Displacement"]),
             kinds=frozenset(),
             nouns=frozenset(["intent"]),
-            exempt={
-                "camgeo/cams/constant_diameter.py": 1,
-                "camgeo/cams/disc_cams.py": 3,
-                "camgeo/cams/double_roller.py": 4,
-                "camgeo/cams/faced.py": 3,
-                "camgeo/cams/flat_faced.py": 6,
-                "camgeo/cams/flat_pair.py": 3,
-                "camgeo/cams/guided.py": 6,
-                "camgeo/cams/pairs.py": 4,
-                "camgeo/cams/sizing.py": 1,
-                "camgeo/report/page/outline.py": 1,
-                "camgeo/report/remarks.py": 1,
-                "camgeo/sweep/search/cams.py": 1,
-                "camgeo/sweep/search/rebuilt.py": 2,
-                "camgeo/synthesis/checks.py": 3,
-                "camgeo/synthesis/design.py": 1,
-            },
+            exempt={},
             home=("kin/", "camgeo/curve/"),
         ),
     }

@@ -77,7 +77,7 @@ class FacePlace:
         return np.asarray(self.face.contact(Jet.variable(t, 1)).c[0])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ExactFaced(ExactCam):
     """A disc cam for a flat face by the displacement of its follower."""
 

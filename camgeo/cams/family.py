@@ -1,4 +1,4 @@
-"""What every family of cams gives: a recipe's cam, which knows its motion, its follower, its exact curve and its advice.
+"""What every family of cams gives: a recipe's cam that knows its motion, its follower, its exact curve and its advice.
 
 The rest of the package asks a cam by these names and never which family it is of. A cam is what a recipe says; an exact
 cam is what it is once its motion is known, and keeps the law of that to itself.
@@ -6,12 +6,13 @@ cam is what it is once its motion is known, and keeps the law of that to itself.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.schema.fields import Field, Kind
-from kin.law.contacts import Arrangement, Flat
+from kin.law.contacts import Arrangement, Flat, Translating
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from camgeo.cams.position import Position
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme, Figure
+    from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
     from kin.law.support_function import Lift
+    from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
 Undercut: TypeAlias = Literal["refuse", "trim"]
@@ -48,7 +51,7 @@ def upright(t: Array) -> Array:
     return 0.0 * t
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """A surface of a disc that a follower touches.
 
@@ -101,6 +104,24 @@ class Follower:
         """Guide and touch of its contacts, and how many they are."""
         first = self.contacts[0]
         return Arrangement(type(first.guide), type(first.touch), len(self.contacts))
+
+    @property
+    def width(self) -> float | None:
+        """How wide a flat face is, mm, centred on the axis of its stem; None of one as wide as it needs to be."""
+        touch = self.contacts[0].touch
+        return touch.width if isinstance(touch, Flat) else None
+
+    @property
+    def lean(self) -> float:
+        """Tangent of the pressure angle at which an eccentric stem begins to rise; 0 on an arm."""
+        first = self.contacts[0]
+        return abs(first.guide.offset) / first.datum if isinstance(first.guide, Translating) and first.datum else 0.0
+
+    @property
+    def pivot(self) -> float:
+        """Distance of an arm's pivot from the shaft, mm; infinite of a stem."""
+        guide = self.contacts[0].guide
+        return math.inf if isinstance(guide, Translating) else guide.pivot
 
     @property
     def breadth(self) -> float | None:
@@ -199,10 +220,15 @@ class ExactCam(ABC):
     Raises IntentError, with the field below `cam` that is at fault, where a guide or a face cannot follow the motion.
     """
 
-    @property
-    @abstractmethod
-    def cam(self) -> Cam:
-        """The cam as far as its own lengths are drawn."""
+    if TYPE_CHECKING:  # fields, which abstract properties would be the defaults of
+
+        @property
+        def cam(self) -> Cam:
+            """The cam as far as its own lengths are drawn."""
+
+        @property
+        def law(self) -> Lift | Displacement | Transmission:
+            """The law of the motion: nobody asks of which kind it is."""
 
     @property
     @abstractmethod
@@ -240,6 +266,11 @@ class ExactCam(ABC):
         return {}
 
     @property
+    def free(self) -> bool:
+        """Whether nothing undercuts it, whatever the motion: a parallel outside a convex surface."""
+        return False
+
+    @property
     def plate(self) -> Lift | None:
         """Support function of a plate that a linkage can carry, None of other cams."""
         return None
@@ -271,10 +302,11 @@ class Cam(ABC):
     def arrangement(self) -> Arrangement:
         """Guide, touch and greatest number of contacts: units, and what figures may be taken."""
 
-    @property
-    @abstractmethod
-    def touch(self) -> Touch:
-        """What touches the cam."""
+    if TYPE_CHECKING:  # a field of some families, which an abstract property would be the default of
+
+        @property
+        def touch(self) -> Touch:
+            """What touches the cam."""
 
     @property
     def side(self) -> Side:

@@ -76,10 +76,11 @@ class LiftPlace:
 
     def __call__(self, t: Array) -> Array:
         """At shaft angles t (n,), mm."""
-        return self.lift.derivatives(t, 1)[1]
+        slope: Array = self.lift.derivatives(t, 1)[1]
+        return slope
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ExactLifted(ExactCam):
     """Such a cam by its lift; `contacts` are those of the cam that this one is grown from."""
 

@@ -101,7 +101,7 @@ class Spin:
         return self.pitch.spin(tau, side, self.radius, self.sense)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ExactGuided(ExactCam):
     """Such a cam by the displacement of its follower."""
 
@@ -166,7 +166,7 @@ class ExactGuided(ExactCam):
         told = f"a base radius of {size}{pivot and f' with a pivot at {pivot}'}"
         return told, self.cam.resized(float(size) * mm, float(pivot) * mm if pivot else None)
 
-    def rounder_pitch(self, radius: float, mm: float) -> str:
+    def rounder_pitch(self, radius: float, mm: float) -> str:  # noqa: ARG002 - the least radius is found anew
         """The base radius at which the roller is half of the pitch curve's least convex radius."""
         from camgeo.curve.moving_frame import CentreShape
         from camgeo.curve.sizing import least_prime

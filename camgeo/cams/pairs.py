@@ -16,6 +16,7 @@ from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.cams.position import Position, SwingPosition
 from camgeo.common.rounding import downward
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
+from kin.law.contacts import Flat
 from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ class PairCam(Cam):
 
     @property
     def mean_distance(self) -> float:
-        """Mean distance R = 2 l cos(alpha/2) of the arms' ends, mm: an arc about the shaft of that radius has no swing."""
+        """Mean distance R = 2 l cos(alpha/2) of the arms' ends, mm: an arc about the shaft at it has no swing."""
         return 2.0 * self.arm * math.cos(0.5 * math.pi * self.mu / self.lam)
 
     def transmission(self) -> Transmission:
@@ -198,9 +199,9 @@ class PairAdvice(Advice):
         return f"an arc.radius nearer to {self.cam.mean_distance / mm:.6g}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ExactPair(ExactCam):
-    """Such a cam by its law of transmission; faces of a grown one stand `out` mm beside the lines through their pivot."""
+    """Such a cam by its law of transmission; faces of a grown one stand `out` mm beside the lines through the pivot."""
 
     cam: PairCam
     law: Transmission
@@ -236,6 +237,11 @@ class ExactPair(ExactCam):
     def grown(self, out: float, scale: float) -> ExactPair:
         """The same swing about a pivot farther away; of faces the metal grows before them."""
         return ExactPair(self.cam.grown(out, scale), self.law.scaled(scale), scale * (self.out + out))
+
+    @property
+    def free(self) -> bool:
+        """Where faces stand farther out."""
+        return self.out > 0.0 and self.cam.arrangement.touch is Flat
 
     @property
     def proofs(self) -> Mapping[str, Callable[[], Proof]]:
@@ -283,8 +289,8 @@ class ExactPair(ExactCam):
         return [
             Margin("turning-through", 1.0 - rate, "", "the cam cannot be turned through: psi' = 1"),
             edge,
-            Margin("shaft", 2.0 * self.arm * reach, "mm", "the pitch curve reaches the shaft: r = 0"),
-            Margin("stretched", 2.0 * self.arm * pivot, "mm", "the arm is stretched: r = 2 l"),
+            Margin("shaft", 2.0 * law.arm * reach, "mm", "the pitch curve reaches the shaft: r = 0"),
+            Margin("stretched", 2.0 * law.arm * pivot, "mm", "the arm is stretched: r = 2 l"),
         ]
 
 

@@ -169,7 +169,7 @@ class SwingingFace(_Face):
 
 
 def rest_of(base: float, pivot: float, face: float) -> float:
-    """Angle, rad, to the line from pivot to shaft of a face that stands `base` mm from the shaft; IntentError for none."""
+    """Angle, rad, to the line from pivot to shaft of a face `base` mm from the shaft; raises IntentError for none."""
     if not 0.0 < base + face < pivot:
         raise IntentError(
             f"base radius and face offset together, {base + face:.6g} mm, must lie between 0 and the pivot's "

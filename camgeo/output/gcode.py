@@ -80,7 +80,7 @@ def _round(job: Job, asked: Manufacture, rough: ArcSpline | None, fine: ArcSplin
     thickness = job.recipe.part.thickness
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
-    outside = job.recipe.cam.metal > 0
+    outside = job.recipe.cam.side > 0
 
     def loop(path: ArcSpline) -> Loop:
         begun = begun_at(path, asked.start)

@@ -204,7 +204,7 @@ def test_the_path_on_a_layer_of_its_own(tmp_path, top):
 
 def program(path, recipe, *, inward, turned=0.0, outside=False, lead=3.0):
     """One pass along the parallel of the contour `inward` of it, with ways in and out from one side."""
-    pitch = designed(recipe).profile.base.shape
+    pitch = designed(recipe).surface.base.shape
     along = fit_arcs(Curve.whole(Parallel(pitch, inward - 9.0)), 2e-5)
     c, s = math.cos(math.radians(turned)), math.sin(math.radians(turned))
     along = replace(along, points=along.points @ np.array([[c, s], [-s, c]]))

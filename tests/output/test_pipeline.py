@@ -60,7 +60,7 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
     assert sorted(entry.name for entry in folder.iterdir()) == sorted(
         ["report.json", *(file["path"] for file in report["files"])]
     )
-    bent = "pitch-radius" if recipe.cam.touch_radius else "radius-of-curvature"
+    bent = "pitch-radius" if recipe.cam.touch.radius else "radius-of-curvature"
     assert {bent, "undercut-local", "contour", "motion", "wall"} <= set(names(report))
     made = Counter((check["name"], check.get("file")) for check in report["checks"])
     told = Counter((item.name, item.file) for item in foreseen(recipe))
@@ -273,7 +273,7 @@ def test_the_circle_drawn_for_reference_is_the_largest_about_the_shaft(name: str
     outcome = pipeline.export(replace(recipe, export=drawing), tmp_path)
     assert outcome.folder is not None
     shapes = ezdxf.readfile(outcome.folder / f"{recipe.name}.dxf").query('CIRCLE[layer=="REFERENCE"]')
-    base = designed(recipe).profile.base
+    base = designed(recipe).surface.base
     points = base.sample(np.linspace(base.cells.low.min(), base.cells.high.max(), 100_001)).point
     assert shapes[0].dxf.radius * recipe.mm == pytest.approx(np.hypot(*points.T).min(), abs=1e-6)
 

@@ -201,7 +201,7 @@ def test_both_rollers_of_a_frame_stay_on_the_cam(rotation: str) -> None:
     recipe, found = drawn("yoke", rotation)
     cam = contour(found)
     first, second = (places(body(found, f"roller {name}")) for name in "AB")
-    assert np.abs(first - second - recipe.cam.apart(designed(recipe).intent)).max() < 1e-9
+    assert np.abs(first - second - recipe.cam.apart(designed(recipe).exact.law)).max() < 1e-9
     for name, centre in zip("AB", (first, second), strict=True):
         touch = body(found, f"contact of roller {name}")
         assert np.abs(cam.distance(back(found, centre)) - 8.0).max() < DRAWN_TO

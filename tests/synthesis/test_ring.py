@@ -27,7 +27,7 @@ def checks(recipe):
 
 def pitch(recipe, count=40_000):
     """Points of the pitch curve as complex numbers, and its radius of curvature there, by differences alone."""
-    law = designed(recipe).intent
+    law = designed(recipe).exact.law
     theta = TURN * np.arange(count) / count
     z = (recipe.cam.prime + law.derivatives(theta, 0)[0]) * np.exp(-1j * theta)
     step = TURN / count

@@ -79,7 +79,7 @@ def asked_of(recipe: Recipe) -> tuple[str, ...]:
     given = {name for name in ("linkage", "dwell") if getattr(recipe, name) is not None}
     if recipe.dynamics is not None:
         given |= {"dynamics.rpm"} | ({"dynamics.guide"} if recipe.dynamics.guide is not None else set())
-    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.offers, given))
+    return tuple(name for name, figure in FIGURES.items() if there(figure.needs, recipe.cam.arrangement.offers, given))
 
 
 def evaluate(
