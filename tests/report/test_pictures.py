@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import re
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pytest
 from support.cases import few
-from support.heavy import resvg
 from support.pages import SHOWN, of
 from support.places import ROOT
+from support.rendered import rendered, share
 
 from camgeo.report.page.looks import LOOKS, colours, rules
 from camgeo.report.page.svg import OTHER, still
@@ -20,21 +18,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 GALLERY = sorted((ROOT / "docs" / "gallery").glob("*.svg"))
-WIDTH = 640
-
-
-def rendered(text: str) -> np.ndarray:
-    """Red, green, blue and opacity of each px, (height, WIDTH, 4)."""
-    from PIL import Image
-
-    with Image.open(io.BytesIO(bytes(resvg.svg_to_bytes(svg_string=text, width=WIDTH)))) as image:
-        return np.asarray(image.convert("RGBA")).astype(int)
-
-
-def share(image: np.ndarray, colour: str) -> float:
-    """Share of the px that have a colour."""
-    wanted = [int(colour[at : at + 2], 16) for at in (1, 3, 5)]
-    return float(np.mean(np.abs(image[..., :3] - wanted).max(axis=-1) <= 1))
 
 
 def assert_is_seen(text: str) -> None:
