@@ -18,6 +18,7 @@ from kin.judge.contour_checks import ROUNDING, DwellAsked, Intent, Limits, bore_
 from kin.judge.ring import Faced, faced
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
+from kin.numeric.places import place_text
 from kin.read.errors import ReadError
 from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
 
@@ -208,13 +209,13 @@ def _units_check(stated: float | None, given: float | None, intent: Intent, cont
 
 def _closed_check(drawing: Drawing, contour: Contour) -> Check:
     """Check that the contour does not cross itself, and that nothing is drawn twice or without length."""
-    faults = [f"{fault.kind} {fault.entity} at ({fault.x:.6g}, {fault.y:.6g})" for fault in drawing.faults]
+    faults = [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)}" for fault in drawing.faults]
     faults += _crossing_places(contour)
     return _count_check("closed", faults)
 
 
 def _crossing_places(contour: Contour) -> list[str]:
-    return [f"the contour crosses or touches itself at ({x:.6g}, {y:.6g}) mm" for x, y in crossings(contour).point]
+    return [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in crossings(contour).point]
 
 
 def _count_check(name: str, faults: list[str]) -> Check:
