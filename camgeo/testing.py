@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from camgeo.api.loading import recipe_of
 from camgeo.checks.declared import (
     BENT,
     CHECKS,
@@ -26,21 +26,23 @@ from camgeo.checks.declared import (
     UNDERCUT_LOCAL,
     WATERTIGHT,
 )
-from camgeo.common.arguments import is_a, number_of, path_of, spelled, whole_of
+from camgeo.common.arguments import number_of, path_of, spelled, whole_of
 from camgeo.common.errors import CallError
 from camgeo.recipe.recipe import MOST_ANGLES
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from os import PathLike
     from pathlib import Path
 
+    from camgeo.api.loading import RecipeSource
     from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
     from kin.contour.contour import Contour
     from kin.read.files import AnySolid, Drawing
 
     AnyPath: TypeAlias = str | PathLike[str]
-    AnyRecipe: TypeAlias = Recipe | str | PathLike[str]
 
 __all__ = [
     "Breadth",
@@ -102,7 +104,7 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
         assert_watertight(path)
         return 0.0
     drawing = _drawing(path, _length("gap", gap))
-    faults = [f"{fault.kind} {fault.entity} at ({fault.x:.6g}, {fault.y:.6g}) mm" for fault in drawing.faults]
+    faults = [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)} mm" for fault in drawing.faults]
     _no_faults(path, faults + _crossings(drawing.contour))
     return drawing.widest_gap
 
@@ -168,7 +170,7 @@ def _breadth(contour: Contour) -> Breadth:
 
 
 def assert_motion(
-    recipe: AnyRecipe,
+    recipe: RecipeSource,
     path: AnyPath,
     *,
     limit: float | None = None,
@@ -194,7 +196,7 @@ def assert_motion(
 
 
 def assert_contour(
-    recipe: AnyRecipe, path: AnyPath, *, tolerance: float | None = None, second_opinion: bool = False
+    recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, second_opinion: bool = False
 ) -> float:
     """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
 
@@ -209,7 +211,7 @@ def assert_contour(
 
 
 def _judged(
-    recipe: AnyRecipe,
+    recipe: RecipeSource,
     path: AnyPath,
     names: set[str],
     *,
@@ -222,7 +224,7 @@ def _judged(
     __tracebackhide__ = True
     from camgeo import verify as judged
 
-    path, recipe = path_of("path", path), _loaded(recipe)
+    path, recipe = path_of("path", path), recipe_of(recipe)
     swings = recipe.cam.unit == "deg"
     verify = recipe.verify
     if limit is not None:
@@ -251,7 +253,7 @@ def _judged(
 # --- a recipe ---------------------------------------------------------------------------------------------------------
 
 
-def assert_recipe(recipe: AnyRecipe, *, second_opinion: bool = False) -> Report:
+def assert_recipe(recipe: RecipeSource, *, second_opinion: bool = False) -> Report:
     """Assert that a recipe has no faults, and that every check of its exact curve and of its files holds.
 
     Makes and judges the files in a temporary folder; `second_opinion` as in `assert_motion`. Returns
@@ -262,7 +264,7 @@ def assert_recipe(recipe: AnyRecipe, *, second_opinion: bool = False) -> Report:
     from camgeo.schema.errors import RecipeErrors
 
     try:
-        recipe = _loaded(recipe)
+        recipe = recipe_of(recipe)
         report = check(recipe, second_opinion=second_opinion)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
@@ -271,7 +273,7 @@ def assert_recipe(recipe: AnyRecipe, *, second_opinion: bool = False) -> Report:
     return report
 
 
-def assert_no_undercut(recipe: AnyRecipe) -> float:
+def assert_no_undercut(recipe: RecipeSource) -> float:
     """Assert that the exact contour of a recipe has no undercut, local or global, also where it asks to trim it.
 
     Returns the least radius of curvature, in the recipe's units: of the contour for a flat face, of the pitch curve for
@@ -281,7 +283,7 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     from camgeo.report.document import Findings, document
     from camgeo.synthesis.design import designed
 
-    recipe = _loaded(recipe)
+    recipe = recipe_of(recipe)
     recipe = replace(recipe, cam=recipe.cam.refusing())
     design = designed(recipe)
     report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.joints))
@@ -290,14 +292,6 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     _all_hold(checks, report, recipe, recipe.name)
     radius: float = next(check["value"] for check in checks if check["name"] in BENT)
     return radius
-
-
-def _loaded(recipe: AnyRecipe) -> Recipe:
-    from camgeo.recipe.loading import load
-    from camgeo.recipe.recipe import Recipe
-
-    is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
-    return recipe if isinstance(recipe, Recipe) else load(path_of("recipe", recipe))
 
 
 def _length(name: str, value: float) -> float:
@@ -330,7 +324,7 @@ def _no_faults(path: Path, faults: list[str]) -> None:
 def _crossings(contour: Contour) -> list[str]:
     from kin.contour.intersections import crossings
 
-    return [f"the contour crosses or touches itself at ({x:.6g}, {y:.6g}) mm" for x, y in crossings(contour).point]
+    return [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in crossings(contour).point]
 
 
 def _contour(path: Path, mm: float | None) -> Contour:

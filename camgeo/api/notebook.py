@@ -55,7 +55,7 @@ def _row(check: Check) -> tuple[str, ...]:
     return (
         check.name,
         "ok" if check.ok else "FAILED",
-        "" if check.value is None else f"{check.value:.6g} {check.unit}".rstrip(),
+        check.figure,
         check.bound,
         "" if check.at_deg is None else f"{check.at_deg:.2f}°",
         check.file or "",

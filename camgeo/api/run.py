@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
+    from camgeo.api.loading import RecipeSource
     from camgeo.common.units import Units
-    from camgeo.recipe.recipe import Recipe
 
 
 def export(
-    recipe: Recipe,
+    recipe: RecipeSource,
     out: str | PathLike[str],
     *,
     only: Sequence[str] = (),
@@ -41,7 +41,7 @@ def export(
     it should be, CallError for a kind of which the recipe lists no file. A check that fails raises nothing: see
     `Report.ok`.
     """
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     called("progress", progress)
     is_a("second_opinion", second_opinion, bool, "a bool")
     only, folder = texts_of("only", only), path_of("out", out)
@@ -54,9 +54,11 @@ def export(
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
-def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False) -> Report:
+def check(
+    recipe: RecipeSource, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False
+) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     called("progress", progress)
     is_a("second_opinion", second_opinion, bool, "a bool")
     outcome = pipeline.check(recipe, told=staged(recipe, progress), second_opinion=second_opinion)
@@ -64,7 +66,7 @@ def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None, seco
 
 
 def verify(
-    recipe: Recipe,
+    recipe: RecipeSource,
     file: str | PathLike[str],
     *files: str | PathLike[str],
     tolerance: float | None = None,
@@ -81,7 +83,7 @@ def verify(
     """
     from kin.read.files import SUFFIXES
 
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
     within = None if tolerance is None else number_of("tolerance", tolerance)
     if units is not None:
@@ -122,10 +124,14 @@ def _unlisted(kind: str) -> str:
 
 
 def _no_file(path: Path) -> str:
-    """Say why a path leads to no file; empty where it does."""
+    """Say why a path leads to no file, or to one larger than is read; empty where it does."""
+    from kin.read.files import SUFFIXES
+    from kin.read.size import oversize
+
     try:
         if path.is_file():
-            return ""
+            kind = SUFFIXES.get(path.suffix.lower())
+            return "" if kind is None else oversize(path, kind)
         if path.is_dir():
             return "a folder; name the files in it"
         return "not a regular file" if path.exists() else "the file does not exist"

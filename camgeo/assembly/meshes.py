@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from camgeo.files.prism import rounded_contour, rounded_loop
-from camgeo.files.solid import BEYOND, manifold_maker, meshed, prism
+from camgeo.files.solid import BEYOND, manifold, meshed, prism
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import Polygon
 
@@ -33,10 +33,9 @@ _SHAPE = 1.4  # the plate is filled about this much wider than deep
 def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
     """Closed mesh of a body's plates, joined, in its own axes, and how far its walls are off, mm.
 
-    Raises MissingExtraError without manifold3d, ToleranceError where the tolerance cannot be held in the precision,
-    RegionError where an outline is not simple or the plates do not hang together.
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where an outline is not
+    simple or the plates do not hang together.
     """
-    manifold = manifold_maker("the bodies of a mechanism")
     joined: Any = None
     worst = 0.0
     for plate in body.plates:

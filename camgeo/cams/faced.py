@@ -78,6 +78,8 @@ class FacedCam(Cam):
 
     def larger(self, by: float, unit: str = "") -> str:
         """Say how radii of curvature, which grow with the base radius, grow by more than `by`, in its unit."""
+        if by == 0.0:  # a radius that is 0 needs no more than not to be
+            return "a larger base radius"
         return f"a base radius larger by more than {upward(by)} {unit}".rstrip()
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:

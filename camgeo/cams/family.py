@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.schema.fields import Field, Kind
-from kin.law.contacts import Flat
+from kin.law.contacts import Arrangement, Flat
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
@@ -72,6 +72,12 @@ class Follower:
     contacts: tuple[Contact[Guide, Touch], ...]
     checks: tuple[str, ...]
     closure: str = ""
+
+    @property
+    def arrangement(self) -> Arrangement:
+        """Guide and touch of its contacts, and how many they are."""
+        first = self.contacts[0]
+        return Arrangement(type(first.guide), type(first.touch), len(self.contacts))
 
     @property
     def breadth(self) -> float | None:

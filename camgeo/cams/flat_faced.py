@@ -68,6 +68,8 @@ class FlatFacedCam(Cam):
     def larger(self, by: float, unit: str = "") -> str:
         """Say how radii of curvature grow by more than `by`, in the recipe's unit."""
         name, share = self.size_field
+        if by == 0.0:  # a radius that is 0 needs no more than not to be
+            return f"a larger {name}"
         return f"a {name} larger by more than {upward(share * by)} {unit}".rstrip()
 
     @property

@@ -321,12 +321,20 @@ BREADTH = Declared(
 )
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
 TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate, formerly=FORMER[CONTACT_TRAVEL])
-FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width")
+FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width", remedy=remedies.wider_face)
 JAM = Declared("guide-jam", ("deg",), _guided, field="dynamics.guide")
-WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel")
+WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel", remedy=remedies.smaller_wheel)
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
-DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")
+DWELL = Declared(
+    LONGEST_DWELL,
+    ("deg",),
+    _dwells,
+    _dwelling,
+    why_not=_no_dwell,
+    field="dwell.at_least",
+    remedy=remedies.shorter_dwell,
+)
 WALL = Declared(LEAST_WALL, ("mm",), _walled, field="part.bore", own_field="part.outer", remedy=remedies.smaller_bore)
 LIGHTENING = Declared(
     "lightening", ("holes",), lambda scene: scene.recipe.part.lightening is not None, field="part.lightening"
@@ -383,6 +391,7 @@ FORM_CLOSURE = Declared(
     of_file=_form_closed,
     field="export.tolerance",
     own_field="verify.motion_error",
+    remedy=remedies.looser,
     backlash=True,
 )
 OUTPUT = Declared(
@@ -393,7 +402,14 @@ OUTPUT = Declared(
     field="export.tolerance",
     own_field="verify.output_error",
 )
-FLOAT = Declared("float", ("N", "N m"), _sprung, lambda scene, file: _sprung(scene) and _run_with(scene, file))
+FLOAT = Declared(
+    "float",
+    ("N", "N m"),
+    _sprung,
+    lambda scene, file: _sprung(scene) and _run_with(scene, file),
+    field="dynamics.preload",
+    remedy=remedies.stronger_spring,
+)
 LEAST_BACKLASH = Declared(
     BACKLASH_LEFT,
     ("mm", "deg", "N"),

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from kin.judge.check import Check
     from kin.law.joints import Joint
 
+BELOW = "below rounding"
 ROUNDING = 1e-11  # mm, in or degrees: what sums of doubles of some hundred leave, and no machine makes
 DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part"})  # stages of the exact cam
 UNIT_NAMES = {"mm": "mm", "inch": "in"}
@@ -281,7 +282,7 @@ def summary(report: dict[str, Any]) -> str:
             text += f" {file['pieces']} {pieces_word(file)}"
         motion = file.get("motion")
         if motion and motion["max"] is not None:
-            text += f", motion {_measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}"
+            text += f", motion {measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}"
             if motion.get("extremes") == "sampled":
                 text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
@@ -304,7 +305,7 @@ def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:
     parts = []
     error = linkage.get("error")
     if error is not None:
-        parts.append(f"output {_measured(error['max'], error['unit'], digits=3)}")
+        parts.append(f"output {measured(error['max'], error['unit'], digits=3)}")
     made = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] != "intended"]
     meant = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] == "intended"][:1]
     if made or meant:
@@ -327,7 +328,7 @@ def table(report: dict[str, Any]) -> str:
         (
             check["name"],
             "ok" if check["ok"] else "FAILED",
-            _value(check),
+            value_text(check),
             "" if check["limit"] is None else f"{sign(check)} {_number(check['limit'])}",
             check["unit"],
             "" if check["at_deg"] is None else f"{check['at_deg']:.2f} deg",
@@ -354,9 +355,9 @@ def table(report: dict[str, Any]) -> str:
                 str(file.get("pieces") or ""),
                 _number(file.get("tolerance")),
                 _number(file.get("geometry_error")),
-                _measured(file.get("measured_error"), limit=file.get("tolerance")),
-                _measured(motion.get("max"), motion.get("unit", ""), limit=file.get("tolerance")),
-                _measured(motion.get("rms"), limit=file.get("tolerance")),
+                measured(file.get("measured_error"), limit=file.get("tolerance")),
+                measured(motion.get("max"), motion.get("unit", ""), limit=file.get("tolerance")),
+                measured(motion.get("rms"), limit=file.get("tolerance")),
                 "" if motion.get("at_deg") is None else f"{motion['at_deg']:.2f} deg",
             )
         )
@@ -404,18 +405,18 @@ def _number(value: float | None) -> str:
     return "" if value is None else f"{value + 0.0:.6g}"  # no minus before a zero
 
 
-def _value(check: dict[str, Any]) -> str:
+def value_text(check: dict[str, Any]) -> str:
     """A check's figure; of an error that holds, without the digits that only rounding made."""
     holds = check["ok"] and check["sense"] == "at_most"
-    return _measured(check["value"], limit=check["limit"]) if holds else _number(check["value"])
+    return measured(check["value"], limit=check["limit"]) if holds else _number(check["value"])
 
 
-def _measured(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
+def measured(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
     """A measured error with its unit; one that rounding made, far from its limit, has no digits worth telling."""
     if value is None:
         return ""
     if 0.0 < abs(value) < ROUNDING and (not limit or abs(value) < 1e-3 * limit):
-        return "below rounding"
+        return BELOW
     return f"{value + 0.0:.{digits}g} {unit}".rstrip()
 
 

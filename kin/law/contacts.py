@@ -27,6 +27,7 @@ class Translating:
 
     offset: float = 0.0
     unit: ClassVar[Unit] = "mm"
+    word: ClassVar[str] = "translating"
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class Oscillating:
     side: Side = TRAILING
     length: float | None = None
     unit: ClassVar[Unit] = "deg"
+    word: ClassVar[str] = "oscillating"
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,7 @@ class Roller:
     """A roller that turns on its pin; `radius` in mm."""
 
     radius: float
+    word: ClassVar[str] = "roller"
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,7 @@ class KnifeEdge:
     """A point."""
 
     radius: ClassVar[float] = 0.0
+    word: ClassVar[str] = "knife edge"
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,7 @@ class Shoe:
     """A curved shoe that slides; `radius` in mm."""
 
     radius: float
+    word: ClassVar[str] = "shoe"
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,7 @@ class Flat:
     width: float | None = None
     nearer: float = 0.0
     radius: ClassVar[float] = 0.0
+    word: ClassVar[str] = "flat face"
 
 
 Guide: TypeAlias = Translating | Oscillating

@@ -21,8 +21,8 @@ from support.sets import NAME, export
 from camgeo.cli import batch
 from camgeo.cli.main import main
 from camgeo.common import system, workers
-from camgeo.common.errors import SurroundingsError
-from camgeo.output.output_folder import BusyError, Run
+from camgeo.common.errors import BusyError, SurroundingsError
+from camgeo.output.output_folder import Run
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import io
 import re
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pytest
 from support.cases import few
-from support.heavy import resvg
 from support.pages import SHOWN, of
 from support.places import ROOT
+from support.rendered import rendered, share
 
 from camgeo.report.page.looks import LOOKS, colours, rules
 from camgeo.report.page.svg import OTHER, still
@@ -20,21 +18,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 GALLERY = sorted((ROOT / "docs" / "gallery").glob("*.svg"))
-WIDTH = 640
-
-
-def rendered(text: str) -> np.ndarray:
-    """Red, green, blue and opacity of each px, (height, WIDTH, 4)."""
-    from PIL import Image
-
-    with Image.open(io.BytesIO(bytes(resvg.svg_to_bytes(svg_string=text, width=WIDTH)))) as image:
-        return np.asarray(image.convert("RGBA")).astype(int)
-
-
-def share(image: np.ndarray, colour: str) -> float:
-    """Share of the px that have a colour."""
-    wanted = [int(colour[at : at + 2], 16) for at in (1, 3, 5)]
-    return float(np.mean(np.abs(image[..., :3] - wanted).max(axis=-1) <= 1))
 
 
 def assert_is_seen(text: str) -> None:
@@ -59,7 +42,7 @@ def test_the_gallery_needs_no_style_sheet() -> None:
         assert not re.search(r"var\(|<style|\sstyle=|calc\(|vector-effect|paint-order", text), path.name
 
 
-@pytest.mark.parametrize("name", few(SHOWN, 4))
+@pytest.mark.parametrize("name", few(SHOWN, 7))
 def test_a_picture_is_seen_without_a_browser(name: str) -> None:
     text = still(of(name).content.scene, 100, name)
     assert_is_seen(text)
@@ -72,7 +55,7 @@ def test_a_picture_is_seen_without_a_browser(name: str) -> None:
 def test_every_role_has_a_look_and_every_look_its_colours() -> None:
     code = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "camgeo" / "report" / "page").glob("*.py"))
     assert {role for role in re.findall(r'Shape\(\s*"([a-z ]+)"', code) if OTHER not in role} <= set(LOOKS)
-    roles = {s.role for name in SHOWN[:2] for body in of(name).content.scene.bodies for s in body.shapes}
+    roles = {s.role for body in of(SHOWN[0]).content.scene.bodies for s in body.shapes}
     assert {role for role in roles if OTHER not in role} <= set(LOOKS)
     names = {name for look in LOOKS.values() for name in look[:2] if name}
     assert names <= set(colours())

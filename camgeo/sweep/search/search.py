@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from camgeo.common.errors import SurroundingsError
-from camgeo.output.output_folder import BusyError, Family, Run
+from camgeo.common.errors import BusyError, SurroundingsError
+from camgeo.output.output_folder import Family, Run
 from camgeo.sweep.search.engines import at_once
 from camgeo.sweep.search.job import Job
 from camgeo.sweep.search.outputs import PICTURES, REPORT, TABLES, outputs
