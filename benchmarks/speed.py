@@ -28,8 +28,10 @@ from camgeo.fit.pieces import Bound, Polygon
 from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
 from camgeo.recipe.loading import load
+from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
-from kin.follower.follower import DoubleRoller, FlatPair, Yoke
+from kin.follower.follower import follower_of
+from kin.law.contacts import Flat, Roller, on_one_arm, opposite
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 
@@ -69,7 +71,9 @@ def fits() -> None:
     print("\nrecipe object to pieces at 1 um; target: 50 times sin and cos at as many points, or 5 ms if that is more")
     print(f"{'recipe':16} {'form':8} {'pieces':>6} {'ms':>7} {'target ms':>9} {'ratio':>6}")
     for path in sorted((ROOT / "recipes").glob("*.yaml"))[:: 12 if SMALL else 1]:
-        cam = load(path).cam
+        recipe = load(path)
+        cam = recipe.cam
+        print(f"{path.stem:16} {'designed':8} {'':6} {1e3 * median(lambda recipe=recipe: designed(recipe)):7.2f}")
         for name, fit in (("arcs", fit_arcs), ("polygon", fit_polygon), ("spline", fit_spline)):
 
             def whole(fit: Callable[[Curve, float], object] = fit, cam: object = cam) -> object:
@@ -136,10 +140,12 @@ def judge() -> None:
     u, n = np.column_stack([np.cos(t), np.sin(t)]), np.column_stack([-np.sin(t), np.cos(t)])
     normal = radius[:, None] * u - slope[:, None] * n
     rolled = radius[:, None] * u - 8.0 * normal / np.hypot(normal[:, 0], normal[:, 1])[:, None]
+    faces = on_one_arm(2.0 * law.arm, None, Flat(), 0.5 * np.pi, 0.5 * law.alpha)
+    rollers = on_one_arm(booth.arm, booth.arm, Roller(8.0), np.pi, booth.alpha)
     for name, follower, points in (
-        ("yoke", Yoke(lift, breadth=50.0), flat),
-        ("flat pair", FlatPair(law), support),
-        ("double roller", DoubleRoller(booth, 8.0), rolled),
+        ("yoke", follower_of(opposite(Flat(), 50.0), lift.law), flat),
+        ("flat pair", follower_of(faces, law), support),
+        ("double roller", follower_of(rollers, booth), rolled),
     ):
 
         def contact(follower: object = follower, points: np.ndarray = points) -> None:

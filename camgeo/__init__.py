@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from camgeo.api.check import Check, Figure
     from camgeo.api.design import Design, design
     from camgeo.api.edges import Arc, Edges, Line, Spline
-    from camgeo.api.errors import CallError, CamgeoError
+    from camgeo.api.errors import BusyError, CallError, CamgeoError, SurroundingsError
     from camgeo.api.loading import load
     from camgeo.api.report import Report
     from camgeo.api.run import check, export, verify
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "Arc": "api.edges",
+    "BusyError": "api.errors",
     "CallError": "api.errors",
     "CamgeoError": "api.errors",
     "Check": "api.check",
@@ -32,6 +33,7 @@ _HOMES = {
     "RecipeErrors": "schema.errors",
     "Report": "api.report",
     "Spline": "api.edges",
+    "SurroundingsError": "api.errors",
     "check": "api.run",
     "design": "api.design",
     "export": "api.run",
@@ -42,6 +44,7 @@ _HOMES = {
 __all__ = [  # noqa: RUF022 - a list of literals, for whoever reads this file without running it
     "__version__",
     "Arc",
+    "BusyError",
     "CallError",
     "CamgeoError",
     "Check",
@@ -54,6 +57,7 @@ __all__ = [  # noqa: RUF022 - a list of literals, for whoever reads this file wi
     "RecipeErrors",
     "Report",
     "Spline",
+    "SurroundingsError",
     "check",
     "design",
     "export",

@@ -1,7 +1,9 @@
 """The entry of the command line, also `python -m camgeo`: from here to the end an interrupt ends with status 130.
 
 Nothing is imported before the interrupt is seen to, as the imports take most of a short run. What an interrupt cannot
-reach is Python's own start before this.
+reach is Python's own start before this. numpy starts with one thread, as nothing here multiplies great matrices and
+starting threads takes longer than a small cam; what the user has set stays, and so does the environment of a program
+that imports the library.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from types import FrameType
     from typing import NoReturn
 
+_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")  # of numpy's BLAS
 _IMPATIENT = 1.0  # seconds from which a second interrupt is a person's: one may arrive twice, by way of a launcher
 
 
@@ -63,6 +66,8 @@ class _Interrupts:
 def main() -> NoReturn:
     """Run the command of the process's arguments and leave with its exit status; 130 for any interrupt."""
     interrupts = _Interrupts()
+    if not any(name in os.environ for name in _THREADS):
+        os.environ.update(dict.fromkeys(_THREADS, "1"))  # worker processes inherit it
     try:
         interrupts.listen()
         status = _status()

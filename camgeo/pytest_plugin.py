@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from camgeo.synthesis.expected_checks import Foreseen
 
 INI = "camgeo_recipes"
+SECOND = "camgeo_second_opinion"
 WHOLE = "recipe"  # name of the item that stands for a recipe as a whole
 TOGETHER = frozenset({"no", "loadfile", "loadscope"})  # of xdist's ways those that leave a recipe to one process
 
@@ -40,6 +41,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type="args",
         default=[],
     )
+    text = "have ezdxf, shapely, trimesh and manifold3d look at the files of camgeo's recipes too"
+    parser.addini(SECOND, text, type="bool", default=False)
     group = parser.getgroup("camgeo")
     group.addoption("--camgeo-out", metavar="DIR", help="keep the files and reports of all recipes that run under DIR")
 
@@ -76,7 +79,8 @@ class Recipes:
                 "give --dist loadfile"
             )
         for path in self._found():
-            self.runs[path.resolve()] = Run(path, _relative(path, self.config.invocation_params.dir), self.out)
+            shown = _relative(path, self.config.invocation_params.dir)
+            self.runs[path.resolve()] = Run(path, shown, self.out, self.config.getini(SECOND))
         sources = type(self.config).ArgsSource
         whole = self.config.invocation_params.dir == self.config.rootpath
         if whole and self.config.args_source is not sources.ARGS:
@@ -147,6 +151,7 @@ class Run:
     path: Path
     shown: str
     out: Path | None
+    second_opinion: bool = False
     recipe: Recipe | None = None
     fault: str = ""
     certain: bool = False
@@ -183,7 +188,11 @@ class Run:
         )
         try:
             with unsaid():  # each item reports its own check
-                report = check(self.recipe) if self.out is None else export(self.recipe, self.out)
+                second = self.second_opinion
+                if self.out is None:
+                    report = check(self.recipe, second_opinion=second)
+                else:
+                    report = export(self.recipe, self.out, second_opinion=second)
             self._report, self.fault = dict(report), ""
         except RecipeErrors as errors:
             self._refused(errors)
@@ -213,19 +222,19 @@ class RecipeFile(pytest.File):
                         f"{self.run.shown}: its files would go to the folder of {other.shown}, "
                         f"as both are named {recipe.name}; give each its own `name:`"
                     )
-        checks = () if recipe is None else _foreseen(recipe)
+        checks = () if recipe is None else _foreseen(recipe, second_opinion=self.run.second_opinion)
         for check in (None, *checks):
             name = WHOLE if check is None else str(check)
             yield CheckItem.from_parent(self, name=name, run=self.run, check=check, known=frozenset(checks))
 
 
-def _foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
+def _foreseen(recipe: Recipe, *, second_opinion: bool) -> tuple[Foreseen, ...]:
     """Tell the checks to come; none where there is no such motion, which the recipe's own item then reports."""
     from camgeo.synthesis.expected_checks import foreseen
     from kin.law.programme import IntentError
 
     try:
-        return foreseen(recipe)
+        return foreseen(recipe, second_opinion=second_opinion)
     except IntentError:
         return ()
 
@@ -293,7 +302,7 @@ class CheckItem(pytest.Item):
 
     def _missing(self, wanted: Foreseen, report: dict[str, Any]) -> None:
         """Say why a check that was foreseen was not made: a check that has not been made does not hold."""
-        from camgeo.checks.declared import CHECKS, MOTION
+        from camgeo.checks.declared import CHECKS, MOTION, SECOND_OPINIONS
         from camgeo.report.failure import headline
         from camgeo.synthesis.expected_checks import Foreseen
 
@@ -309,6 +318,9 @@ class CheckItem(pytest.Item):
                 "an undercut is trimmed: what motion is lost is reported, and judged against verify.motion_error alone"
             )
             pytest.skip(f"{self.run.shown}: {reason}")
+        why = next((entry["why"] for entry in report["skipped"] if entry["what"] == str(wanted)), None)
+        if why is not None and wanted.name in {row.name for row in SECOND_OPINIONS}:
+            pytest.skip(f"{self.run.shown}: {why}")
         _fail(f"{wanted} is not among the checks that were made")
 
     def _not_judged(self, cause: str, told_by: str | None) -> None:

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from os import PathLike
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from camgeo.api.loading import recipe_of
 from camgeo.checks.declared import (
     BENT,
     CHECKS,
@@ -21,25 +21,28 @@ from camgeo.checks.declared import (
     CONTOUR,
     MOTION,
     READABLE,
+    SECOND_OPINIONS,
     UNDERCUT_GLOBAL,
     UNDERCUT_LOCAL,
     WATERTIGHT,
 )
-from camgeo.common.arguments import is_a, number_of, path_of, spelled, whole_of
+from camgeo.common.arguments import number_of, path_of, spelled, whole_of
 from camgeo.common.errors import CallError
 from camgeo.recipe.recipe import MOST_ANGLES
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from os import PathLike
     from pathlib import Path
 
+    from camgeo.api.loading import RecipeSource
     from camgeo.api.report import Report
     from camgeo.recipe.recipe import Recipe
     from kin.contour.contour import Contour
     from kin.read.files import AnySolid, Drawing
 
     AnyPath: TypeAlias = str | PathLike[str]
-    AnyRecipe: TypeAlias = Recipe | str | PathLike[str]
 
 __all__ = [
     "Breadth",
@@ -101,7 +104,7 @@ def assert_closed(path: AnyPath, *, gap: float = GAP) -> float:
         assert_watertight(path)
         return 0.0
     drawing = _drawing(path, _length("gap", gap))
-    faults = [f"{fault.kind} {fault.entity} at ({fault.x:.6g}, {fault.y:.6g}) mm" for fault in drawing.faults]
+    faults = [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)} mm" for fault in drawing.faults]
     _no_faults(path, faults + _crossings(drawing.contour))
     return drawing.widest_gap
 
@@ -148,12 +151,17 @@ def _breadth(contour: Contour) -> Breadth:
     """Extremes of the breadth: the play of the contour in a yoke, over the whole turn."""
     import numpy as np
 
-    from kin.follower.follower import Yoke
+    from kin.follower.follower import follower_of
+    from kin.law.contacts import Flat, opposite
     from kin.law.support_function import lift_from_fourier
 
     # any breadth of the yoke and any intended motion would do, as only the play is asked for
     frame = float(contour.support(np.array([0.0, math.pi])).q.sum())
-    play = Yoke(lift_from_fourier(0.5 * frame, {}, {}), frame).judge(contour, np.zeros(1)).play
+    play = (
+        follower_of(opposite(Flat(), frame), lift_from_fourier(0.5 * frame, {}, {}).law)
+        .judge(contour, np.zeros(1))
+        .play
+    )
     assert play is not None
     return Breadth(frame - play.most, play.most_at_deg, frame - play.least, play.least_at_deg)
 
@@ -162,51 +170,61 @@ def _breadth(contour: Contour) -> Breadth:
 
 
 def assert_motion(
-    recipe: AnyRecipe,
+    recipe: RecipeSource,
     path: AnyPath,
     *,
     limit: float | None = None,
     tolerance: float | None = None,
     angles: int | None = None,
+    second_opinion: bool = False,
 ) -> Motion:
     """Assert that a file moves the recipe's follower as intended: position by contact, and play where it is held twice.
 
     `limit` of the motion error is in the recipe's units, in degrees for a follower that swings; without one it is that
     of the recipe, or what `tolerance` implies. `tolerance` of the contour is by default the recipe's for a file of that
-    name, else `export.tolerance`. `angles` takes the place of `verify.angles`. Returns the motion error.
+    name, else `export.tolerance`. `angles` takes the place of `verify.angles`. `second_opinion` asserts too what ezdxf,
+    shapely, trimesh and manifold3d say of the file (extra `check`). Returns the motion error.
     """
     __tracebackhide__ = True
-    motion = _judged(recipe, path, {MOTION.name, *BACKLASH}, limit=limit, tolerance=tolerance, angles=angles)["motion"]
+    names, more = {MOTION.name, *BACKLASH}, second_opinion
+    motion = _judged(recipe, path, names, limit=limit, tolerance=tolerance, angles=angles, second_opinion=more)[
+        "motion"
+    ]
     if motion is None:
         raise AssertionError(f"{path}: the follower's motion cannot be measured")
     return Motion(*(motion[key] for key in ("max", "rms", "unit", "at_deg", "dwell_flatness")))
 
 
-def assert_contour(recipe: AnyRecipe, path: AnyPath, *, tolerance: float | None = None) -> float:
+def assert_contour(
+    recipe: RecipeSource, path: AnyPath, *, tolerance: float | None = None, second_opinion: bool = False
+) -> float:
     """Assert that a file's contour lies within the tolerance of the recipe's exact one, in both directions.
 
-    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` as in `assert_motion`. Returns the
-    greatest distance between the two, in the recipe's units.
+    Also finds what no follower feels: a dent, a spike, a wrong unit. `tolerance` and `second_opinion` as in
+    `assert_motion`. Returns the greatest distance between the two, in the recipe's units.
     """
     __tracebackhide__ = True
-    error: float = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance)["measured_error"]
+    error: float = _judged(recipe, path, {CONTOUR.name}, tolerance=tolerance, second_opinion=second_opinion)[
+        "measured_error"
+    ]
     return error
 
 
 def _judged(
-    recipe: AnyRecipe,
+    recipe: RecipeSource,
     path: AnyPath,
     names: set[str],
     *,
     limit: float | None = None,
     tolerance: float | None,
     angles: int | None = None,
+    second_opinion: bool = False,
 ) -> dict[str, Any]:
     """Judge a file and assert the checks of those names; its entry in the report."""
     __tracebackhide__ = True
     from camgeo import verify as judged
 
-    path, recipe = path_of("path", path), _loaded(recipe)
+    path, recipe = path_of("path", path), recipe_of(recipe)
     swings = recipe.cam.unit == "deg"
     verify = recipe.verify
     if limit is not None:
@@ -218,10 +236,12 @@ def _judged(
             raise CallError(f"a file is judged at 1 angle at least and {MOST_ANGLES} at most, not {spelled(angles)}")
         verify = replace(verify, angles=angles)
     recipe = replace(recipe, verify=verify)
-    report: dict[str, Any] = dict(judged(recipe, path, tolerance=tolerance))
+    report: dict[str, Any] = dict(judged(recipe, path, tolerance=tolerance, second_opinion=second_opinion))
     own = [check for check in report["checks"] if check.get("file") == path.name]
     if len(own) == 1 and own[0]["name"] in UNREAD:
         _all_hold(own, report, recipe, str(path))
+    if second_opinion:
+        names = names | {row.name for row in SECOND_OPINIONS}
     asked = [check for check in own if check["name"] in names]
     if not asked:
         raise AssertionError(f"{path}: the judge has made no check of {', '.join(sorted(names))}")
@@ -233,18 +253,19 @@ def _judged(
 # --- a recipe ---------------------------------------------------------------------------------------------------------
 
 
-def assert_recipe(recipe: AnyRecipe) -> Report:
+def assert_recipe(recipe: RecipeSource, *, second_opinion: bool = False) -> Report:
     """Assert that a recipe has no faults, and that every check of its exact curve and of its files holds.
 
-    Makes and judges the files in a temporary folder. Returns the report, which as a mapping is what report.json holds.
+    Makes and judges the files in a temporary folder; `second_opinion` as in `assert_motion`. Returns
+    the report, which as a mapping is what report.json holds.
     """
     __tracebackhide__ = True
     from camgeo import check
     from camgeo.schema.errors import RecipeErrors
 
     try:
-        recipe = _loaded(recipe)
-        report = check(recipe)
+        recipe = recipe_of(recipe)
+        report = check(recipe, second_opinion=second_opinion)
     except RecipeErrors as errors:
         raise AssertionError(f"the recipe has faults:\n{errors}") from None
     told: dict[str, Any] = dict(report)
@@ -252,7 +273,7 @@ def assert_recipe(recipe: AnyRecipe) -> Report:
     return report
 
 
-def assert_no_undercut(recipe: AnyRecipe) -> float:
+def assert_no_undercut(recipe: RecipeSource) -> float:
     """Assert that the exact contour of a recipe has no undercut, local or global, also where it asks to trim it.
 
     Returns the least radius of curvature, in the recipe's units: of the contour for a flat face, of the pitch curve for
@@ -262,7 +283,7 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     from camgeo.report.document import Findings, document
     from camgeo.synthesis.design import designed
 
-    recipe = _loaded(recipe)
+    recipe = recipe_of(recipe)
     recipe = replace(recipe, cam=recipe.cam.refusing())
     design = designed(recipe)
     report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.joints))
@@ -271,14 +292,6 @@ def assert_no_undercut(recipe: AnyRecipe) -> float:
     _all_hold(checks, report, recipe, recipe.name)
     radius: float = next(check["value"] for check in checks if check["name"] in BENT)
     return radius
-
-
-def _loaded(recipe: AnyRecipe) -> Recipe:
-    from camgeo.recipe.loading import load
-    from camgeo.recipe.recipe import Recipe
-
-    is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
-    return recipe if isinstance(recipe, Recipe) else load(path_of("recipe", recipe))
 
 
 def _length(name: str, value: float) -> float:
@@ -311,7 +324,7 @@ def _no_faults(path: Path, faults: list[str]) -> None:
 def _crossings(contour: Contour) -> list[str]:
     from kin.contour.intersections import crossings
 
-    return [f"the contour crosses or touches itself at ({x:.6g}, {y:.6g}) mm" for x, y in crossings(contour).point]
+    return [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in crossings(contour).point]
 
 
 def _contour(path: Path, mm: float | None) -> Contour:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +11,6 @@ from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.flat_pair import FlatPairCam
 from camgeo.output.pipeline import shown
 from camgeo.recipe.loading import load
-from camgeo.report.page.page import asset
 from camgeo.report.page.scene import STEPS
 from camgeo.report.page.svg import still
 
@@ -47,14 +45,13 @@ def main() -> None:
     """Draw all recipes, and put them on one page."""
     folder = ROOT / "docs" / "gallery"
     folder.mkdir(exist_ok=True)
-    style = re.sub(r"/\*.*?\*/\s*|\n\s*", " ", asset("drawing.css"), flags=re.DOTALL).strip()
     cells: dict[str, list[str]] = {name: [] for name in FAMILIES}
     drawn = set()
     for path in sorted((ROOT / "recipes").glob("*.yaml")):
         recipe = load(path)
         _, found = shown(recipe)
         picture = folder / f"{path.stem}.svg"
-        picture.write_text(still(found.scene, round(SHAFT_DEG / 360.0 * STEPS), style, recipe.name), encoding="utf-8")
+        picture.write_text(still(found.scene, round(SHAFT_DEG / 360.0 * STEPS), recipe.name), encoding="utf-8")
         drawn.add(picture)
         cells[family(recipe)].append(
             f'<td align="center" valign="bottom"><img src="gallery/{picture.name}" width="260" alt="{recipe.name}"><br>'

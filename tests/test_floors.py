@@ -52,7 +52,7 @@ WINGS = {"camgeo.assembly", "camgeo.machining", "camgeo.sweep"}
 DOORS = {"camgeo.output.parts", "camgeo.output.mechanism", "camgeo.output.gcode", "camgeo.cli.study"}
 HEAVY = {
     *("ezdxf", "shapely", "trimesh", "manifold3d", "scipy", "matplotlib", "networkx", "mpmath", "hypothesis", "lib3mf"),
-    *("pyarrow", "numba", "dask", "distributed", "OCP"),
+    *("pyarrow", "dask", "distributed", "OCP"),
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
@@ -15,6 +16,16 @@ from support.places import ROOT
 import camgeo
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+BROUGHT = {"PIL": "matplotlib", "_pytest": "pytest", "resvg_py": "resvg-py", "yaml": "PyYAML"}
+"""Modules that a distribution of another name brings."""
+SKIPPED = {"OCP"}
+"""Modules without which tests are skipped: no test imports one that the line in README installs."""
+
+
+def required(extra: str) -> set[str]:
+    """Names of the distributions that an extra installs."""
+    return {re.split("[<>=~!;]", line)[0] for line in PROJECT["project"]["optional-dependencies"][extra]}
 
 
 def test_the_version_stands_in_one_place():
@@ -60,3 +71,37 @@ def test_the_repositorys_own_recipes_are_test_items(arguments, status, shown):
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == status, done.stdout + done.stderr
     assert set(re.findall(r"^recipes/(.*?)::", done.stdout, re.MULTILINE)) == shown
+
+
+def test_readme_has_two_lines_to_begin_with() -> None:
+    done = subprocess.run([sys.executable, ROOT / ".ci" / "readme_lines"], capture_output=True, text=True, check=True)
+    install, test = done.stdout.splitlines()
+    assert install.endswith("camgeo export recipes/shu-wu.yaml -v")
+    assert "'.[test]'" in test
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"\n```sh\n{install}\n```\n" in readme
+    assert f"\n```sh\n{test}\n```\n" in readme
+
+
+def test_what_tests_import_the_line_in_readme_installs() -> None:
+    paths = [*(ROOT / "tests").rglob("*.py"), *(ROOT / "benchmarks").glob("*.py")]
+    own = {"camgeo", "kin", *(path.stem for path in paths), *(path.parent.name for path in paths)}
+    installed = required("test") | {re.split("[<>=~!;]", line)[0] for line in PROJECT["project"]["dependencies"]}
+    imported = set()
+    for path in (ROOT / "tests").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                imported |= {alias.name.partition(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                imported.add((node.module or "").partition(".")[0])
+            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Heavy":
+                imported.add(ast.literal_eval(node.args[0]).partition(".")[0])
+    others = imported - set(sys.stdlib_module_names) - own
+    assert {"numpy", "hypothesis", "shapely", "setuptools"} <= others
+    assert {name for name in others if BROUGHT.get(name, name) not in installed} == SKIPPED
+
+
+def test_only_step_files_need_more_than_the_tests_install() -> None:
+    """What any other extra brings is tested wherever tests run; tests of STEP files are skipped (`support.kernel`)."""
+    extras = set(PROJECT["project"]["optional-dependencies"]) - {"test", "dev"}
+    assert {extra for extra in extras if not required(extra) <= required("test")} == {"step"}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 from camgeo.report.bound import sign, words
-from camgeo.report.document import in_units
+from camgeo.report.document import BELOW, in_units, value_text
 from kin.judge import check as judge
 
 if TYPE_CHECKING:
@@ -35,6 +36,12 @@ class Check(judge.Check):
         """The limit with its side, such as `<= 0.001`; empty where there is none."""
         return "" if self.limit is None else f"{sign(self._entry())} {self.limit:.6g}"
 
+    @property
+    def figure(self) -> str:
+        """The value with its unit, as text: an error that only rounding made is called that; empty without a value."""
+        text = value_text(self._entry())
+        return text if text in {"", BELOW} else f"{text} {self.unit}".rstrip()
+
     def _entry(self) -> dict[str, Any]:
         """What a report says of the check."""
         return {key: value for key, value in asdict(self).items() if key != "file" or value is not None}
@@ -44,7 +51,7 @@ class Check(judge.Check):
         text = f"{self.name} of {self.file}" if self.file else self.name
         text += ": ok" if self.ok else ": FAILED"
         if self.value is not None:
-            text += f", {self.value:.6g} {self.unit}".rstrip()
+            text += f", {self.figure}"
         if self.limit is not None:
             text += f", {words(self._entry())} {self.limit:.6g}"
         if self.at_deg is not None:
@@ -76,3 +83,19 @@ class Figure:
             return f"none: {self.detail}" if self.detail else "none"
         place = "" if self.at_deg is None else f" at {self.at_deg:.2f} deg"
         return f"{self.value:.6g} {self.unit}".rstrip() + place
+
+
+@dataclass(frozen=True, eq=False)
+class Figures(Mapping[str, Figure]):
+    """The figures of a design by name: a mapping that cannot be written to, and can be pickled alone."""
+
+    _by_name: dict[str, Figure]
+
+    def __getitem__(self, name: str) -> Figure:
+        return self._by_name[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._by_name)
+
+    def __len__(self) -> int:
+        return len(self._by_name)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
 
 from camgeo.api import notebook
-from camgeo.api.check import Check, Figure
+from camgeo.api.check import Check, Figure, Figures
 from camgeo.api.edges import FORMS, Edges, Form
 from camgeo.api.errors import CallError
 from camgeo.api.loading import recipe_of
@@ -22,10 +21,9 @@ from camgeo.synthesis.design import Design as Exact
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import ArrayLike
 
+    from camgeo.api.loading import RecipeSource
     from camgeo.curve.curve import Curve
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array
@@ -34,12 +32,12 @@ MOST_POINTS = 1_000_000  # of a contour: more than any file has, and quickly mad
 MOST_DERIVATIVE = 6  # of the motion by the shaft angle; more means nothing in print
 
 
-def design(recipe: Recipe) -> Design:
+def design(recipe: RecipeSource) -> Design:
     """Design the cam of a recipe: no file is made, and no contour fitted.
 
     Raises RecipeErrors where there is no such motion or curve. A check that fails raises nothing: see `Design.ok`.
     """
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     found = Design(recipe, designed(recipe, Clock(staged(recipe))))
     tell_checks(recipe.name, found.checks)
     return found
@@ -78,7 +76,7 @@ class Design:
         return all(check.ok for check in self.checks)
 
     @cached_property
-    def figures(self) -> Mapping[str, Figure]:
+    def figures(self) -> Figures:
         """The figures of the design by name, such as `radius-of-curvature`; those that recipes limit."""
         from camgeo.recipe.figures import FIGURES, there
         from camgeo.report.figures import of_design
@@ -87,7 +85,7 @@ class Design:
         offers = self.recipe.cam.offers
         names = [name for name, one in FIGURES.items() if one.of == "design" and there(one.needs, offers, given)]
         found = of_design(self.recipe, self.exact, self.exact.checks, names)
-        return MappingProxyType({name: Figure.of(self.recipe, one) for name, one in found.items()})
+        return Figures({name: Figure.of(self.recipe, one) for name, one in found.items()})
 
     # --- motion -------------------------------------------------------------------------------------------------------
 

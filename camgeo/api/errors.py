@@ -1,8 +1,8 @@
-"""The errors of the library: one base for all that is raised on purpose, one class for a call that makes no sense."""
+"""The errors of the library: one base for all, a call that makes no sense, surroundings that refuse."""
 
 from __future__ import annotations
 
-from camgeo.common.errors import CallError
+from camgeo.common.errors import BusyError, CallError, SurroundingsError
 from kin.numeric.errors import KinError as CamgeoError
 
-__all__ = ["CallError", "CamgeoError"]
+__all__ = ["BusyError", "CallError", "CamgeoError", "SurroundingsError"]

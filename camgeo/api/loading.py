@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from camgeo.common.arguments import is_a, path_of
 from camgeo.recipe.loading import announced, load_silent, load_text
@@ -13,6 +13,8 @@ from camgeo.schema.change import written
 
 if TYPE_CHECKING:
     from camgeo.schema.change import Value
+
+    RecipeSource: TypeAlias = Recipe | str | PathLike[str]
 
 NAME = "recipe"  # of what has no file
 
@@ -32,6 +34,7 @@ def load(source: str | PathLike[str] | Mapping[str, Value]) -> Recipe:
     return announced(load_silent(path_of("source", source)))
 
 
-def recipe_of(recipe: object) -> None:
-    """Raise TypeError for what is no recipe."""
-    is_a("recipe", recipe, Recipe, "a Recipe", "read it by camgeo.load")
+def recipe_of(recipe: RecipeSource) -> Recipe:
+    """Give a recipe, read from its file where its path is given; raises as `load` does."""
+    is_a("recipe", recipe, (Recipe, str, PathLike), "a Recipe or the path of one")
+    return recipe if isinstance(recipe, Recipe) else announced(load_silent(path_of("recipe", recipe)))

@@ -21,9 +21,8 @@ def drawing(recipe: Recipe, exact: Exact) -> str:
     """Draw the exact cam with its follower at shaft angle 0 as one SVG."""
     from camgeo.report.page import svg
     from camgeo.report.page.content import content
-    from camgeo.report.page.page import asset
 
-    return svg.still(content(recipe, exact, ()).scene, 0, asset("drawing.css"), recipe.name)
+    return svg.still(content(recipe, exact, ()).scene, 0, recipe.name)
 
 
 def shown(picture: str, title: str, checks: Sequence[Check], *more: str) -> str:
@@ -56,7 +55,7 @@ def _row(check: Check) -> tuple[str, ...]:
     return (
         check.name,
         "ok" if check.ok else "FAILED",
-        "" if check.value is None else f"{check.value:.6g} {check.unit}".rstrip(),
+        check.figure,
         check.bound,
         "" if check.at_deg is None else f"{check.at_deg:.2f}°",
         check.file or "",

@@ -20,64 +20,75 @@ if TYPE_CHECKING:
     from os import PathLike
     from pathlib import Path
 
+    from camgeo.api.loading import RecipeSource
     from camgeo.common.units import Units
-    from camgeo.recipe.recipe import Recipe
 
 
 def export(
-    recipe: Recipe,
+    recipe: RecipeSource,
     out: str | PathLike[str],
     *,
     only: Sequence[str] = (),
     progress: Callable[[str], None] | None = None,
+    second_opinion: bool = False,
 ) -> Report:
     """Write a recipe's files into the folder `out`/<name>, read them back and judge them.
 
     Nothing is there but whole sets: files in which a check fails go to `out`/<name>.rejected. `only` names kinds of
-    files, such as "dxf"; others stay as they are. `progress` hears of each stage as it begins. Raises RecipeErrors
+    files, such as "dxf"; others stay as they are. `progress` hears of each stage as it begins. `second_opinion` has
+    ezdxf, shapely, trimesh and manifold3d look at the files too: more checks that can fail. Raises RecipeErrors
     where there is no such cam or a tolerance cannot be held, SurroundingsError where the disk or a package is not what
     it should be, CallError for a kind of which the recipe lists no file. A check that fails raises nothing: see
     `Report.ok`.
     """
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     called("progress", progress)
+    is_a("second_opinion", second_opinion, bool, "a bool")
     only, folder = texts_of("only", only), path_of("out", out)
     listed = {request.kind for request in recipe.export.files}
     faults = [_unlisted(kind) for kind in only if kind not in listed]
     if faults and not listed.intersection(only):
         raise CallError(*faults)
-    outcome = pipeline.export(recipe, folder, only=only, told=staged(recipe, progress))
+    told = staged(recipe, progress)
+    outcome = pipeline.export(recipe, folder, only=only, told=told, second_opinion=second_opinion)
     return _told(Report(recipe, outcome.report, outcome.folder))
 
 
-def check(recipe: Recipe, *, progress: Callable[[str], None] | None = None) -> Report:
+def check(
+    recipe: RecipeSource, *, progress: Callable[[str], None] | None = None, second_opinion: bool = False
+) -> Report:
     """Make and judge all of a recipe's files as `export` does, and keep none of them; raises as it does."""
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     called("progress", progress)
-    return _told(Report(recipe, pipeline.check(recipe, told=staged(recipe, progress)).report))
+    is_a("second_opinion", second_opinion, bool, "a bool")
+    outcome = pipeline.check(recipe, told=staged(recipe, progress), second_opinion=second_opinion)
+    return _told(Report(recipe, outcome.report))
 
 
 def verify(
-    recipe: Recipe,
+    recipe: RecipeSource,
     file: str | PathLike[str],
     *files: str | PathLike[str],
     tolerance: float | None = None,
     units: Units | None = None,
+    second_opinion: bool = False,
 ) -> Report:
     """Judge drawings, solids and milling programs of any origin by a recipe's motion.
 
     They are held to `tolerance`, in the recipe's unit; without one to that of the recipe's file of the same name, or of
-    its export. `units` is that of files that state none. Raises RecipeErrors where there is no such cam, CallError for
-    what is no file of a known kind, UnitsError where a file states another unit than `units`. A file that cannot be
-    read raises nothing: that is a check that fails.
+    its export. `units` is that of files that state none. `second_opinion` has ezdxf, shapely, trimesh and manifold3d
+    look at the files too: more checks that can fail. Raises RecipeErrors where there is no such cam, CallError for what
+    is no file of a known kind, UnitsError where a file states another unit than `units`, SurroundingsError where one of
+    those libraries is missing. A file that cannot be read raises nothing: that is a check that fails.
     """
     from kin.read.files import SUFFIXES
 
-    recipe_of(recipe)
+    recipe = recipe_of(recipe)
     paths = [path_of("file" if i == 0 else f"files[{i - 1}]", name) for i, name in enumerate((file, *files))]
     within = None if tolerance is None else number_of("tolerance", tolerance)
     if units is not None:
         is_a("units", units, str, "a str")
+    is_a("second_opinion", second_opinion, bool, "a bool")
     told = {path: _no_file(path) for path in paths}
     found = [path for path in paths if not told[path]]
     faults = [f"{escaped(str(path))}: {told[path]}" for path in paths if told[path]]
@@ -90,7 +101,8 @@ def verify(
     if faults:
         raise CallError(*faults)
     within = None if within is None else within * recipe.mm
-    report = pipeline.judged(recipe, paths, tolerance=within, units=None if units is None else UNIT_MM[units])
+    unit = None if units is None else UNIT_MM[units]
+    report = pipeline.judged(recipe, paths, tolerance=within, units=unit, second_opinion=second_opinion)
     return _told(Report(recipe, report, None, tuple(paths)))
 
 
@@ -112,10 +124,14 @@ def _unlisted(kind: str) -> str:
 
 
 def _no_file(path: Path) -> str:
-    """Say why a path leads to no file; empty where it does."""
+    """Say why a path leads to no file, or to one larger than is read; empty where it does."""
+    from kin.read.files import SUFFIXES
+    from kin.read.size import oversize
+
     try:
         if path.is_file():
-            return ""
+            kind = SUFFIXES.get(path.suffix.lower())
+            return "" if kind is None else oversize(path, kind)
         if path.is_dir():
             return "a folder; name the files in it"
         return "not a regular file" if path.exists() else "the file does not exist"

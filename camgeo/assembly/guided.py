@@ -20,9 +20,9 @@ from camgeo.assembly.roller import ARM_COLOUR, Foot, Levels, arm, covered, rolle
 from camgeo.assembly.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
 from camgeo.assembly.shapes import EXACT, bar, box, disc, eye, moved, pin, retainer
 from camgeo.assembly.sizes import THIN, BodyError
-from camgeo.assembly.yoke import LOOKS, guided
+from camgeo.assembly.yoke import SHAFT, guided
 from camgeo.fit.pieces import ArcSpline
-from kin.numeric.angles import TURN
+from kin.law.contacts import Roller, Shoe
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from camgeo.assembly.assembly import Place
     from camgeo.assembly.shaft import Drive
     from camgeo.assembly.shapes import Point
-    from camgeo.curve.disc import SwingingFace
-    from camgeo.curve.moving_frame import Displacement, Oscillating, Translating
+    from camgeo.synthesis.view import Round, View
+    from kin.law.contacts import Flat, Guide, Oscillating, Translating
     from kin.numeric.arrays import Array
 
     Stand: TypeAlias = Callable[[Point, float, tuple[str, Place], Drive], Foot]
@@ -40,7 +40,17 @@ if TYPE_CHECKING:
 
 STEM = "stem"
 SPRING = "gravity or a spring holds the follower on the cam: it touches it from one side"
-SHAFT = TURN * np.arange(LOOKS) / LOOKS
+
+
+def stood(view: View[Guide, Round]) -> Stand:
+    """What stands up into the plane of the cam: a roller, or a shoe. Raises BodyError for a knife edge."""
+    match view.touch:
+        case Roller(radius=radius):
+            return roller(radius)
+        case Shoe(radius=radius):
+            return shoe(radius, view.pressure(SHAFT))
+    message, remedy = "a knife edge is not printed", "give a roller or a shoe, or leave parts: all out"
+    raise BodyError("cam.follower", message, remedy)
 
 
 def roller(radius: float) -> Stand:
@@ -70,12 +80,12 @@ def shoe(radius: float, angle: Array) -> Stand:
     return stand
 
 
-def on_stem(motion: Displacement, line: Translating, stand: Stand, drive: Drive) -> Assembly:
+def on_stem(view: View[Translating, Round], drive: Drive) -> Assembly:
     """Return the mechanism of a roller or a shoe on a stem."""
-    s, z = drive.sizes, Levels.of(drive)
-    place = lifted(motion, line.foot, line.offset)
-    x = line.foot + motion.derivatives(SHAFT, 0)[0]
-    foot = stand((0.0, 0.0), 0.0, (STEM, place), drive)
+    s, z, line = drive.sizes, Levels.of(drive), view.guide.offset
+    place = lifted(view.design.position, view.datum, line)
+    x = view.datum + view.travel(SHAFT)[0]
+    foot = stood(view)((0.0, 0.0), 0.0, (STEM, place), drive)
     first = max(float(x.max()) + _beyond(foot), drive.reach) + s.space
     end = first + guide_length(s) + s.space - float(x.min())
     stem = Plate(bar((foot.at[0], 0.0), (end, 0.0), s.bar), (), z.low, z.high)
@@ -89,7 +99,7 @@ def on_stem(motion: Displacement, line: Translating, stand: Stand, drive: Drive)
         fits=roller_fits([foot], drive) if foot.members else (),
         touching=frozenset({frozenset({"cam", foot.touches})}),
         remarks=(SPRING,),
-        line=line.offset,
+        line=line,
     )
 
 
@@ -99,11 +109,12 @@ def _beyond(*feet: Foot) -> float:
     return max(float(plate.outline.box()[2]) for plate in plates)
 
 
-def on_arm(motion: Displacement, lever: Oscillating, stand: Stand, drive: Drive) -> Assembly:
+def on_arm(view: View[Oscillating, Round], drive: Drive) -> Assembly:
     """Return the mechanism of a roller or a shoe on an arm. Raises BodyError where the cam reaches over the pivot."""
+    stand, lever = stood(view), view.guide
     _clear(lever.pivot, drive)
-    place = swung(motion, lever.pivot, lever.rest, lever.side)
-    foot = stand((lever.length, 0.0), 0.5 * math.pi * lever.side, ("arm", place), drive)
+    place = swung(view.design.position, lever.pivot, view.datum, lever.side)
+    foot = stand((lever.length or 0.0, 0.0), 0.5 * math.pi * lever.side, ("arm", place), drive)
     return arm(place, lever.pivot, [foot], drive, (SPRING,))
 
 
@@ -116,14 +127,16 @@ def _clear(pivot: float, drive: Drive) -> None:
         raise BodyError(field, message, remedy, reach=drive.reach, pivot=pivot, least=pivot + over)
 
 
-def roller_frame(motion: Displacement, foot: float, apart: float, radius: float, drive: Drive) -> Assembly:
-    """Return the mechanism of two opposite rollers in one frame, the first at `foot` at displacement 0.
+def roller_frame(view: View[Translating, Roller], drive: Drive) -> Assembly:
+    """Return the mechanism of two opposite rollers in one frame.
 
     Raises BodyError where the slot round the shaft would run into their pins.
     """
     s, z, shaft = drive.sizes, Levels.of(drive), drive.shaft
-    place = lifted(motion, foot)
-    x = foot + motion.derivatives(SHAFT, 0)[0]
+    foot, radius = view.datum, view.touch.radius
+    apart = foot + view.contacts[1].datum
+    place = lifted(view.design.position, foot)
+    x = foot + view.travel(SHAFT)[0]
     least, most = float(x.min()), float(x.max())
     # the base's boss stands through the slot, and so does a hub below the disc
     about = max(shaft.journal + s.gap_each_side + s.wall, drive.disk.hub if drive.disk.bottom < 0.0 else 0.0)
@@ -164,26 +177,26 @@ def roller_frame(motion: Displacement, foot: float, apart: float, radius: float,
     )
 
 
-def face_on_arm(face: SwingingFace, contact: Array, drive: Drive) -> Assembly:
-    """Return the mechanism of a flat face on an arm, touched at places (n,) along it from the pivot.
+def face_on_arm(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
+    """Return the mechanism of a flat face on an arm.
 
     Raises BodyError where the cam leaves the hub no room, or the face passes beside the hub.
     """
-    s, disk = drive.sizes, drive.disk
-    _clear(face.pivot, drive)
+    s, disk, nearer, arm_of = drive.sizes, drive.disk, view.touch.nearer, view.guide
+    _clear(arm_of.pivot, drive)
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
     hub, inner = 0.5 * s.hole + max(s.wall, THIN), 0.5 * s.hole + THIN
-    if not -0.5 * s.bar < face.face < hub + 0.6 * s.bar:
+    if not -0.5 * s.bar < nearer < hub + 0.6 * s.bar:
         message = "the face passes {away} beside the pivot, and its bar beside the hub"
-        remedy = "give at most {most}" if face.face > 0.0 else "give 0 or more"
-        raise BodyError("cam.follower.arm.face", message, remedy, away=abs(face.face), most=hub + 0.5 * s.bar)
-    y0, y1 = sorted(face.side * (-face.face + y) for y in (0.0, s.bar))
+        remedy = "give at most {most}" if nearer > 0.0 else "give 0 or more"
+        raise BodyError("cam.follower.arm.face", message, remedy, away=abs(nearer), most=hub + 0.5 * s.bar)
+    y0, y1 = sorted(arm_of.side * (-nearer + y) for y in (0.0, s.bar))
     plates = (
         Plate(disc(hub), (eye(s),), low, high),
-        Plate(box(inner, y0, float(contact.max()) + s.bar, y1), (), low, high),
+        Plate(box(inner, y0, float(view.place(SHAFT).max()) + s.bar, y1), (), low, high),
     )
-    place, pivot = swung(face.motion, face.pivot, face.rest, face.side), (face.pivot, 0.0)
+    place, pivot = swung(view.design.position, arm_of.pivot, view.datum, arm_of.side), (arm_of.pivot, 0.0)
     follower = Member("follower", plates, "follower", place, ARM_COLOUR)
     width = max(2.0 * base_radius(drive), drive.reach)
     stand = bearing(drive, [bar((0.0, 0.0), pivot, width)], low + disk.bottom - s.gap)

@@ -18,6 +18,7 @@ from kin.clearance.sweep import swept_box
 from kin.contour.contour import Contour
 from kin.judge.check import Check
 from kin.numeric.angles import TURN
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -135,7 +136,7 @@ def _checked(pair: Clearance) -> Check:
     if pair.holds:
         detail = f"{pair.a} and {pair.b}"
     elif pair.collides:
-        detail = f"{pair.a} and {pair.b} interfere, near ({x:.4g}, {y:.4g}) mm"
+        detail = f"{pair.a} and {pair.b} interfere, near {place_text(x, y, digits=4)} mm"
     else:
         detail = f"{pair.a} and {pair.b}: no clearance is proved, {pair.least:.4g} mm was found"
     return Check(COLLISION.name, pair.holds, least, 0.0, "mm", pair.at_deg, "at_least", detail=detail)

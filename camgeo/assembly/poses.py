@@ -10,9 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from camgeo.assembly.assembly import Place
-    from camgeo.curve.moving_frame import Displacement
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
+    from camgeo.cams.position import Position
     from kin.numeric.arrays import Array
 
 
@@ -31,35 +29,24 @@ class Turning:
         return found
 
 
-def sliding(lift: Lift) -> Place:
-    """Give the place of a plate that slides along x: the face whose lift is reported stands at its origin."""
-
-    def place(phi: Array, order: int) -> Array:
-        found = np.zeros((3, order + 1, len(phi)))
-        found[0] = lift.derivatives(phi, order)
-        return found
-
-    return place
-
-
-def swinging(law: Transmission, away: float, share: float = 1.0) -> Place:
-    """Give the place of an arm about a pivot `away` from the shaft: turned clockwise by a share of psi."""
+def swinging(motion: Position, away: float) -> Place:
+    """Give the place of an arm about a pivot `away` from the shaft, turned clockwise as the follower swings."""
 
     def place(phi: Array, order: int) -> Array:
         found = np.zeros((3, order + 1, len(phi)))
         found[0, 0] = away
-        found[2] = -share * law.psi_of_shaft(phi, order)
+        found[2] = -motion.travel(phi, order)
         return found
 
     return place
 
 
-def lifted(motion: Displacement, foot: float, y: float = 0.0) -> Place:
-    """Give the place of a stem that moves along x on a line at y: its origin stands at `foot` at displacement 0."""
+def lifted(motion: Position, foot: float = 0.0, y: float = 0.0) -> Place:
+    """Give the place of a stem that moves along x on a line at y: its origin stands at `foot` at position 0."""
 
     def place(phi: Array, order: int) -> Array:
         found = np.zeros((3, order + 1, len(phi)))
-        found[0] = motion.derivatives(phi, order)
+        found[0] = motion.travel(phi, order)
         found[0, 0] += foot
         found[1, 0] = y
         return found
@@ -67,7 +54,7 @@ def lifted(motion: Displacement, foot: float, y: float = 0.0) -> Place:
     return place
 
 
-def swung(motion: Displacement, away: float, rest: float, side: int) -> Place:
+def swung(motion: Position, away: float, rest: float, side: int) -> Place:
     """Give the place of an arm about a pivot `away` from the shaft, its x from there to what touches the cam.
 
     `rest` is its angle to the line from pivot to shaft at displacement 0; `side` is +1 trailing, -1 leading.
@@ -76,7 +63,7 @@ def swung(motion: Displacement, away: float, rest: float, side: int) -> Place:
     def place(phi: Array, order: int) -> Array:
         found = np.zeros((3, order + 1, len(phi)))
         found[0, 0] = away
-        found[2] = side * motion.derivatives(phi, order)
+        found[2] = side * motion.travel(phi, order)
         found[2, 0] += math.pi + side * rest
         return found
 

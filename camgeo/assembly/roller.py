@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from camgeo.assembly.assembly import Place
     from camgeo.assembly.shaft import Drive
     from camgeo.assembly.shapes import Point
-    from kin.law.transmission import Transmission
+    from camgeo.synthesis.view import View
+    from kin.law.contacts import Flat, Oscillating, Roller
 
 ARM_COLOUR, ROLLER_COLOUR = "#4f8f5f", "#8a6fb0"
 LOOKS = 720
@@ -89,15 +90,16 @@ def rolling(
     return Foot(centre, pin(s, centre, z.high, z.cam_low, z.cam_high), name, members)
 
 
-def double_roller(law: Transmission, radius: float, drive: Drive) -> Assembly:
+def double_roller(view: View[Oscillating, Roller], drive: Drive) -> Assembly:
     """Return the mechanism of a double roller."""
-    place = swinging(law, law.arm)
-    ends = [(law.arm * math.cos(side * law.alpha), law.arm * math.sin(side * law.alpha)) for side, _ in SIDES]
+    away, alpha = view.guide.pivot, view.contacts[0].apart
+    place = swinging(view.design.position, away)
+    ends = [(away * math.cos(side * alpha), away * math.sin(side * alpha)) for side, _ in SIDES]
     feet = [
-        rolling(end, radius, ("arm", place), drive, names=(f"roller-{name}", name))
+        rolling(end, view.touch.radius, ("arm", place), drive, names=(f"roller-{name}", name))
         for end, (_, name) in zip(ends, SIDES, strict=True)
     ]
-    return arm(place, law.arm, feet, drive)
+    return arm(place, away, feet, drive)
 
 
 def covered(away: float, drive: Drive) -> float:
@@ -133,15 +135,13 @@ def roller_fits(feet: Sequence[Foot], drive: Drive) -> list[Fit]:
     return [*running, Fit("retainers on pins", s.press, pressed=True)]
 
 
-def flat_pair(law: Transmission, drive: Drive) -> Assembly:
+def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
     """Return the mechanism of a rigid pair of flat faces, each half the clearance away from the cam.
 
     Raises BodyError where the cam passes so near to the pivot that there is no room for its hub.
     """
-    from kin.follower.envelope import PairSupport
-
     s, disk, reach = drive.sizes, drive.disk, drive.reach
-    away, half = 2.0 * law.arm, 0.5 * law.alpha
+    away, half = view.guide.pivot, view.contacts[0].apart
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
     hub, inner = min(s.bar, away - reach - s.space), 0.5 * s.hole + THIN
@@ -150,18 +150,13 @@ def flat_pair(law: Transmission, drive: Drive) -> Assembly:
         remedy = "give at most {most}" if most >= 1.0 else "give a cam with less swing"
         message = "the cam passes {near} from the pivot: no room for its hub"
         raise BodyError("mechanism.pin", message, remedy, near=away - reach, most=most)
-    support, phi = PairSupport(law), TURN * np.arange(LOOKS) / LOOKS
-    swing = 0.5 * law.psi_of_shaft(phi, 0)[0]
     plates = [Plate(disc(hub), (eye(s),), low, high)]
-    for side, _ in SIDES:
-        q, slope = support.derivatives(phi + side * half - swing, 1)
-        direction = side * half - swing
-        c, n = np.cos(direction), np.sin(direction)
-        lever = np.hypot(q * c - slope * n - away, q * n + slope * c)  # of the contact about the pivot
+    for (side, _), touched in zip(SIDES, view.touched(TURN * np.arange(LOOKS) / LOOKS), strict=True):
+        lever = np.abs(touched - away)  # of the contact about the pivot
         along = side * (half + 0.5 * math.pi)
         y0, y1 = sorted((-side * s.gap_each_side, -side * (s.gap_each_side + s.bar)))
         plates.append(Plate(moved(box(inner, y0, float(lever.max()) + s.bar, y1), 0.0, 0.0, along), (), low, high))
-    place, pivot = swinging(law, away, 0.5), (away, 0.0)
+    place, pivot = swinging(view.design.position, away), (away, 0.0)
     pair = Member("pair", tuple(plates), "pair", place, ARM_COLOUR)
     width = max(2.0 * base_radius(drive), reach)
     foot = bearing(drive, [bar((0.0, 0.0), pivot, width)], low + disk.bottom - s.gap)

@@ -10,7 +10,7 @@ import numpy as np
 from camgeo.assembly.assembly import Assembly, Fit, Member
 from camgeo.assembly.body import Plate
 from camgeo.assembly.guide import guide, guide_length, half_width
-from camgeo.assembly.poses import Turning, sliding
+from camgeo.assembly.poses import Turning, lifted
 from camgeo.assembly.shaft import base, base_radius, bearing, shaft_fits, turned
 from camgeo.assembly.shapes import box, moved
 from kin.numeric.angles import TURN
@@ -18,25 +18,25 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.assembly.assembly import Place
     from camgeo.assembly.shaft import Drive
-    from kin.law.support_function import Lift
-    from kin.numeric.arrays import Array
+    from camgeo.synthesis.view import View
+    from kin.law.contacts import Flat, Translating
 
 LOOKS = 720  # angles at which extents are looked up; a stem runs on beyond them by more than a sample misses
+SHAFT = TURN * np.arange(LOOKS) / LOOKS
 FOLLOWER_COLOUR = "#4f8f5f"
 LOOSE = "gravity or a spring holds the follower on the cam: one flat face does not"
 
 
-def yoke(lift: Lift, breadth: float, drive: Drive) -> Assembly:
+def yoke(view: View[Translating, Flat], drive: Drive) -> Assembly:
     """Return the mechanism of a yoke.
 
     The yoke's own x is measured from the intended place of face 1; each face stands half the clearance farther out.
     """
-    s, disk = drive.sizes, drive.disk
+    s, disk, breadth = drive.sizes, drive.disk, view.contacts[1].datum
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
-    p = lift.derivatives(TURN * np.arange(LOOKS) / LOOKS, 0)[0]
+    p = view.travel(SHAFT)[0]
     least, most = float(p.min()), float(p.max())
     right, left = s.gap_each_side + s.wall, -breadth - s.gap_each_side - s.wall
     tall = drive.reach + s.space
@@ -53,27 +53,23 @@ def yoke(lift: Lift, breadth: float, drive: Drive) -> Assembly:
     half = 0.5 * s.bar
     boxes = (box(right, -half, ends[0], half), box(ends[1], -half, left, half))
     stems = [Plate(outline, (), low, high) for outline in boxes]
-    follower = Member("yoke", (frame, *stems), "yoke", sliding(lift), FOLLOWER_COLOUR)
+    follower = Member("yoke", (frame, *stems), "yoke", lifted(view.design.position), FOLLOWER_COLOUR)
     held = [Fit("the yoke's faces about the cam", s.clearance)]
     guides = [("right", first), ("left", last - guide_length(s))]
     return guided([follower], guides, (low, high), low, drive, fits=held)
 
 
-def flat_face(lift: Lift, drive: Drive) -> Assembly:
-    """Return the mechanism of a single flat face, exact and without clearance: something has to hold it on the cam."""
-    p, slope = lift.derivatives(TURN * np.arange(LOOKS) / LOOKS, 1)
-    tall = float(np.abs(slope).max()) + 0.5 * drive.sizes.bar
-    return face_on_stem(sliding(lift), p, (-tall, tall), drive)
+def face_on_stem(view: View[Translating, Flat], drive: Drive) -> Assembly:
+    """Return a flat face on a stem, exact and without clearance: something has to hold it on the cam.
 
-
-def face_on_stem(
-    place: Place, x: Array, face: tuple[float, float], drive: Drive, *, tilt: float = 0.0, line: float = 0.0
-) -> Assembly:
-    """Return a flat face from end to end along itself, on a stem at places x (n,) along the `line` at that y.
-
-    The face crosses the stem's middle in the origin; its normal is turned by `tilt`.
+    The face crosses the stem's middle in the origin; its normal is turned by its tilt.
     """
-    s, disk = drive.sizes, drive.disk
+    s, disk, tilt, line = drive.sizes, drive.disk, view.touch.tilt, view.guide.offset
+    x = view.datum + view.travel(SHAFT)[0]
+    contact, margin = view.place(SHAFT), 0.5 * s.bar
+    face = float(contact.min()) - margin, float(contact.max()) + margin
+    if view.touch.width is not None:
+        face = -0.5 * view.touch.width, 0.5 * view.touch.width
     low = s.plate + s.gap - disk.bottom
     high = low + disk.thickness
     half = 0.5 * s.bar
@@ -84,7 +80,7 @@ def face_on_stem(
     lean = half * abs(math.tan(tilt))
     begin = max(lean, s.wall / math.cos(tilt) - lean)
     plates = Plate(plate, (), low, high), Plate(box(begin, -half, end, half), (), low, high)
-    follower = Member("follower", plates, "follower", place, FOLLOWER_COLOUR)
+    follower = Member("follower", plates, "follower", lifted(view.design.position, view.datum, line), FOLLOWER_COLOUR)
     touching = frozenset({frozenset({"cam", follower.name})})
     return guided(
         [follower], [("right", first)], (low, high), low, drive, touching=touching, remarks=(LOOSE,), line=line

@@ -15,12 +15,13 @@ from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Inte
 from camgeo.cams.guided import GuidedCam
 from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
 from camgeo.schema.fields import Table, length
+from kin.law.contacts import Roller, opposite
 
 if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked
-    from camgeo.curve.moving_frame import Displacement, Translating
+    from camgeo.curve import moving_frame
+    from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Reader, Values
-    from kin.follower.follower import Follower as Judged
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,7 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
     """A cam between two opposite rollers of one frame, from the motion over one half turn."""
 
     kind: ClassVar[str] = "constant-diameter"
+    gain: ClassVar[float | None] = None
     offers: ClassVar[frozenset[str]] = GuidedCam.offers | {"rolling"}
     base_radius: float
     roller_radius: float
@@ -40,11 +42,11 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
         return self.roller_radius
 
     @property
-    def guide(self) -> Translating:
+    def guide(self) -> moving_frame.Translating:
         """Through the shaft."""
-        from camgeo.curve.moving_frame import Translating
+        from camgeo.curve import moving_frame
 
-        return Translating(self.base_radius + self.roller_radius)
+        return moving_frame.Translating(self.base_radius + self.roller_radius)
 
     def intent(self) -> Intent:
         """The displacement of the first roller over a whole turn."""
@@ -55,19 +57,13 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """A frame with two rollers."""
-        return Follower("roller yoke", ("constant-diameter", "pressure-angle"), closure="form-closure")
+        contacts = opposite(Roller(self.roller_radius), self.apart(intent), self.guide.foot)
+        return Follower("roller yoke", contacts, ("constant-diameter", "pressure-angle"), "form-closure")
 
     def apart(self, intent: Intent) -> float:
         """Distance of the rollers' centres, mm."""
         s = cast("Displacement", intent).derivatives(np.array([0.0, math.pi]), 0)[0]
         return 2.0 * (self.base_radius + self.roller_radius) + float(s.sum())
-
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
-        """A frame with two rollers."""
-        from kin.follower import follower
-
-        law = cast("Displacement", intent).law(self.guide.prime)
-        return follower.RollerYoke(self.roller_radius, law, self.apart(intent))
 
     def grown(self, out: float, scale: float) -> Cam:
         """Smaller rollers on the same pitch curve."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, cast
 
@@ -12,19 +13,21 @@ from camgeo.cams.guided import GuidedCam
 from camgeo.cams.position import ArmPosition, LiftPosition, Position
 from camgeo.cams.sizing import size_arm, size_face, size_stem
 from camgeo.common.rounding import upward
+from kin.law.contacts import LEADING, TRAILING, Contact, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from camgeo.cams.motion import MotionAsked
     from camgeo.cams.sizing import Sizing
+    from camgeo.curve import moving_frame
     from camgeo.curve.disc import StraightFace, SwingingFace
-    from camgeo.curve.moving_frame import Displacement, Oscillating, Translating
-    from kin.follower.follower import Follower as Judged
+    from camgeo.curve.moving_frame import Displacement
+    from kin.law.contacts import Guide, Side, Touch
     from kin.law.joints import Joint
     from kin.law.sources.motion import Motion
 
-Side: TypeAlias = Literal["trailing", "leading"]
+ArmSide: TypeAlias = Literal["trailing", "leading"]
 Track: TypeAlias = Literal["external", "internal"]
 _MARGIN = 1e-3  # rad: sizes are reported rounded, and where two limits meet rounding breaks one
 
@@ -74,7 +77,12 @@ class DiscCam(Cam):
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """One contact, which a spring or gravity holds on the cam."""
-        return Follower(f"{self.guided} {self.touch}", self.checks)
+        return Follower(f"{self.guided} {self.touch}", (self.contact,), self.checks)
+
+    @property
+    @abstractmethod
+    def contact(self) -> Contact[Guide, Touch]:
+        """How the cam is touched."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,12 +93,12 @@ class _Arm:
     unit: ClassVar[Unit] = "deg"
     gain: ClassVar[float | None] = None
     pivot: float
-    side: Side
+    side: ArmSide
 
     @property
-    def sense(self) -> int:
+    def sense(self) -> Side:
         """+1 trailing: the follower is touched clockwise of the pivot as drawn; -1 leading."""
-        return 1 if self.side == "trailing" else -1
+        return TRAILING if self.side == "trailing" else LEADING
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,12 +115,17 @@ class RoundCam(DiscCam, GuidedCam):
         return self.radius
 
     @property
+    def round(self) -> Roller | Shoe | KnifeEdge:
+        """What touches the cam."""
+        return KnifeEdge() if not self.radius else (Shoe if self.touch == "shoe" else Roller)(self.radius)
+
+    @property
     def roller_field(self) -> str:
         """A curved shoe is no roller."""
         return "shoe radius" if self.touch == "shoe" else super().roller_field
 
     @property
-    def metal(self) -> int:
+    def metal(self) -> Side:
         """-1 where the cam is the opening of a ring."""
         return 1 if self.track == "external" else -1
 
@@ -144,11 +157,11 @@ class TranslatingRoundCam(RoundCam):
     offset: float = 0.0
 
     @property
-    def guide(self) -> Translating:
+    def guide(self) -> moving_frame.Translating:
         """The line of travel."""
-        from camgeo.curve.moving_frame import Translating
+        from camgeo.curve import moving_frame
 
-        return Translating.on(self.prime, self.offset)
+        return moving_frame.Translating.on(self.prime, self.offset)
 
     def sized(self, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
         """The least cam that keeps what is asked."""
@@ -157,12 +170,10 @@ class TranslatingRoundCam(RoundCam):
     def _found(self, mm: float) -> str:
         return f", with offset {self.offset / mm:.9g}"
 
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
-        """One roller on a stem."""
-        from kin.follower import follower, guide
-
-        law = cast("Displacement", intent).law(self.guide.foot)
-        return follower.Roller(guide.Translating(self.offset), self.radius, law, self.metal < 0)
+    @property
+    def contact(self) -> Contact[Guide, Touch]:
+        """On the stem, from the foot of the shaft."""
+        return Contact(Translating(self.offset), self.round, self.guide.foot)
 
     def grown(self, out: float, scale: float) -> Cam:
         """A smaller roller on the same pitch curve."""
@@ -177,11 +188,11 @@ class OscillatingRoundCam(_Arm, RoundCam):
     length: float
 
     @property
-    def guide(self) -> Oscillating:
+    def guide(self) -> moving_frame.Oscillating:
         """The arm."""
-        from camgeo.curve.moving_frame import Oscillating
+        from camgeo.curve import moving_frame
 
-        return Oscillating.on(self.prime, self.pivot, self.length, self.sense)
+        return moving_frame.Oscillating.on(self.prime, self.pivot, self.length, self.sense)
 
     def sized(self, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
         """The least cam that keeps what is asked."""
@@ -190,13 +201,10 @@ class OscillatingRoundCam(_Arm, RoundCam):
     def _found(self, mm: float) -> str:
         return f", with pivot {self.pivot / mm:.9g}"
 
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
-        """One roller on an arm."""
-        from kin.follower import follower, guide
-
-        law = cast("Displacement", intent).law(self.guide.rest)
-        side = guide.TRAILING if self.sense > 0 else guide.LEADING
-        return follower.Roller(guide.Arm(self.length, self.pivot, side), self.radius, law, self.metal < 0)
+    @property
+    def contact(self) -> Contact[Guide, Touch]:
+        """On the arm, from its rest."""
+        return Contact(Oscillating(self.pivot, self.sense, self.length), self.round, self.guide.rest)
 
     def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius for this length of arm, with the pivot's distance."""
@@ -262,13 +270,11 @@ class TranslatingFaceCam(DiscCam, FacedCam):
         """The least cam that keeps what is asked."""
         return size_face(self, asked, given)
 
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
-        """A face on a stem."""
-        from kin.follower import follower
-        from kin.law.support_function import Lift
-
-        lift = Lift(cast("Displacement", intent).law(self.base_radius / math.cos(self.tilt)))
-        return follower.TiltedFace(lift, self.tilt) if self.tilt else follower.FlatFace(lift)
+    @property
+    def contact(self) -> Contact[Guide, Touch]:
+        """Across the stem, from where the face crosses its axis."""
+        level = (self.base_radius - self.offset * math.sin(self.tilt)) / math.cos(self.tilt)
+        return Contact(Translating(self.offset), Flat(self.tilt, self.width), level)
 
     def grown(self, out: float, scale: float) -> Cam:
         """A larger base circle."""
@@ -298,14 +304,11 @@ class OscillatingFaceCam(_Arm, DiscCam, FacedCam):
 
         return SwingingFace.on(motion, self.base_radius, self.pivot, self.nearer, self.sense)
 
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
-        """A face on an arm."""
-        from kin.follower import follower, guide
-
-        motion = cast("Displacement", intent)
+    @property
+    def contact(self) -> Contact[Guide, Touch]:
+        """Along the arm, from its rest."""
         rest = math.asin((self.base_radius + self.nearer) / self.pivot)
-        side = guide.TRAILING if self.sense > 0 else guide.LEADING
-        return follower.SwingingFace(self.pivot, self.nearer, motion.law(rest), side)
+        return Contact(Oscillating(self.pivot, self.sense), Flat(nearer=self.nearer), rest)
 
     def grown(self, out: float, scale: float) -> Cam:
         """The same swing of a face that stands farther out on its arm."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, cast
 
@@ -23,12 +24,12 @@ from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.schema.fields import length
+from kin.law.contacts import Roller, on_one_arm
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from camgeo.schema.reader import Values
-    from kin.follower.follower import Follower as Judged
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
@@ -69,7 +70,9 @@ class DoubleRollerCam(PairCam):
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """Two rollers on one arm, its pivot as far from the shaft as from them."""
         checks = ("closing-equation", "velocity-ratio", "pressure-angle")
-        return Follower("double roller", checks, closure="form-closure")
+        alpha = cast("Transmission", intent).alpha
+        contacts = on_one_arm(self.arm, self.arm, Roller(self.roller_radius), math.pi, alpha)
+        return Follower("double roller", contacts, checks, "form-closure")
 
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:
         """Between the normal and the way of a roller's arm; each of both rollers runs round the whole pitch curve."""
@@ -86,12 +89,6 @@ class DoubleRollerCam(PairCam):
             return found
 
         return angle
-
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
-        """A double roller."""
-        from kin.follower import follower
-
-        return follower.DoubleRoller(cast("Transmission", intent), self.roller_radius)
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A smaller roller."""

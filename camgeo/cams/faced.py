@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from camgeo.curve.extremes import Figure
     from camgeo.curve.face import FaceShape
     from camgeo.curve.moving_frame import Displacement
+    from kin.law.piecewise import Piecewise
     from kin.numeric.arrays import Array
 
 LARGER_BASE = "a larger base radius, a smaller stroke, or the same over a wider angle"
@@ -48,6 +49,10 @@ class FacedCam(Cam):
         whole = Curve.whole(face_shape(self.face(intent)))
         return Profile(whole, whole, 0.0)
 
+    def law(self, intent: Intent) -> Piecewise:
+        """The displacement."""
+        return cast("Displacement", intent).law()
+
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """Between the face's normal and its way."""
         from kin.numeric.elementary import Jet
@@ -73,6 +78,8 @@ class FacedCam(Cam):
 
     def larger(self, by: float, unit: str = "") -> str:
         """Say how radii of curvature, which grow with the base radius, grow by more than `by`, in its unit."""
+        if by == 0.0:  # a radius that is 0 needs no more than not to be
+            return "a larger base radius"
         return f"a base radius larger by more than {upward(by)} {unit}".rstrip()
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:

@@ -6,10 +6,11 @@ The rest of the package asks a cam by these names and never which family it is o
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.schema.fields import Field, Kind
+from kin.law.contacts import Arrangement, Flat
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
@@ -22,9 +23,10 @@ if TYPE_CHECKING:
     from camgeo.schema.fields import Table
     from camgeo.schema.reader import Reader, Values
     from camgeo.schema.yaml_source import Node
-    from kin.follower.follower import Follower as Judged
+    from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
+    from kin.law.piecewise import Piecewise
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -49,26 +51,39 @@ class Profile:
     """The exact curve of a cam.
 
     `base` is what the motion describes, the pitch curve of a roller or the contour itself; `curve` is the contour,
-    `roller_radius` inside the base (0 for flat faces).
+    `roller_radius` inside the base (0 for flat faces). `extremes` keeps what `Cam.extremes` found.
     """
 
     base: Curve
     curve: Curve
     roller_radius: float
+    extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
 
 @dataclass(frozen=True)
 class Follower:
-    """What follows the disc: the name in reports, the checks of its intended motion in their order.
+    """What follows the disc: the name in reports, its contacts, the checks of its intended motion in their order.
 
-    `breadth` is how far two opposite faces are apart, mm, None for other followers. `closure` is the name of the check
-    of files on what is left between the cam and a follower that is held from both sides, empty for other followers.
+    `closure` is the name of the check of files on what is left between the cam and a follower that is held from both
+    sides, empty for other followers.
     """
 
     name: str
+    contacts: tuple[Contact[Guide, Touch], ...]
     checks: tuple[str, ...]
-    breadth: float | None = None
     closure: str = ""
+
+    @property
+    def arrangement(self) -> Arrangement:
+        """Guide and touch of its contacts, and how many they are."""
+        first = self.contacts[0]
+        return Arrangement(type(first.guide), type(first.touch), len(self.contacts))
+
+    @property
+    def breadth(self) -> float | None:
+        """How far two opposite faces are apart, mm; None for other followers."""
+        *_, last = self.contacts
+        return last.datum if last.sense < 0 and isinstance(last.touch, Flat) and last.guide.unit == "mm" else None
 
 
 class Circle(NamedTuple):
@@ -120,7 +135,7 @@ class Cam(ABC):
         return "roller radius"
 
     @property
-    def metal(self) -> int:
+    def metal(self) -> Side:
         """On which side of the contour the metal lies: 1 inside, -1 outside, as of a ring."""
         return 1
 
@@ -143,8 +158,8 @@ class Cam(ABC):
         """The follower that the motion calls for; `framed` where a linkage carries it."""
 
     @abstractmethod
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:
-        """What kin judges files by: the follower with its law; `breadth` is a yoke's, `face` that of a pair."""
+    def law(self, intent: Intent) -> Piecewise | Transmission:
+        """The motion as kin judges files by it: the follower's position over the shaft angle, or a transmission."""
 
     @property
     def by_linkage(self) -> bool:
@@ -183,15 +198,17 @@ class Cam(ABC):
         return {}
 
     def extremes(self, name: str, intent: Intent, profile: Profile) -> tuple[Extreme, Extreme] | None:
-        """Least and greatest value of one of `series`, None of one that there is not."""
+        """Least and greatest value of one of `series`, found once of a profile; None of one that there is not."""
         from camgeo.curve.extremes import greatest, least
         from camgeo.curve.rates import stretches
 
-        figure = self.series(intent, profile).get(name)
-        if figure is None:
-            return None
-        over = stretches(profile.base.shape)
-        return least(figure, over), greatest(figure, over)
+        if name not in profile.extremes:
+            figure = self.series(intent, profile).get(name)
+            if figure is None:
+                return None
+            over = stretches(profile.base.shape)
+            profile.extremes[name] = least(figure, over), greatest(figure, over)
+        return profile.extremes[name]
 
     # --- advice -------------------------------------------------------------------------------------------------------
 

@@ -11,12 +11,13 @@ from camgeo.cams.family import Cam, Follower, Intent, Profile
 from camgeo.cams.position import LiftPosition, Position
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
+from kin.law.contacts import Contact, Flat, Translating, opposite
 from kin.numeric.distinct import distinct
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kin.follower.follower import Follower as Judged
+    from kin.law.piecewise import Piecewise
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
@@ -48,8 +49,9 @@ class FlatFacedCam(Cam):
         mean, deviation, _ = breadth_of(cast("Lift", intent))
         yoke = self.always_in_a_yoke or is_constant(mean, deviation)
         name = "square frame" if framed else "yoke" if yoke else "flat face"
-        checks = ("constant-breadth", "contact-travel") if yoke else ("contact-travel",)
-        return Follower(name, checks, *((mean, "constant-breadth") if yoke else ()))
+        if not yoke:
+            return Follower(name, (Contact(Translating(), Flat()),), ("contact-travel",))
+        return Follower(name, opposite(Flat(), mean), ("constant-breadth", "contact-travel"), "constant-breadth")
 
     def contact_place(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """From the line through the shaft, along the face: p'."""
@@ -59,16 +61,15 @@ class FlatFacedCam(Cam):
     always_in_a_yoke: ClassVar[bool] = False
     """Whether the motion is given for two faces, so that a breadth that varies is a fault."""
 
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
-        """A face or a yoke."""
-        from kin.follower import follower
-
-        lift = cast("Lift", intent)
-        return follower.FlatFace(lift) if breadth is None else follower.Yoke(lift, breadth=breadth)
+    def law(self, intent: Intent) -> Piecewise:
+        """The lift."""
+        return cast("Lift", intent).law
 
     def larger(self, by: float, unit: str = "") -> str:
         """Say how radii of curvature grow by more than `by`, in the recipe's unit."""
         name, share = self.size_field
+        if by == 0.0:  # a radius that is 0 needs no more than not to be
+            return f"a larger {name}"
         return f"a {name} larger by more than {upward(share * by)} {unit}".rstrip()
 
     @property

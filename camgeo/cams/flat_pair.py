@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Literal, cast
 
@@ -18,10 +19,10 @@ from camgeo.cams.family import (
 from camgeo.cams.pairs import PairCam, Route, build_route, check, pair_table
 from camgeo.cams.position import Position, SwingPosition
 from camgeo.curve.curve import Curve
+from kin.law.contacts import Flat, on_one_arm
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Values
-    from kin.follower.follower import Follower as Judged
     from kin.law.transmission import Transmission
 
 
@@ -55,13 +56,9 @@ class FlatPairCam(PairCam):
 
     def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
         """Two faces whose lines pass through their pivot."""
-        return Follower("flat pair", ("closing-equation", "velocity-ratio"), closure="form-closure")
-
-    def judged(self, intent: Intent, breadth: float | None, face: float) -> Judged:  # noqa: ARG002
-        """A pair, its faces so far beside the lines through the pivot."""
-        from kin.follower import follower
-
-        return follower.FlatPair(cast("Transmission", intent), face)
+        half = 0.5 * cast("Transmission", intent).alpha
+        contacts = on_one_arm(2.0 * self.arm, None, Flat(), 0.5 * math.pi, half)
+        return Follower("flat pair", contacts, ("closing-equation", "velocity-ratio"), "form-closure")
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
         """A smaller swing: r + const closes no pair, so there is no base radius to enlarge."""

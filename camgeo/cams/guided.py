@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from camgeo.cams.family import Intent
     from camgeo.curve.extremes import Figure
     from camgeo.curve.moving_frame import CentreShape, Displacement, Oscillating, Translating
+    from kin.law.piecewise import Piecewise
     from kin.numeric.arrays import Array
 
 LARGER_BASE = "a larger base radius, a smaller stroke, or the same over a wider angle"
@@ -57,6 +58,10 @@ class GuidedCam(Cam):
         pitch = CentreShape(intent, self.guide)
         whole, radius = Curve.whole(pitch), self.metal * self.touch_radius
         return Profile(whole, Curve.whole(Parallel(pitch, radius)), radius)
+
+    def law(self, intent: Intent) -> Piecewise:
+        """The displacement."""
+        return cast("Displacement", intent).law()
 
     def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
         """Between the contact's normal and the way of the centre."""

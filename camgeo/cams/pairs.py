@@ -17,9 +17,12 @@ from camgeo.cams.family import (
     Unit,
 )
 from camgeo.cams.motion import MotionAsked, check_filled, motion_field
+from camgeo.common.rounding import downward
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.schema.reader import Reader, Values
     from kin.law.joints import Joint
     from kin.law.transmission import Transmission
@@ -78,6 +81,30 @@ class RosetteRoute:
 Route: TypeAlias = DeltaRoute | DeltaFormulaRoute | LawRoute | ArcRoute | CurveRoute | RosetteRoute
 
 
+def _greatest_share(law: Callable[[float], Transmission]) -> float:
+    """Greatest share of its swing, to a thousandth and below 1, with which a law is possible; 0 where none is seen."""
+    from kin.law.programme import IntentError
+
+    low, high = 0.0, 1.0
+    for share in (0.5, 0.25, 0.05):
+        try:
+            law(share)
+        except IntentError:
+            high = share
+        else:
+            low = share
+            break
+    while low and high - low > 5e-4:
+        middle = 0.5 * (low + high)
+        try:
+            law(middle)
+        except IntentError:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
 class PairCam(Cam):
     """A single disk that works a rigid pair of contacts about one pivot; pi/alpha = lam/mu in lowest terms, mu odd."""
 
@@ -91,25 +118,48 @@ class PairCam(Cam):
 
     def intent(self) -> Intent:
         """Wunderlich's law of transmission, by the route that the recipe takes."""
+        from kin.law.programme import IntentError
+
+        try:
+            return self._law()
+        except IntentError as error:
+            if not isinstance(self.route, DeltaRoute | DeltaFormulaRoute | LawRoute):
+                raise
+            share = _greatest_share(self._law)
+            if not share:
+                raise
+            what = "stroke" if isinstance(self.route, LawRoute) else "value of D"
+            less = f"{error.message}; with each {what} multiplied by {downward(share, 3)} such a motion is possible"
+            raise IntentError(less, error.field, error.at_deg) from error
+
+    def _law(self, share: float = 1.0) -> Transmission:
+        """The law with this share of the swing's D, or of the strokes that the recipe gives."""
         from kin.law import transmission
 
         route = self.route
         if isinstance(route, DeltaRoute):
-            return transmission.from_delta(self.lam, self.mu, self.arm, dict(route.cos), dict(route.sin))
+            cos, sin = ({j: share * c for j, c in terms} for terms in (route.cos, route.sin))
+            return transmission.from_delta(self.lam, self.mu, self.arm, cos, sin)
         if isinstance(route, LawRoute):
             motion = route.motion.motion(math.pi / self.lam, "law", None)
-            return transmission.from_law(self.lam, self.mu, self.arm, motion, self.swing_of)
+            return transmission.from_law(self.lam, self.mu, self.arm, motion, self.swing_of, share=share)
         if isinstance(route, ArcRoute):
             return transmission.from_arc(self.lam, self.mu, self.arm, route.radius, route.side)
         from kin.law import polar_formula
         from kin.law.formula.formula import Formula
 
         if isinstance(route, DeltaFormulaRoute):
-            return polar_formula.from_delta_formula(self.lam, self.mu, self.arm, Formula(route.text), route.scale)
+            return polar_formula.from_delta_formula(
+                self.lam, self.mu, self.arm, Formula(route.text), share * route.scale
+            )
         if isinstance(route, CurveRoute):
             return polar_formula.from_curve(self.lam, self.mu, self.arm, Formula(route.text), route.scale)
         leaf = Formula(route.text, ("x",))
         return transmission.from_rosette(self.lam, self.mu, self.arm, leaf, route.scale)
+
+    def law(self, intent: Intent) -> Transmission:
+        """The transmission."""
+        return cast("Transmission", intent)
 
     def joints(self, intent: Intent) -> tuple[Joint, ...]:
         """Those of the swing over 360/lambda degrees, where the recipe gives it, or D or an arc by a formula."""

@@ -49,6 +49,10 @@ class Position(Protocol):
         """The same over one turn whose last angle is its end: there the derivatives are those that precede."""
         ...
 
+    def travel(self, shaft: Array, order: int) -> Array:
+        """Position from the zero of the contacts, not from the datum, and its derivatives, (order + 1, n)."""
+        ...
+
     def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:
         """Parameters of the contour (n,) at which each contact touches, by the label of its columns.
 
@@ -135,6 +139,10 @@ class LiftPosition(_Turn):
         found[0] -= self.datum
         return found
 
+    def travel(self, shaft: Array, order: int) -> Array:
+        """As the law has it."""
+        return self.law.derivatives(shaft, order)
+
     def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
         """Of the first contact; a second one, opposite, is not tabled."""
         return {"": relative}
@@ -173,6 +181,10 @@ class SwingPosition(_Swing, _Turn):
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Swing, rad, and its derivatives."""
         return self.share * self.law.psi_of_shaft(shaft, order, side)
+
+    def travel(self, shaft: Array, order: int) -> Array:
+        """The same as `rows`."""
+        return self.rows(shaft, order)
 
     def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
         """Of A and B. The law repeats itself with phi - psi + delta in place of phi and -psi in place of psi (W 4.9).

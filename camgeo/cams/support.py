@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 FREE = 3  # angles of a Reuleaux polygon that follow from the others
 LOOKS = 72  # places at which the size of a formula's values is looked at
+CLOSE_LOOKS = 14_400  # and its radii of curvature, to say how much larger they must be
+SPARE = 1e-3  # of their range: between two of these places one may be less
 LEAST_PART = 1e-9  # of its farthest point from the shaft: a cam with a smaller mean radius is lost in rounding
 LEAST_ANGLE = 0.1  # degrees: on a cam of 50 mm an arc of 0.09 mm
 ROUNDING = 1e-15  # of the same: a mean radius below it is 0
@@ -183,7 +185,10 @@ def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
     if mean > least or not farthest:  # of p = 0 the radius of curvature is held against 0 like any other
         return lift
     mean = 0.0 if abs(mean) < ROUNDING * farthest else mean
-    remedy = f"add more than {upward((least - mean) / scale)} to p" if field == "p" else "give a larger one"
+    rows = lift.derivatives(np.linspace(0.0, 2.0 * math.pi, CLOSE_LOOKS, endpoint=False), 2)
+    radii = rows[0] + rows[2]  # what is added to p is added to each (AS eq. 3)
+    more = max(least - mean, SPARE * float(np.ptp(radii)) - float(radii.min()))
+    remedy = f"add more than {upward(more / scale)} to p" if field == "p" else "give a larger one"
     raise IntentError(
         f"the mean radius is {mean / scale:.6g}, not above {least / scale:.3g}: a cam's perimeter is 2 pi times it, "
         f"and this one's points lie up to {farthest / scale:.6g} from the shaft; {remedy}",

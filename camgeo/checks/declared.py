@@ -44,13 +44,15 @@ LIMIT = "limit:"  # before the name of the figure that a recipe limits
 class Scene:
     """What decides which checks are made: the recipe, and the follower that its motion calls for.
 
-    Of a run further whether its contour is trimmed, and whether its linkage turns right round.
+    Of a run further whether its contour is trimmed, whether its linkage turns right round, and whether other libraries
+    are asked for a second opinion.
     """
 
     recipe: Recipe
     follower: Follower
     trimmed: bool = False
     turns: bool = True
+    second_opinion: bool = False
 
     @property
     def roller(self) -> bool:
@@ -223,6 +225,15 @@ def _dwelling(scene: Scene, file: FileRequest) -> bool:
     return _dwells(scene) and _driven(scene, file)
 
 
+def _seen_by(*kinds: str) -> OfFile:
+    """Whether other libraries are asked about files of these kinds; a 3MF of all bodies is not the cam's alone."""
+
+    def seen(scene: Scene, file: FileRequest) -> bool:
+        return scene.second_opinion and file.kind in kinds and not (file.kind == "3mf" and file.parts == "all")
+
+    return seen
+
+
 def _sprung(scene: Scene) -> bool:
     return scene.recipe.dynamics is not None and scene.recipe.dynamics.backlash is None
 
@@ -310,12 +321,20 @@ BREADTH = Declared(
 )
 DIAMETER = Declared("constant-diameter", ("mm",), _named("constant-diameter"))
 TRAVEL = Declared(CONTACT_TRAVEL, ("mm",), _named(CONTACT_TRAVEL), why_not=_no_plate, formerly=FORMER[CONTACT_TRAVEL])
-FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width")
+FACE_WIDTH = Declared(WIDTH, ("mm",), _named(WIDTH), field="cam.follower.width", remedy=remedies.wider_face)
 JAM = Declared("guide-jam", ("deg",), _guided, field="dynamics.guide")
-WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel")
+WHEEL = Declared("grinding-wheel", ("mm",), _ground, field="manufacture.wheel", remedy=remedies.smaller_wheel)
 MOBILITY = Declared("mobility", ("mm",), lambda scene: scene.linked, field="linkage")
 REVERSAL = Declared("reversal", ("",), lambda scene: scene.linked, field="linkage")
-DWELL = Declared(LONGEST_DWELL, ("deg",), _dwells, _dwelling, why_not=_no_dwell, field="dwell.at_least")
+DWELL = Declared(
+    LONGEST_DWELL,
+    ("deg",),
+    _dwells,
+    _dwelling,
+    why_not=_no_dwell,
+    field="dwell.at_least",
+    remedy=remedies.shorter_dwell,
+)
 WALL = Declared(LEAST_WALL, ("mm",), _walled, field="part.bore", own_field="part.outer", remedy=remedies.smaller_bore)
 LIGHTENING = Declared(
     "lightening", ("holes",), lambda scene: scene.recipe.part.lightening is not None, field="part.lightening"
@@ -366,7 +385,15 @@ MOTION = Declared(
     in_frame=True,
 )
 BREADTH_MAX = Declared("breadth-max", ("mm",), of_file=_in_a_yoke, backlash=True, in_frame=True)
-FORM_CLOSURE = Declared("form-closure", ("mm", "deg"), of_file=_form_closed, backlash=True)
+FORM_CLOSURE = Declared(
+    "form-closure",
+    ("mm", "deg"),
+    of_file=_form_closed,
+    field="export.tolerance",
+    own_field="verify.motion_error",
+    remedy=remedies.looser,
+    backlash=True,
+)
 OUTPUT = Declared(
     "linkage-error",
     ("mm", "deg"),
@@ -375,7 +402,14 @@ OUTPUT = Declared(
     field="export.tolerance",
     own_field="verify.output_error",
 )
-FLOAT = Declared("float", ("N", "N m"), _sprung, lambda scene, file: _sprung(scene) and _run_with(scene, file))
+FLOAT = Declared(
+    "float",
+    ("N", "N m"),
+    _sprung,
+    lambda scene, file: _sprung(scene) and _run_with(scene, file),
+    field="dynamics.preload",
+    remedy=remedies.stronger_spring,
+)
 LEAST_BACKLASH = Declared(
     BACKLASH_LEFT,
     ("mm", "deg", "N"),
@@ -384,6 +418,23 @@ LEAST_BACKLASH = Declared(
     formerly=FORMER[BACKLASH_LEFT],
 )
 
+# --- a second opinion on files ----------------------------------------------------------------------------------------
+
+_ANEW = remedies.exported_anew
+_FACED, _MESHES = _seen_by("dxf", "svg", "stl", "3mf", "step"), _seen_by("stl", "3mf")
+AUDIT = Declared("ezdxf:audit", ("faults",), of_file=_seen_by("dxf"), remedy=_ANEW)
+CONTOUR_VALID = Declared("shapely:valid", ("faults",), of_file=_FACED, remedy=_ANEW)
+CONTOUR_AREA = Declared("shapely:area", ("mm^2",), of_file=_FACED, field="export.tolerance", remedy=_ANEW)
+CONTOUR_DISTANCE = Declared(
+    "shapely:distance", ("mm",), of_file=_FACED, field="export.tolerance", remedy=remedies.wider
+)
+MESH_WATERTIGHT = Declared("trimesh:watertight", ("faults",), of_file=_MESHES, remedy=_ANEW)
+MESH_WINDING = Declared("trimesh:winding", ("faults",), of_file=_MESHES, remedy=_ANEW)
+MESH_BODIES = Declared("trimesh:bodies", ("bodies",), of_file=_MESHES, remedy=_ANEW)
+MESH_VOLUME = Declared("trimesh:volume", ("mm^3",), of_file=_MESHES, field="part.thickness", remedy=_ANEW)
+MESH_STATUS = Declared("manifold3d:status", ("faults",), of_file=_MESHES, remedy=_ANEW)
+
+SECOND_OPINIONS = tuple(one for one in tuple(globals().values()) if isinstance(one, Declared) and ":" in one.name)
 CHECKS: dict[str, Declared] = {one.name: one for one in globals().values() if isinstance(one, Declared)}
 """Every check but the limits of a recipe's own, by name, in the order in which they are foreseen."""
 

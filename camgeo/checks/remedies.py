@@ -6,6 +6,7 @@ side on which the text is true.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from camgeo.cams.family import SMALLER_SWING
@@ -27,15 +28,17 @@ if TYPE_CHECKING:
     from camgeo.recipe.figures import Limit
     from camgeo.recipe.recipe import Recipe
 
-Remedy: TypeAlias = "Callable[[dict[str, Any], dict[str, Any], Recipe], str]"
+Entry: TypeAlias = dict[str, Any]
+"""A check as a report has it, or the report itself: plain JSON."""
+Remedy: TypeAlias = "Callable[[Entry, Entry, Recipe], str]"
 
 
-def smaller_swing(_check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+def smaller_swing(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
     """Tell of a motion that is too steep."""
     return SMALLER_SWING
 
 
-def rounder(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
     """Tell what would make the least radius of curvature large enough."""
     value, limit, unit = check["value"], check["limit"], check["unit"]
     if value is None or limit is None:
@@ -43,7 +46,7 @@ def rounder(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> s
     return recipe.cam.rounder(value, limit, unit)
 
 
-def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Recipe) -> str:
+def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
     """Tell which chamfer the contour has room for; nothing of the chamfer in a file."""
     value = check["value"]
     if value is None or check["limit"] is None or "file" in check:
@@ -51,11 +54,45 @@ def smaller_chamfer(check: dict[str, Any], _report: dict[str, Any], _recipe: Rec
     return f"a chamfer below {downward(value)} {check['unit']}" if value > 0.0 else NO_CHAMFER
 
 
-def other_entry(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+def other_entry(check: Entry, _report: Entry, recipe: Recipe) -> str:
     """Tell where else the cutter may come to the path; nothing of a hub that is cut into, or of no milling."""
     if check["value"] is None or recipe.manufacture is None:
         return ""
     return "another manufacture.start, or a smaller manufacture.lead_in"
+
+
+def stronger_spring(check: Entry, report: Entry, recipe: Recipe) -> str:
+    """Tell the preload at which contact holds as intended and with every file.
+
+    Against the spring's rate the train's stiffness passes k/(k + k_p) of a preload on to the contact.
+    """
+    train, worst = recipe.dynamics, _worst(check, report)
+    if train is None or train.preload is None or not worst < 0.0:
+        return ""
+    return f"a dynamics.preload of {upward(train.preload - worst * (1.0 + train.rate / train.stiffness))}"
+
+
+def smaller_wheel(check: Entry, _report: Entry, _recipe: Recipe) -> str:
+    """Tell the largest wheel that reaches into the hollows; nothing of a sharp one."""
+    value = check["value"]
+    return f"a manufacture.wheel of {downward(2.0 * value)} {check['unit']} or less" if value > 0.0 else ""
+
+
+def wider_face(check: Entry, _report: Entry, _recipe: Recipe) -> str:
+    """Tell the least width of a face that the contact does not leave."""
+    return f"a follower.width of {upward(check['value'])} {check['unit']} or more"
+
+
+def shorter_dwell(check: Entry, report: Entry, _recipe: Recipe) -> str:
+    """Tell the dwell that the output has as intended and with every file; nothing of a linkage that does not turn."""
+    worst = _worst(check, report)
+    return f"a dwell.at_least of {downward(worst)} or less, or a wider dwell.band" if worst > 0.0 else ""
+
+
+def _worst(check: Entry, report: Entry) -> float:
+    """Least value of all checks of the same name, of the design and of files; nan where one has none."""
+    values = [one["value"] for one in report["checks"] if one["name"] == check["name"]]
+    return math.nan if None in values else min(values)
 
 
 NO_CHAMFER = "no chamfer, or a contour without corners"
@@ -67,10 +104,11 @@ def lone_ring(recipe: Recipe) -> bool:
     return part.outer is not None and part.bolts is None and part.dowel is None
 
 
-def smaller_bore(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe) -> str:
+def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
     """Tell which bore, or outline of a ring, leaves the wall; of a part with more the check itself names the edges."""
     value, limit, part = check["value"], check["limit"], recipe.part
-    outline = part.outer is not None and check.get("detail", "").startswith("opening and outline")  # the worst pair
+    detail = check.get("detail", "")
+    outline = part.outer is not None and detail.startswith("opening and outline") and not detail.endswith(" would do")
     if value is None or limit is None or not (part.plain or outline or lone_ring(recipe)):
         return ""
     less = 2.0 * (limit - value)
@@ -81,7 +119,7 @@ def smaller_bore(check: dict[str, Any], _report: dict[str, Any], recipe: Recipe)
     return f"a bore smaller by more than {upward(less)} {check['unit']}" if less * recipe.mm < part.bore else ""
 
 
-def nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+def nearer(check: Entry, report: Entry, recipe: Recipe) -> str:
     """Tell what would bring the motion error, or its limit, to where it holds."""
     value = check["value"]
     if value is None or check["limit"] is None or recipe.verify.motion_error is None or value <= 0.0:
@@ -89,7 +127,30 @@ def nearer(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str
     return f"{_tighter(check, report, recipe)}verify.motion_error above {upward(value)}"
 
 
-def _tighter(check: dict[str, Any], report: dict[str, Any], recipe: Recipe) -> str:
+def exported_anew(_check: Entry, _report: Entry, _recipe: Recipe) -> str:
+    """Tell of the file that the recipe itself makes."""
+    return "the file that `camgeo export` writes from this recipe"
+
+
+def wider(check: Entry, report: Entry, recipe: Recipe) -> str:
+    """Tell of the tolerance that a contour keeps, measured between polygons within a tenth of the file's of it."""
+    anew = exported_anew(check, report, recipe)
+    tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check["file"]), None)
+    if check["value"] is None or tolerance is None:
+        return anew
+    return f"a tolerance of {upward(check['value'] + 0.2 * tolerance)}, or {anew}"
+
+
+def looser(check: Entry, _report: Entry, recipe: Recipe) -> str:
+    """Tell which motion error would permit a play: the limits of both are proportional where the recipe gives it."""
+    given, value, limit = recipe.verify.motion_error, check["value"], check["limit"]
+    if given is None or value is None or not limit:
+        return ""
+    own = math.degrees(given) if recipe.cam.unit == "deg" else given / recipe.mm
+    return f"verify.motion_error above {upward(own * value / limit)}"
+
+
+def _tighter(check: Entry, report: Entry, recipe: Recipe) -> str:
     """Tell of the tolerance that would bring a motion error to its limit, and that there is another way."""
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)
     return _tolerance(recipe, check["value"], check["limit"], tolerance)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeError
 
-PARALLEL_FROM = 3  # recipes; below that starting a second process costs more than it saves
+PAYS = 4.0  # processor seconds of remaining work from which more processes pay, as each of them imports all anew
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,27 @@ class Result:
 
 
 def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Result]:
-    """Give the result of each recipe in their order; `jobs` processes at once, None for as many as are worthwhile."""
-    count = workers.needed(jobs or (workers.available() if len(recipes) >= PARALLEL_FROM else 1), len(recipes))
+    """Give the result of each recipe in their order; `jobs` processes at once.
+
+    Without `jobs` it begins here, and goes on with a process for each core where what is left pays for starting them.
+    """
+    if jobs is not None:
+        yield from _at_once(recipes, task, workers.needed(jobs, len(recipes)), fork=True)
+        return
+    warm = 0.0  # processor time when the first recipe had imported what they need
+    for done, recipe in enumerate(recipes):
+        each = (time.process_time() - warm) / (done - 1) if done > 1 else 0.0
+        left = recipes[done:]
+        count = workers.needed(workers.available(), len(left))
+        if count > 1 and each * len(left) > PAYS:
+            yield from _at_once(left, task, count, fork=False)  # libraries may have started threads by now
+            return
+        yield result(recipe, task, Progress(recipe.name))
+        warm = warm if done else time.process_time()
+
+
+def _at_once(recipes: list[Recipe], task: Task, count: int, *, fork: bool) -> Iterator[Result]:
+    """Give the result of each recipe in their order, `count` at once; one at a time they are made in this process."""
     if count == 1:
         for recipe in recipes:
             yield result(recipe, task, Progress(recipe.name))
@@ -52,8 +72,8 @@ def results(recipes: list[Recipe], task: Task, jobs: int | None) -> Iterator[Res
     from concurrent.futures.process import BrokenProcessPool
 
     progress = Progress(f"{len(recipes)} recipes")
-    # forked: the recipes were loaded with most of what is needed, and nothing has started a thread yet
-    with workers.pool(count, fork=True) as pool:
+    # forked, where nothing has started a thread yet: the recipes were loaded with most of what is needed
+    with workers.pool(count, fork=fork) as pool:
         try:
             futures = [pool.submit(partial(result, task=task), recipe) for recipe in recipes]
             for number, future in enumerate(futures):

@@ -6,7 +6,7 @@ import argparse
 import gc
 import sys
 from contextlib import contextmanager
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from camgeo.cli import laws as laws_command
 from camgeo.cli import report as page_command
 from camgeo.cli import study as study_command
 from camgeo.cli import sweep as sweep_command
+from camgeo.cli.arguments import add_out, file_name, processes
 from camgeo.cli.batch import Task, result, results
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from _typeshed import SupportsWrite
 
     from camgeo.recipe.recipe import Recipe
-    from camgeo.schema.errors import RecipeError
 
 COLLECT_AFTER = 300_000  # new objects; one recipe makes about a third as many
 
@@ -99,7 +99,7 @@ def _parser() -> argparse.ArgumentParser:
 
     export = command("export", _export, "Write a recipe's files and judge them from what lies on disk.")
     _add_recipes(export)
-    export.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    add_out(export)
     export.add_argument(
         "--only", action="append", default=[], choices=KINDS, help="only files of this kind; repeatable"
     )
@@ -108,18 +108,19 @@ def _parser() -> argparse.ArgumentParser:
     )
     check = command("check", _check, "Every check of a recipe; nothing is written.")
     _add_recipes(check)
-    text = "folder of earlier results, whose files are compared with their reports (default: out)"
-    check.add_argument("--out", default="out", metavar="DIR", help=text)
+    add_out(check, "of earlier results, whose files are compared with their reports")
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
-    verify.add_argument("files", nargs="+", metavar="FILE")
+    verify.add_argument("files", nargs="+", type=file_name, metavar="FILE")
     _add_options(verify, "for all the files, in the recipe's unit or with its own: 0.0005in")
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
+    text = "have ezdxf, shapely, trimesh and manifold3d look at the files too (extra `check`)"
+    verify.add_argument("--second-opinion", action="store_true", help=text)
     sweep = command("sweep", sweep_command.run, "Many designs of one recipe, ranked; the best become recipes.")
-    sweep_command.add_arguments(sweep, _jobs)
+    sweep_command.add_arguments(sweep)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND")
-    new.add_argument("file", nargs="?", metavar="FILE")
+    new.add_argument("file", nargs="?", type=file_name, metavar="FILE")
     study = command("study", study_command.run, "Error against run time of each output form; a recipe's margins.")
     study_command.add_arguments(study)
     report = command("report", page_command.run, "An HTML page: the animated mechanism, its curves, its checks.")
@@ -135,7 +136,7 @@ def _add_recipes(command: argparse.ArgumentParser) -> None:
     command.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
     _add_options(command, "in place of export.tolerance, in the recipe's unit or with its own: 0.0005in")
     command.add_argument(
-        "--jobs", type=_jobs, metavar="N", help="processes at once (default: as many as are worthwhile)"
+        "--jobs", type=processes, metavar="N", help="processes at once (default: as many as are worthwhile)"
     )
 
 
@@ -160,12 +161,6 @@ def _length(text: str) -> str:
     return text
 
 
-def _jobs(text: str) -> int:
-    if not (text.isascii() and text.isdigit() and int(text[:9]) > 0):
-        raise argparse.ArgumentTypeError(f"a number of processes is a whole number from 1, not {text}")
-    return int(text[:9])
-
-
 def _complain(text: str) -> None:
     complain(f"camgeo: {text}")
 
@@ -174,21 +169,15 @@ def _complain(text: str) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> int:
+    from camgeo.cli.recipes import in_one_folder
+
     if arguments.watch:
         return _watch(arguments)
     recipes, refused = _loaded(arguments.recipes, arguments.tolerance, arguments.only)
-    paths = [recipe.path.resolve() for recipe in recipes]
-    again = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
-    for recipe in again:
-        _complain(f"{escaped(str(recipe.path))}: the same recipe is named twice in this call; name it once")
-    if again:
-        return WRONG
-    names = [recipe.name.casefold() for recipe in recipes]
-    twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
-    for recipe in twice:
-        text = f"the name {recipe.name} is used by several recipes of this call; give each its own `name:`"
-        _complain(f"{escaped(str(recipe.path))}: {text}")
-    if twice:
+    faults = in_one_folder(recipes)
+    for fault in faults:
+        _complain(fault)
+    if faults:
         return WRONG
     return _told(recipes, refused, Task(Path(arguments.out), tuple(arguments.only)), arguments)
 
@@ -207,6 +196,9 @@ def _watch(arguments: argparse.Namespace) -> int:
 
     if len(arguments.recipes) != 1 or arguments.json:
         _complain("--watch takes one recipe, and no --json")
+        return WRONG
+    if not arguments.recipes[0]:
+        _complain("RECIPE: an empty name")
         return WRONG
     path, out = Path(arguments.recipes[0]), Path(arguments.out)
     only = (*arguments.only, "html") if arguments.only else ()
@@ -239,7 +231,7 @@ def _loaded(
 
     Those others come second, by their place in the call, as a list of reports has them.
     """
-    from camgeo.cli.recipes import load
+    from camgeo.cli.recipes import load, unmade
     from camgeo.schema.errors import RecipeErrors
 
     recipes: list[Recipe] = []
@@ -251,16 +243,10 @@ def _loaded(
                 raise recipe.error("export.files", f"lists no {' or '.join(only)}, which --only requests")
         except RecipeErrors as errors:
             complain(str(errors))
-            refused[i] = _unmade(path, str(errors), errors.errors)
+            refused[i] = unmade(path, str(errors), errors.errors)
             continue
         recipes.append(_at(recipe, tolerance))
     return recipes, refused
-
-
-def _unmade(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, Any]:
-    """Make the entry of a recipe that came to no report, for machines."""
-    found = [asdict(error) for error in errors] or [{"problem": message}]
-    return {"recipe": recipe, "ok": False, "errors": found}
 
 
 def _at(recipe: Recipe, tolerance: str | None) -> Recipe:
@@ -273,6 +259,8 @@ def _at(recipe: Recipe, tolerance: str | None) -> Recipe:
 
 def _told(recipes: list[Recipe], refused: dict[int, dict[str, Any]], task: Task, arguments: argparse.Namespace) -> int:
     """Run recipes and print what came of each, in JSON with those `refused` in their places; the highest status."""
+    from camgeo.cli.recipes import unmade
+
     status = WRONG if refused else OK
     entries: list[dict[str, Any]] = []
     for found in results(recipes, task, arguments.jobs):
@@ -289,7 +277,7 @@ def _told(recipes: list[Recipe], refused: dict[int, dict[str, Any]], task: Task,
         if found.message:
             complain(found.message)
         if found.report is None:
-            entries.append(_unmade(recipes[len(entries)].name, found.message, found.errors))
+            entries.append(unmade(recipes[len(entries)].name, found.message, found.errors))
     if arguments.json:
         from camgeo.report.document import encoded
 
@@ -321,6 +309,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     from camgeo.api.errors import CallError
     from camgeo.api.run import verify
     from camgeo.cli.recipes import load
+    from camgeo.common.errors import SurroundingsError
     from camgeo.report.document import encoded
     from camgeo.schema.errors import RecipeErrors
     from kin.judge.verify import UnitsError
@@ -329,7 +318,8 @@ def _verify(arguments: argparse.Namespace) -> int:
         recipe = _at(load(arguments.recipe), arguments.tolerance)
         paths = [Path(name) for name in arguments.files]
         within = None if arguments.tolerance is None else read_quantity(arguments.tolerance, recipe.units)
-        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units))
+        second = arguments.second_opinion
+        report = dict(verify(recipe, *paths, tolerance=within, units=arguments.units, second_opinion=second))
         for folder in dict.fromkeys(path.parent for path in paths):
             _mention(report, mixtures(folder, [path.name for path in paths if path.parent == folder]))
     except CallError as error:
@@ -342,6 +332,9 @@ def _verify(arguments: argparse.Namespace) -> int:
     except RecipeErrors as errors:
         complain(str(errors))
         return WRONG
+    except SurroundingsError as error:
+        _complain(str(error))
+        return SURROUNDINGS
     if arguments.json:
         say_json(encoded(report))
     else:
@@ -357,10 +350,11 @@ def _new(arguments: argparse.Namespace) -> int:
     if arguments.kind is None:
         print("\n".join(STARTERS))
         return OK
-    if arguments.kind not in STARTERS:
-        _complain(f"no starter is called {arguments.kind}; there are: {', '.join(STARTERS)}")
+    try:
+        text = starter(arguments.kind)
+    except ValueError as error:
+        _complain(str(error))
         return WRONG
-    text = starter(arguments.kind)
     if arguments.file is None:
         print(text, end="")
         return OK

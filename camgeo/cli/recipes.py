@@ -1,16 +1,19 @@
-"""A recipe for a command: read from its file, with a line on standard error for each former name in it."""
+"""Recipes for a command: read from their files, with a line on standard error for each former name in them."""
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from camgeo.common.terminal import complain
+from camgeo.common.terminal import complain, escaped
 from camgeo.recipe.loading import load_silent
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from os import PathLike
 
     from camgeo.recipe.recipe import Recipe
+    from camgeo.schema.errors import RecipeError
 
 
 def load(path: str | PathLike[str]) -> Recipe:
@@ -19,3 +22,22 @@ def load(path: str | PathLike[str]) -> Recipe:
     for notice in recipe.notices:
         complain(str(notice))
     return recipe
+
+
+def in_one_folder(recipes: Sequence[Recipe]) -> list[str]:
+    """Say which recipes of one call would write into the same folder: a file named twice, or a name used twice."""
+    paths = [recipe.path.resolve() for recipe in recipes]
+    again = [recipe for i, recipe in enumerate(recipes) if paths[i] in paths[:i]]
+    if again:
+        text = "the same recipe is named twice in this call; name it once"
+        return [f"{escaped(str(recipe.path))}: {text}" for recipe in again]
+    names = [recipe.name.casefold() for recipe in recipes]
+    twice = [recipe for recipe in recipes if names.count(recipe.name.casefold()) > 1]
+    text = "the name {} is used by several recipes of this call; give each its own `name:`"
+    return [f"{escaped(str(recipe.path))}: {text.format(recipe.name)}" for recipe in twice]
+
+
+def unmade(recipe: str, message: str, errors: Sequence[RecipeError]) -> dict[str, object]:
+    """Make the entry of a recipe that came to no report, for machines."""
+    listed = [asdict(error) for error in errors] or [{"problem": message}]
+    return {"recipe": recipe, "ok": False, "errors": listed}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.cli.arguments import add_out, decimal
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.content import Content
+    from camgeo.schema.errors import RecipeErrors
 
 REPORT, PAGE, PICTURE = "page.json", "page.html", "page"
 FORMS = ("svg", "png")
@@ -22,8 +24,8 @@ FORMS = ("svg", "png")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Give the command its options."""
-    parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file")
-    parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    parser.add_argument("recipes", nargs="+", metavar="RECIPE", help="a recipe's YAML file")
+    add_out(parser)
     parser.add_argument(
         "--picture", action="append", default=[], choices=FORMS, help="a still picture as well; repeatable"
     )
@@ -37,7 +39,7 @@ def _angle(text: str) -> float:
     import math
 
     try:
-        value = float(text)
+        value = decimal(text)
     except ValueError:
         value = math.nan
     if not abs(value) <= 1e6:
@@ -46,16 +48,47 @@ def _angle(text: str) -> float:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the page of one recipe: 0 every check holds, 1 one fails, which the page shows, 2 wrong, 3 surroundings."""
-    from camgeo.cli.recipes import load
+    """Write the page of each recipe: 0 every check holds, 1 one fails, which the page shows, 2 wrong, 3 surroundings.
+
+    With `--json` one recipe gives its page.json, several a list of theirs.
+    """
+    from camgeo.cli.recipes import in_one_folder, load
+    from camgeo.report.document import encoded
+    from camgeo.schema.errors import RecipeErrors
+
+    recipes: list[Recipe | RecipeErrors] = []
+    for path in arguments.recipes:
+        try:
+            recipes.append(load(path))
+        except RecipeErrors as errors:
+            recipes.append(errors)
+    if faults := in_one_folder([recipe for recipe in recipes if not isinstance(recipe, RecipeErrors)]):
+        complain("\n".join(f"camgeo: {fault}" for fault in faults))
+        return WRONG
+    status, entries = OK, []
+    for path, recipe in zip(arguments.recipes, recipes, strict=True):
+        code, entry = _page(path, recipe, arguments)
+        status = max(status, code)
+        entries.append(entry)
+    if arguments.json and len(entries) > 1:
+        say_json(encoded(entries))
+    elif arguments.json and status <= FAILED:
+        say_json(encoded(entries[0]))
+    return status
+
+
+def _page(path: str, recipe: Recipe | RecipeErrors, arguments: argparse.Namespace) -> tuple[int, dict[str, Any]]:
+    """Write the page of one recipe and say so; gives the exit status and page.json, or the errors in its place."""
+    from camgeo.cli.recipes import unmade
     from camgeo.common.errors import SurroundingsError
     from camgeo.output.pipeline import shown
     from camgeo.report.page.page import page
     from camgeo.schema.errors import RecipeErrors
 
-    progress = Progress(Path(arguments.recipe).name)
+    progress = Progress(Path(path).name)
     try:
-        recipe = load(arguments.recipe)
+        if isinstance(recipe, RecipeErrors):
+            raise recipe
         outcome, found = shown(recipe, told=progress)
         files = {PAGE: page(recipe, found, outcome.report).encode("utf-8")}
         files |= _pictures(recipe, found, arguments.picture, arguments.at)
@@ -63,38 +96,34 @@ def run(arguments: argparse.Namespace) -> int:
     except RecipeErrors as errors:
         progress.clear()
         complain(str(errors))
-        return WRONG
+        return WRONG, unmade(path, str(errors), errors.errors)
     except ModuleNotFoundError as error:
         progress.clear()
-        complain(f"camgeo: the package {error.name} is missing: {install('picture')}")
-        return SURROUNDINGS
+        text = f"the package {error.name} is missing: {install('picture')}"
+        complain(f"camgeo: {text}")
+        return SURROUNDINGS, unmade(path, text, ())
     except (SurroundingsError, OSError) as error:
         progress.clear()
         complain(f"camgeo: {error}")
-        return SURROUNDINGS
+        return SURROUNDINGS, unmade(path, str(error), ())
     progress.clear()
-    if arguments.json:
-        from camgeo.report.document import encoded
-
-        say_json(encoded(report))
-    else:
+    if not arguments.json:
         folder = Path(arguments.out) / recipe.name
         verdict = "ok" if outcome.ok else "FAILED"
-        told = ", ".join(f"{folder / file['path']} {file['bytes'] / 1000:.0f} kB" for file in report["files"])
+        told = ", ".join(f"{folder / name} {len(data) / 1000:.0f} kB" for name, data in files.items())
         say(f"{recipe.name}: {verdict}  {told}")
-    return OK if outcome.ok else FAILED
+    return OK if outcome.ok else FAILED, report
 
 
 def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -> dict[str, bytes]:
     """Return the pictures that are asked for, at the step of the turn nearest to an angle."""
     from camgeo.report.page import svg
-    from camgeo.report.page.page import asset
     from camgeo.report.page.scene import STEPS
 
     step = round(at_deg / 360.0 * STEPS) % STEPS
     made = {}
     if "svg" in forms:
-        made[f"{PICTURE}.svg"] = svg.still(found.scene, step, asset("drawing.css"), recipe.name).encode("utf-8")
+        made[f"{PICTURE}.svg"] = svg.still(found.scene, step, recipe.name).encode("utf-8")
     if "png" in forms:
         from camgeo.report.page.png import png
 
@@ -103,16 +132,20 @@ def _pictures(recipe: Recipe, found: Content, forms: list[str], at_deg: float) -
 
 
 def _written(recipe: Recipe, files: dict[str, bytes], out: Path, *, ok: bool) -> dict[str, Any]:
-    """Write page and pictures beside the recipe's files, all or none; return the report that names them."""
+    """Write page and pictures beside the recipe's files, all or none; return the report that names them.
+
+    Pictures of an earlier call stay as they are, as files do that `export --only` leaves out.
+    """
     from camgeo.output.output_folder import Family, Run
     from camgeo.report.document import encoded
     from camgeo.report.listed import listed
 
-    entries = [listed(name, data) for name, data in files.items()]
-    report = {"recipe": recipe.name, "ok": ok, "files": entries}
+    report: dict[str, Any] = {"recipe": recipe.name, "ok": ok, "files": [listed(*item) for item in files.items()]}
     with Run(out, recipe.name, Family(REPORT, ("page",), "page")) as run_:
         for name, data in files.items():
             (run_.folder / name).write_bytes(data)
+        kept = run_.kept()
+        report["files"] += [{"path": name, "stale": True} for name in kept]
         (run_.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
-        run_.commit(list(files))
+        run_.commit(list(files), keep=kept)
     return report

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from camgeo.cli.arguments import add_out, decimal
 from camgeo.cli.exit_status import FAILED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
@@ -25,7 +26,7 @@ PATIENCE = 2.0  # seconds of a run, fit, write and judge together, after which a
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Give the command its options."""
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file")
-    parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    add_out(parser)
     parser.add_argument("--form", action="append", default=[], choices=FORMS, help="this form only; repeatable")
     text = "seconds of a run (fit, write and judge) after which a form's ladder goes no further (default: %(default)s)"
     parser.add_argument("--patience", type=_seconds, default=PATIENCE, metavar="S", help=text)
@@ -36,7 +37,7 @@ def _seconds(text: str) -> float:
     import argparse
 
     try:
-        value = float(text)
+        value = decimal(text)
     except ValueError:
         value = 0.0
     if not 0.0 < value <= 1e5:

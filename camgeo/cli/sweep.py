@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from camgeo.cli.arguments import add_out, processes
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
@@ -13,23 +14,25 @@ from camgeo.recipe.figures import PRESENT
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from camgeo.sweep.search.ask import Ask
     from camgeo.sweep.search.run import Told
     from camgeo.sweep.search.search import Means, Outcome
 
-_EXTRAS = {"distributed": "dask", "numba": "fast"}  # of packages that are not in the extra `sweep`
+_EXTRAS = {"distributed": "dask"}  # of packages that are not in the extra `sweep`
+_EVERY = 10.0  # seconds between lines of progress where there is no terminal
 _SAID = 5  # best designs that -v lists
 Number = TypeVar("Number", int, float)
 
 
-def add_arguments(parser: argparse.ArgumentParser, jobs: Callable[[str], int]) -> None:
-    """Give the command its options; `jobs` reads a number of processes."""
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Give the command its options."""
     parser.add_argument("recipe", metavar="RECIPE", help="a recipe's YAML file, with a section `sweep`")
-    parser.add_argument("--out", default="out", metavar="DIR", help="folder of the results (default: out)")
+    add_out(parser)
     engine = parser.add_mutually_exclusive_group()
-    engine.add_argument("--jobs", type=jobs, metavar="N", help="processes at once (default: as many as are worthwhile)")
+    text = "processes at once (default: as many as are worthwhile)"
+    engine.add_argument("--jobs", type=processes, metavar="N", help=text)
     engine.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
     parser.add_argument("--fresh", action="store_true", help="compute again what earlier runs have computed")
     parser.add_argument("-v", "--verbose", action="store_true", help="the best designs and the counts")
@@ -75,7 +78,7 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
     from camgeo.sweep.search.run import How
     from camgeo.sweep.search.search import search
 
-    progress = Progress(ask.recipe.name)
+    progress = Progress(ask.recipe.name, _EVERY)
     how = How(arguments.jobs, arguments.scheduler)
     resume = "what was computed is kept; the same command continues from there"
     try:

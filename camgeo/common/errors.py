@@ -29,3 +29,7 @@ class SurroundingsError(KinError):
     def __init__(self, message: str, path: Path) -> None:
         super().__init__(f"{escaped(str(path))}: {message}")
         self.path = path
+
+
+class BusyError(SurroundingsError):
+    """Another run of the same name is at work; `path` is its folder."""

@@ -2,7 +2,8 @@
 
 A figure is a function in jet arithmetic: at points it has its exact derivatives, over intervals enclosures of them. On
 an interval of width w no value lies above the greater end by more than ``max(0, -f'') w^2/8``; where f' keeps its sign
-none lies above it at all. Intervals that may still hold more than the best value found are divided.
+none lies above it at all. Where f'' <= -m < 0 no value lies above ``f(x) + f'(x)^2/(2 m)``, x being any place of the
+interval: at the top itself nothing is left. Intervals that may still hold more than the best value found are divided.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ LEVELS = 24
 MOST = 20_000  # undecided intervals; then the rest is given as room
 SHARPNESS = 1e-13  # of the figure's size: how far the proof goes
 NEWTON = 5
+ROUNDING = 1e-14  # of the figure and its slope: to this a slope is known
 ORDER = 4  # of the variable: a figure may use up two derivatives and still tell two
 
 
@@ -70,7 +72,8 @@ def greatest(figure: Figure, stretches: Array) -> Extreme:
         ends = np.concatenate([low, high])
         rows = figure(Jet.variable(ends, ORDER), np.repeat([1, -1], low.size)).derivatives()
         size = max(size, float(np.abs(rows[0]).max()))
-        places, values = _improved(figure, low, high, rows)
+        tops, rows = _with_tops(figure, low, high, rows)
+        places, values = np.concatenate([ends, tops]), rows[0].ravel()
         top = int(np.argmax(values))
         if values[top] > best:
             best, at = float(values[top]), float(places[top])
@@ -92,27 +95,34 @@ def divided(low: Array, high: Array, parts: int) -> tuple[Array, Array]:
     return knots[:, :-1].ravel(), knots[:, 1:].ravel()
 
 
-def _improved(figure: Figure, low: Array, high: Array, rows: Array) -> tuple[Array, Array]:
-    """Places and values: the ends of the intervals, and the tops that Newton's method finds inside."""
-    ends, count = np.concatenate([low, high]), low.size
-    near = np.flatnonzero((rows[1, :count] > 0.0) & (rows[1, count:] < 0.0))
-    if not near.size:
-        return ends, rows[0]
-    a, b = low[near], high[near]
-    x = 0.5 * (a + b)
-    for _ in range(NEWTON):
-        _, slope, bend = figure(Jet.variable(x, ORDER)).derivatives()[:3]
-        step = np.divide(slope, bend, out=np.zeros_like(slope), where=bend < 0.0)
-        x = np.minimum(np.maximum(x - step, a), b)
-    inside = figure(Jet.variable(x, ORDER)).derivatives()[0]
-    return np.concatenate([ends, x]), np.concatenate([rows[0], inside])
+def _with_tops(figure: Figure, low: Array, high: Array, rows: Array) -> tuple[Array, Array]:
+    """Tops (n,) that Newton's method finds inside the intervals; value and slope at low end, high end, top: (2, 3, n).
+
+    Of an interval between whose ends the slope does not fall through 0 the low end stands for the top.
+    """
+    at_ends = rows[:2].reshape(2, 2, low.size)
+    tops, values = low.copy(), np.concatenate([at_ends, at_ends[:, :1]], axis=1)
+    near = np.flatnonzero((at_ends[1, 0] > 0.0) & (at_ends[1, 1] < 0.0))
+    if near.size:
+        a, b = low[near], high[near]
+        x = 0.5 * (a + b)
+        for _ in range(NEWTON):
+            _, slope, bend = figure(Jet.variable(x, ORDER)).derivatives()[:3]
+            step = np.divide(slope, bend, out=np.zeros_like(slope), where=bend < 0.0)
+            x = np.minimum(np.maximum(x - step, a), b)
+        tops[near] = x
+        values[:, 2, near] = figure(Jet.variable(x, ORDER)).derivatives()[:2]
+    return tops, values
 
 
 def _most(figure: Figure, low: Array, high: Array, rows: Array) -> Array:
-    """Upper bound of the figure over each interval (n,)."""
+    """Upper bound of the figure over each interval (n,), of value and slope at three places (2, 3, n)."""
     below, above = figure(BallJet.variable(low, high, ORDER)).bounds()
-    top = np.maximum(*rows[0].reshape(2, -1))
+    top = rows[0, :2].max(axis=0)
     width = high - low
     dip = np.where((below[1] >= 0.0) | (above[1] <= 0.0), 0.0, np.maximum(-below[2], 0.0) * width**2 / 8.0)
     reach: Array = np.fmin(top + dip, above[0])
+    slope = np.abs(rows[1]) + ROUNDING * np.abs(rows).max(axis=(0, 1))
+    arch = np.divide(0.5 * slope**2, -above[2], out=np.full_like(slope, np.inf), where=above[2] < 0.0)
+    reach = np.fmin(reach, np.fmin.reduce(rows[0] + arch, axis=0))
     return np.where(np.isnan(reach), np.inf, reach)

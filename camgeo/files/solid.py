@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.files.errors import MissingExtraError, install
 from camgeo.files.mesh import MeshFacts, settled
 from camgeo.files.prism import bore_polygon, rounded_contour, rounded_loop
 from camgeo.files.triangulate import RegionError, disc
 from camgeo.fit.pieces import Bound, Polygon
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from camgeo.files.mesh import Mesh
     from camgeo.files.precision import Precision
@@ -75,10 +74,9 @@ def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Preci
     """Closed, oriented mesh of the solid over a polygon; see the module.
 
     With a chamfer the polygon is taken to be fitted finely enough that its parallel inside is within the tolerance too.
-    Raises MissingExtraError without manifold3d, ToleranceError where the tolerance cannot be held in the precision,
-    RegionError where an outline is not simple or the chamfer too wide for the contour.
+    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where an outline is not
+    simple or the chamfer too wide for the contour.
     """
-    manifold = manifold_maker("a hub, a chamfer, a set screw and an engraved mark")
     outer, moved, dropped = rounded_contour(polygon, precision)
     bound = polygon.bound.widened(moved)
     precision.within("the contour", bound.worst, tolerance)
@@ -112,23 +110,14 @@ def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Preci
     return mesh, MeshFacts(len(mesh.triangles), len(outer), 0, dropped, moved, bound, Bound(off, off))
 
 
-def manifold_maker(what: str) -> Callable[[Array, Triangles], Any]:
-    """What makes a manifold3d body of points (v, 3) and triangles (t, 3), raising RegionError where it is not sound.
+def manifold(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - manifold3d has no types
+    """The manifold3d body of points (v, 3) and triangles (t, 3); raises RegionError where it is not sound."""
+    import manifold3d
 
-    Raises MissingExtraError, saying what needs it, without manifold3d.
-    """
-    try:
-        import manifold3d
-    except ImportError as error:
-        raise MissingExtraError(f"{what} need manifold3d: {install('solid')}") from error
-
-    def made(points: Array, triangles: Triangles) -> Any:  # noqa: ANN401 - manifold3d has no types
-        body = manifold3d.Manifold(manifold3d.Mesh64(points, triangles.astype(np.uint64)))
-        if body.status() != manifold3d.Error.NoError:
-            raise RegionError(f"a body is not valid: {body.status().name}")
-        return body
-
-    return made
+    body = manifold3d.Manifold(manifold3d.Mesh64(points, triangles.astype(np.uint64)))
+    if body.status() != manifold3d.Error.NoError:
+        raise RegionError(f"a body is not valid: {body.status().name}")
+    return body
 
 
 def meshed(part: Any, precision: Precision) -> tuple[Mesh, float]:  # noqa: ANN401 - manifold3d has no types

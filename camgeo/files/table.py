@@ -1,4 +1,4 @@
-"""Tables as CSV: a header, then a row a line, each number with as many digits as give back the same double."""
+"""Tables as CSV: a header, then a row a line, each number with at most 12 digits."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
+
+DIGITS = 12
+"""Of a number: of a metre the last is 1e-9 mm. What a double has beyond is its own rounding."""
 
 
 def write_table(path: Path, columns: Sequence[str], rows: NDArray[np.float64], *, gaps: bool = False) -> None:
@@ -29,7 +32,7 @@ def write_table(path: Path, columns: Sequence[str], rows: NDArray[np.float64], *
         row, column = np.argwhere(bad)[0].tolist()
         raise ValueError(f"table: {columns[column]} is not finite in row {row}")
     # one format for the whole table: a tenth of the time of a csv writer
-    line = ",".join(["%r"] * len(columns)) + "\n"
+    line = ",".join([f"%.{DIGITS}g"] * len(columns)) + "\n"
     numbers = (rows + 0.0).ravel().tolist()  # + 0.0 makes -0.0 a plain zero
     text = (line * len(rows)) % tuple(numbers)
     if gaps:

@@ -3,14 +3,16 @@
 Coordinates are the numbers that the file will hold, as doubles; the side of a line on which a point lies is decided
 exactly for any doubles.
 
-Why checking the sense of each triangle is enough: the triangles of `ring` and `clip` are joined by their edges, and
-the edges left over are the region's boundary by construction. If every triangle runs counter-clockwise, the map of
-this sheet into the plane turns nowhere over, and each point of the plane is covered as often as the boundary winds
-about it: once inside, not at all outside.
+Why checking the sense of each triangle is enough: the triangles are joined by their edges, and the edges left over are
+the region's boundary. If every triangle runs counter-clockwise, the map of this sheet into the plane turns nowhere
+over, and each point of the plane is covered as often as the boundary winds about it: once inside, not at all outside.
+A loop that winds twice about some point, as one does that overlaps itself, may get triangles too: the judge finds where
+the contour of a file crosses itself.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -26,6 +28,9 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
     Triangles = NDArray[np.int64]
+
+
+_TURNS = 10  # of edges for each flat triangle: more go round in circles
 
 
 class RegionError(KinError, ValueError):
@@ -53,31 +58,26 @@ def ring(outer: Array, inner: Array) -> Triangles:
     """Triangles (n + m, 3), counter-clockwise, between two counter-clockwise loops, outer (n, 2) and inner (m, 2).
 
     Indices below n are of `outer`, the rest of `inner`. Where both loops run once round the origin without turning
-    back, they are merged in the order of their edges' angles, in O((n + m) log m). Other contours take `clip`. Raises
-    RegionError where the inner loop does not lie strictly inside the outer one or a loop is not simple.
+    back, they are merged in the order of their edges' angles, in O((n + m) log m). Other contours take `clipped`.
+    Raises RegionError where the inner loop does not lie strictly inside the outer one or a loop is not simple.
     """
     if star_shaped(outer) and star_shaped(inner):
         merged = _merge(outer, inner)
         points = np.concatenate((outer, inner))
         if _all_positive(points, merged):
             return merged
-    return clip(outer, inner)
+    return clipped(outer, [inner])
 
 
 def region(outer: Array, inners: Sequence[Array]) -> Triangles:
     """Triangles, counter-clockwise, of a loop (n, 2) with several holes (m, 2) in it; all counter-clockwise.
 
-    Indices count through the loop and the holes in their order. One hole goes to `ring`; more are bridged to the loop
-    one after the other, and its ears clipped. Raises RegionError where a loop is not simple or a hole reaches another.
+    Indices count through the loop and the holes in their order. A loop alone goes to `disc`, one hole to `ring`, more
+    to `clipped`. Raises RegionError where a loop is not simple or a hole reaches another.
     """
     if len(inners) < 2:
         return ring(outer, inners[0]) if len(inners) else disc(outer)
-    points = np.concatenate((outer, *inners))
-    chain = _bridged(points, [len(outer), *map(len, inners)])
-    triangles = None if chain is None else _clip_ears(points, chain)
-    if triangles is None or not _all_positive(points, triangles):
-        raise RegionError("a hole reaches another or the contour, or the contour touches or crosses itself")
-    return triangles
+    return clipped(outer, inners)
 
 
 def disc(outer: Array) -> Triangles:
@@ -85,12 +85,12 @@ def disc(outer: Array) -> Triangles:
 
     From a loop that runs once round the middle of its vertices, ears are cut in rounds, as many at a time as are not
     neighbours: an ear that leaves the middle inside leaves the rest star-shaped. A convex loop takes O(log n) rounds,
-    a hollow takes one for each two of its vertices. What no round can cut goes to `clip`, and so do
+    a hollow takes one for each two of its vertices. What no round can cut goes to `clipped`, and so do
     other contours. Raises RegionError where the loop is not simple.
     """
     centre: Array = outer.mean(axis=0)
     cut, left = _cut_rounds(outer, centre) if star_shaped(outer, centre) else ([], np.arange(len(outer)))
-    return np.concatenate([*cut, left[clip(outer[left])]])
+    return np.concatenate([*cut, left[clipped(outer[left])]])
 
 
 def star_shaped(loop: Array, centre: Array | None = None) -> bool:
@@ -103,24 +103,24 @@ def star_shaped(loop: Array, centre: Array | None = None) -> bool:
     return int(np.count_nonzero((loop[:, 1] >= about[1]) & (following[:, 1] < about[1]))) == 1
 
 
-def clip(outer: Array, inner: Array | None = None) -> Triangles:
-    """Triangles, counter-clockwise, of any simple loop (n, 2), with one hole (m, 2) bridged to it if given.
+def clipped(outer: Array, inners: Sequence[Array] = ()) -> Triangles:
+    """Triangles, counter-clockwise, of any simple loop (n, 2) with any holes (m, 2); all counter-clockwise.
 
-    Ear clipping, each ear tested against all reflex vertices at once: O(n) numpy calls, each over the reflex vertices.
-    Both loops counter-clockwise, indices as in `ring`. Raises RegionError where no ear is left: a loop is not simple,
-    or the hole does not lie strictly inside.
+    The ears are clipped by manifold3d, on these very doubles. It takes vertices in line for ears, and leaves flat
+    triangles where holes line up: `_turned` makes them part of their neighbours. Indices as in `region`. Raises
+    RegionError where a loop is not simple, or a hole does not lie strictly inside or reaches another.
     """
-    if inner is None:
-        points = outer
-        chain: NDArray[np.int64] | None = np.arange(len(outer))
-    else:
-        points = np.concatenate((outer, inner))
-        chain = _bridged(points, [len(outer), len(inner)])
-    triangles = None if chain is None else _clip_ears(points, chain)
-    if triangles is None or not _all_positive(points, triangles):
-        reached = "the bore reaches the contour, or " if inner is not None else ""
-        raise RegionError(f"{reached}the contour touches or crosses itself")
-    return triangles
+    points = np.concatenate((outer, *inners))
+    loops = np.split(np.arange(len(points)), np.cumsum([len(outer), *map(len, inners)])[:-1])
+    ways = [loops[0], *(loop[::-1] for loop in loops[1:])]  # the metal lies left of each
+    if len(np.unique(points, axis=0)) == len(points):
+        triangles = _turned(points, np.concatenate(ways)[_ears([points[way] for way in ways])])
+        if triangles is not None and _bounded(triangles, ways):
+            return triangles
+    reached = ("", "the bore reaches the contour, or ", "a hole reaches another or the contour, or ")[
+        min(len(inners), 2)
+    ]
+    raise RegionError(f"{reached}the contour touches or crosses itself")
 
 
 def _all_positive(points: Array, triangles: Triangles) -> bool:
@@ -175,100 +175,66 @@ def _cut_rounds(loop: Array, centre: Array) -> tuple[list[Triangles], NDArray[np
     return cut, left
 
 
-def _bridged(points: Array, counts: list[int]) -> NDArray[np.int64] | None:
-    """One chain of vertex indices round the first loop and, over bridges and back, clockwise round all others.
+def _ears(loops: list[Array]) -> Triangles:
+    """Triangles of loops whose region lies left of each, as manifold3d clips them: flat ones may be among them."""
+    if len(loops) == 1 and len(loops[0]) == 3:
+        return np.array([[2, 0, 1]])
+    import manifold3d
 
-    Each hole's vertex farthest right is joined to the nearest vertex of the chain that it sees, holes farther right
-    first: what it sees to its right is then of the chain, so each sees one if no hole reaches another. None if one
-    sees none.
+    return np.asarray(manifold3d.triangulate(loops, 0.0), dtype=np.int64).reshape(-1, 3)
+
+
+def _turned(points: Array, triangles: Triangles) -> Triangles | None:
+    """Triangles that all run counter-clockwise, of triangles some of which are flat or turned over; None without.
+
+    A flat triangle's longest edge passes through its third corner. There it is cut, and with it the neighbour over
+    that edge: two triangles become two others. Where the neighbour is flat as well, others come first.
     """
-    first = np.cumsum([0, *counts[:-1]])
-    following = np.concatenate([start + np.roll(np.arange(n), -1) for start, n in zip(first, counts, strict=True)])
-    start, end = np.arange(len(points)), following
-    chain = np.arange(counts[0])
-    rightmost = [int(f + np.argmax(points[f : f + n, 0])) for f, n in zip(first[1:], counts[1:], strict=True)]
-    for hole in sorted(range(len(rightmost)), key=lambda k: (-points[rightmost[k], 0], k)):
-        q, low, n = rightmost[hole], int(first[hole + 1]), counts[hole + 1]
-        place = _seen_from(points, q, chain, (start, end))
-        if place is None:
-            return None
-        p = int(chain[place])
-        round_hole = low + (q - low - np.arange(n + 1)) % n
-        chain = np.concatenate((chain[: place + 1], round_hole, chain[place:]))
-        start, end = np.append(start, p), np.append(end, q)
-    return chain
-
-
-def _seen_from(
-    points: Array, q: int, chain: NDArray[np.int64], edges: tuple[NDArray[np.intp], NDArray[np.intp]]
-) -> int | None:
-    """Place in the chain of the nearest vertex that q sees past all edges, starts and ends; None if there is none.
-
-    A vertex that bridges end in stands in the chain once for each sector between them: the place is that of the sector
-    in which q is seen.
-    """
-    start, end = edges
-    a, b = points[start], points[end]
-    there = np.broadcast_to(points[q], a.shape)
-    own_q = (start == q) | (end == q)
-    at = points[chain]
-    opens = _in_sector(np.roll(at, 1, axis=0), at, np.roll(at, -1, axis=0), points[q])
-    distance = np.where(opens, np.hypot(*(at - points[q]).T), np.inf)
-    for place in np.argsort(distance, kind="stable")[: np.count_nonzero(opens)]:
-        p = int(chain[place])
-        here = np.broadcast_to(points[p], a.shape)
-        side_a, side_b = sides(there, here, a), sides(there, here, b)
-        crosses = (side_a * side_b <= 0) & (sides(a, b, there) * sides(a, b, here) <= 0)
-        own = own_q | (start == p) | (end == p)
-        if not np.any(crosses & (~own | ((side_a == 0) & (side_b == 0)))):
-            return int(place)
+    flat = deque(np.flatnonzero(sides(*(points[corner] for corner in triangles.T)) <= 0).tolist())
+    if not flat:
+        return triangles
+    corners = triangles.tolist()
+    owner = {edge: k for k, triangle in enumerate(corners) for edge in _edges(triangle)}
+    waiting = 0
+    for _ in range(_TURNS * len(flat)):
+        k = flat.popleft()
+        a, b, c = _longest_last(points, corners[k])
+        beside = owner.get((a, c))
+        if beside is None or beside == k:
+            return None  # the boundary passes through a vertex, or turns over
+        if beside in flat and waiting < len(flat):
+            flat.append(k)
+            waiting += 1
+            continue
+        waiting = 0
+        (d,) = set(corners[beside]) - {a, c}
+        corners[k], corners[beside] = [a, b, d], [b, c, d]
+        for place in (k, beside):
+            owner.update(dict.fromkeys(_edges(corners[place]), place))
+            x, y, z = (points[[corner]] for corner in corners[place])
+            if sides(x, y, z)[0] <= 0 and place not in flat:
+                flat.append(place)
+        if not flat:
+            return np.array(corners, dtype=np.int64)
     return None
 
 
-def _in_sector(before: Array, at: Array, after: Array, point: Array) -> NDArray[np.bool_]:
-    """Whether a point is seen from corners (n, 2) strictly inside their sectors, left of the chain's two edges (n,)."""
-    there = np.broadcast_to(point, at.shape)
-    left_in, left_out = sides(before, at, there) > 0, sides(at, after, there) > 0
-    return np.where(sides(before, at, after) > 0, left_in & left_out, left_in | left_out)
+def _edges(triangle: list[int]) -> list[tuple[int, int]]:
+    a, b, c = triangle
+    return [(a, b), (b, c), (c, a)]
 
 
-def _clip_ears(points: Array, chain: NDArray[np.int64]) -> Triangles | None:
-    """Clip the ears of a chain of vertex indices, going round: len(chain) - 2 triangles, None if there is no ear."""
-    size = len(chain)
-    before, after = (np.arange(size) - 1) % size, (np.arange(size) + 1) % size
-    at = points[chain]
-    reflex = sides(at[before], at, at[after]) <= 0
-    triangles = []
-    k, stuck = 0, 0
-    while size > 3:
-        i, j = before[k], after[k]
-        if not reflex[k] and not _holds(at, np.flatnonzero(reflex), (i, k, j)):
-            triangles.append((chain[i], chain[k], chain[j]))
-            after[i], before[j] = j, i
-            size, stuck = size - 1, 0
-            for corner in (i, j):
-                one = at[[corner]]
-                reflex[corner] = sides(at[[before[corner]]], one, at[[after[corner]]])[0] <= 0
-            k = after[j]  # skipping one avoids fans of slivers
-            continue
-        k, stuck = j, stuck + 1
-        if stuck > size:
-            return None
-    triangles.append((chain[before[k]], chain[k], chain[after[k]]))
-    return np.array(triangles, dtype=np.int64)
+def _longest_last(points: Array, triangle: list[int]) -> list[int]:
+    """The corners of a triangle in their order, its longest edge from the last to the first."""
+    at = points[triangle]
+    first = (int(np.argmax(np.hypot(*(np.roll(at, -1, axis=0) - at).T))) + 1) % 3
+    return triangle[first:] + triangle[:first]
 
 
-def _holds(at: Array, others: NDArray[np.int64], corners: tuple[int, int, int]) -> bool:
-    """Whether a triangle holds one of the other chain places, its edges included and its corners' own points not."""
-    a, b, c = (at[corner] for corner in corners)
-    candidates = at[others]
-    low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-    inside = np.all((candidates >= low) & (candidates <= high), axis=1)
-    for corner in (a, b, c):
-        inside &= np.any(candidates != corner, axis=1)
-    found = candidates[inside]
-    if not found.size:
-        return False
-    for start, end in ((a, b), (b, c), (c, a)):
-        found = found[sides(np.broadcast_to(start, found.shape), np.broadcast_to(end, found.shape), found) >= 0]
-    return bool(found.size)
+def _bounded(triangles: Triangles, ways: list[NDArray[np.int64]]) -> bool:
+    """Whether each edge of triangles runs once, and those that do not run back as well are those of the loops."""
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    size = sum(map(len, ways))
+    edges, backs = np.sort(start * size + end), end * size + start
+    rim = np.concatenate([way * size + np.roll(way, -1) for way in ways])
+    return bool((edges[1:] > edges[:-1]).all()) and np.array_equal(np.setdiff1d(edges, backs), np.sort(rim))

@@ -21,6 +21,7 @@ from camgeo.synthesis.design import is_trimmed, sound
 from camgeo.synthesis.part.shapes import EXACT
 from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
+from kin.law.contacts import Flat
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
@@ -92,18 +93,21 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         checks, contour = sound(made, profile, intent)
     if body is not None and body.chamfer is not None and contour is not None:
         body = replace(body, least_radius=least_radius(contour)[0])
-    breadth = None if design.yoke_breadth is None else scale * (design.yoke_breadth + 2.0 * out)
+    contacts = grown.follower(intent, framed=False).contacts
+    if design.yoke_breadth is not None:
+        contacts = contacts[0], replace(contacts[1], datum=scale * (design.yoke_breadth + 2.0 * out))
+    if face:
+        contacts = tuple(replace(one, touch=Flat(nearer=-face)) for one in contacts)
     changed = replace(
         design,
         intent=intent,
         profile=profile,
         contour=contour,
         position=made.cam.position(intent),
-        follower=replace(design.follower, breadth=breadth),
+        follower=replace(design.follower, contacts=contacts),
         trimmed=is_trimmed(contour, profile),
         driven=None,
         body=body,
-        face=face,
     )
     return Compensated(made, changed, tuple(check for check in checks if not check.ok))
 

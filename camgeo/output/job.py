@@ -173,6 +173,7 @@ class Job:
             perimeter=verdict.perimeter,
             area=verdict.area,
             units=verdict.units,
+            contour=verdict.contour,
         )
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
 

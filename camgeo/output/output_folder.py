@@ -38,7 +38,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from camgeo.common import system
-from camgeo.common.errors import SurroundingsError
+from camgeo.common.errors import BusyError, SurroundingsError
 from camgeo.common.system import locked, patient, unlock
 
 if TYPE_CHECKING:
@@ -49,10 +49,6 @@ REPORT = "report.json"
 REJECTED = ".rejected"
 _JOURNAL = ".journal.json"  # files of a set do not begin with a dot
 _OLD = ".old"
-
-
-class BusyError(SurroundingsError):
-    """Another run of the same name is at work."""
 
 
 @dataclass(frozen=True)

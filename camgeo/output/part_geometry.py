@@ -46,7 +46,7 @@ def remarks(body: Body, mm: float) -> list[str]:
 
 
 def part_mesh(polygon: Polygon, body: Body, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:
-    """Mesh of a body round a polygon: a prism by camgeo's own triangles, anything else by manifold3d.
+    """Mesh of a body round a polygon: a prism, or prisms joined by manifold3d.
 
     Raises as `extruded` and `joined` do.
     """

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from camgeo.output.skipped import Skipped
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.content import Content
@@ -37,9 +38,14 @@ class Outcome:
 
 
 def export(
-    recipe: Recipe, out: Path, *, only: tuple[str, ...] = (), told: Callable[[str], None] | None = None
+    recipe: Recipe,
+    out: Path,
+    *,
+    only: tuple[str, ...] = (),
+    told: Callable[[str], None] | None = None,
+    second_opinion: bool = False,
 ) -> Outcome:
-    """Write and judge a recipe's files under `out`/<name>; see the module.
+    """Write and judge a recipe's files under `out`/<name>; see the module. `second_opinion` asks other libraries too.
 
     Raises RecipeErrors where no such curve exists or a tolerance cannot be held, SurroundingsError where the disk does
     not do what it should. A failed check raises nothing: the set goes to `out`/<name>.rejected.
@@ -49,7 +55,7 @@ def export(
     clock = Clock(told)
     requests = tuple(r for r in recipe.export.files if not only or r.kind in only)
     with Run(out, recipe.name) as run:
-        _, found = _produced(recipe, requests, run.folder, clock)
+        _, found = _produced(recipe, requests, run.folder, clock, second_opinion=second_opinion)
         kept = run.kept() if only else ()
         report = document(recipe, replace(found, kept=kept))
         (run.folder / REPORT).write_text(encoded(report), encoding="utf-8", newline="\n")
@@ -58,13 +64,14 @@ def export(
     return Outcome(report, found.ok, folder)
 
 
-def check(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> Outcome:
+def check(recipe: Recipe, *, told: Callable[[str], None] | None = None, second_opinion: bool = False) -> Outcome:
     """Make and judge everything in a temporary folder that is gone afterwards; raises as `export` does."""
     import tempfile
     from pathlib import Path
 
     with tempfile.TemporaryDirectory(prefix="camgeo-") as folder:
-        _, found = _produced(recipe, recipe.export.files, Path(folder), Clock(told))
+        files = recipe.export.files
+        _, found = _produced(recipe, files, Path(folder), Clock(told), second_opinion=second_opinion)
         return Outcome(document(recipe, found), found.ok, None)
 
 
@@ -81,18 +88,28 @@ def shown(recipe: Recipe, *, told: Callable[[str], None] | None = None) -> tuple
 
 
 def judged(
-    recipe: Recipe, paths: list[Path], *, tolerance: float | None = None, units: float | None = None
+    recipe: Recipe,
+    paths: list[Path],
+    *,
+    tolerance: float | None = None,
+    units: float | None = None,
+    second_opinion: bool = False,
 ) -> dict[str, Any]:
     """Report on files of any origin, held against a recipe's motion; raises RecipeErrors as `export` does.
 
     They are held to `tolerance`, mm; without one to that of the recipe's file of the same name, or of its export.
-    `units`, mm, is that of files that state none; raises UnitsError where one states another.
+    `units`, mm, is that of files that state none; raises UnitsError where one states another. `second_opinion` asks
+    other libraries about them too; SurroundingsError without those.
     """
     from camgeo.recipe.export import FileRequest
     from kin.judge.verify import verify
     from kin.read.files import kind_of
 
     clock = Clock()
+    if second_opinion:
+        from camgeo.output.second_opinion import demand_libraries
+
+        demand_libraries(recipe)
     design = designed(recipe, clock)
     checks, files = list(design.checks), []
     for path in paths:
@@ -107,15 +124,28 @@ def judged(
         request = FileRequest(verdict.kind, compensation=request.compensation)
         measured = verdict.measured_error
         file = FileResult(path, request, within, verdict.pieces, None, measured, verdict.motion, verdict.linkage)
-        files.append(replace(file, perimeter=verdict.perimeter, area=verdict.area, units=verdict.units))
+        read = replace(file, perimeter=verdict.perimeter, area=verdict.area, units=verdict.units)
+        files.append(replace(read, contour=verdict.contour))
         checks += verdict.checks
-    return document(recipe, _findings(recipe, design, checks, files, clock, units=units))
+    skipped: tuple[Skipped, ...] = ()
+    if second_opinion:
+        from camgeo.output.second_opinion import second_opinion_on
+
+        opinion = second_opinion_on(files, recipe, design, checks, clock)
+        checks, skipped = [*checks, *opinion.checks], opinion.skipped
+    return document(recipe, _findings(recipe, design, checks, files, clock, skipped=skipped, units=units))
 
 
-def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock) -> tuple[Design, Findings]:
+def _produced(
+    recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, clock: Clock, *, second_opinion: bool = False
+) -> tuple[Design, Findings]:
     """All stages: design, fits, files, verdicts, page."""
     from camgeo.output.skipped import left_out
 
+    if second_opinion:
+        from camgeo.output.second_opinion import demand_libraries
+
+        demand_libraries(recipe)
     design = designed(recipe, clock)
     checks = list(design.checks)
     files: list[FileResult] = []
@@ -132,7 +162,13 @@ def _produced(recipe: Recipe, requests: tuple[FileRequest, ...], folder: Path, c
             made = make(job, request, folder / request.filename(recipe.name, recipe.export.files))
             files += made.files
             checks += made.checks
-    found = _findings(recipe, design, checks, files, clock, skipped=left_out(recipe, requests, design))
+    skipped = left_out(recipe, requests, design)
+    if second_opinion:
+        from camgeo.output.second_opinion import second_opinion_on
+
+        opinion = second_opinion_on(files, recipe, design, checks, clock)
+        checks, skipped = [*checks, *opinion.checks], (*skipped, *opinion.skipped)
+    found = _findings(recipe, design, checks, files, clock, skipped=skipped)
     for request in pages:
         path = folder / request.filename(recipe.name, recipe.export.files)
         found = _with_page(recipe, design, found, FileResult(path, request, None, None, None, None, None), clock)
@@ -187,10 +223,11 @@ def _findings(
             section = None if train is None else train.section
             checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
     from camgeo.curve.measures import measures
-    from camgeo.report.remarks import remarks_of
+    from camgeo.report.remarks import dwells_lost, remarks_of
 
     with clock.stage("remarks"):
-        remarks = remarks_of(recipe, design)
+        remarks = remarks_of(recipe, design, checks, files)
+        remarks += () if design.driven is None else dwells_lost(design.driven, files)
     return Findings(
         tuple(checks),
         tuple(files),

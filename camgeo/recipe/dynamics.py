@@ -33,7 +33,8 @@ class StemGuide:
 class Dynamics:
     """A follower train in SI, but for `backlash`, mm.
 
-    Of `preload` and `backlash` one is None. `rpm` is the shaft's speed.
+    Of `preload` and `backlash` one is None. `rpm` is the shaft's speed; `transient` says that the train is
+    followed from rest, with its impacts.
     """
 
     mass: float
@@ -44,6 +45,7 @@ class Dynamics:
     rate: float = 0.0
     backlash: float | None = None
     guide: StemGuide | None = None
+    transient: bool = False
 
 
 _MOST = MOST**2  # of figures in SI: a bound against slips
@@ -97,6 +99,7 @@ DYNAMICS = Table(
             at_most=_MOST,
         ),
         Field("rpm", Kind.NUMBER, "speed of the shaft, turns a minute", required=True, above=0, at_most=MOST),
+        Field("transient", Kind.TRUTH, "whether the train is followed from rest, with its impacts", default="false"),
         mapping(
             "guide",
             "guide of the stem, in which it must not jam",

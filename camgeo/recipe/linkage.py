@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
 
 from camgeo.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, length
 from camgeo.schema.json_schema import one_of_schema
 from camgeo.schema.yaml_source import join
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import kin.linkage.dyad
     import kin.linkage.four_bar
     from camgeo.cams.family import Cam
@@ -37,6 +39,7 @@ class RRRDyad:
     links: Pair
     assembly: Assembly
 
+    lengths: ClassVar[tuple[str, ...]] = ("links[0]", "links[1]")
     slides: ClassVar[bool] = False
 
     def made(self) -> kin.linkage.dyad.RRR:
@@ -57,6 +60,7 @@ class RRPDyad:
     direction: float
     assembly: Assembly
 
+    lengths: ClassVar[tuple[str, ...]] = ("link",)
     slides: ClassVar[bool] = True
 
     def made(self) -> kin.linkage.dyad.RRP:
@@ -75,6 +79,7 @@ class RPRDyad:
     ground: Pair
     offset: float
 
+    lengths: ClassVar[tuple[str, ...]] = ()
     slides: ClassVar[bool] = False
 
     def made(self) -> kin.linkage.dyad.RPR:
@@ -99,6 +104,7 @@ class FourBarLinkage:
     joint_offset: float = 0.0
 
     kind: ClassVar[str] = "four-bar"
+    lengths: ClassVar[tuple[str, ...]] = ("coupler", "rocker", "ground")
     slides: ClassVar[bool] = False
 
     def made(self) -> kin.linkage.four_bar.FourBar:
@@ -123,6 +129,7 @@ class InvertedSliderCrankLinkage:
     joint_offset: float = 0.0
 
     kind: ClassVar[str] = "inverted-slider-crank"
+    lengths: ClassVar[tuple[str, ...]] = ("rocker", "ground")
     slides: ClassVar[bool] = False
 
     def made(self) -> kin.linkage.four_bar.InvertedSliderCrank:
@@ -147,6 +154,7 @@ class SliderCrankLinkage:
     joint_offset: float = 0.0
 
     kind: ClassVar[str] = "slider-crank"
+    lengths: ClassVar[tuple[str, ...]] = ("coupler",)
     slides: ClassVar[bool] = True
 
     def made(self) -> kin.linkage.four_bar.SliderCrank:
@@ -161,6 +169,32 @@ class SliderCrankLinkage:
 
 
 Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage
+Part = TypeVar("Part", bound="Linkage | Dyad")
+
+
+def with_other_lengths(linkage: Linkage, loop: int, factor: float) -> Iterator[tuple[str, float, Linkage]]:
+    """Give the linkage with one link after the other of a loop times a factor, to six digits: path, length, linkage.
+
+    Loop 0 is the linkage's own, k that of its k-th dyad.
+    """
+    if loop == 0:
+        yield from _with_other(linkage, factor)
+        return
+    dyads = linkage.dyads
+    for name, size, dyad in _with_other(dyads[loop - 1], factor):
+        changed = (*dyads[: loop - 1], dyad, *dyads[loop:])
+        yield f"dyads[{loop - 1}].{name}", size, replace(linkage, dyads=changed)
+
+
+def _with_other(part: Part, factor: float) -> Iterator[tuple[str, float, Part]]:
+    for name in part.lengths:
+        key, _, index = name.partition("[")
+        own = getattr(part, key)
+        size = float(f"{factor * (own[int(index[0])] if index else own):.6g}")
+        if size > 0.0:
+            pair = tuple(size if str(i) == index[0] else other for i, other in enumerate(own)) if index else ()
+            changes: dict[str, Any] = {key: pair or size}
+            yield name, size, replace(part, **changes)
 
 
 def output_slides(linkage: Linkage) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
@@ -23,11 +23,13 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Bound
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
+    from kin.contour.contour import Contour
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
     from kin.law.joints import Joint
 
+BELOW = "below rounding"
 ROUNDING = 1e-11  # mm, in or degrees: what sums of doubles of some hundred leave, and no machine makes
 DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part"})  # stages of the exact cam
 UNIT_NAMES = {"mm": "mm", "inch": "in"}
@@ -38,7 +40,8 @@ class FileResult:
     """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
 
     `body` is the one that it is judged as. `perimeter` and `area` (mm, mm^2) are those of its contour as read,
-    `units` (mm) is the unit of its numbers, None where there are none or nothing was read.
+    `units` (mm) is the unit of its numbers, None where there are none or nothing was read; `contour` is that contour,
+    in mm and as if not mirrored.
     """
 
     path: Path
@@ -53,6 +56,7 @@ class FileResult:
     perimeter: float | None = None
     area: float | None = None
     units: float | None = None
+    contour: Contour | None = None
 
     @property
     def shows_cam(self) -> bool:
@@ -60,11 +64,32 @@ class FileResult:
         return self.body == "cam" and self.request.kind not in NO_PART and self.request.compensation is None
 
 
+RemarkName = Literal[
+    "acceleration-jump",
+    "coarse-tolerance",
+    "dwell-shorter",
+    "large-cutter",
+    "large-roller",
+    "loose-motion-error",
+    "loose-output-error",
+    "metric-keyway",
+    "no-motion",
+    "pivot-clearance",
+    "pressure-angle",
+    "shaft-outside",
+    "sharp-corner",
+    "sizing",
+    "thick",
+    "thin",
+    "wide-dwell-band",
+]
+
+
 @dataclass(frozen=True)
 class Remark:
     """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
 
-    name: str
+    name: RemarkName
     value: float | None
     rule: float | None
     unit: str
@@ -257,7 +282,7 @@ def summary(report: dict[str, Any]) -> str:
             text += f" {file['pieces']} {pieces_word(file)}"
         motion = file.get("motion")
         if motion and motion["max"] is not None:
-            text += f", motion {_measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}"
+            text += f", motion {measured(motion['max'], motion['unit'], 3, file.get('tolerance'))}"
             if motion.get("extremes") == "sampled":
                 text += f" (sampled, estimated within {motion['remainder']:.2g})"
         parts.append(text)
@@ -280,7 +305,7 @@ def _of_linkage(linkage: dict[str, Any] | None) -> list[str]:
     parts = []
     error = linkage.get("error")
     if error is not None:
-        parts.append(f"output {_measured(error['max'], error['unit'], digits=3)}")
+        parts.append(f"output {measured(error['max'], error['unit'], digits=3)}")
     made = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] != "intended"]
     meant = [dwell["length_deg"] for dwell in linkage["dwells"] if dwell["from"] == "intended"][:1]
     if made or meant:
@@ -303,7 +328,7 @@ def table(report: dict[str, Any]) -> str:
         (
             check["name"],
             "ok" if check["ok"] else "FAILED",
-            _value(check),
+            value_text(check),
             "" if check["limit"] is None else f"{sign(check)} {_number(check['limit'])}",
             check["unit"],
             "" if check["at_deg"] is None else f"{check['at_deg']:.2f} deg",
@@ -330,9 +355,9 @@ def table(report: dict[str, Any]) -> str:
                 str(file.get("pieces") or ""),
                 _number(file.get("tolerance")),
                 _number(file.get("geometry_error")),
-                _measured(file.get("measured_error"), limit=file.get("tolerance")),
-                _measured(motion.get("max"), motion.get("unit", ""), limit=file.get("tolerance")),
-                _measured(motion.get("rms"), limit=file.get("tolerance")),
+                measured(file.get("measured_error"), limit=file.get("tolerance")),
+                measured(motion.get("max"), motion.get("unit", ""), limit=file.get("tolerance")),
+                measured(motion.get("rms"), limit=file.get("tolerance")),
                 "" if motion.get("at_deg") is None else f"{motion['at_deg']:.2f} deg",
             )
         )
@@ -380,18 +405,18 @@ def _number(value: float | None) -> str:
     return "" if value is None else f"{value + 0.0:.6g}"  # no minus before a zero
 
 
-def _value(check: dict[str, Any]) -> str:
+def value_text(check: dict[str, Any]) -> str:
     """A check's figure; of an error that holds, without the digits that only rounding made."""
     holds = check["ok"] and check["sense"] == "at_most"
-    return _measured(check["value"], limit=check["limit"]) if holds else _number(check["value"])
+    return measured(check["value"], limit=check["limit"]) if holds else _number(check["value"])
 
 
-def _measured(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
+def measured(value: float | None, unit: str = "", digits: int = 6, limit: float | None = None) -> str:
     """A measured error with its unit; one that rounding made, far from its limit, has no digits worth telling."""
     if value is None:
         return ""
     if 0.0 < abs(value) < ROUNDING and (not limit or abs(value) < 1e-3 * limit):
-        return "below rounding"
+        return BELOW
     return f"{value + 0.0:.{digits}g} {unit}".rstrip()
 
 

@@ -8,26 +8,33 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.checks.declared import BENT, PRESSURE
+from camgeo.checks.declared import BENT, MOTION, PRESSURE
 from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
-from camgeo.report.document import Remark, of_displacements
+from camgeo.report.document import Remark, RemarkName, of_displacements
 from camgeo.report.figures import of_design
 from camgeo.synthesis.checks import hollow_radius
 from kin.law.joints import Joint
 from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from camgeo.cams.family import Cam
     from camgeo.recipe.recipe import Recipe
+    from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
+    from camgeo.synthesis.linkage import Driven
+    from kin.judge.check import Check
 
 PRESSURE_RULE = {"oscillating": 45.0, "translating": 30.0}  # degrees: cam handbooks' rule of thumb for rollers
 RETURN_RULE = 45.0  # degrees, where a spring holds the follower
 SHARE = 0.1  # of the stroke: an error as great as that is no small one
+LOOSE = 0.01  # of the stroke, or of the rollers' radius: a limit as great as that says little
 THICKEST, THINNEST = 2.0, 0.01  # of the cam's greatest radius
+LASTS = 0.95  # of an intended dwell: so much of it the file's lasts at least
 STILL = 1e-9  # of the cam's size: a motion that is none
 LOOKS = 1440  # places of a turn at which the stroke is looked at
 CLEAR = 0.05  # of the cam's size
@@ -37,8 +44,10 @@ INCH, STEP, HALF_MM = 25.4, 64.0, 0.5  # sizes by the inch are whole 64ths, metr
 _SAME = 1e-6
 
 
-def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
-    """Make every remark that there is to make on a recipe and its design."""
+def remarks_of(
+    recipe: Recipe, design: Design, checks: Sequence[Check] = (), files: Sequence[FileResult] = ()
+) -> tuple[Remark, ...]:
+    """Make every remark that there is to make on a recipe, its design, and the checks of its files."""
     found = [
         _size_found(recipe),
         _pressure(recipe, design),
@@ -47,6 +56,7 @@ def remarks_of(recipe: Recipe, design: Design) -> tuple[Remark, ...]:
         _cutter(recipe, design),
         _pivot(recipe, design),
         *_motion(recipe, design),
+        _implied(recipe, design, checks, files),
         _acceleration(recipe, design.joints),
         *_output(recipe, design),
         _shaft(recipe, design),
@@ -94,7 +104,7 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
         size, other = found
         against = _against(recipe, other, design)
         told += f"; {size} would keep it, but {against}" if against else f", which {size} keeps"
-    return Remark(PRESSURE.name, value, rule, "deg", told, at_deg)
+    return Remark("pressure-angle", value, rule, "deg", told, at_deg)
 
 
 def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
@@ -182,7 +192,7 @@ def _pivot(recipe: Recipe, design: Design) -> Remark | None:
     if found.value is None or found.value > 0.0:
         return None
     told = f"the disc passes over the arm's pivot, by {_length(recipe, -found.value)}"
-    return Remark(PIVOT_CLEARANCE, found.value, 0.0, "mm", told, found.at_deg)
+    return Remark("pivot-clearance", found.value, 0.0, "mm", told, found.at_deg)
 
 
 def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
@@ -199,6 +209,41 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
         error *= arm
         found.append(_share(recipe, "loose-motion-error", ("verify.motion_error", error), length))
     return found
+
+
+def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> Remark | None:
+    """A limit that the tolerance of a file implies, and that is no small part of the stroke or of the rollers."""
+    from camgeo.synthesis.design import intended
+    from kin.judge.contour_checks import direct_play, is_loose, stroke_of
+
+    if recipe.verify.motion_error is not None or not files:
+        return None
+    tolerances = {file.path.name: file.tolerance for file in files}
+    follower, found = intended(recipe, design).follower, []
+    whole, closure = stroke_of(follower), follower.closure
+    word = "swing" if follower.unit == "deg" else "stroke"
+    for check in checks:
+        tolerance = tolerances.get(check.file or "")
+        if not tolerance or check.limit is None:
+            continue
+        direct, size, of = follower.direct_limit(tolerance), whole, word
+        if closure is not None and check.name == closure.name:
+            direct = direct_play(follower, tolerance)
+            size, of = (whole, word) if closure.radius is None else (closure.radius, "roller's radius")
+        elif check.name != MOTION.name:
+            continue
+        if is_loose(check.limit, direct, size, LOOSE):
+            found.append((check.limit / size, check.limit, of, check))
+    if not found:
+        return None
+    share, limit, of, check = max(found, key=lambda row: row[0])
+    unit = check.unit
+    told = f"{limit / recipe.mm if unit == 'mm' else limit:.4g} {_unit(recipe) if unit == 'mm' else unit}"
+    told = (
+        f"the limit of {check.name} that follows from the tolerance, {told}, is {share:.3g} times the {of}; "
+        "verify.motion_error gives one of your own"
+    )
+    return Remark("loose-motion-error", limit, LOOSE * limit / share, unit, told, check.at_deg)
 
 
 def _stroke(design: Design) -> tuple[float, float]:
@@ -224,7 +269,7 @@ def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:
     )
 
 
-def _share(recipe: Recipe, name: str, asked: tuple[str, float], length: float) -> Remark | None:
+def _share(recipe: Recipe, name: RemarkName, asked: tuple[str, float], length: float) -> Remark | None:
     (what, value), rule = asked, SHARE * length
     if value <= rule:
         return None
@@ -238,14 +283,34 @@ def _output(recipe: Recipe, design: Design) -> list[Remark | None]:
         return []
     swing, unit = design.driven.figures.swing, design.driven.mechanism.unit
     scale = math.degrees(1.0) if unit == "deg" else 1.0
-    asked = [("loose-output-error", "verify.output_error", recipe.verify.output_error)]
-    asked.append(("wide-dwell-band", "dwell.band", None if recipe.dwell is None else recipe.dwell.band))
+    band = None if recipe.dwell is None else recipe.dwell.band
+    asked: tuple[tuple[RemarkName, str, float | None], ...] = (
+        ("loose-output-error", "verify.output_error", recipe.verify.output_error),
+        ("wide-dwell-band", "dwell.band", band),
+    )
     found: list[Remark | None] = []
     for name, what, value in asked:
         if value is not None and value > SHARE * swing:
             told = f"{what} is {value / swing:.3g} times the swing of the output" if swing else f"{what}: no swing"
             found.append(Remark(name, value * scale, SHARE * swing * scale, unit, told))
     return found
+
+
+def dwells_lost(driven: Driven, files: Sequence[FileResult]) -> tuple[Remark, ...]:
+    """Of each file whose dwell is a good part shorter than the intended one: the band's edge lies on a ripple."""
+    found = []
+    for file in files:
+        for made in () if file.linkage is None else file.linkage.dwells[:1]:
+            meant = math.degrees(driven.dwells[made.over][0].length)
+            if made.length_deg >= LASTS * meant:
+                continue
+            told = (
+                f"{file.path.name}: the output dwells for {made.length_deg:.5g} deg of the {meant:.5g} intended, as a "
+                "ripple fills the band: give a wider dwell.band or a smaller export.tolerance"
+            )
+            at = made.start_deg if made.over == "shaft" else None
+            found.append(Remark("dwell-shorter", made.length_deg, LASTS * meant, "deg", told, at))
+    return tuple(found)
 
 
 def _shaft(recipe: Recipe, design: Design) -> Remark | None:
@@ -300,4 +365,8 @@ def _thickness(recipe: Recipe, design: Design) -> Remark | None:
 
 
 def _length(recipe: Recipe, value: float) -> str:
-    return f"{value / recipe.mm:.4g} {'in' if recipe.units == 'inch' else 'mm'}"
+    return f"{value / recipe.mm:.4g} {_unit(recipe)}"
+
+
+def _unit(recipe: Recipe) -> str:
+    return "in" if recipe.units == "inch" else "mm"

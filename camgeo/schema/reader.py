@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from camgeo.schema.errors import RecipeError, shown, suggestion
 from camgeo.schema.fields import Field, Kind, Table, either, elsewhere, not_yet, of_other_kind
+from camgeo.schema.quantity import parted
+from camgeo.schema.scalars import Complaint, read_number
 from camgeo.schema.yaml_source import (
     Mapping,
     Scalar,
@@ -177,6 +180,9 @@ class Reader:
             elif name == "<<":
                 self.fault(key.mark, below, "merge keys are not read", None, "write the keys out")
             else:
+                if other := _other_measure(name, entries(node)[name], known):
+                    self.fault(key.mark, below, "unknown key", None, other)
+                    continue
                 near = suggestion(name, known)
                 if name not in near and of_other_kind(self.root, below):
                     near = ""  # it is no slip for another word, unless it is a part of that one
@@ -250,6 +256,18 @@ class Reader:
             self.fault(node.mark, path, f"more than {most} entries", str(len(node.items)), f"at most {most} are read")
             return ()
         return node.items
+
+
+def _other_measure(name: str, node: Node, known: collections.abc.Collection[str]) -> str:
+    """Say which radius is meant by a diameter, or which diameter by a radius, with its value; empty for other keys."""
+    for own, other, factor in (("diameter", "radius", 0.5), ("radius", "diameter", 2.0)):
+        wanted = name.replace(own, other)
+        if own in name and wanted in known and isinstance(node, Scalar):
+            text, unit = parted(node.text)
+            with suppress(Complaint):
+                return f"give {wanted}: {factor * read_number(text):.12g} {unit}".rstrip()
+            return f"give {wanted}"
+    return ""
 
 
 def _asks_later(table: Table, given: dict[str, Node]) -> bool:

@@ -10,6 +10,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
+import numpy as np
+
 from camgeo.checks.declared import CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDERCUT_LOCAL, WALL
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
@@ -32,6 +34,11 @@ if TYPE_CHECKING:
     from kin.judge.verify import Limits
     from kin.law.joints import Joint
     from kin.law.support_function import Lift
+    from kin.numeric.arrays import Array
+
+SMALL = 0.01  # of a cam's size: undercut no deeper may be worth cutting off
+LOOKS, GOLDEN = 4096, 0.5 * (math.sqrt(5.0) - 1.0)  # places at which a contour's direction is looked at, their step
+TOO_MANY = "at least {} stretches of the contour run backwards; give the motion fewer or lower waves"
 
 
 @dataclass(frozen=True)
@@ -39,8 +46,8 @@ class Design:
     """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file.
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
-    `driven` is the linkage, None without one; `body` the part where it has more than a round bore. `face` is how far
-    the faces of a pair stand beside the lines through its pivot, mm. `joints` are those of the motion.
+    `driven` is the linkage, None without one; `body` the part where it has more than a round bore. `joints` are those
+    of the motion.
     """
 
     intent: Intent
@@ -52,7 +59,6 @@ class Design:
     trimmed: bool
     driven: Driven | None = None
     body: Body | None = None
-    face: float = 0.0
     joints: tuple[Joint, ...] = ()
 
     @property
@@ -124,12 +130,15 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
 def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check], Curve | None]:
     """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
     from camgeo.curve.undercut.causes import UndercutError
-    from camgeo.curve.undercut.undercut import undercuts
+    from camgeo.curve.undercut.undercut import MOST_TOLD, undercuts
 
     trim = recipe.cam.undercut == "trim"
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
-    least, roller = _bent_most(profile), abs(profile.roller_radius)
+    roller = abs(profile.roller_radius)
+    if roller and len(backward := _seen_backward(profile.curve)) > MOST_TOLD * profile.curve.shape.repeats:
+        raise CurveError(TOO_MANY.format(len(backward)), float(backward[0]))
+    least = _bent_most(profile)
     radius = least.radius + roller
     shaft_deg = recipe.cam.position(intent).shaft_deg
     roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
@@ -170,10 +179,30 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
             continue
         worst = max(cuts, key=lambda cut: cut.depth)
         detail = f"{_extent(profile, shaft_deg, worst)}; {free}{outcome}"
+        if not trim and worst.depth <= SMALL * profile.curve.size and _can_be_trimmed(profile.curve):
+            detail += "; or let what is lost be cut off: undercut: trim"
         depth = worst.depth if math.isfinite(worst.depth) else None
         ok, at_deg, limit = contour is not None, shaft_deg(worst.at), None if cut_off else 0.0
         checks.append(Check(of_kind[kind].name, ok, depth, limit, "mm", at_deg, detail=detail))
     return checks, contour
+
+
+def _seen_backward(curve: Curve) -> Array:
+    """Parameters (n,), of LOOKS, at which a contour begins to run backwards: so many stretches there are at least."""
+    t = curve.shape.period * np.sort(np.arange(LOOKS) * GOLDEN % 1.0)  # in step with no number of waves
+    backward = curve.sample(t).speed < 0.0
+    begins: Array = t[backward & ~np.roll(backward, 1)]
+    return begins
+
+
+def _can_be_trimmed(curve: Curve) -> bool:
+    from camgeo.curve.undercut.causes import UndercutError
+
+    try:
+        _trimmed(curve)
+    except UndercutError:
+        return False
+    return True
 
 
 def is_trimmed(contour: Curve | None, profile: Profile) -> bool:
@@ -265,13 +294,14 @@ def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, 
 
 def intended(recipe: Recipe, design: Design) -> Judged:
     """What kin is given of the part: the follower with its law, and how the part is drawn."""
+    from kin.follower.follower import follower_of
     from kin.judge.contour_checks import DwellAsked
     from kin.judge.verify import Intent
 
     driven, asked = design.driven, recipe.dwell
     turns = driven is not None and driven.turns
     intent = Intent(
-        follower=recipe.cam.judged(design.intent, design.yoke_breadth, design.face),
+        follower=follower_of(design.follower.contacts, recipe.cam.law(design.intent), recipe.cam.metal),
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,

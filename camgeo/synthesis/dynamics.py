@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 TURNS = 20  # that are followed from rest, unless one repeats the one before
 _DIGITS = 9  # of a dwell's ends in degrees, beyond which they are rounding
 MOST_FOR_FLOAT = 150  # stretches of a drive for which the speed at which float begins is searched
-MOST_PLACES = 9_000_000  # that all searches of a recipe look at together, which bounds them to some ten seconds
+MOST_PLACES = 4_500_000  # that all searches for float look at together, and all courses: each some two seconds
 
 
 class _Purse:
     """What the searches still to come may look at: each an equal share of what the ones before have left."""
 
-    def __init__(self, runs: int, *, each: int) -> None:
-        self._places, self._searches = MOST_PLACES, runs * each
+    def __init__(self, searches: int) -> None:
+        self._places, self._searches = MOST_PLACES, searches
 
     def share(self) -> int:
         """The most that the next search may look at."""
@@ -61,7 +61,8 @@ class _Scene(NamedTuple):
     recipe: Recipe
     asked: Dynamics
     train: Train
-    purse: _Purse
+    floats: _Purse
+    courses: _Purse
     rests: tuple[tuple[float, float], ...]
     unit: float
     name: str
@@ -88,7 +89,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
     sources: list[Path | None] = [None]
     if recipe.linkage is None:
         sources += [path for path in files if path.suffix.lstrip(".") in KINDS]
-    scene = _scene(recipe, asked, design, _Purse(len(sources), each=1 if asked.backlash is not None else 2), units)
+    scene = _scene(recipe, asked, design, len(sources), units)
     entries: list[dict[str, Any]] = []
     checks: list[Check] = []
     for path in sources:
@@ -116,7 +117,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
     return Found(section, tuple(checks))
 
 
-def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn: float | None) -> _Scene:
+def _scene(recipe: Recipe, asked: Dynamics, design: Design, runs: int, drawn: float | None) -> _Scene:
     from camgeo.synthesis.design import intended
     from kin.dynamics.train import Train
     from kin.follower.guide import METRE
@@ -135,7 +136,7 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, purse: _Purse, drawn
         found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
-    return _Scene(recipe, asked, train, purse, found, unit, name, drawn)
+    return _Scene(recipe, asked, train, _Purse(runs), _Purse(runs), found, unit, name, drawn)
 
 
 def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
@@ -200,15 +201,14 @@ def _lowest(motion: Motion) -> float:
 
 
 def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[dict[str, Any], Check]:
-    from kin.dynamics.impacts import course
     from kin.dynamics.train import steady
 
     train, rpm = scene.train, scene.asked.rpm
     found = steady(train, drive, rpm, scene.rests)
     entry["steady"] = _steady(scene, found)
-    followed = course(train, (drive, None), rpm, TURNS, most=scene.purse.share())
-    scene.purse.spend(followed.places)
-    entry |= _followed(followed, rpm, train) | _float_speed(scene, drive)
+    if scene.asked.transient:
+        entry |= _followed(_course(scene, drive, None), rpm, train)
+    entry |= _float_speed(scene, drive)
     least = found.force.least
     detail = f"greatest {found.force.greatest:.6g}; with the natural frequency {train.ratio(rpm):.4g} times the shaft's"
     unit = "N m" if scene.name == "deg" else "N"
@@ -216,16 +216,23 @@ def _with_spring(scene: _Scene, entry: dict[str, Any], drive: Drive) -> tuple[di
     return entry, Check(FLOAT.name, least >= 0.0, least, 0.0, unit, at_deg, "at_least", detail=detail)
 
 
+def _course(scene: _Scene, lower: Drive, upper: Drive | None) -> Course:
+    from kin.dynamics.impacts import course
+
+    followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS, most=scene.courses.share())
+    scene.courses.spend(followed.places)
+    return followed
+
+
 def _with_backlash(scene: _Scene, entry: dict[str, Any], lower: Drive, upper: Drive) -> tuple[dict[str, Any], Check]:
     from kin.dynamics.events import LOWER, UPPER
-    from kin.dynamics.impacts import course, least_gap
+    from kin.dynamics.impacts import least_gap
     from kin.dynamics.train import DynamicsError
 
     least, at = least_gap(lower, upper)
     detail = ""
-    if least > 0.0:
-        followed = course(scene.train, (lower, upper), scene.asked.rpm, TURNS, most=scene.purse.share())
-        scene.purse.spend(followed.places)
+    if least > 0.0 and scene.asked.transient:
+        followed = _course(scene, lower, upper)
         if not followed.turns and followed.stopped is not None:
             raise DynamicsError(followed.stopped)
         entry |= _followed(followed, scene.asked.rpm, scene.train)
@@ -272,6 +279,7 @@ def _transient(followed: Course, rpm: float, train: Train) -> dict[str, Any]:
     low = min(range(len(turns)), key=lambda i: turns[i].least)
     found = {
         "turns": len(turns),
+        "turns_most": TURNS,
         "settled": followed.settled,
         "peak_force": turns[peak].greatest,
         "peak_at_deg": math.degrees(turns[peak].greatest_at) + 360.0 * peak,
@@ -320,10 +328,10 @@ def _float_speed(scene: _Scene, drive: Drive) -> dict[str, Any]:
     if len(drive) > MOST_FOR_FLOAT:
         return {"float_rpm": None, "float_why": f"not searched: the motion has more than {MOST_FOR_FLOAT} stretches"}
     try:
-        found = float_speed(train, drive, most=scene.purse.share())
+        found = float_speed(train, drive, most=scene.floats.share())
     except DynamicsError as error:
         return {"float_rpm": None, "float_why": str(error)}
-    scene.purse.spend(found.places)
+    scene.floats.spend(found.places)
     entry: dict[str, Any] = {"float_rpm": found.rpm, "float_rigid_rpm": found.rigid_rpm}
     if found.between is not None:
         holds, floats = found.between

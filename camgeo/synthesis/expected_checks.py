@@ -27,9 +27,9 @@ class Foreseen(NamedTuple):
         return self.name if self.file is None else f"{self.name}[{self.file}]"
 
 
-def foreseen(recipe: Recipe) -> tuple[Foreseen, ...]:
+def foreseen(recipe: Recipe, *, second_opinion: bool = False) -> tuple[Foreseen, ...]:
     """Tell the checks of a recipe, those of each file last; raises kin.law.programme.IntentError."""
-    scene, files = Scene(recipe, _follower(recipe)), recipe.export.files
+    scene, files = Scene(recipe, _follower(recipe), second_opinion=second_opinion), recipe.export.files
     found = [Foreseen(one.name) for one in EVERY.values() if one.exact is not None and one.exact(scene)]
     # of a file, what its contour is in itself comes before what is left between it and the follower
     in_turn = sorted(EVERY.values(), key=lambda one: one.backlash or one.exact is not None)

@@ -14,14 +14,16 @@ import numpy as np
 
 from camgeo.checks.declared import DWELL, MOBILITY, REVERSAL
 from camgeo.common.rounding import upward
+from camgeo.recipe.linkage import with_other_lengths
 from kin.judge.check import Check, failed
 from kin.numeric.angles import TURN, degrees
+from kin.numeric.errors import KinError
 from kin.numeric.monotone import RoughError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from camgeo.recipe.linkage import DwellAsked
+    from camgeo.recipe.linkage import DwellAsked, Linkage
     from camgeo.recipe.recipe import Recipe
     from camgeo.schema.errors import RecipeErrors
     from kin.law.support_function import Lift
@@ -31,8 +33,10 @@ if TYPE_CHECKING:
     from kin.numeric.longest_window import Dwell
 
 Over: TypeAlias = Literal["shaft", "relative"]
+LOOKS = 360  # relative angles at which a changed linkage is looked at first
 OVER: tuple[Over, ...] = ("shaft", "relative")
 DEGREES = 180.0 / math.pi
+CHANGES = (1.05, 0.95, 1.1, 0.9, 1.2, 0.8, 1.5, 0.65, 2.0, 0.5, 3.0)  # of a link, tried where a linkage does not turn
 
 
 def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
@@ -69,10 +73,11 @@ def _outside(recipe: Recipe, error: OutsideError) -> RecipeErrors:
 # --- checks before any file -------------------------------------------------------------------------------------------
 
 
-def mobility_checks(mechanism: Mechanism) -> list[Check]:
+def mobility_checks(mechanism: Mechanism, turning: str = "") -> list[Check]:
     """That every loop closes all round (AS after eq. 18), and that the shaft never has to turn back.
 
-    Where the mechanism does not make a full turn there is no shaft angle: the places are then told by the detail alone.
+    Where the mechanism does not make a full turn there is no shaft angle: the places are then told by the detail alone,
+    with `turning`, what would let it turn.
     """
     found = mechanism.mobility()
     loop = "the linkage" if found.loop == 0 else f"dyad {found.loop}"
@@ -80,14 +85,44 @@ def mobility_checks(mechanism: Mechanism) -> list[Check]:
     back = f"the shaft would turn back {_spans(found.reverses)} of the relative angle" if found.reverses else ""
 
     def above_zero(name: str, value: float | None, unit: str, at: float, detail: str) -> Check:
+        held = value is not None and value > 0.0
         place = degrees(float(mechanism.at(at, 0).shaft[0, 0])) if found.turns else None
-        return Check(name, value is not None and value > 0.0, value, 0.0, unit, place, "at_least", detail=detail)
+        more = "" if held or not turning else f"; {turning}" if detail else turning
+        return Check(name, held, value, 0.0, unit, place, "at_least", detail=detail + more)
 
     rate = None if math.isnan(found.least_rate) else found.least_rate
     return [
         above_zero(MOBILITY.name, found.margin, "mm", found.margin_at, where),
         above_zero(REVERSAL.name, rate, "", found.rate_at, back or (where if rate is None else "")),
     ]
+
+
+def _length_that_turns(recipe: Recipe, mechanism: Mechanism) -> str:
+    """Name the link whose length, changed by the least share of CHANGES, lets the mechanism turn; each is tried.
+
+    Empty where none does, or where the links shape the cam, which would be another one.
+    """
+    asked = recipe.linkage
+    if asked is None or asked.shaped(recipe.cam) is not recipe.cam:
+        return ""
+    for factor in CHANGES:
+        for path, length, changed in with_other_lengths(asked, mechanism.mobility().loop, factor):
+            if _turns(changed, mechanism):
+                unit = "in" if recipe.units == "inch" else "mm"
+                return f"with linkage.{path} {length / recipe.mm:.6g} {unit} it would turn"
+    return ""
+
+
+def _turns(linkage: Linkage, like: Mechanism) -> bool:
+    """Whether a linkage turns right round with the cam of another mechanism."""
+    from kin.linkage.mechanism import Mechanism
+
+    try:
+        made = Mechanism(linkage.made(), like.lift, like.breadth, tuple(dyad.made() for dyad in linkage.dyads))
+        rate = made.at(np.linspace(0.0, TURN, LOOKS, endpoint=False), 1).shaft[1]  # at few places: most fail there
+        return bool(rate.min() > 0.0) and made.mobility().turns
+    except (KinError, ValueError):
+        return False
 
 
 def _spans(spans: Sequence[tuple[float, float]]) -> str:
@@ -154,7 +189,8 @@ def driven(recipe: Recipe, lift: Lift, breadth: float | None) -> Driven:
 
 
 def _driven(recipe: Recipe, mechanism: Mechanism) -> Driven:
-    checks = mobility_checks(mechanism)
+    mobile = mechanism.mobility()
+    checks = mobility_checks(mechanism, "" if mobile.turns else _length_that_turns(recipe, mechanism))
     found: dict[Over, tuple[Dwell, ...]] = {}
     asked = recipe.dwell
     if asked is not None and mechanism.mobility().turns:

@@ -1,4 +1,4 @@
-"""What a sound contour has not: places where it crosses or touches itself, and dents in its convex hull."""
+"""What a sound contour has not: places where it crosses or touches itself or another."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, left, nearest_on, right
-from kin.contour.hull import convex_hull
 from kin.contour.nearest import nearest
 
 if TYPE_CHECKING:
@@ -18,16 +17,12 @@ if TYPE_CHECKING:
 
     Levels = list[tuple[Array, Array]]
 
-__all__ = ["Crossings", "Dents", "crossings", "dents", "first_meeting", "meetings"]
+__all__ = ["Crossings", "crossings", "first_meeting", "meetings"]
 
 # Two pieces closer than this, mm, have a point in common.
 TOUCHING = 1e-9
 # A loop shorter than this, mm, is the rounding of a joint.
 SHORTEST_LOOP = 1e-7
-# Default precision of a dent's depth: mm, or share of the extent; and the least that may be asked for.
-DENT_TOLERANCE = 1e-7
-DENT_SHARE = 1e-8
-LEAST_SHARE = 1e-12
 # Boxes under one box of the next level.
 BRANCH = 4
 # Pairs of boxes that are looked at together, which bounds the memory.
@@ -41,66 +36,6 @@ class Crossings(NamedTuple):
 
     point: Array
     piece: Indices
-
-
-class Dents(NamedTuple):
-    """Stretches of a contour inside its convex hull: greatest depth (k,), falling, its place (k, 2) and piece (k,)."""
-
-    depth: Array
-    point: Array
-    piece: Indices
-
-
-def dents(contour: Contour, tolerance: float | None = None) -> Dents:
-    """How far the contour lies inside its convex hull, one entry for each stretch that does; depths within `tolerance`.
-
-    Depth is the distance to the hull's boundary. A contour that turns left throughout has none, without further work;
-    any other is replaced by chords within `tolerance` mm, by default 1e-7 or 1e-8 of its extent if that is more. Cost
-    grows as tolerance^(-1/2). Raises ValueError for less than 1e-12 of the extent.
-    """
-    extent = float(np.abs(contour.vertices).max())
-    if tolerance is None:
-        tolerance = max(DENT_TOLERANCE, DENT_SHARE * extent)
-    elif tolerance < LEAST_SHARE * extent:
-        raise ValueError(f"{tolerance:g} mm is lost in the rounding of a contour that reaches out to {extent:g} mm")
-    nothing = Dents(np.zeros(0), np.zeros((0, 2)), np.zeros(0, dtype=np.intp))
-    if contour.is_convex:
-        return nothing
-    chain, owner = contour.as_arcs(tolerance / 2.0)
-    bend = np.abs(chain.curvature)
-    # The sagitta of a chord over the angle a is (1 - cos(a/2))/k = 2 sin(a/4)^2/k.
-    angle = 4.0 * np.arcsin(np.minimum(np.sqrt(bend * tolerance) / 2.0, 0.5))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        parts = np.where(bend > 0.0, np.ceil(bend * chain.length / angle), 1.0)
-    links, source = chain.cut(np.maximum(parts, 1.0).astype(np.intp))
-    points = links.start
-    corners = convex_hull(points)
-    inside = np.ones(len(points), dtype=bool)
-    inside[corners] = False
-    if not inside.any():
-        return nothing
-    depth = np.zeros(len(points))
-    depth[inside] = nearest(polygon(points[corners]), points[inside])[1]
-    rounding = 16.0 * np.finfo(float).eps * float(np.abs(points).max())
-    dented = depth > rounding
-    if not dented.any():
-        return nothing
-    head = int(np.argmin(dented))  # start where the contour is on its hull, so that no stretch is cut in two
-    order = np.roll(np.arange(len(points)), -head)
-    heads = np.flatnonzero(dented[order] & ~np.roll(dented[order], 1))
-    run = np.searchsorted(heads, np.flatnonzero(dented[order]), side="right") - 1
-    index = order[dented[order]]
-    rank = np.lexsort((-depth[index], run))
-    deepest = index[rank[np.concatenate([[True], np.diff(run[rank]) > 0])]]
-    deepest = deepest[np.argsort(-depth[deepest], kind="stable")]
-    return Dents(depth[deepest], points[deepest], owner[source[deepest]])
-
-
-def polygon(corners: Array) -> Arcs:
-    """Return the edges of a closed polygon (n, 2)."""
-    edge = np.roll(corners, -1, axis=0) - corners
-    length = np.hypot(edge[:, 0], edge[:, 1])
-    return Arcs(corners, edge / length[:, None], np.zeros(len(corners)), length)
 
 
 def crossings(contour: Contour) -> Crossings:

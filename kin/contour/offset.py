@@ -13,6 +13,7 @@ import numpy as np
 from kin.contour.arcs import Arcs, cross, dot, left
 from kin.contour.contour import Contour
 from kin.numeric.errors import KinError
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from kin.numeric.arrays import Array
@@ -115,5 +116,5 @@ def _meeting(one: Arcs, other: Arcs) -> tuple[Array, float, float] | None:
 
 def _tight(loop: Arcs, piece: int, distance: float) -> TightError:
     x, y = loop.start[piece].tolist()
-    what = f"the curve turns too sharply for its parallel at {abs(distance):.6g} mm, near ({x:.6g}, {y:.6g})"
+    what = f"the curve turns too sharply for its parallel at {abs(distance):.6g} mm, near {place_text(x, y)}"
     return TightError(what, piece, (x, y))

@@ -72,7 +72,7 @@ class Intended:
 
     def rows(self, phi: Array) -> Array:
         """See `kin.dynamics.drive.Motion`."""
-        return self.follower.contacts[0].guide.si * self.follower.motion.derivatives(phi, 2)
+        return self.follower.si * self.follower.motion.derivatives(phi, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
     contacts, drives = follower.contacts, follower.drives(contour)
     if play is not None and len(contacts) == 1:
         raise ValueError("a follower of one contact has no backlash")
-    si = contacts[0].guide.si
+    si = follower.si
     if play is None:
         return Faces(Moved(drives[0], 1.0, -si * contacts[0].zero), None)
     # the follower's position is sense * (own - zero): one contact pushes it up, the other keeps it below

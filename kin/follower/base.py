@@ -1,17 +1,19 @@
 """What every follower answers: contacts on guides, the motion it is meant to make, and what its play is judged by.
 
-A follower is its contacts, each on a guide, and its motion. What depends on the pair of guide and touch is a file of
+A follower is its contacts (`kin.law.contacts`) and its motion. What depends on the pair of guide and touch is a file of
 formulas: a flat face on a line of travel `kin.follower.flat`, on an arm `kin.follower.faces_on_arm`, a roller on either
 `kin.follower.roller`. All others ask a follower by the names below, and never of what kind it is.
 """
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
+from kin.follower.guide import METRE
 from kin.follower.rests import dwells_of_law, dwells_of_transmission
 
 if TYPE_CHECKING:
@@ -20,8 +22,8 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.drive import Drive
     from kin.follower.envelope import Envelope
-    from kin.follower.guide import Guide, Side
-    from kin.follower.motion_error import Judged, Play, Unit
+    from kin.follower.motion_error import Judged, Play
+    from kin.law.contacts import Contact, Guide, Touch, Unit
     from kin.law.piecewise import Piecewise
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -60,37 +62,6 @@ class Swing:
 
 
 @dataclass(frozen=True)
-class Contact:
-    """One touch of a follower, which at shaft angle phi is where its guide stands at phi + turned.
-
-    Its own position on the guide, growing away from the cam, is datum - apart + sense * the follower's: a sense of 1
-    pushes the follower towards greater positions, -1 towards lesser ones. `apart` is how far two contacts that share
-    their guide stand from its middle. A face on an arm touches about the arm's length from the pivot.
-    """
-
-    guide: Guide
-    sense: Side = 1
-    datum: float = 0.0
-    apart: float = 0.0
-    turned: float = 0.0
-
-    @property
-    def zero(self) -> float:
-        """Own position where the follower's is 0."""
-        return self.datum - self.apart
-
-    def position(self, own: Array) -> Array:
-        """Position of the follower from the contact's own."""
-        position: Array = self.sense * (own - self.datum + self.apart)
-        return position
-
-    def own(self, position: Array) -> Array:
-        """The contact's own position from the follower's."""
-        own: Array = self.zero + self.sense * position
-        return own
-
-
-@dataclass(frozen=True)
 class Closure:
     """How the play of a follower that is held from two sides is judged.
 
@@ -98,12 +69,16 @@ class Closure:
     name     of the check on both, play and interference
     tight    name of a check on interference alone; None for none
     breadth  of a frame, mm: what is reported is how broad the contour is; None where play is
+    lever    play that is permitted for a permitted motion error of 1, mm or degrees; None where the tolerance sets it
+    radius   of the rollers, mm, beside which a play is small; None of a play that is an angle
     """
 
     limit: Callable[[float], float]
     name: str = "form-closure"
     tight: str | None = None
     breadth: float | None = None
+    lever: float | None = None
+    radius: float | None = None
 
     def detail(self, play: Play) -> str:
         """What the check reports of a play that was found."""
@@ -113,13 +88,15 @@ class Closure:
         return f"backlash from {play.least:.3g} to {play.most:.3g} {play.unit}{sampled}"
 
 
+@dataclass(frozen=True, eq=False)
 class Follower(ABC):
-    """A follower; positions and motions are in mm or radians, error figures and limits in mm or degrees."""
+    """A follower; positions and motions are in mm or radians, error figures and limits in mm or degrees.
 
-    @property
-    @abstractmethod
-    def contacts(self) -> tuple[Contact, ...]:
-        """One, which a spring holds on the cam, or two that hold the follower from both sides."""
+    One contact is held on the cam by a spring, two hold the follower from both sides. Here their own positions count
+    away from the metal, and the follower's from where contact 1 would reach the shaft or the line to it.
+    """
+
+    contacts: tuple[Contact[Guide, Touch], ...]
 
     @property
     @abstractmethod
@@ -155,9 +132,19 @@ class Follower(ABC):
         """Shaft angle at which the envelope's point of that parameter is touched (n,)."""
         return parameter
 
+    @property
+    def si(self) -> float:
+        """Metres or radians in one of position."""
+        return METRE if self.unit == "mm" else 1.0
+
     def moved_by(self, length: float) -> float:
         """Position, metres or radians, by which a contact that moves by a length, mm, moves the follower, about."""
-        return self.contacts[0].guide.moved_by(length)
+        return METRE * length if self.unit == "mm" else length / self.lever
+
+    @property
+    def lever(self) -> float:
+        """How far from its pivot an arm is touched, about, mm; infinite on a line of travel."""
+        return math.inf
 
     @abstractmethod
     def contact(self, contour: Contour, phi: Array) -> Array:
@@ -178,7 +165,12 @@ class Follower(ABC):
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error, mm or degrees, of a contour within `tolerance` of the exact one."""
 
+    def direct_limit(self, tolerance: float) -> float:
+        """What `motion_limit` is at a pressure angle of 0, or on a face as far from the pivot as it reaches."""
+        return math.degrees(self.moved_by(tolerance)) if self.unit == "deg" else tolerance
 
+
+@dataclass(frozen=True, eq=False)
 class OfLaw(Follower):
     """A follower whose intended motion is a law over the shaft angle."""
 
@@ -195,6 +187,7 @@ class OfLaw(Follower):
         return tuple(dwells_of_law(self.law))
 
 
+@dataclass(frozen=True, eq=False)
 class OfTransmission(Follower):
     """A double follower whose intended motion is the swing of a transmission, `share` times psi."""
 

@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from kin.follower.base import Closure, Contact, OfLaw, OfTransmission
+from kin.follower.base import Closure, OfLaw, OfTransmission
 from kin.follower.drive import OfArmFace
 from kin.follower.envelope import FacePitch, FlatEnvelope, Outset, PairSupport
-from kin.follower.guide import LEADING, TRAILING, Arm
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import FINE_STEP, across, grid
 from kin.follower.rests import dwell_angles
 from kin.follower.support import Bearing, bearing_of
+from kin.law.contacts import Flat, Oscillating
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
 from kin.numeric.errors import UnsettledError
@@ -32,9 +32,7 @@ from kin.numeric.newton import zeros
 if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.envelope import SupportLaw
-    from kin.follower.guide import Side
-    from kin.law.piecewise import Piecewise
-    from kin.law.transmission import Transmission
+    from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.numeric.arrays import Array, Indices
 
 RESOLUTION_ANGLE = 1e-13  # rad
@@ -54,6 +52,13 @@ class ArmFace:
     pivot: float
     side: Side
     out: float = 0.0
+
+    @staticmethod
+    def of(contact: Contact[Guide, Touch]) -> ArmFace:
+        """Take the face of a contact's record."""
+        if not (isinstance(contact.guide, Oscillating) and isinstance(contact.touch, Flat)):
+            raise TypeError("a flat face on an arm has a pivot")
+        return ArmFace(contact.guide.pivot, contact.guide.side, -contact.touch.nearer)
 
     def bearing(self, contour: Contour) -> Bearing:
         """Where a contour bears all round; ContactError if the face's contact reaches the pivot."""
@@ -129,37 +134,31 @@ class ArmFace:
 
 @dataclass(frozen=True, eq=False)
 class SwingingFace(OfLaw):
-    """A flat face on an arm about a pivot at distance C from the shaft, `offset` f mm nearer the cam than its parallel.
+    """A flat face on an arm about a pivot at distance C from the shaft, f mm nearer the cam than its parallel.
 
     Its position, of which `law` is the intended one over the shaft angle, is the angle psi between the face and the
     line from pivot to shaft, radians, which grows as the face is lifted: its distance from the shaft is C sin psi - f.
     """
 
-    pivot: float
-    offset: float
-    law: Piecewise
-    side: Side = TRAILING
-
-    @property
+    @cached_property
     def face(self) -> ArmFace:
         """The face."""
-        return ArmFace(self.pivot, 1 if self.side == TRAILING else -1, -self.offset)
+        return ArmFace.of(self.contacts[0])
 
     @property
-    def contacts(self) -> tuple[Contact, ...]:
-        """The face, which touches about where it would at rest."""
-        reach = self.pivot * float(np.cos(self.intended(np.zeros(1))[0]))
-        return (Contact(Arm(reach, self.pivot, self.side)),)
+    def lever(self) -> float:
+        """How far from the pivot the face is touched at the shaft's zero, about."""
+        return self.face.pivot * float(np.cos(self.intended(np.zeros(1))[0]))
 
     @cached_property
     def support(self) -> PairSupport:
-        """Distance of the line through the pivot along the face: that of the exact contour, and `offset`."""
-        return PairSupport(FacePitch(self.law, self.pivot, self.face.side))
+        """Distance of the line through the pivot along the face: that of the exact contour, and f."""
+        return PairSupport(FacePitch(self.law, self.face.pivot, self.face.side))
 
     @cached_property
     def envelope(self) -> FlatEnvelope:
         """The exact contour; its parameter is the direction of the face's normal."""
-        return FlatEnvelope(Outset(self.support, -self.offset))
+        return FlatEnvelope(Outset(self.support, self.face.out))
 
     def shaft_angle(self, parameter: Array) -> Array:
         """Shaft angle at which the face touches the envelope's point of that parameter (n,)."""
@@ -214,40 +213,49 @@ class SwingingFace(OfLaw):
             raise ContactError("the intended contact reaches the pivot", float(phi[int(np.argmax(psi))]))
         return float(np.degrees(self.face.leeway(self.support, tolerance, grid(self.support.breaks)).max()))
 
+    def direct_limit(self, tolerance: float) -> float:
+        """The same, degrees, at the pivot's distance."""
+        return float(np.degrees(tolerance / self.face.pivot))
+
 
 @dataclass(frozen=True, eq=False)
 class FlatPair(OfTransmission):
     """W's pair of flat faces that include pi - alpha and meet in a pivot at distance 2 l from the shaft (W section 5).
 
     The pair swings by psi/2; the normal of face A stands at t, that of face B at t + alpha, in the cam frame. Positions
-    are swings in radians, clockwise positive; error figures are in degrees. Faces that stand `face` mm farther out pass
-    the pivot at that distance, and their cam is the parallel curve.
+    are swings in radians, clockwise positive; error figures are in degrees. Faces that stand farther out pass the pivot
+    at that distance, and their cam is the parallel curve. Face A keeps the swing below. The faces' own positions count
+    from where they stand at no swing.
     """
 
     share: ClassVar[float] = 0.5
-    transmission: Transmission
-    face: float = 0.0
+
+    @cached_property
+    def faces(self) -> tuple[ArmFace, ArmFace]:
+        """Face A and face B."""
+        a, b = self.contacts
+        return ArmFace.of(a), ArmFace.of(b)
 
     @property
-    def contacts(self) -> tuple[Contact, ...]:
-        """Face A, which keeps the swing below, and face B."""
-        arm = self.transmission.arm
-        return Contact(Arm(arm, 2.0 * arm, TRAILING), TRAILING), Contact(Arm(arm, 2.0 * arm, LEADING), LEADING)
+    def lever(self) -> float:
+        """About how far from the pivot the faces are touched, mm: the law's arm l."""
+        return self.transmission.arm
 
     @property
     def closure(self) -> Closure:
         """The angle by which the faces stand wider than they need."""
-        return Closure(self.play_limit)
+        return Closure(self.play_limit, lever=2.0)
 
     @cached_property
     def support(self) -> PairSupport:
-        """Distance of the lines through the pivot along the faces: that of the exact contour, less `face`."""
+        """Distance of the lines through the pivot along the faces: that of the contour, less what they stand out."""
         return PairSupport(self.transmission)
 
     @cached_property
     def envelope(self) -> FlatEnvelope:
         """The exact contour; its parameter is the direction of face A's normal."""
-        return FlatEnvelope(Outset(self.support, self.face) if self.face else self.support)
+        out = self.faces[0].out
+        return FlatEnvelope(Outset(self.support, out) if out else self.support)
 
     def shaft_angle(self, parameter: Array) -> Array:
         """Shaft angle at which face A touches the envelope's point of that parameter (n,)."""
@@ -264,11 +272,15 @@ class FlatPair(OfTransmission):
     def drives(self, contour: Contour) -> list[OfArmFace]:
         """Swing of each face away from the cam, as it rests on the contour. ContactError if that reaches the pivot."""
         bearing = self.bearing(contour)
-        return [OfArmFace(face, bearing, 0.5 * self.transmission.alpha) for face in self.faces]
+        return [OfArmFace(face, bearing, one.apart) for face, one in zip(self.faces, self.contacts, strict=True)]
 
     def _swings(self, bearing: Bearing, phi: Array) -> Array:
-        half = 0.5 * self.transmission.alpha
-        return np.stack([phi - face.side * half - face.touch(bearing, phi)[0] for face in self.faces])
+        # own position is apart + side * (normal - phi), and side is less the sense
+        swings = [
+            phi + one.sense * (one.apart - one.zero) - face.touch(bearing, phi)[0]
+            for face, one in zip(self.faces, self.contacts, strict=True)
+        ]
+        return np.stack(swings)
 
     def judge(self, contour: Contour, phi: Array) -> Judged:
         """Motion error of either face and the play between them; extremes over the whole turn."""
@@ -285,18 +297,16 @@ class FlatPair(OfTransmission):
         theta = grid(self.support.breaks)
         return float(np.degrees(max(face.leeway(self.support, tolerance, theta).max() for face in self.faces)))
 
+    def direct_limit(self, tolerance: float) -> float:
+        """The same, degrees, at the pivot's distance."""
+        return float(np.degrees(tolerance / self.faces[0].pivot))
+
     def play_limit(self, tolerance: float) -> float:
         """Greatest play, degrees, from such shifts at both faces."""
         a, b = self.faces
         theta = grid(self.support.breaks)
         far = b.leeway(self.support, tolerance, theta + self.transmission.alpha)
         return float(np.degrees((a.leeway(self.support, tolerance, theta) + far).max()))
-
-    @property
-    def faces(self) -> tuple[ArmFace, ArmFace]:
-        """Face A and face B."""
-        pivot = 2.0 * self.transmission.arm
-        return ArmFace(pivot, 1, self.face), ArmFace(pivot, -1, self.face)
 
     def bearing(self, contour: Contour) -> Bearing:
         """Where a contour bears all round; ContactError if it reaches the pivot."""
@@ -360,7 +370,7 @@ class FlatPair(OfTransmission):
 
         def play(phi: Array, of: Indices) -> Array:
             wide = b.touch(bearing, phi, middle[of]) - a.touch(bearing, phi, middle[of])
-            wide[0] -= self.transmission.alpha
+            wide[0] -= self.contacts[0].apart + self.contacts[1].apart
             return wide
 
         every = np.arange(len(low))

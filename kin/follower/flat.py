@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.follower.base import Closure, Contact, Follower, Rests
+from kin.follower.base import Closure, Follower, Rests
 from kin.follower.drive import OfFace
 from kin.follower.envelope import FlatEnvelope, Tilted
-from kin.follower.guide import Translating
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
 from kin.follower.rests import dwells
 from kin.follower.support import Bearing, bearing_of
+from kin.law.contacts import Flat
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.extrema import Extremes, extremes, resolution
 
@@ -30,14 +30,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class FlatFace(Follower):
-    """A flat face moving along its own normal; its position is its distance p(theta) from the shaft, mm."""
+    """A flat face on a line of travel, its normal ahead of that by its tilt; of a yoke the first of two.
+
+    Its position, of which `lift` is the intended one, is its distance from the shaft along the travel, mm: p over the
+    tilt's cosine. Where beside the shaft the line runs moves the place of contact on the face, not the face.
+    """
 
     lift: Lift
-
-    @property
-    def contacts(self) -> tuple[Contact, ...]:
-        """The face."""
-        return (Contact(Translating()),)
 
     @property
     def motion(self) -> Lift:
@@ -49,15 +48,16 @@ class FlatFace(Follower):
         """Dwells of the lift."""
         return tuple(dwells(self.lift))
 
-    @property
+    @cached_property
     def support(self) -> Lift | Tilted:
         """Support function of the exact contour."""
-        return self.lift
+        return Tilted(self.lift, self.ahead) if self.ahead else self.lift
 
     @property
     def ahead(self) -> float:
         """Angle by which the face's normal stands ahead of the line of travel, radians."""
-        return 0.0
+        touch = self.contacts[0].touch
+        return touch.tilt if isinstance(touch, Flat) else 0.0
 
     @property
     def _share(self) -> float:
@@ -75,14 +75,14 @@ class FlatFace(Follower):
 
     def contact(self, contour: Contour, theta: Array) -> Array:
         """Position of the face (of a yoke face 1), mm: (n,), or (2, n) with either face resting."""
-        own = [contour.support(theta + one.turned).q / self._share for one in self.contacts]
+        own = [contour.support(theta + self.ahead + one.turned).q / self._share for one in self.contacts]
         found = np.stack([one.position(q) for one, q in zip(self.contacts, own, strict=True)])
         return found if len(found) > 1 else found[0]
 
     def drives(self, contour: Contour) -> list[OfFace]:
         """Position of each face as it rests on the contour."""
         bearing = bearing_of(contour)
-        return [OfFace(bearing, one.turned, self._share) for one in self.contacts]
+        return [OfFace(bearing, self.ahead + one.turned, self._share) for one in self.contacts]
 
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error, and of a yoke the play of the contour in the frame; extremes over the whole turn."""
@@ -107,44 +107,16 @@ class FlatFace(Follower):
 
 
 @dataclass(frozen=True, eq=False)
-class TiltedFace(FlatFace):
-    """A flat face that stands askew on its line of travel, its normal `tilt` ahead of it, radians.
-
-    Its position is its distance from the shaft along the line of travel, mm: p over the tilt's cosine. Where beside the
-    shaft that line runs moves the place of contact on the face, not the face.
-    """
-
-    tilt: float
-
-    @property
-    def contacts(self) -> tuple[Contact, ...]:
-        """The face."""
-        return (Contact(Translating(), turned=self.tilt),)
-
-    @cached_property
-    def support(self) -> Tilted:
-        """Support function of the exact contour."""
-        return Tilted(self.lift, self.tilt)
-
-    @property
-    def ahead(self) -> float:
-        """The tilt."""
-        return self.tilt
-
-
-@dataclass(frozen=True, eq=False)
 class Yoke(FlatFace):
-    """Two parallel faces at a fixed `breadth` w, mm: a frame, which face 1 holds at p(theta) from the shaft.
+    """Two parallel faces at a fixed breadth w, mm, the datum of face 2: a frame, which face 1 holds at p(theta).
 
     The intended p has p(theta) + p(theta + pi) = w, so face 2 makes the error that face 1 makes half a turn on.
     """
 
-    breadth: float
-
     @property
-    def contacts(self) -> tuple[Contact, ...]:
-        """Face 1 and, half a turn on, face 2."""
-        return Contact(Translating()), Contact(Translating(), -1, self.breadth, turned=np.pi)
+    def breadth(self) -> float:
+        """How far the faces are apart, mm."""
+        return self.contacts[1].zero
 
     @property
     def closure(self) -> Closure:

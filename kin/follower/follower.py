@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
-from kin.follower.base import Closure, Contact, Follower
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from kin.follower.base import Closure, Follower
 from kin.follower.faces_on_arm import FlatPair, SwingingFace
-from kin.follower.flat import FlatFace, TiltedFace, Yoke
+from kin.follower.flat import FlatFace, Yoke
 from kin.follower.motion_error import ContactError, Judged, MotionError, Play
 from kin.follower.roller import DoubleRoller, Roller, RollerYoke
+from kin.law.contacts import Flat, Oscillating, Translating
+from kin.law.support_function import Lift
+from kin.law.transmission_law import Transmission
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.piecewise import Piecewise
 
 __all__ = [
     "Closure",
-    "Contact",
     "ContactError",
     "DoubleRoller",
     "FlatFace",
@@ -22,6 +34,63 @@ __all__ = [
     "Roller",
     "RollerYoke",
     "SwingingFace",
-    "TiltedFace",
     "Yoke",
+    "follower_of",
 ]
+
+
+def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Transmission, side: Side = 1) -> Follower:
+    """Make the follower of contacts by its intended motion; the metal lies inside the contour (1) or outside (-1).
+
+    `law` is the follower's position over the shaft angle, mm or rad, and of two contacts on one arm the transmission.
+    Raises ValueError for contacts whose motion is not known here: whatever is given is judged, or refused.
+    """
+    first, *others = contacts
+    flat, arm = isinstance(first.touch, Flat), isinstance(first.guide, Oscillating)
+    _demand(side > 0 or not (flat or others), "a ring is followed by one roller")
+    if isinstance(law, Transmission):
+        _demand(arm and len(others) == 1 and _share_arm(first, others[0]), "a transmission has two contacts on one arm")
+        if not flat:
+            return DoubleRoller(tuple(contacts), law)
+        _demand(all(one.datum == 0.5 * math.pi for one in contacts), "the faces of a pair count from across the line")
+        return FlatPair(tuple(replace(one, datum=one.apart) for one in contacts), law)
+    _demand(first.sense == 1 and first.turned == 0.0, "contact 1 pushes the follower out, where the shaft stands")
+    _demand(not (isinstance(first.touch, Flat) and arm and first.touch.tilt), "a face on an arm stands along it")
+    if flat and not arm:
+        first, *others = (_through_shaft(one) for one in contacts)
+    held = tuple(one.raised(first.zero).away_from(side) for one in (first, *others))
+    raised = law.raised(first.zero)
+    if others:
+        _demand(len(others) == 1 and _opposite(first, others[0]), "two contacts on a line are opposite")
+        return Yoke(held, Lift(raised)) if flat else RollerYoke(held, raised)
+    if not flat:
+        return Roller(held, raised, side)
+    return SwingingFace(held, raised) if arm else FlatFace(held, Lift(raised))
+
+
+def _demand(holds: bool, rule: str) -> None:
+    if not holds:
+        raise ValueError(f"no follower is known for these contacts: {rule}")
+
+
+def _share_arm(first: Contact[Guide, Touch], second: Contact[Guide, Touch]) -> bool:
+    """Whether contacts trail and lead one pivot alike; the trailing one keeps the swing below."""
+    guides = [replace(one.guide, side=1) for one in (first, second) if isinstance(one.guide, Oscillating)]
+    sides = [(one.guide.side, one.sense, one.turned) for one in (first, second) if isinstance(one.guide, Oscillating)]
+    return guides[:1] == guides[1:] and first.touch == second.touch and sides == [(1, -1, 0.0), (-1, 1, 0.0)]
+
+
+def _opposite(first: Contact[Guide, Touch], second: Contact[Guide, Touch]) -> bool:
+    """Whether two contacts of a frame on a line through the shaft meet the cam half a turn apart."""
+    through = first.guide == second.guide == Translating()
+    across = not (isinstance(first.touch, Flat) and first.touch.tilt)
+    return through and across and first.touch == second.touch and (second.sense, second.turned) == (-1, math.pi)
+
+
+def _through_shaft(contact: Contact[Guide, Touch]) -> Contact[Guide, Touch]:
+    """The contact of a face on a line of travel as one on the parallel through the shaft: the cam is the same."""
+    guide, touch = contact.guide, contact.touch
+    if isinstance(guide, Oscillating) or not isinstance(touch, Flat):
+        raise TypeError("a face on a line of travel")
+    _demand(touch.nearer == 0.0, "only a face on an arm stands nearer the shaft than its pivot's parallel")
+    return replace(contact, datum=contact.datum + guide.offset * math.tan(touch.tilt))

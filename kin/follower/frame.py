@@ -17,7 +17,7 @@ import numpy as np
 from kin.contour.contour import apart
 from kin.follower.frame_contact import CENTRED, WAYS, FrameError, Resting, driven
 from kin.follower.frame_dwell import Output, longest_dwell
-from kin.follower.motion_error import MotionError, Play, Unit, motion_error, with_steps
+from kin.follower.motion_error import MotionError, Play, motion_error, with_steps
 from kin.follower.support import bearing_of
 from kin.numeric.angles import TURN, degrees
 from kin.numeric.distinct import distinct
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kin.contour.contour import Contour
+    from kin.law.contacts import Unit
     from kin.law.frame_swing import FrameSwing
     from kin.linkage.mechanism import Mechanism
     from kin.numeric.arrays import Array, Indices

@@ -8,28 +8,26 @@ Along a curve of arc length s, with u = r^2, a = P.T and c = P x T of its point 
 
 where S^2 is a polynomial in u and m is linear in u: all that a guide has to tell of its derivatives (position' is less
 that where the guide counts inwards). An arm of length
-L, its pivot at C: S^2 = 4 C^2 L^2 - (C^2 + L^2 - u)^2, 2 m = side (u + L^2 - C^2); a line of travel displaced by e:
+L, its pivot at C: S^2 = 4 C^2 L^2 - (C^2 + L^2 - u)^2, 2 m = -side (u + L^2 - C^2); a line of travel displaced by e:
 S^2 = 4 (u - e^2), m = e.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from kin.contour.arcs import Arcs, cross, dot, left, right, unit
+from kin.law.contacts import TRAILING, Oscillating
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from kin.law import contacts
+    from kin.law.contacts import Side, Unit
     from kin.numeric.arrays import Array
-
-Side = Literal[-1, 1]
-Unit = Literal["mm", "deg"]
-TRAILING: Side = -1  # roller A
-LEADING: Side = 1  # roller B
 
 METRE = 1e-3  # a millimetre in metres
 SLACK = 1e-12  # of the guide's reach, by which neighbouring pieces may overlap, against rounding at their joints
@@ -51,8 +49,9 @@ class Guide(Protocol):
     def si(self) -> float:
         """Metres or radians in one of position."""
 
-    def moved_by(self, length: float) -> float:
-        """Position, metres or radians, by which a way of the centre of that length, mm, moves it."""
+    @property
+    def lever(self) -> float:
+        """Length of an arm, mm; infinite on a line."""
 
     def slack(self, extent: float) -> float:
         """Length, mm, that rounding may make of nothing on a cam of that extent."""
@@ -117,7 +116,7 @@ class Guide(Protocol):
 
 @dataclass(frozen=True)
 class Arm:
-    """A roller's arm: `length` l, `pivot` its distance L from the shaft, mm; `side` on which the roller lies.
+    """A roller's arm: `length` l, `pivot` its distance L from the shaft, mm; `side` 1 trailing, -1 leading.
 
     The position is the arm's lean, the angle at the pivot between shaft and roller centre, radians; less it where
     `away` from the cam is inwards, in a ring.
@@ -138,9 +137,10 @@ class Arm:
         """Radians in a radian."""
         return 1.0
 
-    def moved_by(self, length: float) -> float:
-        """Angle by which a way of the roller of that length, mm, swings the arm, radians."""
-        return length / self.length
+    @property
+    def lever(self) -> float:
+        """The arm's length, mm."""
+        return self.length
 
     def slack(self, extent: float = 0.0) -> float:  # noqa: ARG002 - an arm knows its own size
         """Length, mm, that rounding may make of nothing."""
@@ -159,14 +159,14 @@ class Arm:
         r = np.hypot(points[:, 0], points[:, 1])
         with np.errstate(invalid="ignore", divide="ignore"):
             lead = np.arccos((r * r + (self.pivot - self.length) * (self.pivot + self.length)) / (2.0 * r * self.pivot))
-        angle: Array = np.arctan2(points[:, 1], points[:, 0]) - self.side * lead
+        angle: Array = np.arctan2(points[:, 1], points[:, 0]) + self.side * lead
         return angle
 
     def lead(self, r: Array) -> Array:
         """Polar angle of the roller's centre less the shaft angle, at its distance r (n,)."""
         with np.errstate(invalid="ignore", divide="ignore"):
             w = (r * r + (self.pivot**2 - self.length**2)) / (2.0 * r * self.pivot)
-        lead: Array = self.side * np.arccos(np.clip(w, -1.0, 1.0))
+        lead: Array = -self.side * np.arccos(np.clip(w, -1.0, 1.0))
         return lead
 
     def lead_slope(self, least: Array, most: Array) -> Array:
@@ -219,7 +219,7 @@ class Arm:
     @property
     def _turn(self) -> int:
         """Sense, clockwise, in which the arm turns as its position grows."""
-        return self.side * self.away
+        return -self.side * self.away
 
     def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
         """Two derivatives of the position by phi (n,), where the roller's centre (n, 2) runs on pieces of that shape.
@@ -255,7 +255,7 @@ class Arm:
 
     def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
         """Whether points (n, 2) are on the roller's side of the line from shaft to pivot."""
-        on_side: NDArray[np.bool_] = self.side * cross(self.pivot * unit(phi), points) >= -slack * self.pivot
+        on_side: NDArray[np.bool_] = -self.side * cross(self.pivot * unit(phi), points) >= -slack * self.pivot
         return on_side
 
     def square(self, u: Array) -> Array:
@@ -274,16 +274,16 @@ class Arm:
 
     def moment(self, u: Array) -> Array:
         """The term m at u (n,)."""
-        return 0.5 * self.side * (u + (self.length - self.pivot) * (self.length + self.pivot))
+        return -0.5 * self.side * (u + (self.length - self.pivot) * (self.length + self.pivot))
 
     @property
     def moment_slope(self) -> float:
         """Derivative of m by u."""
-        return 0.5 * self.side
+        return -0.5 * self.side
 
 
 @dataclass(frozen=True)
-class Translating:
+class Line:
     """A line of travel at the shaft angle, displaced by `offset` e, mm, towards its left.
 
     The position is the centre's distance along it from the foot of the shaft, mm, positive outwards; less it where
@@ -303,9 +303,10 @@ class Translating:
         """Metres in a millimetre."""
         return METRE
 
-    def moved_by(self, length: float) -> float:
-        """The length, metres."""
-        return METRE * length
+    @property
+    def lever(self) -> float:
+        """A line has none."""
+        return float("inf")
 
     def slack(self, extent: float) -> float:
         """Length, mm, that rounding may make of nothing on a cam of that extent."""
@@ -423,6 +424,15 @@ class Translating:
     def moment_slope(self) -> float:
         """Derivative of m by u."""
         return 0.0
+
+
+def led(guide: contacts.Guide, away: Side = 1) -> Arm | Line:
+    """Formulas of a guide whose position grows outwards, or inwards where the metal lies outside (-1)."""
+    if not isinstance(guide, Oscillating):
+        return Line(guide.offset, away)
+    if guide.length is None:
+        raise ValueError("the arm of a roller has a length")
+    return Arm(guide.length, guide.pivot, guide.side, away)
 
 
 def polar_rows(angle: Array, length: float) -> tuple[Array, Array, Array]:

@@ -13,7 +13,8 @@ from kin.numeric.angles import TURN
 from kin.numeric.jet import Jet
 
 if TYPE_CHECKING:
-    from kin.follower.base import Contact
+    from kin.follower.guide import Guide as Led
+    from kin.law.contacts import Contact, Guide, Touch
     from kin.law.piecewise import Piecewise
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -25,7 +26,8 @@ NEAR = 1e-7  # rad; a step of third order is good to rounding
 class GuidedPitch:
     """Pitch curve of a guided roller, one contact of a follower whose position is a law over the shaft angle."""
 
-    contact: Contact
+    contact: Contact[Guide, Touch]
+    guide: Led
     law: Piecewise
 
     @property
@@ -38,7 +40,7 @@ class GuidedPitch:
         phi = np.stack([tau, np.ones_like(tau), np.zeros_like(tau)])
         own = self.contact.sense * self.law.derivatives(tau, 2)
         own[0] += self.contact.zero
-        return self.contact.guide.path(phi, own)
+        return self.guide.path(phi, own)
 
 
 @dataclass(frozen=True, eq=False)

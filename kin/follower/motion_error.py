@@ -11,10 +11,10 @@ from kin.numeric.angles import degrees
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
+    from kin.law.contacts import Unit
     from kin.numeric.arrays import Array
     from kin.numeric.extrema import Extremes
 
-Unit = Literal["mm", "deg"]
 Extreme = Literal["true", "sampled"]
 ALLOWANCE = 0.02  # of a sampled extreme, by which the true one is estimated to exceed it at most
 STEP_DEG = 1.0  # the shaft turns by this much in an increment

@@ -9,7 +9,7 @@ So is the play between two rollers, without the closer look.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -17,11 +17,11 @@ import numpy as np
 
 from kin.contour.arcs import cross, dot, left, right
 from kin.contour.nearest import signed_distance
-from kin.follower.base import Closure, Contact, Follower, OfLaw, OfTransmission
+from kin.follower.base import Closure, Follower, OfLaw, OfTransmission
 from kin.follower.contact import dilated, first_contact, shortened
 from kin.follower.drive import OfRoller
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
-from kin.follower.guide import LEADING, TRAILING, Arm, Translating, polar_rows
+from kin.follower.guide import led, polar_rows
 from kin.follower.laws import ByLaw, BySwing, GuidedPitch
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import grid
@@ -37,8 +37,7 @@ if TYPE_CHECKING:
     from kin.contour.contour import Contour
     from kin.follower.guide import Guide
     from kin.follower.tracking import Law
-    from kin.law.piecewise import Piecewise
-    from kin.law.transmission import Transmission
+    from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices
 
 MOST_PIECES = 20_000  # beyond, the error repeats itself many times between neighbouring shaft angles
@@ -48,11 +47,26 @@ ROUNDS = 4  # of samples, each closer than the last
 SPLINE_ERROR = 1e-7  # mm, within which arcs stand in for a spline that drives a train
 
 
+@dataclass(frozen=True, eq=False)
 class _Rollers(Follower):
     """What one roller and two have in common; each of the contacts has a roller of the same radius."""
 
-    radius: float
-    internal: bool = False  # the metal lies outside the contour
+    side: Side = 1  # of the contour on which the metal lies: 1 inside, -1 outside
+
+    @property
+    def radius(self) -> float:
+        """Radius of the rollers, mm."""
+        return self.contacts[0].touch.radius
+
+    @cached_property
+    def guides(self) -> tuple[Guide, ...]:
+        """Formulas of each contact's guide."""
+        return tuple(led(one.guide, self.side) for one in self.contacts)
+
+    @property
+    def lever(self) -> float:
+        """Length of the arm."""
+        return self.guides[0].lever
 
     def contact(self, contour: Contour, phi: Array) -> Array:
         """Position, mm or radians: (n,), or (2, n) with either roller held. ContactError where nothing is met."""
@@ -62,14 +76,16 @@ class _Rollers(Follower):
     def drives(self, contour: Contour) -> list[OfRoller]:
         """Position of each roller on its guide; arcs within SPLINE_ERROR stand in for splines."""
         obstacle = self._obstacle(contour, SPLINE_ERROR)
-        return [OfRoller(obstacle, one.guide, one.turned) for one in self.contacts]
+        each = zip(self.contacts, self.guides, strict=True)
+        return [OfRoller(obstacle, guide, one.turned) for one, guide in each]
 
     def _obstacle(self, contour: Contour, *spline: float) -> Arcs:
         chain = contour.as_arcs(*spline)[0]
-        return dilated(chain.reversed() if self.internal else chain, self.radius)
+        return dilated(chain if self.side > 0 else chain.reversed(), self.radius)
 
     def _positions(self, obstacle: Arcs, phi: Array) -> Array:
-        return np.stack([one.position(held_position(obstacle, one.guide, phi + one.turned)) for one in self.contacts])
+        each = zip(self.contacts, self.guides, strict=True)
+        return np.stack([one.position(held_position(obstacle, guide, phi + one.turned)) for one, guide in each])
 
 
 class _Guided(_Rollers, OfLaw):
@@ -78,7 +94,7 @@ class _Guided(_Rollers, OfLaw):
     @cached_property
     def envelope(self) -> RollerEnvelope:
         """The exact contour; its parameter is the shaft angle."""
-        return RollerEnvelope(GuidedPitch(self.contacts[0], self.law), -self.radius if self.internal else self.radius)
+        return RollerEnvelope(GuidedPitch(self.contacts[0], self.guides[0], self.law), self.side * self.radius)
 
     @cached_property
     def _law(self) -> ByLaw:
@@ -90,7 +106,7 @@ class _Guided(_Rollers, OfLaw):
         ContactError where nothing is met.
         """
         obstacle, first = self._obstacle(contour), self.contacts[0]
-        guide, steps = first.guide, with_steps(phi)
+        guide, steps = self.guides[0], with_steps(phi)
         held = held_on(obstacle, guide, steps, first.zero, first.sense)
         errors = (first.position(held.position[: len(steps)]) - self.intended(steps))[None]
         worst, remainder = settled([held], self._law, errors, few=len(obstacle) <= MOST_PIECES)
@@ -112,54 +128,34 @@ class _Guided(_Rollers, OfLaw):
 
     def _leeway(self, tolerance: float, tau: Array) -> Array:
         """How far the roller may move at shaft angles tau (n,) before it leaves the pitch curve by `tolerance`."""
-        first = self.contacts[0]
-        along = first.guide.along(tau, first.own(self.intended(tau)))
+        along = self.guides[0].along(tau, self.contacts[0].own(self.intended(tau)))
         return leeway(self.envelope.pitch.points(tau), *along, tolerance)[0]
 
 
 @dataclass(frozen=True, eq=False)
 class Roller(_Guided):
-    """A roller of `radius`, mm, on a guide that stands at the shaft angle in the cam's frame.
+    """A roller on a guide that stands at the shaft angle in the cam's frame.
 
-    Its position, of which `law` is the intended one over the shaft angle, grows as the roller is lifted: the angle at
-    an arm's pivot between shaft and roller, radians, or the distance travelled from the shaft's foot, mm. A radius of 0
-    is the point of a knife edge, a large one a curved shoe. `internal`: it runs in the opening of a ring, which stops
-    it from travelling outwards.
+    Its position, of which `law` is the intended one over the shaft angle, grows as the roller moves outwards: the angle
+    at an arm's pivot between shaft and roller, radians, or the distance travelled from the shaft's foot, mm. A radius
+    of 0 is the point of a knife edge, a large one a curved shoe. Where the metal lies outside the roller runs in the
+    opening of a ring, which stops it from travelling outwards.
     """
-
-    guide: Arm | Translating
-    radius: float
-    law: Piecewise
-    internal: bool = False
-
-    @cached_property
-    def contacts(self) -> tuple[Contact, ...]:
-        """The roller; in a ring its own position grows inwards, away from the metal."""
-        return (Contact(replace(self.guide, away=-1), -1),) if self.internal else (Contact(self.guide),)
 
 
 @dataclass(frozen=True, eq=False)
 class RollerYoke(_Guided):
-    """Two rollers of `radius` opposite each other in a frame that travels on a line through the shaft.
+    """Two rollers opposite each other in a frame that travels on a line through the shaft.
 
-    Their centres are `breadth` w apart, mm. The position is the distance p of roller 1's centre from the shaft, of
-    which `law` is the intended one; p(theta) + p(theta + pi) = w, so the pitch curve has constant diameters through the
-    shaft, and roller 2 makes the error that roller 1 makes half a turn on.
+    Their centres are w apart, mm, the datum of roller 2. The position is the distance p of roller 1's centre from the
+    shaft, of which `law` is the intended one; p(theta) + p(theta + pi) = w, so the pitch curve has constant diameters
+    through the shaft, and roller 2 makes the error that roller 1 makes half a turn on.
     """
-
-    radius: float
-    law: Piecewise
-    breadth: float
-
-    @property
-    def contacts(self) -> tuple[Contact, ...]:
-        """Roller 1 and, half a turn on, roller 2."""
-        return Contact(Translating()), Contact(Translating(), -1, self.breadth, turned=np.pi)
 
     @property
     def closure(self) -> Closure:
         """The way that the frame can travel with the cam at rest."""
-        return Closure(self.play_limit)
+        return Closure(self.play_limit, lever=2.0, radius=self.radius)
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest play or interference, mm: what either roller may be off."""
@@ -167,34 +163,23 @@ class RollerYoke(_Guided):
         return float((self._leeway(tolerance, tau) + self._leeway(tolerance, tau + np.pi)).max())
 
     def _play(self, obstacle: Arcs, phi: Array) -> Play:
-        angle = np.concatenate([phi, passing_angles(obstacle, self.contacts[0].guide)])
+        angle = np.concatenate([phi, passing_angles(obstacle, self.guides[0])])
         near, far = self._positions(obstacle, angle)
         return sampled_play(far - near, angle)
 
 
 @dataclass(frozen=True, eq=False)
 class DoubleRoller(_Rollers, OfTransmission):
-    """W's two rollers of `radius` on rigid arms of length l that include 2 alpha, the pivot at l from the shaft.
+    """W's two rollers on rigid arms of length l that include 2 alpha, the pivot at l from the shaft.
 
-    The position is psi, clockwise positive; roller A trails the pivot, roller B leads it (W 4.4).
+    The position is psi, clockwise positive; roller A trails the pivot, roller B leads it (W 4.4). Psi is pi - alpha
+    less the lean of A, and the lean of B less pi - alpha.
     """
-
-    transmission: Transmission
-    radius: float
-
-    @cached_property
-    def contacts(self) -> tuple[Contact, ...]:
-        """Roller A, which keeps the swing below, and roller B: psi is alpha' less the lean of A, and that of B less it.
-
-        alpha' is pi - alpha.
-        """
-        arm, apart = self.transmission.arm, self.transmission.alpha
-        return tuple(Contact(Arm(arm, arm, side), side, np.pi, apart) for side in (TRAILING, LEADING))
 
     @property
     def closure(self) -> Closure:
         """The gap at roller B while A is held in contact."""
-        return Closure(self.play_limit)
+        return Closure(self.play_limit, lever=float(np.radians(self.transmission.arm)), radius=self.radius)
 
     @cached_property
     def envelope(self) -> RollerEnvelope:
@@ -212,11 +197,11 @@ class DoubleRoller(_Rollers, OfTransmission):
         Rms and increments are from the given shaft angles phi (n,). ContactError where a roller meets nothing.
         """
         chain, obstacle, steps = contour.as_arcs()[0], self._obstacle(contour), with_steps(phi)
-        passing = [passing_angles(obstacle, one.guide) for one in self.contacts]
+        passing = [passing_angles(obstacle, guide) for guide in self.guides]
         looked = np.concatenate([steps, *passing]), steps
         held = [
-            held_on(obstacle, one.guide, angle, one.zero, one.sense)
-            for one, angle in zip(self.contacts, looked, strict=True)
+            held_on(obstacle, guide, angle, one.zero, one.sense)
+            for one, guide, angle in zip(self.contacts, self.guides, looked, strict=True)
         ]
         psi = [one.position(there.position) for one, there in zip(self.contacts, held, strict=True)]
         errors = np.stack([found[: len(steps)] for found in psi]) - self._law.rows(steps)[0]
@@ -229,7 +214,7 @@ class DoubleRoller(_Rollers, OfTransmission):
         # the increments tell nothing new of the gap
         chosen = np.r_[: len(phi), len(steps) : len(steps) + sum(map(len, passing))]
         angle, b = held[0].phi[chosen], self.contacts[1]
-        second = b.guide.centre(angle, b.zero + psi[0][chosen])
+        second = self.guides[1].centre(angle, b.own(psi[0][chosen]))
         return Judged(motion, sampled_play(signed_distance(chain, second) - self.radius, angle))
 
     @cached_property
@@ -256,9 +241,9 @@ class DoubleRoller(_Rollers, OfTransmission):
         apart = np.zeros_like(phi)
         apart[0] = self.transmission.alpha
         found = []
-        for side in (TRAILING, LEADING):
+        for sense in (-1, 1):
             centre = polar_rows(phi, self.transmission.arm)
-            arm = polar_rows(phi + side * apart - psi, self.transmission.arm)
+            arm = polar_rows(phi + sense * apart - psi, self.transmission.arm)
             first, second, third = (c + a for c, a in zip(centre, arm, strict=True))
             found.append(leeway((first, second, third), left(arm[0]), -arm[0], tolerance))
         return found

@@ -12,9 +12,11 @@ from kin.contour.contour import ARC_SHARE
 from kin.follower.deviation import Deviation, convex_deviation, deviation
 from kin.follower.follower import ContactError, Follower, Judged, MotionError
 from kin.follower.motion_error import ALLOWANCE
+from kin.follower.projection import grid
 from kin.judge.check import Check, at_most, failed
 from kin.numeric.errors import UnsettledError
 from kin.numeric.extrema import extremes, resolution
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -34,6 +36,10 @@ ROUNDING = 1e-12
 # rounding lets them be.
 SPLINE_SHARE, SPLINE_ERROR = 1e-3, 1e-9
 DWELL_ROUNDING = 1e-7  # degrees; the ends of a dwell are found to this
+# A limit that the tolerance implies is none where it is above this share of the stroke (of a play: of the rollers'
+# radius), and so many times what the tolerance gives at a pressure angle of 0.
+MOST_SHARE, STEEP = 0.1, 10.0
+NO_LIMIT = "no limit follows from the tolerance here; give verify.motion_error"
 
 
 @dataclass(frozen=True)
@@ -181,28 +187,59 @@ def _contour_check(found: Deviation, intent: Intent, tolerance: float, slack: fl
 
 def _motion_checks(judged: Judged, intent: Intent, limits: Limits, slack: float) -> list[Check]:
     follower, motion, play = intent.follower, judged.motion, judged.play
-    checks = []
+    checks, direct = [], follower.direct_limit(limits.tolerance)
+    size = stroke_of(follower)
     if limits.motion is not None or not intent.trimmed:
         limit, room = _limit(follower.motion_limit, limits.motion, limits.tolerance, slack)
         # the implied limit is a theorem about contours; one that a user gives is held by all that may be
         worst = motion.max if limits.motion is None else motion.bound
         at, detail = np.radians(motion.at_deg), _found(motion)
-        checks.append(at_most("motion", worst, limit, motion.unit, at=at, detail=detail, slack=room))
+        vacuous = limits.motion is None and is_loose(limit, direct, size)
+        checked = at_most("motion", worst, limit, motion.unit, at=at, detail=detail, slack=room)
+        checks.append(_unlimited(checked) if vacuous else checked)
     closure = follower.closure
     if play is None or closure is None:
         return checks
     if limits.play is None and intent.trimmed:
         return checks
-    limit, room = _limit(closure.limit, limits.play, limits.tolerance, slack)
+    given = limits.play
+    if given is None and limits.motion is not None and closure.lever is not None:
+        given = closure.lever * limits.motion
+    limit, room = _limit(closure.limit, given, limits.tolerance, slack)
     tight, loose = (-play.least, np.radians(play.least_at_deg)), (play.most, np.radians(play.most_at_deg))
     worst, at = max(tight, loose)
-    if play.extremes == "sampled" and limits.play is not None:
+    if play.extremes == "sampled" and given is not None:
         worst += ALLOWANCE * abs(worst)
     detail = closure.detail(play)
-    checks.append(at_most(closure.name, worst, limit, play.unit, at=at, detail=detail, slack=room))
+    vacuous = given is None and is_loose(limit, direct_play(follower, limits.tolerance), closure.radius or size)
+    checked = at_most(closure.name, worst, limit, play.unit, at=at, detail=detail, slack=room)
+    checks.append(_unlimited(checked) if vacuous else checked)
     if closure.tight is not None:
         checks.append(at_most(closure.tight, tight[0], limit, play.unit, at=tight[1], slack=room))
     return checks
+
+
+def stroke_of(follower: Follower) -> float:
+    """Stroke, mm, or swing, degrees, of the intended motion, looked at at the shaft angles of limits."""
+    stroke = float(np.ptp(follower.intended(grid(follower.motion.breaks))))
+    return float(np.degrees(stroke)) if follower.unit == "deg" else stroke
+
+
+def is_loose(limit: float, direct: float, size: float, share: float = MOST_SHARE) -> bool:
+    """Whether a limit is above that share of a size, and far above what the same tolerance gives directly."""
+    return limit > share * size and limit > STEEP * direct
+
+
+def direct_play(follower: Follower, tolerance: float) -> float:
+    """What the limit of play, mm or degrees, is at a pressure angle of 0: two contacts, each off by the tolerance."""
+    angular = follower.closure is not None and follower.closure.radius is None
+    return 2.0 * (follower.direct_limit(tolerance) if angular else tolerance)
+
+
+def _unlimited(check: Check) -> Check:
+    """Fail a check whose limit is none."""
+    detail = f"{NO_LIMIT}; {check.limit:.3g} {check.unit} would be permitted"
+    return replace(check, ok=False, limit=None, detail=f"{detail}; {check.detail}" if check.detail else detail)
 
 
 def _found(motion: MotionError) -> str:
@@ -215,10 +252,13 @@ def _found(motion: MotionError) -> str:
 def _limit(
     implied: Callable[[float], float], given: float | None, tolerance: float, slack: float
 ) -> tuple[float, float]:
-    """Return the limit, given or implied by the tolerance, and by how much the judge's own rounding may exceed it."""
+    """Return the limit, given or implied by the tolerance, and by how much the judge's own rounding may exceed it.
+
+    Where rounding grows beyond a small share of a limit that is given, the limit holds and not the rounding.
+    """
     by_tolerance = implied(tolerance)
     room = implied(tolerance + slack) - by_tolerance
-    return (by_tolerance if given is None else given), room
+    return (by_tolerance, room) if given is None else (given, min(room, SPLINE_SHARE * given))
 
 
 def _judge_linkage(
@@ -328,7 +368,7 @@ def round_check(name: str, contour: Contour, diameter: float, tolerance: float) 
     least, most = _distance_range(contour)
     across, box = 2.0 * float(np.sqrt(abs(contour.area) / np.pi)), contour.box
     worst = max(most - 0.5 * diameter, 0.5 * diameter - least, 0.5 * abs(across - diameter))
-    place = f"({0.5 * (box.x_min + box.x_max):.6g}, {0.5 * (box.y_min + box.y_max):.6g})"
+    place = place_text(0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max))
     detail = f"diameter {across:.9g} mm about {place}"
     return at_most(name, worst, tolerance, "mm", detail=detail, slack=ROUNDING * diameter)
 

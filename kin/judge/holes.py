@@ -15,6 +15,7 @@ import numpy as np
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest
 from kin.judge.check import Check, at_most
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -99,11 +100,11 @@ def tally(
         told = tallies.setdefault(hole.kind, Tally())
         if contour is None:
             x, y = _middle(hole.contour)
-            told.faults.append(f"{hole.name} at ({x:.6g}, {y:.6g}) is missing{where}")
+            told.faults.append(f"{hole.name} at {place_text(x, y)} is missing{where}")
             continue
         off = apart(contour, hole.contour, FINE * tolerance)
         x, y = _middle(contour)
-        told.measured(off, f"{hole.name}, about ({x:.6g}, {y:.6g}){where}, is off by {off:.3g} mm")
+        told.measured(off, f"{hole.name}, about {place_text(x, y)}{where}, is off by {off:.3g} mm")
     for contour in left_over:
         x, y = _middle(contour)
         alike = [hole for hole, one in _matched([contour], known)[0] if one is not None]
@@ -111,7 +112,7 @@ def tally(
             kind = alike[0].kind
         else:
             kind = "holes" if "holes" in tallies or len(tallies) > 1 else next(iter(tallies), "bore")
-        fault = f"an opening of {abs(contour.area):.6g} mm^2 about ({x:.6g}, {y:.6g}){where}, where none is expected"
+        fault = f"an opening of {abs(contour.area):.6g} mm^2 about {place_text(x, y)}{where}, where none is expected"
         tallies.setdefault(kind, Tally()).faults.append(fault)
 
 

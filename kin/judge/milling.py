@@ -20,6 +20,7 @@ from kin.contour.offset import TightError, parallel
 from kin.contour.region import gaps
 from kin.judge.check import Check, at_most, failed
 from kin.judge.ring import goes_round
+from kin.numeric.places import place_text
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, arcs_of
 
@@ -163,7 +164,7 @@ def _cut(program: Program, down: list[Move]) -> Cut:
             best = (begin, i + 1)
     if best[1] == 0:
         line, (x, y, _) = down[0].line, down[0].start
-        raise ReadError("open", f"line {line}: the path from ({x:.6g}, {y:.6g}) does not close", program.path)
+        raise ReadError("open", f"line {line}: the path from {place_text(x, y)} does not close", program.path)
     return Cut(down[0].start[2], down[: best[0]], down[best[0] : best[1]], down[best[1] :])
 
 
@@ -325,7 +326,7 @@ def _gouge_check(
                 near, place = _least(arcs_of(fresh), chain, side, milling.radius, tolerance)
                 if milling.radius - near > worst:
                     worst = milling.radius - near
-                    detail = f"the path from line {fresh[0].line} near ({place[0]:.6g}, {place[1]:.6g})"
+                    detail = f"the path from line {fresh[0].line} near {place_text(place[0], place[1])}"
     return at_most("gouge", max(worst, 0.0), tolerance, "mm", detail=detail if worst > tolerance else "")
 
 

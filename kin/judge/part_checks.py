@@ -66,7 +66,7 @@ def solid_checks(solid: AnySolid, sections: Sequence[Section], intent: Intent, t
     for (z, layer), section in zip(heights(layers, cross_holes), sections, strict=True):
         _section(tallies, (z, layer), section, intent, tolerance)
     told = [less_sure(check, solid.uneven) for check in _told(tallies, tolerance)]
-    return [*told, _volume(solid, sections[0].contour, intent, tolerance)]
+    return [*told, layers_volume_check(solid.volume, sections[0].contour, intent, tolerance)]
 
 
 def _told(tallies: Tallies, tolerance: float) -> list[Check]:
@@ -128,10 +128,10 @@ def _section(tallies: Tallies, level: tuple[float, Layer], section: Section, int
     told.measured(off, f"{bored.name}{where} is off by {off:.3g} mm")
 
 
-def _volume(solid: AnySolid, contour: Contour, intent: Intent, tolerance: float) -> Check:
-    """Check the volume against closed forms, within the tolerance times the area of the walls."""
+def layers_volume_check(measured: float, contour: Contour, intent: Intent, tolerance: float) -> Check:
+    """Check the volume of a part in layers, mm^3, against closed forms: within the tolerance times the walls' area."""
     area, perimeter, source = exact_area(contour, intent)
     expected = volume(intent.layers, intent.cross_holes, area, perimeter)
     limit = tolerance * wall_area(intent.layers, intent.cross_holes, perimeter)
-    detail = f"{solid.volume:.9g} mm^3, by the {source} {expected:.9g}"
-    return at_most("volume", abs(solid.volume - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)
+    detail = f"{measured:.9g} mm^3, by the {source} {expected:.9g}"
+    return at_most("volume", abs(measured - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)

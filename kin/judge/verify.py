@@ -18,6 +18,7 @@ from kin.judge.contour_checks import ROUNDING, DwellAsked, Intent, Limits, bore_
 from kin.judge.ring import Faced, faced
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
+from kin.numeric.places import place_text
 from kin.read.errors import ReadError
 from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
 
@@ -40,6 +41,7 @@ SIZE_SHARE = (
 )
 SIZED = np.linspace(0.0, TURN, 64)  # parameters at which the exact contour's size is looked at
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
+NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})  # of solids
 MOST_NAMED = 5  # faults named in a message
 OTHERS = (
     ("inches", 25.4),
@@ -60,6 +62,7 @@ class Verdict:
     linkage         what the contour makes of the mechanism; None without one, or where it does not drive it all round
     perimeter, area of the outer contour as read, mm and mm^2
     units           mm in a unit of the file as it was read: as the file states, or else as it was given or meant
+    contour         that the follower touches, as read, in mm and as if not mirrored
     """
 
     kind: Kind
@@ -72,6 +75,7 @@ class Verdict:
     perimeter: float | None = None
     area: float | None = None
     units: float | None = None
+    contour: Contour | None = None
 
     @property
     def ok(self) -> bool:
@@ -98,7 +102,10 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits, units: float
         read = _of_program if kind == "gcode" else _of_solid if kind in SOLIDS else _of_drawing
         one = read(path, intent, limits, units)
     except ReadError as error:
-        unread = "watertight" if kind in SOLIDS else "closed" if error.reason in NOT_CLOSED else "readable"
+        if kind in SOLIDS:
+            unread = "readable" if error.reason in NOT_READ else "watertight"
+        else:
+            unread = "closed" if error.reason in NOT_CLOSED else "readable"
         return Verdict(kind, (about(failed(unread, error.message), path.name),))
     found = judge_contour(one.contour, intent, phi, limits, one.uneven)
     return Verdict(
@@ -112,6 +119,7 @@ def verify(path: Path, intent: Intent, angles: int, limits: Limits, units: float
         perimeter=one.contour.length,
         area=abs(one.contour.area),
         units=one.units,
+        contour=one.contour,
     )
 
 
@@ -201,13 +209,13 @@ def _units_check(stated: float | None, given: float | None, intent: Intent, cont
 
 def _closed_check(drawing: Drawing, contour: Contour) -> Check:
     """Check that the contour does not cross itself, and that nothing is drawn twice or without length."""
-    faults = [f"{fault.kind} {fault.entity} at ({fault.x:.6g}, {fault.y:.6g})" for fault in drawing.faults]
+    faults = [f"{fault.kind} {fault.entity} at {place_text(fault.x, fault.y)}" for fault in drawing.faults]
     faults += _crossing_places(contour)
     return _count_check("closed", faults)
 
 
 def _crossing_places(contour: Contour) -> list[str]:
-    return [f"the contour crosses or touches itself at ({x:.6g}, {y:.6g}) mm" for x, y in crossings(contour).point]
+    return [f"the contour crosses or touches itself at {place_text(x, y)} mm" for x, y in crossings(contour).point]
 
 
 def _count_check(name: str, faults: list[str]) -> Check:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.law.segment import Affine, Power, Round
+from kin.law.segment import Affine, Constant, Power, Round
 from kin.numeric.arrays import Array, Indices
 from kin.numeric.elementary import BallJet, DomainError, Jet, cos, sin
 from kin.numeric.interval import Ball, hull
@@ -190,6 +190,15 @@ class Piecewise:
         folded.sort()
         folded.setflags(write=False)
         return folded
+
+    def raised(self, by: float) -> Piecewise:
+        """The same function, greater by a constant; of constants that it has again constants."""
+        if not by:
+            return self
+        functions = tuple(
+            Constant(by + f.value) if isinstance(f, Constant) else Affine.of(f, offset=by) for f in self.functions
+        )
+        return Piecewise(self.knots, functions, self.period, self.smooth_seam)
 
     def derivatives(self, t: float | Array, order: int, side: Side = 1) -> Array:
         """Give derivatives 0..order at t (n,) as (order + 1, n); at a knot the right-hand limit, or left (side -1).

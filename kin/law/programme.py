@@ -1,4 +1,4 @@
-"""Motion laws, and motion programmes made of them.
+"""The oldest motion laws, polynomial laws, and the error of a motion that no cam can have.
 
 A normalised law s(u) leads from s(0) = 0 to s(1) = 1. The standard ones are symmetric, s(u) + s(1 - u) = 1; those of
 several runs are written as one half and its image. Names and peaks: H. A. Rothbart, Cam Design Handbook, chapters 2
@@ -8,14 +8,14 @@ and 3. The constants of the "modified" laws follow here from their accelerations
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from kin.law.piecewise import Piecewise
-from kin.law.segment import Affine, Constant, Series, Stretch
+from kin.law.segment import Affine, Series, Stretch
 from kin.numeric.elementary import Jet, cos, sin
 from kin.numeric.errors import KinError
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 
 _END_TOLERANCE = 1e-12  # of a polynomial law at u = 0 and 1
-_ANGLE_TOLERANCE = 1e-9  # rad: of the sum of a programme's segments, and the least segment
 
 
 class IntentError(KinError, ValueError):
@@ -58,7 +57,8 @@ class Peaks:
 class Law:
     """A normalised motion law s(u) on [0, 1] with its peaks.
 
-    A return falls by s(u), or with `reverses` runs the law backwards, s(1 - u): the same for a symmetric law.
+    A return runs the law backwards, s(1 - u). Of a symmetric law that is 1 - s(u), by which it falls; one that is not
+    symmetric, or may not be, is marked `reverses`.
     """
 
     name: str
@@ -218,7 +218,8 @@ def polynomial_law(coefficients: Sequence[float], field: str = "motion") -> Law:
             f"a polynomial law must lead from 0 to 1; this one leads from s(0) = {start:.12g} to s(1) = {end:.12g}",
             field,
         )
-    return _smooth(f"polynomial {list(values)}", values, 0.0, _polynomial_peaks(values))
+    law = _smooth(f"polynomial {list(values)}", values, 0.0, _polynomial_peaks(values))
+    return replace(law, reverses=True)
 
 
 def _polynomial_peaks(coefficients: tuple[float, ...]) -> Peaks:
@@ -237,95 +238,3 @@ def _polynomial_peaks(coefficients: tuple[float, ...]) -> Peaks:
 
 
 LAWS: Mapping[str, Law] = _standard_laws()
-
-
-def law(name: str, field: str = "motion") -> Law:
-    """Look up a standard law; IntentError lists the names if there is none such."""
-    if name not in LAWS:
-        from difflib import get_close_matches  # for the message alone
-
-        close = get_close_matches(name, LAWS, 1)
-        hint = f"; did you mean {close[0]}?" if close else ""
-        raise IntentError(f"no law is called {name!r}{hint} (laws: {', '.join(LAWS)})", field)
-    return LAWS[name]
-
-
-@dataclass(frozen=True)
-class Segment:
-    """One segment of a motion programme: over an angle (rad), by a stroke (mm or rad, above 0; 0 for a dwell)."""
-
-    kind: Literal["rise", "return", "dwell"]
-    over: float
-    stroke: float = 0.0
-    law: Law | None = None
-
-
-@dataclass(frozen=True)
-class Programme:
-    """Displacement over [0, total] rad, from 0; no period."""
-
-    motion: Piecewise
-
-    @property
-    def total(self) -> float:
-        """Angle covered, rad."""
-        return float(self.motion.knots[-1])
-
-    def at_start(self, order: int) -> Array:
-        """Give the derivatives 0..order at the first angle, (order + 1,)."""
-        return self.motion.derivatives(0.0, order, 1)[:, 0]
-
-    def at_end(self, order: int) -> Array:
-        """Give the derivatives 0..order at the last angle, (order + 1,)."""
-        return self.motion.derivatives(self.total, order, -1)[:, 0]
-
-
-def programme(segments: Sequence[Segment], total: float, field: str = "motion") -> Programme:
-    """Join segments into the displacement over [0, total] rad.
-
-    Raises IntentError if the angles do not sum to `total` within 1e-9 rad, or a segment has no angle, no stroke or no
-    law. Whether the segments join in velocity is asked by the cam that takes the programme.
-    """
-    if not segments:
-        raise IntentError("a motion needs at least one segment", field)
-    for i, segment in enumerate(segments):
-        _check(segment, f"{field}[{i}]")
-    covered = math.fsum(segment.over for segment in segments)
-    if not abs(covered - total) <= _ANGLE_TOLERANCE:
-        raise IntentError(
-            f"the segments cover {math.degrees(covered):.10g} degrees, {math.degrees(total):.10g} are wanted", field
-        )
-    ends = [math.fsum(segment.over for segment in segments[:i]) for i in range(len(segments))] + [total]
-    knots: list[float] = [0.0]
-    functions: list[Stretch] = []
-    strokes: list[float] = []
-    for segment, (begin, end) in zip(segments, pairwise(ends), strict=True):
-        level = math.fsum(strokes)
-        if segment.law is None:
-            if functions and functions[-1] == Constant(level):
-                knots[-1] = end
-                continue
-            functions.append(Constant(level))
-        else:
-            strokes.append(segment.stroke if segment.kind == "rise" else -segment.stroke)
-            motion = segment.law.motion
-            place = {"offset": level, "scale": strokes[-1], "start": begin, "width": end - begin}
-            functions += [Affine.of(f, **place) for f in motion.functions]
-            knots += [begin + u * (end - begin) for u in motion.knots[1:-1].tolist()]
-        knots.append(end)
-    return Programme(Piecewise(np.array(knots), tuple(functions)))
-
-
-def _check(segment: Segment, field: str) -> None:
-    if not (math.isfinite(segment.over) and segment.over > _ANGLE_TOLERANCE):
-        raise IntentError(f"the angle of a {segment.kind} must be above 0, not {math.degrees(segment.over):.6g}", field)
-    if segment.kind == "dwell":
-        if segment.law is not None or segment.stroke != 0:
-            raise IntentError("a dwell has neither stroke nor law", field)
-        return
-    if segment.law is None:
-        raise IntentError(f"a {segment.kind} needs a law", field)
-    if not (math.isfinite(segment.stroke) and segment.stroke > 0):
-        other = "return" if segment.kind == "rise" else "rise"
-        hint = f" (a negative one is a {other})" if segment.stroke < 0 else ""
-        raise IntentError(f"the stroke of a {segment.kind} must be above 0, not {segment.stroke:.6g}{hint}", field)

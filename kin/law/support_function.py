@@ -17,7 +17,7 @@ import numpy as np
 
 from kin.law.formula.expression import Expression
 from kin.law.piecewise import Piecewise, Side
-from kin.law.programme import IntentError, Programme, first_harmonic
+from kin.law.programme import IntentError, first_harmonic
 from kin.law.reuleaux import closed_angles, corners
 from kin.law.segment import Affine, Constant, Harmonics, Round, Series, Stretch
 from kin.numeric.distinct import distinct
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from kin.law.sources.motion import Motion
     from kin.numeric.arrays import Array
 
 __all__ = [
@@ -334,7 +335,7 @@ def _polar(radius: float, angle: float) -> tuple[float, float]:
     return radius * math.cos(angle), radius * math.sin(angle)
 
 
-def lift_constant_breadth(base_radius: float, programme: Programme, field: str = "motion") -> Lift:
+def lift_constant_breadth(base_radius: float, programme: Motion, field: str = "motion") -> Lift:
     """Make the constant-breadth cam of a motion S, given as `field`, over the half turn (SW eqs. 1-6).
 
     p = r_b + S on [0, pi] and p(t + pi) = d - p(t), with breadth d = 2 r_b + h. Closing needs S(pi) = h whatever h is:

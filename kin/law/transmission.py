@@ -14,7 +14,7 @@ from kin.law.bounds import highest, undecided
 from kin.law.feasibility import JOIN, checked, demand_leaf, demand_ratio, too_steep, too_wide
 from kin.law.formula.expression import FormulaError
 from kin.law.piecewise import Piecewise
-from kin.law.programme import IntentError, Programme
+from kin.law.programme import IntentError
 from kin.law.routes import FromArc, FromDelta, FromLeaf, steepness
 from kin.law.segment import Affine, Constant, Harmonics, Stretch
 from kin.law.transmission_law import Transmission
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from kin.law.formula.formula import Formula
+    from kin.law.sources.motion import Motion
 
 __all__ = [
     "IntentError",
@@ -98,19 +99,26 @@ def from_delta(lam: int, mu: int, arm: float, cos: Mapping[int, float], sin: Map
 
 
 def from_law(
-    lam: int, mu: int, arm: float, programme: Programme, swing_of: Literal["arm", "pair"] = "arm"
+    lam: int,
+    mu: int,
+    arm: float,
+    programme: Motion,
+    swing_of: Literal["arm", "pair"] = "arm",
+    *,
+    share: float = 1.0,
 ) -> Transmission:
     """Make the law that a programme prescribes over the first delta of shaft angle, from psi = 0 (W 4.9, 4.10).
 
-    With `swing_of` "pair" the programme gives the swing of a flat pair, psi/2. Raises IntentError if the ratio is
-    excluded, psi does not end at 0, its slopes do not join (psi' at delta must be -psi'(0)/(1 - psi'(0))), an arm would
-    meet the shaft, or psi'(phi) is not below 1; ValueError unless the programme covers delta.
+    With `swing_of` "pair" the programme gives the swing of a flat pair, psi/2; `share` of it is taken. Raises
+    IntentError if the ratio is excluded, psi does not end at 0, its slopes do not join (psi' at delta must be
+    -psi'(0)/(1 - psi'(0))), an arm would meet the shaft, or psi'(phi) is not below 1; ValueError unless the programme
+    covers delta.
     """
     demand_ratio(lam, mu, arm)
     delta = math.pi / lam
     if abs(programme.total - delta) > 4 * math.ulp(delta):
         raise ValueError(f"the programme covers {programme.total!r} rad, not delta = {delta!r}")
-    scale = 2.0 if swing_of == "pair" else 1.0
+    scale = share * (2.0 if swing_of == "pair" else 1.0)
     end = scale * float(programme.at_end(0)[0])
     if abs(end) > JOIN:
         raise IntentError(f"psi must come back to 0 at the end of the law; it is {math.degrees(end):.9g} deg", "law")
@@ -140,6 +148,12 @@ def from_arc(
     mean = 2 * arm * math.cos(alpha / 2)
     chord, height = mean * math.sin(delta / 2), mean * math.cos(delta / 2)
     least = chord if side == "convex" else _least_concave(lam, mu, mean)
+    rest = 2 * arm - height
+    if side == "convex" and rest * _ABOVE < chord:  # with the middle of the arc 2 l from the shaft it is l for mu = 1
+        short = (chord**2 + rest**2) / (2 * rest)
+        if radius <= short * _ABOVE:
+            told = f"a convex arc needs a radius above {short:.9g} mm, not {radius:.9g} mm"
+            raise IntentError(f"{told}: its middle would lie 2 l or farther from the shaft", "arc.radius")
     if not (math.isfinite(radius) and (radius >= least if side == "convex" else radius > least)):
         raise IntentError(
             f"a {side} arc needs a radius of at least {least:.9g} mm to join the mean positions, not {radius:.9g} mm"

@@ -9,7 +9,7 @@ from kin.numeric.errors import KinError
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["REASONS", "ReadError"]
+__all__ = ["REASONS", "ReadError", "xml_fault"]
 
 REASONS = {
     "syntax": "the file is damaged or not of this format",
@@ -54,3 +54,11 @@ class ReadError(KinError, ValueError):
 
     def __str__(self) -> str:
         return f"{self.path}: {self.message}"
+
+
+def xml_fault(error: Exception) -> str:
+    """Say where the text of an XML file breaks, by what a parser raised: ExpatError and ParseError have a line."""
+    line = getattr(error, "lineno", None)
+    if line is None:
+        return "its encoding is not known"
+    return f"its XML breaks at line {line}, column {getattr(error, 'offset', 0)}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kin.contour.nearest import signed_distance
+from kin.numeric.places import place_text
 from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def counter_clockwise(contour: Contour) -> Contour:
 def met(place: tuple[float, float], path: Path) -> ReadError:
     """Return the error for contours that meet at a place."""
     x, y = place
-    return ReadError("crossing", f"two closed contours cross or touch at ({x:.9g}, {y:.9g})", path, place)
+    return ReadError("crossing", f"two closed contours cross or touch at {place_text(x, y, digits=9)}", path, place)
 
 
 def nested(contours: list[Contour], path: Path) -> list[int]:
@@ -58,7 +59,7 @@ def nested(contours: list[Contour], path: Path) -> list[int]:
         x, y = wrong[0].tolist()
         box = contours[order[rank + 1 + int(np.flatnonzero(inside if rank else ~inside)[0])]].box
         size = f"{box.x_max - box.x_min:.6g} x {box.y_max - box.y_min:.6g} mm"
-        what = f"the closed contour at ({x:.9g}, {y:.9g})"
+        what = f"the closed contour at {place_text(x, y, digits=9)}"
         if rank:
             raise ReadError("island", f"{what} lies inside a hole; it is {size}", path, (x, y))
         raise ReadError("several", f"{what} does not lie inside the largest one; it is {size}", path, (x, y))

@@ -158,7 +158,7 @@ def test_every_public_function_is_held_to_the_rule(
     ("name", "given", "message"),
     [
         ("load", {"source": None}, "source must be a path, YAML text or a mapping, not NoneType"),
-        ("design", {"recipe": "x.yaml"}, "recipe must be a Recipe, not str; read it by camgeo.load"),
+        ("design", {"recipe": 3}, "recipe must be a Recipe or the path of one, not int"),
         ("export", {"only": 3}, "only must be a str or a sequence of str, not int"),
         ("export", {"only": ["dxf", None]}, "only[1] must be a str, not NoneType"),
         ("export", {"progress": "x"}, "progress must be a function or None, not str"),

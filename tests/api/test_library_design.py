@@ -199,3 +199,26 @@ def test_it_shows_itself(design: camgeo.Design) -> None:
     assert "<script" not in html
     assert "<style" not in html
     assert all(check._repr_html_().startswith("<p") for check in design.checks)
+
+
+def test_what_a_design_hands_out_can_be_pickled_alone(design: camgeo.Design) -> None:
+    figures = pickle.loads(pickle.dumps(design.figures))
+    assert figures == design.figures
+    with pytest.raises(TypeError):
+        figures["size"] = None
+    for part in (design.checks, design.edges(0.01), design.recipe):
+        assert pickle.loads(pickle.dumps(part)) is not None
+
+
+def test_a_path_stands_for_its_recipe(tmp_path: Path) -> None:
+    path = tmp_path / "best.yaml"
+    path.write_text("cam: {kind: support, p: 25 + cos(3*t)}\nexport: {tolerance: 0.05, files: [dxf]}\n", "utf-8")
+    assert camgeo.design(path).ok
+    assert camgeo.check(str(path)).ok
+    report = camgeo.export(path, tmp_path)
+    assert camgeo.verify(str(path), tmp_path / "best" / "best.dxf").ok
+    assert report.recipe.text == camgeo.load(path).text
+    with pytest.raises(camgeo.RecipeErrors, match=r"none\.yaml: the file does not exist"):
+        camgeo.verify("none.yaml", tmp_path / "best" / "best.dxf")
+    with pytest.raises(camgeo.CallError, match="recipe is no path: it is empty"):
+        camgeo.design("")

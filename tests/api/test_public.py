@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import camgeo
+from camgeo.output.output_folder import Run
 
 ROOT = Path(__file__).parents[2]
 
@@ -29,7 +30,7 @@ def test_the_import_loads_nothing_else() -> None:
 
 def test_reading_a_recipe_loads_no_library_of_drawings_or_solids() -> None:
     code = "import sys, camgeo; camgeo.load(sys.argv[1]); print(sorted(set(sys.argv[2:]) & set(sys.modules)))"
-    heavy = ["ezdxf", "manifold3d", "matplotlib", "numba", "OCP", "scipy", "camgeo.output.pipeline", "camgeo.fit.arcs"]
+    heavy = ["ezdxf", "manifold3d", "matplotlib", "OCP", "scipy", "camgeo.output.pipeline", "camgeo.fit.arcs"]
     command = [sys.executable, "-c", code, str(ROOT / "recipes" / "shu-wu.yaml"), *heavy]
     done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=True)
     assert done.stdout == "[]\n"
@@ -108,5 +109,14 @@ def test_errors_of_a_call_can_be_pickled() -> None:
 
 
 def test_type_checkers_see_the_names() -> None:
-    hints = typing.get_type_hints(camgeo.check, None, {"Callable": typing.Callable, "Recipe": camgeo.Recipe})
+    hints = typing.get_type_hints(camgeo.check, None, {"Callable": typing.Callable, "RecipeSource": object})
     assert hints["return"] is camgeo.Report
+
+
+def test_errors_of_the_surroundings_are_named_and_can_be_pickled(tmp_path: Path) -> None:
+    recipe = camgeo.load("cam: {kind: support, p: 25 + cos(3*t)}\nexport: {tolerance: 0.05, files: [dxf]}\n")
+    with Run(tmp_path, "recipe"), pytest.raises(camgeo.BusyError, match="another run is at work here") as caught:
+        camgeo.export(recipe, tmp_path)
+    assert isinstance(caught.value, camgeo.SurroundingsError)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (type(again), str(again), again.path) == (camgeo.BusyError, str(caught.value), tmp_path / "recipe")

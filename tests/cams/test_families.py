@@ -1,4 +1,4 @@
-"""What every family must have beside its file: the tables that hang on a follower's name, and its place in the docs."""
+"""What every family must have beside its file: the tables that hang on its arrangement, and its place in the docs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from support.places import ROOT
 
-from camgeo.assembly.build import MADE as BODIES
+from camgeo.assembly.build import BODIES
 from camgeo.cams.families import FAMILIES
 from camgeo.checks.declared import CHECKS
 from camgeo.recipe.cam import MADE as SAID
@@ -25,10 +25,10 @@ SHIPPED = sorted((ROOT / "recipes").glob("*.yaml"))
 def test_a_follower_is_drawn_and_its_checks_are_made(path: Path) -> None:
     recipe = load(path)
     follower = recipe.cam.follower(recipe.cam.intent(), framed=recipe.linkage is not None)
-    assert follower.name in DRAWN
+    assert follower.arrangement in DRAWN
     assert set(follower.checks) <= set(CHECKED) <= set(CHECKS)
     assert follower.closure in {"", *CHECKS}
-    assert follower.name in BODIES or recipe.cam.touch_radius == 0.0
+    assert follower.arrangement in BODIES
 
 
 @pytest.mark.parametrize("kind", FAMILIES)

@@ -6,6 +6,7 @@ import math
 import ezdxf
 import numpy as np
 import pytest
+from support.kernel import kernel
 
 from camgeo.api.run import export
 from camgeo.curve.curve import Curve
@@ -20,7 +21,7 @@ from kin.contour.contour import Contour
 from kin.judge.contour_checks import judge_contour
 from kin.judge.verify import verify
 from kin.law.reuleaux import closed_angles, corners
-from kin.read.files import read_drawing
+from kin.read.files import read_drawing, read_solid
 
 TRIANGLE = "cam: {kind: support, reuleaux: {sides: 3, breadth: 50}}\n"
 FIVE = "cam: {kind: support, reuleaux: {sides: 5, breadth: 50, angles: [50, 30]}, shaft: [3, 1]}\n"
@@ -63,7 +64,7 @@ def judged(text, points, bulges, tolerance=1e-4):
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
 def test_every_format_holds_its_corners(text, tmp_path):
-    files = "dxf, svg, step, stl, 3mf, glb, gcode, html, csv, {csv: {as: contacts}}, {csv: {as: polar}}"
+    files = "dxf, svg, stl, 3mf, glb, gcode, html, csv, {csv: {as: contacts}}, {csv: {as: polar}}"
     files += ", {csv: {as: inspection}}, {dxf: {as: polyline}}, {dxf: {as: spline}}"
     milled = "{cutter: 6, feed: 400, plunge: 100, spindle: 6000, depth_of_cut: 5, safe_height: 5}"
     more = f"part: {{thickness: 8, bore: 8}}\nmanufacture: {milled}\n"
@@ -72,7 +73,7 @@ def test_every_format_holds_its_corners(text, tmp_path):
     assert report.ok
     folder = tmp_path / "cam"
     corner = points_of(text)
-    for name in ("cam-arcs.dxf", "cam-polyline.dxf", "cam-spline.dxf", "cam.stl", "cam.step", "cam.svg"):
+    for name in ("cam-arcs.dxf", "cam-polyline.dxf", "cam-spline.dxf", "cam.stl", "cam.svg"):
         path = folder / name
         assert path.exists(), sorted(each.name for each in folder.iterdir())
     arcs = read_drawing(folder / "cam-arcs.dxf").contour
@@ -87,6 +88,17 @@ def test_every_format_holds_its_corners(text, tmp_path):
         assert "nan" not in (folder / table).read_text()
     checks = verify(folder / "cam-arcs.dxf", intended(recipe, designed(recipe)), 360, permitted(recipe, 1e-9)).checks
     assert all(check.ok for check in checks), [str(check) for check in checks if not check.ok]
+
+
+@kernel
+@pytest.mark.thin(2)
+@pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
+def test_step_holds_its_corners(text, tmp_path):
+    body = "part: {thickness: 8, bore: 8}\nexport: {tolerance: 0.001, files: [step]}\n"
+    assert export(recipe_of(text + body), tmp_path).ok
+    ends = read_solid(tmp_path / "cam" / "cam.step").contour.end
+    away = np.hypot(*(ends[:, None] - points_of(text)).transpose(2, 0, 1)).min(axis=0)
+    assert away.max() < 1e-12
 
 
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)

@@ -187,6 +187,7 @@ def of_text(text: str) -> tuple[dict[str, Any], ...]:
 @pytest.mark.slow
 def test_what_is_declared_is_made_and_what_is_made_is_declared() -> None:
     checks = [check for text in MORE.values() for check in of_text(text)]
+    checks += pipeline.check(load_text(MORE["a ring"], "cam.yaml"), second_opinion=True).report["checks"]
     assert {check["name"] for check in checks} == set(CHECKS) - {READABLE.name}
     for check in checks:
         assert check["unit"] in {*CHECKS[check["name"]].units, ""}, check
@@ -214,7 +215,7 @@ def test_the_report_s_page_has_each_check() -> None:
     page = (ROOT / "docs" / "report.md").read_text(encoding="utf-8")
     table = page.partition("## A check")[2].partition("## Remarks")[0]
     named = set(
-        re.findall(r"`([a-z:<>-]+)`", "".join(line.split("|")[1] for line in table.splitlines() if "|" in line))
+        re.findall(r"`([a-z3:<>-]+)`", "".join(line.split("|")[1] for line in table.splitlines() if "|" in line))
     )
     assert {*CHECKS, "limit:<figure>"} <= named
 

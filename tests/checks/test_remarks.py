@@ -6,8 +6,10 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from support.places import RECIPES
 
 from camgeo.cli.main import main
+from camgeo.output.pipeline import check
 from camgeo.recipe.loading import load_text
 from camgeo.report.page import tables
 from camgeo.report.remarks import remarks_of
@@ -95,6 +97,21 @@ def test_what_a_remark_tells() -> None:
     assert coarse.sentence == "the tolerance, 3 mm, is 1.5 times the stroke of 2 mm"
 
 
+def test_a_files_dwell_that_is_shorter_than_the_intended_one_is_remarked() -> None:
+    # a ripple just fills the band: arcs within 0.01 mm let it out, arcs within 0.005 do not
+    text = (RECIPES / "long-dwell.yaml").read_text(encoding="utf-8").partition("sweep:")[0]
+    text = text.replace(", at_least: 92", "").replace("[dxf, stl, csv]", "[dxf]")
+    for tolerance, made in (("0.01", True), ("0.005", False)):
+        report = check(load_text(text.replace("tolerance: 0.001", f"tolerance: {tolerance}"), "a.yaml")).report
+        assert report["ok"]
+        assert [remark["name"] for remark in report["remarks"]] == ["dwell-shorter"] * made
+        if made:
+            (remark,) = report["remarks"]
+            (file,) = (dwell for dwell in report["linkage"]["dwells"] if dwell["from"] == "a.dxf")
+            assert remark["value"] == file["length_deg"] < remark["rule"]
+            assert remark["sentence"].startswith("a.dxf: the output dwells for 82.489 deg of the 93.223 intended")
+
+
 def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "roller.yaml"
     path.write_text(ROLLER + "part: {thickness: 200}\nverify: {angles: 120}\nexport: {files: [dxf, html]}\n")
@@ -110,7 +127,7 @@ def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: p
     assert report["ok"]
     assert [one["name"] for one in report["remarks"]] == ["pressure-angle", "thick"]
     assert set(report["remarks"][0]) == {"name", "value", "rule", "unit", "at_deg", "sentence"}
-    page = (tmp_path / "out" / "roller" / "roller.html").read_text()
+    page = (tmp_path / "out" / "roller" / "roller.html").read_text(encoding="utf-8")
     assert page.count('<tr class="remark">') == 2
     assert "up to 45 is the rule for oscillating followers" in page
     assert main(["check", str(path), "--json"]) == 0

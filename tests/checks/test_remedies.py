@@ -44,6 +44,33 @@ def arc(radius: float, side: str, ratio: str = "4") -> str:
     return roller(f"arc: {{radius: {radius!r}, side: {side}}}", ratio=ratio)
 
 
+def humped(rise: float) -> str:
+    return f"law: [{{rise: {rise}, over: 20, law: cycloidal}}, {{return: {rise}, over: 25, law: cycloidal}}]"
+
+
+def driven(kind: str, **links: float) -> str:
+    lengths = ", ".join(f"{name}: {length}" for name, length in links.items())
+    shape = "fourier: {mean: 25, cos: {3: 2.938}}, shaft: [14.833, 0]"
+    return support(shape, f"\nlinkage: {{{kind}, {lengths}}}")
+
+
+def hung(link: float) -> str:
+    dyad = f"{{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [{link}, 30]}}"
+    return f"\nlinkage: {{kind: four-bar, ground: 80, coupler: 70, rocker: 105, dyads: [{dyad}]}}"
+
+
+def ringed(outer: float, hole: float) -> str:
+    more = f"\npart: {{outer: {outer}, bolts: {{count: 3, circle: 147, hole: {hole}}}}}"
+    cam = f"kind: disc, base_radius: 60, track: internal, follower: {{kind: roller, radius: 8}}, motion: {SHARP}"
+    return f"cam: {{{cam}}}{more}{FILES}"
+
+
+def waves(count: int) -> str:
+    motion = f"motion: {{formula: 5*(1-cos({count}*t))}}"
+    return f"cam: {{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 8}}, {motion}}}{FILES}"
+
+
+MATCHED = "{rise: 5, over: 100, law: match}, {rise: 15, over: 80, law: cycloidal}, {return: 20, over: 180, law: match}"
 SHARP = "[{rise: 20, over: 60, law: cycloidal}, {dwell: 10}, {return: 20, over: 60, law: cycloidal}, {dwell: 230}]"
 
 
@@ -71,9 +98,9 @@ def disc(base: float, follower: str, more: str = "", track: str = "") -> str:
     )
 
 
-def diameter(base: float, radius: float) -> str:
+def diameter(base: float, radius: float, more: str = FILES) -> str:
     lift = "motion: [{rise: 20, over: 60, law: cycloidal}, {dwell: 120}]"
-    return f"cam: {{kind: constant-diameter, base_radius: {base!r}, roller_radius: {radius!r}, {lift}}}{FILES}"
+    return f"cam: {{kind: constant-diameter, base_radius: {base!r}, roller_radius: {radius!r}, {lift}}}{more}"
 
 
 def said(text: str) -> str:
@@ -248,6 +275,116 @@ DESIGNS: list[tuple[str, str, Follow]] = [
         "the shaft lies outside the contour",
         lambda _: support("p: 25, shaft: [10, 0]", "\npart: {bore: 10}"),
     ),
+    (
+        support("p: -25 + 5*cos(3*t)"),
+        r"add more than (\S+) to p",
+        lambda by: support(f"p: -25 + 5*cos(3*t) + {1.00001 * by}"),
+    ),
+    *(
+        (
+            arc(radius, "convex"),
+            r"a convex arc needs a radius above (\S+) mm",
+            lambda above: arc(1.001 * above, "convex").replace("8.0", "0.5"),
+        )
+        for radius in (30.0, 40.0)
+    ),
+    (
+        roller("delta: {cos: {1: 1500, 3: 300}}", radius=0.5),
+        r"with each value of D multiplied by (\S+) such a motion is possible",
+        lambda share: roller(f"delta: {{cos: {{1: {1500 * share}, 3: {300 * share}}}}}", radius=0.5),
+    ),
+    (
+        roller("delta: {formula: 1700*cos(4*t)}", radius=0.5),
+        r"with each value of D multiplied by (\S+) such a motion is possible",
+        lambda share: roller(f"delta: {{formula: {1700 * share}*cos(4*t)}}", radius=0.5),
+    ),
+    (
+        roller(humped(30.0), radius=0.1),
+        r"with each stroke multiplied by (\S+) such a motion is possible",
+        lambda share: roller(humped(30.0 * share), radius=0.1),
+    ),
+    *(
+        (
+            driven(f"kind: {kind}", **links),
+            rf"with linkage\.{name} (\S+) mm it would turn",
+            lambda length, kind=kind, links=links, name=name: driven(f"kind: {kind}", **{**links, name: length}),
+        )
+        for kind, name, links in (
+            ("four-bar", "ground", {"ground": 79.28, "coupler": 30, "rocker": 30}),
+            ("four-bar", "rocker", {"ground": 79.28, "coupler": 61.85, "rocker": 10}),
+            ("inverted-slider-crank", "ground", {"ground": 12, "rocker": 5}),
+        )
+    ),
+    (
+        support("p: 25 + cos(3*t)", hung(50.0)),
+        r"with linkage\.dyads\[0\]\.links\[0\] (\S+) mm it would turn",
+        lambda length: support("p: 25 + cos(3*t)", hung(length)),
+    ),
+    (
+        support("fourier: {mean: 20, cos: {3: 2.503}}"),
+        "or let what is lost be cut off: undercut: trim",
+        lambda _: support("fourier: {mean: 20, cos: {3: 2.503}}, undercut: trim"),
+    ),
+    (
+        disc(36.0, "kind: roller, radius: 8", "\npart: {bore: 20, bolts: {count: 4, circle: 70, hole: 12}}"),
+        r"a part\.bolts\.hole below (\S+) mm would do",
+        lambda below: disc(
+            36.0,
+            "kind: roller, radius: 8",
+            f"\npart: {{bore: 20, bolts: {{count: 4, circle: 70, hole: {0.999 * below}}}}}",
+        ),
+    ),
+    (
+        disc(
+            40.0,
+            "kind: roller, radius: 8",
+            "\npart: {bore: 20, wall: 3, dowel: {circle: 40, hole: 16}}",
+        ),
+        r"a part\.dowel\.hole below (\S+) mm would do",
+        lambda below: disc(
+            40.0,
+            "kind: roller, radius: 8",
+            f"\npart: {{bore: 20, wall: 3, dowel: {{circle: 40, hole: {0.999 * below}}}}}",
+        ),
+    ),
+    (
+        disc(
+            40.0,
+            "kind: roller, radius: 8",
+            "\npart: {thickness: 10, bore: 28, wall: 3, hub: {diameter: 30, height: 10}}",
+        ),
+        r"a part\.bore below (\S+) mm would do",
+        lambda below: disc(
+            40.0,
+            "kind: roller, radius: 8",
+            f"\npart: {{thickness: 10, bore: {0.999 * below}, wall: 3, hub: {{diameter: 30, height: 10}}}}",
+        ),
+    ),
+    (
+        ringed(150.0, 10.0),
+        r"a part\.bolts\.hole below (\S+) mm and a part\.outer larger by more than \S+ mm would do",
+        lambda below: ringed(
+            150.0 + 1.001 * figure(said(ringed(150.0, 10.0)), r"larger by more than (\S+) mm"), 0.999 * below
+        ),
+    ),
+    (
+        waves(4000),
+        "stretches of the contour run backwards; give the motion fewer or lower waves",
+        lambda _: waves(2),
+    ),
+    (
+        disc(40.0, "kind: roller, diameter: 16 mm"),
+        r"cam\.follower\.diameter: unknown key; give radius: (\S+) mm",
+        lambda radius: disc(40.0, f"kind: roller, radius: {radius} mm"),
+    ),
+    (
+        f"cam: {{kind: disc, base_radius: 60, follower: {{kind: roller, radius: 8}}, motion: [{MATCHED}]}}{FILES}",
+        r"two matched segments meet at 360 degrees: give the last entry `at_end: \{v: \.\.\., a: \.\.\.\}`",
+        lambda _: (
+            "cam: {kind: disc, base_radius: 60, follower: {kind: roller, radius: 8}, motion: "
+            f"[{MATCHED[:-1]}, at_end: {{v: 0, a: 0}}}}]}}{FILES}"
+        ),
+    ),
 ]
 
 
@@ -260,7 +397,15 @@ def test_a_design_that_is_changed_as_told_is_sound(text: str, pattern: str, foll
 CHAMFERED = "\npart: {{bore: 10, thickness: 30, chamfer: {0!r}}}"
 BORED = "\npart: {{bore: {0!r}, wall: 5}}"
 LIMITED = "\nverify: {motion_error: 0.0005}"
+
+
+def sprung(preload: float, rate: float) -> str:
+    train = f"rpm: 300, mass: 1, stiffness: 1e5, damping: 100, preload: {preload}, rate: {rate}"
+    return disc(40.0, "kind: roller, radius: 10", f"\ndynamics: {{{train}}}\nverify: {{angles: 24}}")
+
+
 COARSE = FILES.replace("0.001", "0.002")
+FINER = "\nverify: {{motion_error: 0.001}}\nexport: {{tolerance: {}, files: [dxf]}}\n"
 
 
 def needle(cos: float) -> str:
@@ -281,6 +426,41 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
         lambda below: support("p: 25 + 2*cos(3*t)", CHAMFERED.format(0.999 * below)),
     ),
     (
+        sprung(10.0, 0.0),
+        r"a dynamics\.preload of (\S+)",
+        lambda preload: sprung(preload, 0.0),
+    ),
+    (
+        sprung(10.0, 5000.0),
+        r"a dynamics\.preload of (\S+)",
+        lambda preload: sprung(preload, 5000.0),
+    ),
+    (
+        disc(40.0, "kind: roller, radius: 8", "\nmanufacture: {wheel: 200, cutter: 6}"),
+        r"a manufacture\.wheel of (\S+) mm or less",
+        lambda wheel: disc(40.0, "kind: roller, radius: 8", f"\nmanufacture: {{wheel: {wheel}, cutter: 6}}"),
+    ),
+    (
+        disc(100.0, "kind: flat, width: 10"),
+        r"a follower\.width of (\S+) mm or more",
+        lambda width: disc(100.0, f"kind: flat, width: {width}"),
+    ),
+    (
+        driven("kind: four-bar", ground=79.28, coupler=61.85, rocker=60).replace(
+            "\nexport", "\ndwell: {band: 0.1, at_least: 120}\nexport"
+        ),
+        r"a dwell\.at_least of (\S+) or less",
+        lambda length: driven("kind: four-bar", ground=79.28, coupler=61.85, rocker=60).replace(
+            "\nexport", f"\ndwell: {{band: 0.1, at_least: {length}}}\nexport"
+        ),
+    ),
+    (support("p: 0*t"), "a larger p$", lambda _: support("p: 0*t + 1")),
+    (
+        support("fourier: {mean: 20, cos: {3: 2.5}}"),
+        r"a larger fourier\.mean",
+        lambda _: support("fourier: {mean: 20.1, cos: {3: 2.5}}"),
+    ),
+    (
         support("p: 25", BORED.format(45.0)),
         r"a bore smaller by more than (\S+) mm",
         lambda by: support("p: 25", BORED.format(45.0 - 1.001 * by)),
@@ -291,6 +471,11 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
         lambda radius: disc(
             34.0 - radius, f"kind: roller, radius: {radius!r}", "\nlimits: {radius-of-curvature: {at_least: 14}}"
         ),
+    ),
+    (
+        diameter(30.0, 8.0, FINER.format(0.002)),
+        r"a tolerance of about (\S+), or verify",
+        lambda tolerance: diameter(30.0, 8.0, FINER.format(tolerance)),
     ),
     (
         support("p: 25 + 2*cos(3*t)", LIMITED).replace("0.001,", "0.002,"),

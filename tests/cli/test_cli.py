@@ -203,4 +203,46 @@ def test_the_module_is_the_command() -> None:
         [sys.executable, "-m", "camgeo", "new", "nothing"], capture_output=True, text=True, check=False
     )
     assert call.returncode == 2
-    assert call.stderr.startswith("camgeo: no starter is called nothing")
+    assert call.stderr.startswith("camgeo: no starter for 'nothing'; there is support, ")
+
+
+EMPTY = {
+    "export, out": ["export", "{recipe}", "--out", ""],
+    "check, out": ["check", "{recipe}", "--out", ""],
+    "report, out": ["report", "{recipe}", "--out", ""],
+    "study, out": ["study", "{recipe}", "--out", ""],
+    "sweep, out": ["sweep", "{recipe}", "--out", ""],
+    "verify, file": ["verify", "{recipe}", ""],
+    "new, file": ["new", "support", ""],
+    "laws, picture": ["laws", "--picture", ""],
+    **{command: [command, ""] for command in ("export", "check", "report", "study", "sweep")},
+    "verify": ["verify", "", "x.dxf"],
+    "watch": ["export", "--watch", ""],
+}
+
+
+@pytest.mark.parametrize("call", EMPTY.values(), ids=EMPTY.keys())
+def test_an_empty_name_is_a_wrong_call(
+    call: list[str], good: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(good.parent)
+    try:
+        status: object = main([argument.format(recipe=good) for argument in call])
+    except SystemExit as ended:
+        status = ended.code
+    assert status == 2
+    assert "an empty name" in capsys.readouterr().err.splitlines()[-1]
+    assert [path.name for path in good.parent.iterdir()] == ["good.yaml"]
+
+
+def test_a_starter_that_is_misspelled_names_the_near_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "disc-rollr"]) == 2
+    assert capsys.readouterr().err == "camgeo: no starter for 'disc-rollr'; did you mean disc-roller?\n"
+
+
+@pytest.mark.parametrize("call", [["report", "r.yaml", "--at"], ["study", "r.yaml", "--patience"]])
+def test_digits_with_an_underscore_are_no_number(call: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main([*call, "1_0"])
+    assert ended.value.code == 2
+    assert "a number of" in capsys.readouterr().err

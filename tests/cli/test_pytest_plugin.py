@@ -9,7 +9,7 @@ import pytest
 from support.places import RECIPES
 
 from camgeo import testing
-from camgeo.output import pipeline
+from camgeo.output import pipeline, second_opinion
 from camgeo.recipe.loading import load
 from camgeo.synthesis.expected_checks import Foreseen, foreseen
 
@@ -36,6 +36,7 @@ def _all_is_imported(tmp_path_factory: pytest.TempPathFactory) -> None:
     with pytest.raises(AssertionError):
         testing.assert_recipe(path)
     pipeline.export(load(path), path.parent / "out")
+    second_opinion.demand_libraries(load(path))
     path.write_text(UNDERCUT)
     with pytest.raises(AssertionError):
         testing.assert_recipe(path)
@@ -102,6 +103,22 @@ def test_each_check_is_an_item(project: Pytester) -> None:
     result = run(project, "-v")
     result.assert_outcomes(passed=len(ITEMS))
     result.stdout.fnmatch_lines(["camgeo: 1 recipe", "cams/small.yaml::motion[[]small.dxf[]] PASSED*"])
+
+
+def test_a_second_opinion_adds_its_rows(project: Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [f"{name}[small.stl]" for name in ("shapely:valid", "shapely:area", "shapely:distance")]
+    meshes = ("trimesh:watertight", "trimesh:winding", "trimesh:bodies", "trimesh:volume", "manifold3d:status")
+    text = SMALL.replace("[dxf]", "[stl]").replace("export", "part: {thickness: 5}\nexport")
+    add(project, "small", text)
+    project.makeini(INI + "camgeo_second_opinion = true\n")
+    shown = [line.partition("::")[2] for line in collected(project)]
+    assert [name for name in shown if ":" in name] == [*rows, *(f"{name}[small.stl]" for name in meshes)]
+    run(project).assert_outcomes(passed=len(shown))
+    monkeypatch.setattr(second_opinion, "MOST_TRIANGLES", 10)
+    result = run(project, "-rs")
+    result.assert_outcomes(passed=len(shown) - len(meshes), skipped=len(meshes))
+    result.stdout.fnmatch_lines(["SKIPPED*triangles are more than 10*"])
+    assert not any(":" in line.partition("::")[2] for line in collected(project, "-o", "camgeo_second_opinion=false"))
 
 
 NO_PLATES = """\

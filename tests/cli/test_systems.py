@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import multiprocessing
 import os
 import signal
@@ -11,15 +12,20 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from support.places import TESTS
 from support.sets import NAME, export
 
+from camgeo.cli import batch
 from camgeo.cli.main import main
 from camgeo.common import system, workers
-from camgeo.common.errors import SurroundingsError
-from camgeo.output.output_folder import BusyError, Run
+from camgeo.common.errors import BusyError, SurroundingsError
+from camgeo.output.output_folder import Run
+
+if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
 
 GOOD = "cam: {kind: support, p: 25 + 2*cos(3*t)}\nexport: {tolerance: 0.01, files: [dxf]}\n"
 
@@ -155,6 +161,29 @@ def test_two_recipes_take_two_processes(method: str, tmp_path: Path, monkeypatch
     assert main(["export", *map(str, paths), "--jobs", "150", "--out", str(tmp_path / "out")]) == 0
     assert [count for count, _ in made] == [2]
     assert method != "spawn" or made[0][1] == "spawn"
+
+
+@pytest.mark.parametrize(("pays", "started"), [(math.inf, []), (0.0, [2])])
+def test_recipes_are_made_here_until_more_processes_pay(
+    pays: float, started: list[int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    counts = []
+    begin = workers.pool
+
+    def counted(count: int, *, fork: bool) -> AbstractContextManager[workers.Pool]:
+        counts.append(count)
+        assert not fork
+        return begin(count, fork=fork)
+
+    monkeypatch.setattr(workers, "pool", counted)
+    monkeypatch.setattr(workers, "available", lambda: 2)
+    monkeypatch.setattr(batch, "PAYS", pays)
+    paths = [tmp_path / f"{name}.yaml" for name in "abcde"]
+    for path in paths:
+        path.write_text(GOOD, encoding="utf-8")
+    assert main(["export", *map(str, paths), "--out", str(tmp_path / "out")]) == 0
+    assert [line.partition(":")[0] for line in capsys.readouterr().out.splitlines()] == list("abcde")
+    assert counts == started
 
 
 def double(number: int) -> int:

@@ -1,4 +1,4 @@
-"""Dents and self-crossings: planted ones of known depth and place, none where there are none, shapely as the oracle."""
+"""Self-crossings: planted ones of known depth and place, none where there are none, shapely as the oracle."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from kin.contour.arcs import unit
-from kin.contour.bezier import Beziers
 from kin.contour.contour import Contour
-from kin.contour.intersections import crossings, dents, meetings
+from kin.contour.intersections import crossings, meetings
 from kin.contour.pieces import Pieces
 
 
@@ -29,63 +28,14 @@ def turned(contour: Contour, first: int) -> Contour:
 
 
 @pytest.mark.parametrize("n", [2, 3, 50])
-def test_a_circle_has_neither(n: int) -> None:
+def test_a_circle_has_none(n: int) -> None:
     contour = Contour.from_bulges(*circle(n))
-    assert len(dents(contour).depth) == 0
     assert len(crossings(contour).point) == 0
 
 
-def test_a_vertex_moved_inward_is_a_dent_of_known_depth_wherever_the_contour_starts() -> None:
-    points, _ = circle(400)
-    corner = points[17].copy()
-    points[17] *= 1.0 - 0.02 / 25.0
-    chord = (points[16] + points[18]) / 2.0
-    depth = np.hypot(*(chord - points[17]))
-    for first in (0, 16, 17, 18, 399):
-        contour = turned(Contour.from_vertices(points), first)
-        found = dents(contour)
-        np.testing.assert_allclose(found.depth, [depth], atol=1e-13)
-        np.testing.assert_allclose(found.point, [points[17]])
-        assert (found.piece + first) % 400 == 17
-    assert depth == pytest.approx(0.02 - (25.0 - np.hypot(*chord)), abs=1e-12)
-    assert np.hypot(*corner) == pytest.approx(25.0)
-
-
-def test_a_vertex_moved_outward_dents_both_its_flanks() -> None:
-    points, _ = circle(400)
-    points[17] *= 1.001
-    assert len(dents(Contour.from_vertices(points)).depth) == 2
-
-
-def test_a_flipped_bulge_is_a_dent_as_deep_as_its_sagitta() -> None:
-    points, bulges = circle(50)
-    bulges[7] *= -1.0
-    found = dents(Contour.from_bulges(points, bulges), 1e-9)
-    np.testing.assert_allclose(found.depth, [25.0 * (1.0 - np.cos(np.pi / 50))], atol=1e-9)
-    assert found.piece.tolist() == [7]
-    np.testing.assert_allclose(
-        found.point[0], 25.0 * (2.0 * np.cos(np.pi / 50) - 1.0) * unit(np.array(15 * np.pi / 50)), atol=1e-3
-    )
-
-
-def test_waves_have_as_many_dents_and_no_crossing() -> None:
+def test_waves_have_no_crossing() -> None:
     contour = waves(0.5, 12)
-    found = dents(contour)
-    assert len(found.depth) == 12
-    np.testing.assert_allclose(found.depth, found.depth[0], atol=1e-9)
     assert len(crossings(contour).point) == 0
-
-
-def test_dents_of_splines_within_the_tolerance() -> None:
-    """A rectangle whose right side is a cubic, bowed inward by 3/4 of the 4 mm to its control points."""
-    bow = Beziers(np.array([[[20.0, -10.0], [16.0, -5.0], [16.0, 5.0], [20.0, 10.0]]]), np.ones((1, 4)))
-    sides = np.array([[20.0, 10.0], [-20.0, 10.0], [-20.0, -10.0]])
-    ends = np.array([[-20.0, 10.0], [-20.0, -10.0], [20.0, -10.0]])
-    pieces = Pieces.joined([Pieces.from_unrolled(bow.unrolled().pieces), Pieces.from_chords(sides, ends, np.zeros(3))])
-    for tolerance in (1e-3, 1e-6):
-        found = dents(Contour.from_pieces(pieces), tolerance)
-        assert len(found.depth) == 1
-        assert abs(found.depth[0] - 3.0) <= tolerance
 
 
 def test_figures_of_eight_cross_once() -> None:
@@ -184,13 +134,7 @@ def test_meetings_of_two_contours() -> None:
     assert len(meetings(one, Contour.from_bulges(*circle(2, 10.0))).point) == 0
 
 
-def test_a_depth_finer_than_rounding_is_refused() -> None:
-    with pytest.raises(ValueError, match="lost in the rounding"):
-        dents(waves(0.5, 12), 1e-12)
-
-
 def test_contours_of_a_kilometre_are_judged_with_a_precision_to_match() -> None:
     contour = Contour.from_bulges(*circle(50, 1e6))
     flipped = Contour.from_bulges(contour.start, np.where(np.arange(50) == 7, -1.0, 1.0) * np.tan(np.pi / 100.0))
-    np.testing.assert_allclose(dents(flipped).depth, [1e6 * (1.0 - np.cos(np.pi / 50))], rtol=0.0, atol=1e-2)
     assert len(crossings(flipped).point) == 0

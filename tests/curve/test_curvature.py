@@ -10,6 +10,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.programmes import Segment, law, programme
 from support.shapes import booth
 
 from camgeo.curve.backwards import Backwards
@@ -20,7 +21,6 @@ from camgeo.curve.support import SupportShape
 from camgeo.curve.wunderlich import PitchShape
 from kin.law.formula.formula import Formula
 from kin.law.from_formula import lift_from_formula
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_arc
 

@@ -13,6 +13,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.discs import CONTOURS, DEGREE, TURN, displaced, inline, offset, segments
+from support.places import RECIPES
 
 from camgeo.curve.backwards import Backwards, least_hollow
 from camgeo.curve.curvature import least_radius, reversals
@@ -26,6 +27,7 @@ from camgeo.curve.sizing import face_needed, least_prime, least_stem, tappet_rad
 from camgeo.curve.undercut.causes import causes
 from camgeo.curve.undercut.trim import trimmed
 from camgeo.curve.undercut.undercut import undercuts
+from camgeo.recipe.loading import load
 from kin.law.programme import IntentError
 
 if TYPE_CHECKING:
@@ -185,9 +187,10 @@ def test_the_eccentric_is_one_circle_under_a_flat_face() -> None:
 
 
 def test_a_motion_repeated_is_one_part_turned() -> None:
-    third = segments((5, 50, "cycloidal"), (20,), (-5, 40, "polynomial-345"), (10,), total=TURN / 3)
+    rows = ((5, 50, "cycloidal"), (20,), (-5, 40, "polynomial-345"), (10,))
+    third = segments(*rows, total=TURN / 3)
     pitch = CentreShape(Displacement.of(third), Translating.on(40.0, 6.0))
-    whole = CentreShape(Displacement.of(third.repeated(3)), Translating.on(40.0, 6.0))
+    whole = CentreShape(Displacement.of(segments(*rows, *rows, *rows)), Translating.on(40.0, 6.0))
     assert (pitch.repeats, pitch.breaks.size, len(pitch.steady)) == (3, 12, 12)
     t = np.linspace(0.0, TURN, 301)
     assert pitch.sample(t).point == pytest.approx(whole.sample(t).point, abs=1e-13)
@@ -336,6 +339,43 @@ def test_extremes_are_proved_and_reached() -> None:
         assert abs(found.value) >= abs(seen)
         assert found.room < 1e-12
     assert greatest(lambda tau, side=1: tau * 0.0 + 2.0, np.array([[0.0, 1.0]])).value == 2.0  # noqa: ARG005
+
+
+def test_a_top_is_proved_where_the_figure_bends_down() -> None:
+    """Division alone goes on to a millionth of a turn about the top; f'^2/(2 m) ends it where f'' is below 0."""
+    from kin.numeric import elementary
+    from kin.numeric.jet import BallJet
+
+    passes = 0
+
+    def figure(tau: Any, side: object = 1) -> Any:  # noqa: ARG001
+        nonlocal passes
+        passes += isinstance(tau, BallJet)
+        return elementary.sin(tau) * 3.0 + elementary.sin(tau * 30.0) * 0.1
+
+    found = greatest(figure, np.array([[0.0, 2.0], [2.0, TURN]]))
+    assert found.value == pytest.approx(3.0960211722302637, abs=1e-14)
+    assert passes <= 4
+
+
+@pytest.mark.parametrize("bend", [1.0, 1e-6, 1e-12])
+def test_a_flat_top_beside_a_break_is_not_passed_over(bend: float) -> None:
+    """However little it bends, and where the top is that of an end: nothing is above the value and its room."""
+    from kin.numeric import elementary
+
+    figure = lambda tau, side=1: elementary.sin(tau) + (tau - 1.0) ** 2 * bend  # noqa: E731, ARG005
+    for low, high in ((0.3, 1.5), (1.0, 2.4), (1.5707, 1.5708)):
+        grid = np.linspace(low, high, 200_001)
+        found = greatest(figure, np.array([[low, high]]))
+        assert found.value + found.room >= (np.sin(grid) + bend * (grid - 1.0) ** 2).max()
+        assert found.room < 1e-12
+
+
+def test_a_figure_is_found_once_of_a_profile() -> None:
+    cam = load(RECIPES / "disc-roller.yaml").cam
+    profile = cam.profile(cam.intent())
+    assert cam.extremes("slope", cam.intent(), profile) is cam.extremes("slope", cam.intent(), profile)
+    assert cam.extremes("slope", cam.intent(), cam.profile(cam.intent())) == profile.extremes["slope"]
 
 
 def test_a_kink_inside_a_stretch_is_bounded_by_values_alone() -> None:

@@ -7,6 +7,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
+from support.programmes import Segment, law, programme
 from support.shapes import PEAR
 
 from camgeo.curve.curve import Curve
@@ -14,7 +15,6 @@ from camgeo.curve.parallel import Parallel
 from camgeo.curve.support import SupportShape
 from camgeo.curve.undercut.self_intersection import all_breaks, displacement, seen_crossings, settled
 from camgeo.curve.wunderlich import PitchShape
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_law
 

@@ -12,6 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
 from support.heavy import shapely
+from support.programmes import Segment, law, programme
 from support.shapes import PEAR, STAR, Moved, booth, waves
 
 from camgeo.curve.curve import Curve
@@ -24,7 +25,6 @@ from camgeo.curve.wunderlich import PitchShape
 from camgeo.fit.arcs import fit_arcs
 from camgeo.fit.polygon import fit_polygon
 from camgeo.fit.spline import fit_spline
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_law
 

@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.heavy import shapely
+from support.programmes import Segment, law, programme
 from support.shapes import PEAR, STAR, Moved, booth, waves
 
 from camgeo.curve.curvature import least_radius
@@ -21,7 +22,6 @@ from camgeo.curve.undercut.causes import UndercutError
 from camgeo.curve.undercut.pairs import Pitch
 from camgeo.curve.undercut.trim import trimmed
 from camgeo.curve.undercut.undercut import undercuts
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 
 TURN = 2.0 * math.pi

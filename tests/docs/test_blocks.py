@@ -13,7 +13,7 @@ import tomllib
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 import pytest
 from support.cases import few
@@ -23,6 +23,8 @@ from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.recipe.starter import KINDS
+from camgeo.report.document import RemarkName
+from camgeo.report.page.content import DRAWN
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")])
@@ -298,6 +300,17 @@ def test_the_plan_of_the_house_names_what_is_there():
 def test_the_report_page_names_every_check():
     text = (ROOT / "docs" / "report.md").read_text(encoding="utf-8")
     assert [name for name in CHECKS if f"`{name}`" not in text] == []
+
+
+def test_the_report_page_names_every_follower_and_every_remark():
+    text = (ROOT / "docs" / "report.md").read_text(encoding="utf-8")
+    (followers,) = re.findall(r"^\| `follower` \| (.*) \|$", text, re.MULTILINE)
+    alone = {f"{drawn.guide.word} {drawn.touch.word}" for drawn in DRAWN if drawn.contacts == 1}
+    others = {"flat face", "yoke", "square frame", "double roller", "flat pair", "roller yoke"}
+    assert set(re.findall(r"`([^`]*)`", followers)) == alone | others
+    table = text.partition("| name | made where |")[2].partition("\n\n")[0]
+    named = [name for cell in re.findall(r"^\| (`.*?) \|", table, re.MULTILINE) for name in cell.split(", ")]
+    assert sorted(name.strip("`") for name in named) == sorted(get_args(RemarkName))
 
 
 def test_the_glossary_has_each_term_once_in_order():

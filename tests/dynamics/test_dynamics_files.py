@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from support import followers
 from support.integrated import integrated
+from support.programmes import Segment, law, programme
 
 from kin.contour.contour import Contour
 from kin.dynamics.drive import drives
@@ -12,10 +14,10 @@ from kin.dynamics.excitation import intended_faces, measured_faces
 from kin.dynamics.train import Train, steady
 from kin.follower.contact import dilated
 from kin.follower.drive import OfFace, OfRoller
-from kin.follower.follower import DoubleRoller, FlatFace, FlatPair, Roller, RollerYoke, Yoke
-from kin.follower.guide import LEADING, TRAILING, Arm, Translating
+from kin.follower.follower import DoubleRoller
+from kin.follower.guide import Arm, Line
 from kin.follower.support import bearing_of
-from kin.law.programme import Segment, law, programme
+from kin.law.contacts import LEADING, TRAILING
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_delta
 
@@ -58,10 +60,10 @@ def circle_about(x, y, radius, count=12):
 
 
 def test_derivatives_of_every_motion():
-    consistent(intended_faces(FlatFace(constant_breadth()), None).lower)
-    consistent(intended_faces(DoubleRoller(ROLLERS, 8.0), None).lower)
+    consistent(intended_faces(followers.flat_face(constant_breadth()), None).lower)
+    consistent(intended_faces(followers.double_roller(ROLLERS, 8.0), None).lower)
     consistent(OfFace(bearing_of(polygon_of(lift_from_fourier(25.0, {3: 1.5}, {}), 60))), step=1e-5)
-    pair = FlatPair(PAIR)
+    pair = followers.flat_pair(PAIR)
     support = pair.support
     t = TURN / 80 * np.arange(80)
     r, slope = support.derivatives(t, 1)
@@ -97,7 +99,7 @@ def test_a_roller_on_an_eccentric_is_a_four_bar():
 def test_a_translating_roller_on_an_eccentric_is_a_slider_crank(offset):
     """Its travel in closed form, differentiated by Fourier series; and on a polygon, against differences."""
     e, radius = 6.0, 25.0
-    roller = OfRoller(dilated(circle_about(e, 0.0, radius - 5.0).as_arcs()[0], 5.0), Translating(offset))
+    roller = OfRoller(dilated(circle_about(e, 0.0, radius - 5.0).as_arcs()[0], 5.0), Line(offset))
     count = 512
     phi = TURN / count * (np.arange(count) + 0.37)
     # the circle's centre lies e cos phi along the line of travel, and -e sin phi towards its left
@@ -106,7 +108,7 @@ def test_a_translating_roller_on_an_eccentric_is_a_slider_crank(offset):
     got = roller.rows(phi)
     for order, tight in ((0, 1e-15), (1, 1e-13), (2, 1e-11)):
         assert got[order] == pytest.approx(np.fft.irfft(series * (1j * k) ** order, count), abs=tight)
-    follower = Roller(Translating(offset), 5.0, lift_from_fourier(25.0, {2: 1.5}, {}).law)
+    follower = followers.roller(Line(offset), 5.0, lift_from_fourier(25.0, {2: 1.5}, {}).law)
     polygon = Contour.from_vertices(follower.envelope.points(TURN / 60 * np.arange(60)))
     faces = measured_faces(follower, polygon, None)
     assert faces.upper is None
@@ -118,7 +120,7 @@ def test_a_translating_roller_on_an_eccentric_is_a_slider_crank(offset):
 
 def test_opposite_rollers_hold_a_frame_from_both_sides():
     lift = lift_from_fourier(40.0, {3: 2.0}, {}, (1.0, 2.0))
-    follower = RollerYoke(8.0, lift.law, 80.0)
+    follower = followers.roller_yoke(8.0, lift.law, 80.0)
     contour = Contour.from_vertices(follower.envelope.points(TURN / 300 * np.arange(300)))
     lower, upper = measured_faces(follower, contour, 2e-5)
     assert upper is not None
@@ -154,7 +156,10 @@ def test_arcs_that_are_the_cam_drive_as_intended():
     train = Train(0.4, 20.0, 2e6, 300.0)
     found = [
         steady(train, drives([faces.lower])[0], 300.0).force
-        for faces in (intended_faces(FlatFace(lift), None), measured_faces(FlatFace(lift), contour, None))
+        for faces in (
+            intended_faces(followers.flat_face(lift), None),
+            measured_faces(followers.flat_face(lift), contour, None),
+        )
     ]
     assert found[1].greatest == pytest.approx(found[0].greatest, rel=1e-9)
     assert found[1].least == pytest.approx(found[0].least, rel=1e-9)
@@ -162,7 +167,7 @@ def test_arcs_that_are_the_cam_drive_as_intended():
 
 def test_play_is_what_the_contour_leaves_of_it():
     lift = lift_from_fourier(25.0, {3: 1.5}, {}, (4.0, 1.0))
-    follower = Yoke(lift, 50.0)
+    follower = followers.yoke(lift, 50.0)
     contour = polygon_of(lift, 400)
     lower, upper = measured_faces(follower, contour, 2e-5)
     near, far = contour.support(PHI).q, contour.support(PHI + np.pi).q
@@ -174,7 +179,7 @@ def test_play_is_what_the_contour_leaves_of_it():
     assert exact.upper.rows(PHI)[0] - exact.lower.rows(PHI)[0] == pytest.approx(2e-5, abs=1e-15)
 
 
-@pytest.mark.parametrize("follower", [FlatPair(PAIR), DoubleRoller(ROLLERS, 8.0)])
+@pytest.mark.parametrize("follower", [followers.flat_pair(PAIR), followers.double_roller(ROLLERS, 8.0)])
 def test_double_followers_are_held_from_below_and_above(follower):
     faces = intended_faces(follower, 1e-3)
     assert faces.upper is not None
@@ -185,7 +190,11 @@ def test_double_followers_are_held_from_below_and_above(follower):
 
 
 @pytest.mark.parametrize(
-    "follower", [FlatFace(lift_from_fourier(25.0, {2: 1.5}, {})), Roller(Arm(40.0, 50.0), 5.0, constant_breadth().law)]
+    "follower",
+    [
+        followers.flat_face(lift_from_fourier(25.0, {2: 1.5}, {})),
+        followers.roller(Arm(40.0, 50.0), 5.0, constant_breadth().law),
+    ],
 )
 def test_one_face_has_no_play(follower):
     with pytest.raises(ValueError, match="has no backlash"):
@@ -193,10 +202,10 @@ def test_one_face_has_no_play(follower):
 
 
 def test_rests_are_the_dwells():
-    (one, two) = Yoke(constant_breadth(), 100.0).rests
+    (one, two) = followers.yoke(constant_breadth(), 100.0).rests
     assert np.degrees(one) == pytest.approx([120.0, 180.0])
     assert np.degrees(two) == pytest.approx([300.0, 360.0])
-    assert FlatPair(PAIR).rests == ()
+    assert followers.flat_pair(PAIR).rests == ()
 
 
 # --- planted faults ---------------------------------------------------------------------------------------------------
@@ -214,7 +223,7 @@ def stepped(step):
 
 def test_a_step_of_a_hundredth_rings_on_in_the_dwell_behind_it():
     train, rpm = Train(0.4, 40.0, 2e5, 2000.0), 600.0
-    follower = FlatFace(lift_from_fourier(40.0, {}, {}))
+    follower = followers.flat_face(lift_from_fourier(40.0, {}, {}))
     rest = (math.radians(100.0), math.radians(340.0))
     residual, forces = [], []
     for contour in (circle_about(0.0, 0.0, 40.0), stepped(0.01), stepped(0.005)):
@@ -232,7 +241,7 @@ def test_a_step_of_a_hundredth_rings_on_in_the_dwell_behind_it():
 def test_a_step_rings_as_an_implicit_solver_says():
     pytest.importorskip("scipy")
     train, rpm = Train(0.4, 40.0, 2e5, 2000.0), 600.0
-    follower = FlatFace(lift_from_fourier(40.0, {}, {}))
+    follower = followers.flat_face(lift_from_fourier(40.0, {}, {}))
     motion = measured_faces(follower, stepped(0.01), None).lower
     (drive,) = drives([motion])
     found = steady(train, drive, rpm)
@@ -247,8 +256,8 @@ def test_flats_of_a_coarse_polygon_shake_the_follower():
     train, rpm = Train(0.4, 20.0, 2e5, 400.0), 600.0
     spread = []
     for count in (24, 96, 384):
-        (drive,) = drives([measured_faces(FlatFace(lift), polygon_of(lift, count), None).lower])
+        (drive,) = drives([measured_faces(followers.flat_face(lift), polygon_of(lift, count), None).lower])
         spread.append(steady(train, drive, rpm).force)
-    exact = steady(train, drives([intended_faces(FlatFace(lift), None).lower])[0], rpm).force
+    exact = steady(train, drives([intended_faces(followers.flat_face(lift), None).lower])[0], rpm).force
     off = [abs(force.greatest - exact.greatest) for force in spread]
     assert off[0] > 5.0 * off[1] > 25.0 * off[2] > 0.0

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from accuracy import Row, in_time, made, names, off_profile, recipe, refused, shown_as_measured
 from extreme_oracle import Pitch, worst
+from support import followers
 
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve
@@ -21,7 +22,6 @@ from camgeo.curve.wunderlich import PitchShape
 from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
-from kin.follower.roller import DoubleRoller
 from kin.law.transmission import from_delta
 
 ARCS = "{dxf: {as: arcs}}"
@@ -331,7 +331,7 @@ def test_a_small_roller_meets_every_corner(radius):
     tau = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
     contour = Contour.from_vertices(RollerEnvelope(pitch, radius).points(tau))
     phi, psi = law.at(tau, 0)
-    found = DoubleRoller(law, radius).contact(contour, phi[0])
+    found = followers.double_roller(law, radius).contact(contour, phi[0])
     assert np.abs(found - psi[0]).max() < 1e-3
     assert np.abs(found[0] - psi[0]).max() < 1e-9 + 1e-2 * radius
 

@@ -1,9 +1,6 @@
 """What a part's features become in DXF and STL files: by second readers, closed forms, and kin's verdict."""
 
-import builtins
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -11,13 +8,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
 from support.heavy import ezdxf, manifold3d, trimesh
-from support.parts import CAM, files_of, found, recipe_of
-from support.places import TESTS
+from support.parts import files_of, found, recipe_of
 
-from camgeo.cli.main import main
-from camgeo.files.prism import loop_polygon
+from camgeo.files.precision import DECIMALS, SINGLE
+from camgeo.files.prism import bore_polygon, loop_polygon
 from camgeo.files.solid import inset
-from camgeo.files.triangulate import RegionError, region
+from camgeo.files.triangulate import RegionError, region, sides
 from camgeo.synthesis.part.shapes import disc, flattened, keyed, polygonal, slot
 from kin.contour.contour import Contour
 
@@ -122,17 +118,11 @@ def test_counter_clockwise_mirrors_every_feature(tmp_path):
 # --- STL: prisms ----------------------------------------------------------------------------------------------------
 
 
-def test_prism_with_holes_needs_no_other_library(tmp_path):
-    code = """
-import sys
-from pathlib import Path
-sys.path.insert(0, sys.argv[2])
-sys.modules["manifold3d"] = None
-from support.parts import files_of, recipe_of
-part = "{thickness: 8, bore: 12, keyway: din6885, bolts: {count: 5, circle: 32, hole: 4}, mark: {as: cut, width: 1}}"
-files_of(recipe_of(part), Path(sys.argv[1]))
-"""
-    subprocess.run([sys.executable, "-c", code, str(tmp_path), str(TESTS)], check=True)
+def test_prism_with_openings_by_trimesh_and_closed_forms(tmp_path):
+    part = (
+        "{thickness: 8, bore: 12, keyway: din6885, bolts: {count: 5, circle: 32, hole: 4}, mark: {as: cut, width: 1}}"
+    )
+    files_of(recipe_of(part), tmp_path)
     mesh = trimesh.load(tmp_path / "part.stl")
     assert mesh.is_watertight
     assert mesh.is_winding_consistent
@@ -163,9 +153,9 @@ def covers_once(outer, holes):
     assert len(triangles) == len(points) + 2 * len(holes) - 2
     a, b, c = points[triangles].transpose(1, 0, 2)
     areas = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    assert (areas > 0).all()
+    assert (sides(a, b, c) == 1).all()
     inner = sum(abs(Contour.from_vertices(hole).area) for hole in holes)
-    assert areas.sum() == pytest.approx(3600 - inner, rel=1e-12)
+    assert areas.sum() == pytest.approx(Contour.from_vertices(outer).area - inner, rel=1e-9)
 
 
 @settings(max_examples=examples(60), deadline=None)
@@ -193,10 +183,53 @@ def test_rows_of_equal_holes_have_bridges(corners, turn, side):
     covers_once(SQUARE, [np.array([x, y]) + ring for x in places for y in places])
 
 
-def test_holes_that_meet_have_no_region():
+@pytest.mark.parametrize("other", [(3.0, 3.0), (8.0, 0.0), (8.0, 1.0), (8.0, 8.0), (26.0, 0.0), (28.0, 0.0)])
+def test_holes_that_meet_each_other_or_the_rim_have_no_region(other):
     square = np.array([[4, -4], [4, 4], [-4, 4], [-4, -4]], dtype=float)
     with pytest.raises(RegionError, match="a hole reaches another"):
-        region(SQUARE, [square, square + 3.0])
+        region(SQUARE, [square, square + other])
+
+
+def test_openings_in_line_leave_no_flat_triangle():
+    """Sides of all squares of a grid lie on its lines, and so do 73 of the ears clipped between them."""
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    covers_once(SQUARE, [np.add(square, (x, y)) for x in range(-28, 28, 2) for y in range(-28, 28, 2)])
+
+
+@pytest.mark.parametrize("number", few(range(200), 20))
+def test_random_parts_with_holes_are_covered_once_at_any_tolerance(number):
+    """Grids, bolt circles and scattered holes, round, square and with corners in line, in a round or lobed rim."""
+    random = np.random.default_rng(number)
+    tolerance = 10.0 ** -random.integers(3, 10)
+    precision = SINGLE if tolerance > 5e-5 and random.random() < 0.5 else DECIMALS
+    # as large as 4000 corners of the rim allow
+    radius = min(30.0, 12.0 * tolerance * 10.0 ** random.uniform(2.0, 5.5))
+    lobes = random.choice([0.0, 0.02, 0.3])
+    angle = np.arange(max(12, math.ceil(math.pi / math.sqrt(tolerance / radius)))) * 2 * np.pi
+    angle = angle / len(angle) + random.choice([0.0, 0.3])
+    rim = radius * (1 + lobes * np.cos(random.integers(2, 6) * angle))
+    outer, _ = precision.rounded(np.column_stack([rim * np.cos(angle), rim * np.sin(angle)]))
+    reach = radius * (1 - lobes)
+    match random.integers(3):
+        case 0:
+            row = np.linspace(-0.42 * reach, 0.42 * reach, random.integers(3, 7))
+            places, size = [(x, y) for x in row for y in row], 0.4 * (row[1] - row[0])
+        case 1:
+            turn = 2 * np.pi * np.arange(random.integers(3, 13)) / 12 + random.choice([0.0, 0.2])
+            around = 0.65 * reach * np.column_stack([np.cos(turn), np.sin(turn)])
+            places, size = [(0.0, 0.0), *around], 0.15 * reach
+        case _:
+            places, size = [(0.3 * reach, 0.0)], 0.1 * reach
+            for place in random.uniform(-0.6 * reach, 0.6 * reach, (20, 2)):
+                if min(math.dist(place, other) for other in places) > 2.2 * size:
+                    places.append(tuple(place))
+    holes = []
+    for place in places:
+        width = size * random.choice([0.8, random.uniform(0.2, 0.95)])
+        square = 0.7 * width * np.array([[1, -1], [1, 0.2], [1, 1], [-0.3, 1], [-1, 1], [-1, -1]])
+        hole = square if random.random() < 0.5 else bore_polygon(2 * width, tolerance / 2)[0]
+        holes.append(precision.rounded(hole + place)[0])
+    covers_once(outer, holes)
 
 
 # --- STL: solids ----------------------------------------------------------------------------------------------------
@@ -284,24 +317,6 @@ def test_inset_of_a_square_and_its_limit():
     assert np.allclose(inset(square, 2.0), square * 0.6)
     with pytest.raises(RegionError, match=r"too sharp for a chamfer of 5\.1 mm"):
         inset(square, 5.1)
-
-
-def test_without_manifold3d_a_solid_is_refused_and_the_rest_is_not(tmp_path, monkeypatch, capsys):
-    recipe = tmp_path / "part.yaml"
-    recipe.write_text(f"{CAM}part: {FULL}\nexport: {{tolerance: 0.01, files: [dxf, stl]}}\nverify: {{angles: 36}}\n")
-    real = builtins.__import__
-
-    def without(name, *rest, **more):
-        if name == "manifold3d":
-            raise ImportError(name)
-        return real(name, *rest, **more)
-
-    monkeypatch.setattr(builtins, "__import__", without)
-    status = main(["export", str(recipe), "--out", str(tmp_path / "out")])
-    told = capsys.readouterr().err
-    assert status == 3
-    assert "need manifold3d: pip install '.[solid]' in a clone of camgeo" in told
-    assert main(["export", str(recipe), "--out", str(tmp_path / "out"), "--only", "dxf"]) == 0
 
 
 # --- anything that passes its walls is a sound part -----------------------------------------------------------------

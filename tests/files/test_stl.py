@@ -14,7 +14,7 @@ from support.heavy import manifold3d, trimesh
 from camgeo.files import stl
 from camgeo.files.precision import SINGLE
 from camgeo.files.prism import bore_polygon, extruded
-from camgeo.files.triangulate import RegionError, clip, disc, ring, sides, star_shaped
+from camgeo.files.triangulate import RegionError, clipped, disc, ring, sides, star_shaped
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
 
@@ -190,7 +190,7 @@ def test_any_star_shaped_contour(tmp_path_factory, corners, with_bore, data):
     assert volume(records) == 3 * (area(points) - hole)
 
 
-@pytest.mark.parametrize("triangles_of", [disc, clip])
+@pytest.mark.parametrize("triangles_of", [disc, clipped])
 @pytest.mark.parametrize("n", [3, 4, 5, 6, 7, 8, 33, 100])
 def test_disc_of_any_count(triangles_of, n):
     points = single(support_cam(n, 0.0))
@@ -203,7 +203,7 @@ def test_disc_of_any_count(triangles_of, n):
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_bridge_gives_as_many_triangles_as_the_merge(shape):
     outer, inner = single(SHAPES[shape]), single(bore_polygon(8.0, 0.001)[0])
-    assert clip(outer, inner).shape == ring(outer, inner).shape == (len(outer) + len(inner), 3)
+    assert clipped(outer, [inner]).shape == ring(outer, inner).shape == (len(outer) + len(inner), 3)
 
 
 def test_star_shaped():

@@ -14,6 +14,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from support.cases import examples, few
+from support.programmes import Segment, law, programme
 
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
@@ -23,7 +24,6 @@ from camgeo.fit.nodes import Density, ToleranceError, rounding
 from camgeo.fit.polygon import fit_polygon, least_vertices
 from camgeo.fit.spans import HOPELESS
 from camgeo.fit.spline import USABLE, fit_spline
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import Lift, lift_constant_breadth, lift_from_fourier, lift_reuleaux
 
 if TYPE_CHECKING:

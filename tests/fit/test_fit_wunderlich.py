@@ -15,6 +15,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 from support.cases import few
+from support.programmes import Segment, law, programme
 
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve
@@ -24,7 +25,6 @@ from camgeo.fit.arcs import arc_density, fit_arcs
 from camgeo.fit.nodes import Density
 from camgeo.fit.polygon import fit_polygon, least_vertices
 from camgeo.fit.spline import fit_spline
-from kin.law.programme import Segment, law, programme
 from kin.law.transmission import from_arc, from_delta, from_law
 from kin.numeric.elementary import Jet
 

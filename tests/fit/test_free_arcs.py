@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from support.cases import few
 from support.places import RECIPES
+from support.programmes import Segment, law, programme
 
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
@@ -27,7 +28,6 @@ from camgeo.fit.deviation import Chain, chain_deviation
 from camgeo.fit.parts import Part
 from camgeo.output.pipeline import check
 from camgeo.recipe.loading import load
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_reuleaux
 from kin.law.transmission import from_arc, from_delta
 

@@ -12,7 +12,8 @@ from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.contour.nearest import nearest, signed_distance
 from kin.follower.contact import dilated, first_contact
-from kin.follower.guide import LEADING, TRAILING, Arm
+from kin.follower.guide import Arm
+from kin.law.contacts import LEADING, TRAILING
 
 PHI = np.arange(40) * 2 * np.pi / 40 + 0.0137
 FEW = PHI[::3]
@@ -56,7 +57,7 @@ def test_eccentric_circle_of_two_arcs_in_closed_form(side, length, pivot):
     to_centre = centre - pivot * unit(PHI)
     d = np.hypot(*to_centre.T)
     at_pivot = np.arccos((d**2 + length**2 - (size + radius) ** 2) / (2 * d * length))
-    direction = np.arctan2(to_centre[:, 1], to_centre[:, 0]) - side * at_pivot
+    direction = np.arctan2(to_centre[:, 1], to_centre[:, 0]) + side * at_pivot
     expected = pivot * unit(PHI) + length * unit(direction)
     assert r == pytest.approx(np.hypot(*expected.T), abs=1e-12)
     assert arm.centre(PHI, arm.position(r)) == pytest.approx(expected, abs=1e-11)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import shapely
+from support import followers
 from support.brute_disc import peak
 from support.camfiles import arcs_through
 from support.cases import few
@@ -17,8 +18,9 @@ from camgeo.curve.moving_frame import Translating as Stem
 from camgeo.curve.parallel import Parallel
 from kin.contour.contour import Contour
 from kin.follower.deviation import deviation
-from kin.follower.follower import ContactError, Roller, SwingingFace, TiltedFace
-from kin.follower.guide import LEADING, METRE, TRAILING, Arm, Translating
+from kin.follower.follower import ContactError
+from kin.follower.guide import METRE, Arm, Line
+from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.law.support_function import lift_from_fourier
@@ -81,8 +83,8 @@ def roller_free(points, guide, radius, inside):
 
 
 GUIDES = {
-    "in line": (Translating(), 0.0, 90.0),
-    "offset": (Translating(9.0), 0.0, 90.0),
+    "in line": (Line(), 0.0, 90.0),
+    "offset": (Line(9.0), 0.0, 90.0),
     "trailing": (Arm(65.0, 80.0, TRAILING), 0.0, 1.4),
     "leading": (Arm(65.0, 80.0, LEADING), 0.0, 1.4),
 }
@@ -95,7 +97,7 @@ def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
     guide, start, end = GUIDES[name]
     points = ragged(seed, mean=60.0)
     for radius in (0.0, 4.0, 25.0):
-        found = Roller(guide, radius, STILL, internal=True).contact(Contour.from_vertices(points), PHI)
+        found = followers.roller(guide, radius, STILL, side=-1).contact(Contour.from_vertices(points), PHI)
         expected = first_stop(roller_free(points, guide, radius, inside=True), start, end)
         assert found == pytest.approx(expected, abs=1e-6 if radius else 1e-9)
 
@@ -106,11 +108,11 @@ def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
 def test_knife_edge_and_shoe_contact_on_the_way_in(name, seed):
     guide, start, end = GUIDES[name]
     points = ragged(seed)
-    found = Roller(guide, 0.0, STILL).contact(Contour.from_vertices(points), PHI)
+    found = followers.roller(guide, 0.0, STILL).contact(Contour.from_vertices(points), PHI)
     expected = first_stop(roller_free(points, guide, 0.0, inside=False), end, start)
     assert found == pytest.approx(expected, abs=1e-9)
-    if isinstance(guide, Translating):
-        shoe = Roller(guide, 600.0, STILL).contact(Contour.from_vertices(points), PHI)
+    if isinstance(guide, Line):
+        shoe = followers.roller(guide, 600.0, STILL).contact(Contour.from_vertices(points), PHI)
         share = np.arange(400)[:, None, None] / 400
         edges = (points + share * (np.roll(points, -1, axis=0) - points)).reshape(-1, 2)
         along, across = edges @ unit(PHI).T, edges @ unit(PHI + 0.5 * np.pi).T - guide.offset
@@ -121,7 +123,7 @@ def test_knife_edge_and_shoe_contact_on_the_way_in(name, seed):
 @pytest.mark.parametrize("tilt", [-0.4, 0.15])
 def test_tilted_face_contact_is_that_of_the_farthest_corner(tilt, seed):
     points = ragged(seed)
-    found = TiltedFace(law(seed, 40.0, 3.0), tilt).contact(Contour.from_vertices(points), PHI)
+    found = followers.flat_face(law(seed, 40.0, 3.0), tilt).contact(Contour.from_vertices(points), PHI)
     normal, travel = unit(PHI + tilt), unit(PHI)
     # the face's line through each corner meets the line of travel at
     reached = (points @ normal.T) / (travel * normal).sum(axis=1)
@@ -133,14 +135,14 @@ def test_tilted_face_contact_is_that_of_the_farthest_corner(tilt, seed):
 @pytest.mark.parametrize("offset", [10.0, -8.0])
 def test_swinging_face_contact_by_bisection(side, offset, seed):
     points = ragged(seed, rough=0.08)
-    face = SwingingFace(100.0, offset, law(seed, 0.5, 0.05).law, side)
+    face = followers.swinging_face(100.0, offset, law(seed, 0.5, 0.05).law, side)
     found = face.contact(Contour.from_vertices(points), PHI)
 
     pivot = 100.0 * unit(PHI)
 
     def free(psi):
         """Whether no corner lies beyond the face, `offset` nearer the shaft than its parallel through the pivot."""
-        along = -unit(PHI - side * psi)
+        along = -unit(PHI + side * psi)
         outward = np.stack([-along[:, 1], along[:, 0]], axis=-1)
         outward *= np.sign((outward * pivot).sum(axis=1))[:, None]
         return (outward * pivot).sum(axis=1) - offset >= (points @ outward.T).max(axis=0)
@@ -208,7 +210,7 @@ def test_dwells_are_told_and_how_flat_they_are(name):
 def test_a_shoe_as_flat_as_a_face_is_judged_like_one(radius):
     """A large shoe's contour is still told from the exact one, though its pitch curve is far away."""
     face = lift_from_fourier(radius + 40.0, {2: 1.5}, {3: 0.2})
-    shoe = Roller(Translating(), radius, face.law)
+    shoe = followers.roller(Line(), radius, face.law)
     tau = TURN / 2000 * np.arange(2000)
     made = Contour.from_bulges(*arcs_through(shoe.envelope.points(tau)))
     assert shoe.judge(made, PHI).motion.max < 1e-6
@@ -219,10 +221,10 @@ def test_a_shoe_as_flat_as_a_face_is_judged_like_one(radius):
 
 
 def test_a_face_whose_contact_reaches_the_pivot_is_told():
-    face = SwingingFace(100.0, 10.0, law(1, 0.5, 0.05).law)
+    face = followers.swinging_face(100.0, 10.0, law(1, 0.5, 0.05).law)
     with pytest.raises(ContactError, match="reaches the pivot"):
         face.contact(Contour.from_vertices(ragged(2, mean=95.0)), PHI)
-    steep = SwingingFace(40.0, 2.0, lift_from_fourier(1.4, {1: 0.2}, {}).law)
+    steep = followers.swinging_face(40.0, 2.0, lift_from_fourier(1.4, {1: 0.2}, {}).law)
     with pytest.raises(ContactError, match="intended contact reaches the pivot"):
         steep.motion_limit(1e-3)
 
@@ -279,7 +281,7 @@ def test_a_roller_a_hair_above_undercut(gap):
     hollow = displaced((20, 40, "cycloidal"), (10,), (-20, 40, "cycloidal"), (270,))
     shape = CentreShape(hollow, Stem.on(50.0))
     radius = least_hollow(Curve.whole(shape))[0] - gap
-    ring = on_stem(hollow, 50.0, 0.0, radius, internal=True)
+    ring = on_stem(hollow, 50.0, 0.0, radius, side=-1)
     proved(ring, fitted(Parallel(shape, -radius), 1e-5), 1e-5)
 
 

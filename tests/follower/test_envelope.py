@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from support import followers
 from support.camfiles import circle_points, pitch_polar, roller_points, support_points
 from support.cases import examples, few
 from support.heavy import shapely, spatial
+from support.programmes import Segment, law, programme
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.deviation import convex_deviation, deviation
 from kin.follower.envelope import FlatEnvelope, PairSupport, RollerEnvelope, TransmissionPitch
-from kin.follower.flat import FlatFace
 from kin.follower.projection import Inverse
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
 from kin.law.transmission import from_arc, from_delta, from_law
 
@@ -189,7 +189,7 @@ def test_deviation_of_convex_polygons_is_the_difference_of_support_functions(nam
     assert found.outside >= gap.max() - 1e-11
     assert -gap.min() == pytest.approx(found.worst[0], rel=1e-5)
     assert (found.rounds, found.backwards) == (1, 0.0)
-    reach = FlatFace(lift).judge(contour, DENSE[:10]).reach
+    reach = followers.flat_face(lift).judge(contour, DENSE[:10]).reach
     assert contour.is_convex
     assert convex_deviation(reach).worst[0] == pytest.approx(found.worst[0], rel=1e-5)
     assert reach.greatest == pytest.approx(found.outside, abs=1e-11)

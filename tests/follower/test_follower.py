@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support import followers
 from support.camfiles import arcs_through, circle_points, roller_points, support_points
 from support.cases import examples, few
+from support.programmes import Segment, law, programme
 
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
-from kin.follower.follower import ContactError, DoubleRoller, FlatFace, FlatPair, Roller, Yoke
+from kin.follower.follower import ContactError
 from kin.follower.guide import Arm
 from kin.law.piecewise import Piecewise
-from kin.law.programme import Segment, law, programme
 from kin.law.segment import Constant
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
 from kin.law.transmission import from_arc, from_delta, from_law
@@ -54,7 +55,7 @@ def reach(points, theta):
 def test_eccentric_circle_lifts_a_flat_face_by_a_cosine():
     """A circle of R = 20 about (5, 0), of two arcs: q = R + 5 cos theta exactly."""
     contour = Contour.from_bulges(np.array([[25.0, 0.0], [-15.0, 0.0]]), np.ones(2))
-    face = FlatFace(lift_from_fourier(20.0, {1: 5.0}, {}))
+    face = followers.flat_face(lift_from_fourier(20.0, {1: 5.0}, {}))
     assert face.contact(contour, PHI) == pytest.approx(20.0 + 5.0 * np.cos(PHI), abs=1e-13)
     motion = face.judge(contour, PHI).motion
     assert motion.max < 1e-13
@@ -64,7 +65,7 @@ def test_eccentric_circle_lifts_a_flat_face_by_a_cosine():
 def test_wrong_eccentricity_has_a_known_error():
     """Made with 5.1 where 5 is meant, and R too large by 0.02: error 0.02 + 0.1 cos theta."""
     contour = Contour.from_bulges(np.array([[25.12, 0.0], [-14.92, 0.0]]), np.ones(2))
-    motion = FlatFace(lift_from_fourier(20.0, {1: 5.0}, {})).judge(contour, PHI).motion
+    motion = followers.flat_face(lift_from_fourier(20.0, {1: 5.0}, {})).judge(contour, PHI).motion
     assert motion.max == pytest.approx(0.12, abs=1e-12)
     assert motion.at_deg == pytest.approx(0.0, abs=1e-4)
     assert motion.rms == pytest.approx(np.sqrt(0.02**2 + 0.1**2 / 2), abs=1e-12)
@@ -78,7 +79,7 @@ def test_wrong_eccentricity_has_a_known_error():
 def test_regular_polygon_where_the_given_angles_miss_the_worst(sides):
     """Inscribed in a circle: worst error R (1 - cos(pi/n)) at the edges' normals, which no given angle hits."""
     contour = polygon(30.0 * circle_points(sides, offset=0.123))
-    motion = FlatFace(lift_from_fourier(30.0, {}, {})).judge(contour, PHI[::60]).motion
+    motion = followers.flat_face(lift_from_fourier(30.0, {}, {})).judge(contour, PHI[::60]).motion
     assert motion.max == pytest.approx(30.0 * (1 - np.cos(np.pi / sides)), abs=1e-12)
     normals = (np.degrees((np.arange(sides) + 0.623) * 2 * np.pi / sides)) % 360
     assert np.abs(normals - motion.at_deg).min() < 1e-9
@@ -94,7 +95,7 @@ def test_points_on_straight_edges_change_nothing(count, turn, share):
     between = corners + share * (np.roll(corners, -1, axis=0) - corners)
     lift = lift_from_fourier(10.0, {}, {}, (0.0, 0.0))
     motion = [
-        FlatFace(lift).judge(polygon(points), PHI).motion.max
+        followers.flat_face(lift).judge(polygon(points), PHI).motion.max
         for points in (corners, np.stack([corners, between], axis=1).reshape(-1, 2))
     ]
     assert motion[1] == pytest.approx(motion[0], abs=1e-11)
@@ -103,10 +104,14 @@ def test_points_on_straight_edges_change_nothing(count, turn, share):
 def test_extremes_between_the_breaks_are_found():
     """Polygon with corners 0.01 mm outside a circle: the error is greatest at each corner's own direction."""
     contour = polygon(30.01 * circle_points(24, offset=0.37))
-    motion = FlatFace(lift_from_fourier(30.0, {}, {})).judge(contour, PHI[::90]).motion
+    motion = followers.flat_face(lift_from_fourier(30.0, {}, {})).judge(contour, PHI[::90]).motion
     inner = 30.0 - 30.01 * np.cos(np.pi / 24)
     assert motion.max == pytest.approx(max(0.01, inner), abs=1e-12)
-    finer = FlatFace(lift_from_fourier(30.0, {}, {})).judge(polygon(30.3 * circle_points(24, offset=0.37)), PHI).motion
+    finer = (
+        followers.flat_face(lift_from_fourier(30.0, {}, {}))
+        .judge(polygon(30.3 * circle_points(24, offset=0.37)), PHI)
+        .motion
+    )
     assert finer.max == pytest.approx(0.3, abs=1e-12)
     assert (finer.at_deg / 15.0) % 1.0 == pytest.approx(0.37, abs=1e-6)
 
@@ -117,7 +122,7 @@ def test_ragged_polygons_against_every_corner_at_every_angle(count, seed, roughn
     rng = np.random.default_rng(seed)
     points = support_points(count) * (1.0 + roughness * rng.uniform(-1, 1, (count, 1)))
     lift = lift_from_fourier(25.0, {3: 2.0}, {5: 0.3})
-    judged = Yoke(lift, 50.0).judge(polygon(points), PHI)
+    judged = followers.yoke(lift, 50.0).judge(polygon(points), PHI)
     theta = DENSE[::5]
     q = reach(points, theta)
     error = q - lift.derivatives(theta, 0)[0]
@@ -145,7 +150,7 @@ def rounded_reuleaux(breadth, rounding):
 
 def test_rounded_reuleaux_of_six_arcs_fills_its_yoke():
     contour = Contour.from_bulges(*rounded_reuleaux(50.0, 5.0))
-    yoke = Yoke(lift_reuleaux(3, 50.0, 5.0), 50.0)
+    yoke = followers.yoke(lift_reuleaux(3, 50.0, 5.0), 50.0)
     judged = yoke.judge(contour, PHI)
     assert judged.motion.max < 1e-13
     assert judged.play.least == pytest.approx(0.0, abs=1e-13)
@@ -157,7 +162,7 @@ def test_rounded_reuleaux_of_six_arcs_fills_its_yoke():
 
 def test_breadth_of_a_square_goes_from_side_to_diagonal():
     contour = polygon(np.array([[20.0, 20], [-20, 20], [-20, -20], [20, -20]]))
-    play = Yoke(lift_from_fourier(25.0, {}, {}), 50.0).judge(contour, PHI).play
+    play = followers.yoke(lift_from_fourier(25.0, {}, {}), 50.0).judge(contour, PHI).play
     assert play.least == pytest.approx(50.0 - 40.0 * np.sqrt(2), abs=1e-12)
     assert play.least_at_deg % 90 == pytest.approx(45.0, abs=1e-6)
     assert play.most == pytest.approx(10.0, abs=1e-12)
@@ -167,12 +172,12 @@ def test_breadth_of_a_square_goes_from_side_to_diagonal():
 def test_dwell_flatness_is_the_sagitta_of_the_edges():
     """Shu and Wu's cam as a polygon: in the dwell at 60 mm an edge of 1 degree sags by 60 (1 - cos 0.5 deg)."""
     lift = lift_constant_breadth(40.0, SHU_WU)
-    points = FlatFace(lift).envelope.points(np.radians(np.arange(360) + 0.2))
-    motion = FlatFace(lift).judge(polygon(points), PHI).motion
+    points = followers.flat_face(lift).envelope.points(np.radians(np.arange(360) + 0.2))
+    motion = followers.flat_face(lift).judge(polygon(points), PHI).motion
     assert motion.dwell_flatness == pytest.approx(60.0 * (1 - np.cos(np.radians(0.5))), rel=1e-9)
     exact = Contour.from_bulges(*rounded_reuleaux(50.0, 5.0))
-    assert FlatFace(lift_reuleaux(3, 50.0, 5.0)).judge(exact, PHI).motion.dwell_flatness is None
-    circle = FlatFace(lift_from_fourier(20.0, {}, {})).judge(polygon(20.0 * circle_points(8)), PHI).motion
+    assert followers.flat_face(lift_reuleaux(3, 50.0, 5.0)).judge(exact, PHI).motion.dwell_flatness is None
+    circle = followers.flat_face(lift_from_fourier(20.0, {}, {})).judge(polygon(20.0 * circle_points(8)), PHI).motion
     assert circle.dwell_flatness == pytest.approx(20.0 * (1 - np.cos(np.pi / 8)), abs=1e-12)
 
 
@@ -180,8 +185,8 @@ def test_dwell_flatness_is_the_sagitta_of_the_edges():
 def test_arcs_through_points_are_far_better_than_edges(count):
     points = support_points(count)
     lift = lift_from_fourier(25.0, {3: 2.0}, {5: 0.3})
-    edges = FlatFace(lift).judge(polygon(points), PHI).motion.max
-    arcs = FlatFace(lift).judge(Contour.from_bulges(*arcs_through(points)), PHI).motion.max
+    edges = followers.flat_face(lift).judge(polygon(points), PHI).motion.max
+    arcs = followers.flat_face(lift).judge(Contour.from_bulges(*arcs_through(points)), PHI).motion.max
     theta = DENSE
     fine = np.abs(reach(points, theta[::20]) - lift.derivatives(theta[::20], 0)[0]).max()
     assert edges >= fine - 1e-11
@@ -190,9 +195,9 @@ def test_arcs_through_points_are_far_better_than_edges(count):
 
 def test_limits_of_flat_faces_are_the_tolerance_and_twice_it():
     lift = lift_hypocycloid(3, 2.0, 50.0)
-    assert FlatFace(lift).motion_limit(0.003) == 0.003
-    assert Yoke(lift, 50.0).motion_limit(0.003) == 0.003
-    assert Yoke(lift, 50.0).play_limit(0.003) == 0.006
+    assert followers.flat_face(lift).motion_limit(0.003) == 0.003
+    assert followers.yoke(lift, 50.0).motion_limit(0.003) == 0.003
+    assert followers.yoke(lift, 50.0).play_limit(0.003) == 0.006
 
 
 # --- the flat pair ----------------------------------------------------------------------------------------------------
@@ -227,7 +232,7 @@ PAIRS = {
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize("count", [9, 100, 2000])
 def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
-    pair = FlatPair(PAIRS[name])
+    pair = followers.flat_pair(PAIRS[name])
     assert pair.envelope.regular
     points = pair.envelope.points(np.arange(count) * 2 * np.pi / count + 0.01)
     contour = polygon(points)
@@ -252,7 +257,7 @@ def test_swings_of_a_pair_on_a_polygon_by_hand(name, count):
 def test_errors_of_a_pair_are_settled_where_the_curvature_jumps(count, out):
     """The worst error, some 1e-6 rad, is at a break: the normal that is meant lies near, but on its other side."""
     transmission = from_arc(2, 1, 30.0, 47.0)
-    pair = FlatPair(transmission)
+    pair = followers.flat_pair(transmission)
     t = np.arange(count) * 2 * np.pi / count
     points = pair.envelope.points(t) + out * unit(t)
     judged = pair.judge(polygon(points), PHI)
@@ -269,22 +274,22 @@ def test_an_ellipse_works_a_right_angled_pair():
     assert np.hypot(a, b) == pytest.approx(120.0, abs=1e-12)
     t = np.arange(4000) * 2 * np.pi / 4000
     contour = Contour.from_bulges(*arcs_through(np.column_stack([a * np.cos(t), b * np.sin(t)])))
-    judged = FlatPair(transmission).judge(contour, PHI)
+    judged = followers.flat_pair(transmission).judge(contour, PHI)
     assert judged.motion.max < 5e-8
     assert max(-judged.play.least, judged.play.most) < 5e-8
 
 
 def test_a_contour_that_reaches_the_pivot_is_refused():
     with pytest.raises(ContactError, match="the contour reaches the pivot at"):
-        FlatPair(PAIRS["three"]).judge(polygon(130.0 * circle_points(12)), PHI)
+        followers.flat_pair(PAIRS["three"]).judge(polygon(130.0 * circle_points(12)), PHI)
 
 
 def test_dwell_of_a_pair():
-    pair = FlatPair(PAIRS["given law"])
+    pair = followers.flat_pair(PAIRS["given law"])
     contour = through(pair.envelope, 3000)
     flatness = pair.judge(contour, PHI).motion.dwell_flatness
     assert 0.0 < flatness < 2 * pair.judge(contour, PHI).motion.max
-    assert FlatPair(PAIRS["three"]).judge(contour, PHI).motion.dwell_flatness is None
+    assert followers.flat_pair(PAIRS["three"]).judge(contour, PHI).motion.dwell_flatness is None
 
 
 # --- rollers ----------------------------------------------------------------------------------------------------------
@@ -295,7 +300,7 @@ def test_roller_on_an_eccentric_circle(arm, pivot):
     """Circle of R = 30 about (4, 0); pivot, circle centre and roller centre make a triangle of known sides."""
     contour = Contour.from_bulges(np.array([[34.0, 0.0], [-26.0, 0.0]]), np.ones(2))
     flat = Piecewise(np.array([0.0, 2 * np.pi]), (Constant(1.0),), 2 * np.pi, smooth_seam=True)
-    roller = Roller(Arm(arm, pivot), 8.0, flat)
+    roller = followers.roller(Arm(arm, pivot), 8.0, flat)
     away = pivot - 4.0 * np.exp(-1j * PHI)  # from the circle's centre to the pivot, the pivot's direction made real
     expected = np.arccos((np.abs(away) ** 2 + arm**2 - 38.0**2) / (2 * np.abs(away) * arm)) + np.angle(away)
     assert roller.contact(contour, PHI) == pytest.approx(expected, abs=1e-12)
@@ -316,7 +321,7 @@ def test_roller_on_its_own_envelope():
     )
     motion = rise.motion
     functions = tuple(raised(f, np.radians(30)) for f in motion.functions)
-    roller = Roller(Arm(50.0, 75.0), 8.0, Piecewise(motion.knots, functions, 2 * np.pi))
+    roller = followers.roller(Arm(50.0, 75.0), 8.0, Piecewise(motion.knots, functions, 2 * np.pi))
     assert roller.envelope.regular
     contour = through(roller.envelope, 20_000)
     judged = roller.judge(contour, PHI)
@@ -342,7 +347,7 @@ DOUBLES = {
 @pytest.mark.parametrize("name", few(DOUBLES, 2))
 def test_double_roller_follows_ever_finer_polygons_ever_better(name):
     transmission, formula = DOUBLES[name]
-    follower = DoubleRoller(transmission, 8.0)
+    follower = followers.double_roller(transmission, 8.0)
     errors = []
     for count in (500, 1000, 2000):
         contour = polygon(roller_points(count, formula, 8.0)) if formula else through(follower.envelope, count)
@@ -357,7 +362,7 @@ def test_double_roller_follows_ever_finer_polygons_ever_better(name):
 def test_swing_and_both_contacts_on_a_circle():
     """Concentric circle: both arms lean alike, psi by A and by B are opposite; too large by d: known interference."""
     transmission = from_delta(3, 1, 60.0, {}, {})  # psi = 0: a pitch circle of 2 l cos(alpha/2) = 60 sqrt 3
-    follower = DoubleRoller(transmission, 8.0)
+    follower = followers.double_roller(transmission, 8.0)
     pitch = 60.0 * np.sqrt(3.0)
     exact = Contour.from_bulges((pitch - 8.0) * np.array([[1.0, 0], [-1, 0]]), np.ones(2))
     judged = follower.judge(exact, PHI)
@@ -376,13 +381,13 @@ def test_swing_and_both_contacts_on_a_circle():
 
 
 def test_dwell_of_a_double_roller():
-    follower = DoubleRoller(DOUBLES["given law"][0], 8.0)
+    follower = followers.double_roller(DOUBLES["given law"][0], 8.0)
     motion = follower.judge(through(follower.envelope, 3000), PHI).motion
     assert 0.0 < motion.dwell_flatness < 2 * motion.max
 
 
 def test_a_roller_that_meets_nothing():
-    follower = DoubleRoller(DOUBLES["Booth"][0], 8.0)
+    follower = followers.double_roller(DOUBLES["Booth"][0], 8.0)
     with pytest.raises(ContactError, match="the roller does not touch the contour at 0 degrees"):
         follower.judge(polygon(circle_points(8) + np.array([200.0, 0.0])), PHI)
 
@@ -393,11 +398,11 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
     """The exact contour moved outward and inward by e all round is the worst that e allows."""
     transmission, _ = DOUBLES[name]
     e = 0.05
-    follower = DoubleRoller(transmission, 8.0)
+    follower = followers.double_roller(transmission, 8.0)
     limit, play = follower.motion_limit(e), follower.play_limit(e)
     worst, gap = 0.0, 0.0
     for offset in (e, -e):
-        contour = through(DoubleRoller(transmission, 8.0 - offset).envelope, 6000)
+        contour = through(followers.double_roller(transmission, 8.0 - offset).envelope, 6000)
         judged = follower.judge(contour, PHI)
         worst = max(worst, judged.motion.max)
         gap = max(gap, -judged.play.least, judged.play.most)
@@ -408,7 +413,7 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
 @pytest.mark.parametrize("name", PAIRS)
 def test_limits_of_a_pair_hold_and_are_reached(name):
     e = 0.05
-    pair = FlatPair(PAIRS[name])
+    pair = followers.flat_pair(PAIRS[name])
     t = np.arange(6000) * 2 * np.pi / 6000
     exact = pair.envelope.points(t)
     worst, gap = 0.0, 0.0
@@ -422,7 +427,7 @@ def test_limits_of_a_pair_hold_and_are_reached(name):
 
 def test_the_start_vertex_and_the_sense_of_writing_do_not_matter():
     points = roller_points(300, HOLLOW, 8.0)
-    follower = DoubleRoller(DOUBLES["hollow"][0], 8.0)
+    follower = followers.double_roller(DOUBLES["hollow"][0], 8.0)
     first = follower.judge(polygon(points), PHI)
     for start in (1, 150, 299):
         again = follower.judge(polygon(np.roll(points, start, axis=0)), PHI)
@@ -438,7 +443,7 @@ def test_arcs_of_either_sense_under_a_flat_face_against_dense_points(count, seed
     points = 25.0 * circle_points(count) * (1.0 + 0.1 * rng.uniform(-1, 1, (count, 1)))
     contour = Contour.from_bulges(points, rng.uniform(-0.1, 0.3, count))
     lift = lift_from_fourier(25.0, {3: 2.0}, {5: 0.3})
-    motion = FlatFace(lift).judge(contour, PHI).motion
+    motion = followers.flat_face(lift).judge(contour, PHI).motion
     theta = DENSE[::50]
     error = reach(contour.sample(400), theta) - lift.derivatives(theta, 0)[0]
     sag = (25.0 * 0.3 * 4 * np.pi / count / 400) ** 2

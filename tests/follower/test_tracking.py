@@ -4,20 +4,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support import followers
 from support.brute_disc import peak
 from support.camfiles import arcs_through, write_dxf
 from support.cases import few
+from support.programmes import Segment, law, programme
 
 import kin.follower.roller
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
-from kin.follower.follower import DoubleRoller, Roller, RollerYoke
-from kin.follower.guide import LEADING, TRAILING, Arm, Translating
+from kin.follower.guide import Arm, Line
 from kin.follower.laws import ByLaw, BySwing
 from kin.judge.contour_checks import Intent, Limits
 from kin.judge.verify import verify
+from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
-from kin.law.programme import Segment, law, programme
 from kin.law.segment import Affine, Constant
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta, from_law
@@ -44,7 +45,7 @@ def distance(points, contour):
 
 def positions(contour, roller, phi, about, reach):
     """Positions of a roller on a polygon, by bisection of its distance between `about` -+ `reach` (n,)."""
-    guide, radius = roller.guide, roller.radius
+    guide, radius = roller.guides[0], roller.radius
     low, high = about - reach, about + reach
     assert (distance(guide.centre(phi, high), contour) > radius).all()
     for _ in range(40):
@@ -79,9 +80,9 @@ def proved(motion, reached, scale):
 GUIDES: dict[str, tuple[Any, float, float]] = {
     "trailing arm": (Arm(50.0, 75.0, TRAILING), 0.5, np.radians(15.0)),
     "leading arm": (Arm(60.0, 60.0, LEADING), 0.8, np.radians(12.0)),
-    "line of travel": (Translating(0.0), 35.0, 8.0),
-    "line of travel, offset": (Translating(7.0), 35.0, 8.0),
-    "line of travel, offset to the other side": (Translating(-7.0), 35.0, 8.0),
+    "line of travel": (Line(0.0), 35.0, 8.0),
+    "line of travel, offset": (Line(7.0), 35.0, 8.0),
+    "line of travel, offset to the other side": (Line(-7.0), 35.0, 8.0),
 }
 
 
@@ -90,7 +91,7 @@ GUIDES: dict[str, tuple[Any, float, float]] = {
 @pytest.mark.parametrize("name", GUIDES)
 def test_single_rollers_on_polygons_against_bisected_distances(name, count):
     guide, base, stroke = GUIDES[name]
-    roller = Roller(guide, 8.0, rising(stroke, base))
+    roller = followers.roller(guide, 8.0, rising(stroke, base))
     assert roller.envelope.regular
     contour = through(roller.envelope, count)
     motion = roller.judge(contour, PHI).motion
@@ -102,7 +103,7 @@ def test_single_rollers_on_polygons_against_bisected_distances(name, count):
 
     some = PHI[::7] + 0.003
     assert roller.contact(contour, some) - roller.intended(some) == pytest.approx(error(some), abs=1e-9)
-    assert motion.unit == ("mm" if isinstance(guide, Translating) else "deg")
+    assert motion.unit == ("mm" if isinstance(guide, Line) else "deg")
     proved(motion, peak(error, 3000), 1.0 if motion.unit == "mm" else 180 / np.pi)
 
 
@@ -145,7 +146,7 @@ def test_random_double_rollers_against_dense_contacts(seed):
         Segment("return", delta * (1.0 - rise - dwell), stroke, law(rng.choice(NAMES))),
     ]
     transmission, radius = from_law(lam, mu, 60.0, programme(segments, delta)), rng.uniform(2.0, 9.0)
-    while not (follower := DoubleRoller(transmission, radius)).envelope.regular:
+    while not (follower := followers.double_roller(transmission, radius)).envelope.regular:
         radius *= 0.7
     contour = through(follower.envelope, 2 * rng.integers(20, 200), arcs=bool(seed % 2))
     motion = follower.judge(contour, PHI).motion
@@ -160,7 +161,7 @@ def inch():
         Segment("dwell", np.radians(5.0)),
         Segment("return", np.radians(20.0), np.radians(4.0), law("polynomial-4567")),
     ]
-    return DoubleRoller(from_law(4, 3, 25.4 * 2.5, programme(segments, delta)), 25.4 * 0.3)
+    return followers.double_roller(from_law(4, 3, 25.4 * 2.5, programme(segments, delta)), 25.4 * 0.3)
 
 
 def test_a_limit_below_the_true_error_and_above_the_samples_is_broken(tmp_path, monkeypatch):
@@ -242,14 +243,14 @@ def test_a_contour_that_follows_the_law_exactly_has_no_error():
     """A circle about the shaft and a law that stands still: the remainder is rounding."""
     circle = Contour.from_bulges(np.array([[30.0, 0.0], [-30.0, 0.0]]), np.ones(2))
     still = Piecewise(np.array([0.0, 2 * np.pi]), (Constant(38.0),), 2 * np.pi, smooth_seam=True)
-    motion = Roller(Translating(0.0), 8.0, still).judge(circle, PHI).motion
+    motion = followers.roller(Line(0.0), 8.0, still).judge(circle, PHI).motion
     assert motion.extremes == "true"
     assert motion.bound < 1e-10
 
 
 def frame(radius=8.0):
     """Two opposite rollers on a pitch curve of constant diameters, r = 40 + 3 cos 3 theta + 0.4 sin 5 theta."""
-    return RollerYoke(radius, lift_from_fourier(40.0, {3: 3.0}, {5: 0.4}).law, 80.0)
+    return followers.roller_yoke(radius, lift_from_fourier(40.0, {3: 3.0}, {5: 0.4}).law, 80.0)
 
 
 @pytest.mark.slow
@@ -257,7 +258,7 @@ def frame(radius=8.0):
 def test_opposite_rollers_on_polygons_against_bisected_distances(count):
     yoke = frame()
     contour = through(yoke.envelope, count)
-    one = Roller(Translating(0.0), 8.0, yoke.law)
+    one = followers.roller(Line(0.0), 8.0, yoke.law)
 
     def each(phi):
         """Distance of either centre from the shaft, (2, n)."""
@@ -299,12 +300,14 @@ def test_a_frame_of_rollers_tells_its_dwells_and_how_flat_they_are():
     half = [Segment("rise", np.radians(110), 8.0, law("cycloidal")), Segment("dwell", np.radians(70))]
     back = [Segment("return", np.radians(110), 8.0, law("cycloidal")), Segment("dwell", np.radians(70))]
     found = programme(half + back, 2 * np.pi).motion
-    yoke = RollerYoke(8.0, Piecewise(found.knots, tuple(Affine(f, 36.0) for f in found.functions), 2 * np.pi), 80.0)
+    yoke = followers.roller_yoke(
+        8.0, Piecewise(found.knots, tuple(Affine(f, 36.0) for f in found.functions), 2 * np.pi), 80.0
+    )
     assert yoke.motion.derivatives(PHI, 0)[0] + yoke.motion.derivatives(PHI + np.pi, 0)[0] == pytest.approx(80.0)
     assert np.degrees(yoke.rests) == pytest.approx(np.array([[110.0, 180.0], [290.0, 360.0]]))
     contour = through(yoke.envelope, 240)
     phi = np.radians(np.linspace(110.0, 180.0, 4001))
-    range_ = np.ptp(positions(contour, Roller(Translating(0.0), 8.0, yoke.law), phi, yoke.intended(phi), 0.5))
+    range_ = np.ptp(positions(contour, followers.roller(Line(0.0), 8.0, yoke.law), phi, yoke.intended(phi), 0.5))
     flat = yoke.judge(contour, np.arange(3600) * 2 * np.pi / 3600).motion.dwell_flatness
     assert flat == pytest.approx(range_, rel=0.02)
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support import followers
 from support.heavy import ezdxf
 from support.parts import failures, files_of, recipe_of
 
 from camgeo.synthesis.design import intended
 from kin.contour.contour import Contour
 from kin.follower.envelope import FlatEnvelope
-from kin.follower.follower import FlatFace
 from kin.judge.holes import Hole, Tally, apart, round_hole, tally
 from kin.judge.layers import CrossHole, Layer, faces, heights, slotted, volume
 from kin.law.support_function import lift_from_fourier
@@ -346,7 +346,7 @@ def test_faces_and_heights_of_layers():
 
 
 def test_parallel_of_a_flat_envelope():
-    envelope = FlatFace(lift_from_fourier(25.0, {3: 2.0}, {}, (3.0, 2.0))).envelope
+    envelope = followers.flat_face(lift_from_fourier(25.0, {3: 2.0}, {}, (3.0, 2.0))).envelope
     assert isinstance(envelope, FlatEnvelope)
     inner = envelope.inset(1.5)
     (area, length), (inside, shorter) = envelope.area_and_perimeter(), inner.area_and_perimeter()

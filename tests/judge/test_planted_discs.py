@@ -5,6 +5,7 @@ The sound files are fits of curves that know nothing of the judge. A ring is dra
 
 import numpy as np
 import pytest
+from support import followers
 from support.camfiles import arcs_through, solid_triangles, write_dxf, write_stl
 from support.disc_followers import (
     CURVES,
@@ -24,7 +25,7 @@ from camgeo.curve.moving_frame import Oscillating
 from camgeo.files.dxf import write_dxf as drawn_spline
 from camgeo.fit.spline import fit_spline
 from kin.follower.follower import Roller
-from kin.follower.guide import Translating
+from kin.follower.guide import Line
 from kin.judge.holes import round_hole
 from kin.judge.verify import Intent, Limits, verify
 from kin.law.piecewise import Piecewise
@@ -36,12 +37,12 @@ DENSE = TURN / 4000 * np.arange(4000)
 
 
 def intent(follower, **other):
-    ring = isinstance(follower, Roller) and follower.internal
+    ring = isinstance(follower, Roller) and follower.side < 0
     return Intent(follower, outer=OUTER if ring else None, **other)
 
 
 def drawn(path, points, bulges, follower):
-    ring = isinstance(follower, Roller) and follower.internal
+    ring = isinstance(follower, Roller) and follower.side < 0
     return write_dxf(path, points, bulges, bores=[(0.0, 0.0, 0.5 * OUTER)] if ring else ())
 
 
@@ -111,7 +112,7 @@ M08_TWICE = displaced(*(2 * [(10, 60, "cycloidal"), (20,), (-10, 60, "polynomial
 
 MISTAKEN = {
     "cam for crank degrees, roller": ("roller", on_stem(M01_TWICE, 50.0, 0.0, 10.0)),
-    "cam for crank degrees, ring": ("ring", on_stem(M01_TWICE, 50.0, 0.0, 10.0, internal=True)),
+    "cam for crank degrees, ring": ("ring", on_stem(M01_TWICE, 50.0, 0.0, 10.0, side=-1)),
     "cam for crank degrees, tilted": ("flat, tilted", on_face(M03_TWICE, 32.0, 8 * DEGREE)),
     "cam for crank degrees, arm": ("trailing arm", on_arm(M07_TWICE, Oscillating.on(42.0, 80.0, 65.0, 1), 8.0)),
     "cam for crank degrees, face": ("trailing face", on_swinging_face(M08_TWICE, 36.0, 90.0, 10.0, 1)),
@@ -125,7 +126,7 @@ MISTAKEN = {
     "leading face for trailing": ("leading face", on_swinging_face(M08, 36.0, 90.0, 10.0, 1)),
     "trailing face for leading": ("trailing face", on_swinging_face(M08, 36.0, 90.0, 10.0, -1)),
     "face beyond its pivot": ("trailing face", on_swinging_face(M08, 36.0, 90.0, -10.0, 1)),
-    "external for a ring": ("roller", on_stem(M01, 50.0, 0.0, 10.0, internal=True)),
+    "external for a ring": ("roller", on_stem(M01, 50.0, 0.0, 10.0, side=-1)),
     "a ring for external": ("ring", on_stem(M01, 50.0, 0.0, 10.0)),
     "knife edge for a shoe": ("shoe", on_stem(M01, 25.0, 0.0, 0.0)),
 }
@@ -189,7 +190,7 @@ def test_a_ring_as_a_solid_of_faces(tmp_path):
     path = tmp_path / "ring.step"
     path.write_text(washer(20.0, 6.0, 8.0))
     still = Piecewise(np.array([0.0, TURN]), (Constant(4.0),), TURN, smooth_seam=True)
-    follower = Roller(Translating(), 2.0, still, internal=True)
+    follower = followers.roller(Line(), 2.0, still, side=-1)
     for outer, failed in ((40.0, set()), (40.002, {"outer", "volume"})):
         verdict = verify(path, Intent(follower, outer=outer, thickness=8.0), 30, LIMITS)
         assert {check.name for check in verdict.checks if not check.ok} == failed
@@ -197,8 +198,8 @@ def test_a_ring_as_a_solid_of_faces(tmp_path):
 
 def test_the_side_of_an_arm_is_not_lost_in_the_ring(tmp_path):
     """A trailing arm in a ring, and its own opening of arcs through points of the exact contour."""
-    trailing, leading = (on_arm(M07, Oscillating.on(42.0, 80.0, 65.0, side), 8.0, internal=True) for side in (1, -1))
-    assert trailing.guide.side == TRAILING
+    trailing, leading = (on_arm(M07, Oscillating.on(42.0, 80.0, 65.0, side), 8.0, side=-1) for side in (1, -1))
+    assert trailing.contacts[0].guide.side == TRAILING
     points, bulges = arcs_through(trailing.envelope.points(DENSE))
     path = drawn(tmp_path / "ring.dxf", points, bulges, trailing)
     assert failures(path, intent(trailing)) == set()

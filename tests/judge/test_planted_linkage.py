@@ -8,10 +8,10 @@ import dataclasses
 
 import numpy as np
 import pytest
+from support import followers
 from support.camfiles import arcs_through, circle_points, solid_triangles, support_points, write_dxf, write_stl
 from support.cases import few
 
-from kin.follower.follower import Yoke
 from kin.judge.verify import DwellAsked, Intent, Limits, verify
 from kin.law.support_function import lift_from_fourier
 from kin.linkage.dyad import RRR
@@ -25,7 +25,7 @@ LIMITS = Limits(E)
 # AS Figure 9: cam 2a about (18, 8.5)
 HARMONICS = ((1, -18.0, 13 / 30 - 8.5), (3, 0.0, 1.0), (5, 0.0, 13 / 30))
 LIFT = lift_from_fourier(25.0, {1: -18.0}, {1: 13 / 30 - 8.5, 3: 1.0, 5: 13 / 30})
-YOKE = Yoke(LIFT, 50.0)
+YOKE = followers.yoke(LIFT, 50.0)
 FOUR_BAR = Mechanism(FourBar(80.0, 70.0, 105.0), LIFT, 50.0)
 DWELL = DwellAsked(np.radians(0.1), np.radians(37.0))  # 37.05 degrees of the shaft are intended
 INTENT = Intent(YOKE, bore=10.0, thickness=8.0, mechanism=FOUR_BAR, dwell=DWELL)

@@ -12,13 +12,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support import followers
 from support.camfiles import arcs_through, write_dxf
 from support.square_frame import RESTS, Bars, Bench
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed, intended
-from kin.follower.follower import Yoke
 from kin.judge.verify import Intent, Limits, verify
 from kin.law.frame_swing import frame_swing
 from kin.law.support_function import lift_constant_breadth
@@ -71,7 +71,7 @@ def false_lift(intent, law):
     lift = lift_constant_breadth(80.0, law.half_turn, "swing")
     breadth = float(lift.derivatives(np.array([0.0, math.pi]), 0)[0].sum())
     mechanism = Mechanism(intent.mechanism.linkage, lift, breadth)
-    return dataclasses.replace(intent, follower=Yoke(lift, breadth=breadth), mechanism=mechanism), lift
+    return dataclasses.replace(intent, follower=followers.yoke(lift, breadth=breadth), mechanism=mechanism), lift
 
 
 def test_a_sound_file_passes(tmp_path, intent):

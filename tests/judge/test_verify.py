@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import followers
 from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_dxf, write_stl
 from support.heavy import ezdxf, interpolate, shapely
 
@@ -9,7 +10,6 @@ from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.deviation import deviation
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
-from kin.follower.follower import DoubleRoller, FlatFace, FlatPair, Roller, Yoke
 from kin.follower.guide import Arm
 from kin.judge.check import Check, about, at_most, failed
 from kin.judge.contour_checks import judge_contour, volume_check
@@ -21,7 +21,7 @@ from kin.law.transmission import from_delta
 
 PHI = np.arange(360) * 2 * np.pi / 360
 HOLLOW = (4, 3, 60.0, {1: 625.0})
-ROLLERS = DoubleRoller(from_delta(*HOLLOW, {}), 8.0)
+ROLLERS = followers.double_roller(from_delta(*HOLLOW, {}), 8.0)
 
 
 def named(verdict):
@@ -61,7 +61,7 @@ def supported(t, mean=25.0, amplitude=2.0):
 def test_a_cubic_spline_in_a_yoke(tmp_path, count, expected):
     """Error measured by the verdict against the spline evaluated by scipy at 100 000 places."""
     path = spline_file(tmp_path / "cam.dxf", supported, count)
-    yoke = Yoke(lift_hypocycloid(3, 2.0, 50.0), 50.0)
+    yoke = followers.yoke(lift_hypocycloid(3, 2.0, 50.0), 50.0)
     verdict = verify(path, Intent(yoke, bore=10.0), 360, Limits(expected))
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
     assert verdict.pieces == count
@@ -93,7 +93,7 @@ def test_a_spoilt_control_point_of_a_spline(tmp_path):
     points[100] = (points[100][0] + 0.02, *points[100][1:])
     spline.control_points = points
     document.saveas(path)
-    verdict = verify(path, Intent(Yoke(lift_hypocycloid(3, 2.0, 50.0), 50.0), bore=10.0), 360, Limits(1e-3))
+    verdict = verify(path, Intent(followers.yoke(lift_hypocycloid(3, 2.0, 50.0), 50.0), bore=10.0), 360, Limits(1e-3))
     assert not named(verdict)["contour"].ok
 
 
@@ -104,7 +104,7 @@ def test_an_ellipse_entity_works_a_right_angled_pair_exactly(tmp_path):
     document.header["$INSUNITS"] = 4
     document.modelspace().add_ellipse((0, 0), (a, 0), b / a, dxfattribs={"layer": "CUT"})
     document.saveas(tmp_path / "ellipse.dxf")
-    pair = FlatPair(from_delta(2, 1, 60.0, {1: 900.0}, {}))
+    pair = followers.flat_pair(from_delta(2, 1, 60.0, {1: 900.0}, {}))
     verdict = verify(tmp_path / "ellipse.dxf", Intent(pair), 360, Limits(1e-8))
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
     assert set(named(verdict)) == {"units", "closed", "contour", "motion", "form-closure"}
@@ -119,7 +119,7 @@ def test_a_circle_entity_under_one_roller(tmp_path):
     document.saveas(tmp_path / "circle.dxf")
     lean = np.arccos((75.0**2 + 50.0**2 - 38.0**2) / (2 * 75.0 * 50.0))
     still = Piecewise(np.array([0.0, 2 * np.pi]), (Constant(lean),), 2 * np.pi, smooth_seam=True)
-    verdict = verify(tmp_path / "circle.dxf", Intent(Roller(Arm(50.0, 75.0), 8.0, still)), 90, Limits(1e-9))
+    verdict = verify(tmp_path / "circle.dxf", Intent(followers.roller(Arm(50.0, 75.0), 8.0, still)), 90, Limits(1e-9))
     assert verdict.ok
     assert verdict.play is None
     assert set(named(verdict)) == {"units", "closed", "contour", "motion"}
@@ -134,7 +134,7 @@ def test_a_contour_that_uses_the_whole_tolerance_just_holds(tmp_path, e):
     """A polygon with its corners outside a circle by exactly e, its edges inside by less."""
     radius, count = 30.0, 8 * int(np.ceil(np.pi * np.sqrt(30.0 / e) / 8))
     path = write_dxf(tmp_path / "cam.dxf", (radius + e) * circle_points(count), bores=())
-    yoke = Yoke(lift_from_fourier(radius, {}, {}), 2 * radius)
+    yoke = followers.yoke(lift_from_fourier(radius, {}, {}), 2 * radius)
     assert verify(path, Intent(yoke), 36, Limits(e)).ok
     less = named(verify(path, Intent(yoke), 36, Limits(e * (1 - 1e-4))))
     assert {name for name, check in less.items() if not check.ok} == {
@@ -160,7 +160,7 @@ def test_default_limits_are_told(tmp_path):
 def test_the_worst_place_is_told_as_a_shaft_angle(tmp_path):
     """A bump at polar angle 70 degrees of a circle under double rollers: contact there at phi = t + acos(r/2l)."""
     transmission = from_delta(3, 1, 60.0, {}, {})
-    rollers = DoubleRoller(transmission, 8.0)
+    rollers = followers.double_roller(transmission, 8.0)
     pitch = 60.0 * np.sqrt(3.0)
     vertices = (pitch - 8.0) * circle_points(3600)
     vertices[700] *= 1.001
@@ -168,7 +168,7 @@ def test_the_worst_place_is_told_as_a_shaft_angle(tmp_path):
     checks = named(verify(path, Intent(rollers, bore=10.0), 360, Limits(1e-3)))
     assert not checks["contour"].ok
     assert checks["contour"].at_deg == pytest.approx(70.0 + 30.0, abs=1e-6)
-    faces = Yoke(lift_from_fourier(pitch - 8.0, {}, {}), 2 * pitch - 16.0)
+    faces = followers.yoke(lift_from_fourier(pitch - 8.0, {}, {}), 2 * pitch - 16.0)
     checks = named(verify(path, Intent(faces, bore=10.0), 360, Limits(1e-3)))
     assert checks["contour"].at_deg == pytest.approx(70.0, abs=1e-6)
 
@@ -195,7 +195,7 @@ def test_a_trimmed_undercut_of_a_yoke(tmp_path):
     lift = lift_hypocycloid(3, 4.0, 50.0)
     points = halfplanes(lift, 6000)
     path = write_dxf(tmp_path / "cam.dxf", points)
-    yoke = Yoke(lift, 50.0)
+    yoke = followers.yoke(lift, 50.0)
     verdict = verify(path, Intent(yoke, bore=10.0, trimmed=True), 3600, Limits(1e-3))
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
     assert set(named(verdict)) == {"units", "closed", "contour", "bore"}
@@ -216,7 +216,7 @@ def test_a_fault_on_a_trimmed_contour(tmp_path, fault):
     points = halfplanes(lift, 6000)
     points[1234] += fault * points[1234] / np.hypot(*points[1234])
     path = write_dxf(tmp_path / "cam.dxf", points)
-    checks = named(verify(path, Intent(Yoke(lift, 50.0), bore=10.0, trimmed=True), 90, Limits(1e-3)))
+    checks = named(verify(path, Intent(followers.yoke(lift, 50.0), bore=10.0, trimmed=True), 90, Limits(1e-3)))
     assert not checks["contour"].ok
 
 
@@ -236,7 +236,7 @@ def test_a_corner_cut_off_a_sharp_reuleaux():
     vertices = np.concatenate([pieces[0], *pieces[1:]])
     vertices = vertices[np.argsort(np.mod(np.arctan2(vertices[:, 1], vertices[:, 0]), 2 * np.pi))]
     contour = Contour.from_vertices(vertices)
-    face = FlatFace(lift_reuleaux(3, breadth, 0.0))
+    face = followers.flat_face(lift_reuleaux(3, breadth, 0.0))
     found = deviation(contour.as_arcs()[0], face.envelope)
     assert found.outside < e
     assert found.inside < e
@@ -250,7 +250,7 @@ def test_a_corner_cut_off_a_sharp_reuleaux():
 def test_a_trimmed_undercut_of_rollers(tmp_path):
     """A roller of 30 mm in hollows that are tighter: the contour is the pitch curve shrunk by shapely."""
     transmission = from_delta(*HOLLOW, {})
-    rollers = DoubleRoller(transmission, 30.0)
+    rollers = followers.double_roller(transmission, 30.0)
     assert not RollerEnvelope(TransmissionPitch(transmission), 30.0).regular
     r, t = transmission.pitch(np.arange(40_000) * 2 * np.pi / 40_000, 0)
     shrunk = shapely.Polygon(r[0][:, None] * unit(t[0])).buffer(-30.0, quad_segs=4000)
@@ -289,7 +289,7 @@ def test_no_contact_is_a_motion_that_fails(tmp_path):
 
 def test_volume_from_the_intent_in_closed_form(tmp_path):
     """Rabinowitz's curve p = 9 + cos 3t: area 77 pi (Rabinowitz 1997); a plate of 4 mm with a bore of 4 mm."""
-    yoke = Yoke(lift_from_fourier(9.0, {3: 1.0}, {}), 18.0)
+    yoke = followers.yoke(lift_from_fourier(9.0, {3: 1.0}, {}), 18.0)
     points = support_points(20_000, mean=9.0, harmonics=((3, 1.0, 0.0),))
     contour = Contour.from_vertices(points)
     expected = (77 * np.pi - 4 * np.pi) * 4.0
@@ -309,7 +309,7 @@ def test_volume_from_the_intent_in_closed_form(tmp_path):
 def test_a_solid_that_is_too_small_by_a_unit_is_told_as_that(tmp_path, unit, mm):
     points = support_points(200, mean=9.0, harmonics=((3, 0.5, 0.0),))
     path = write_stl(tmp_path / "cam.stl", solid_triangles(points, 2.0 * circle_points(200), 0.0, 4.0) / mm)
-    yoke = Yoke(lift_from_fourier(9.0, {3: 0.5}, {}), 18.0)
+    yoke = followers.yoke(lift_from_fourier(9.0, {3: 0.5}, {}), 18.0)
     checks = named(verify(path, Intent(yoke, bore=4.0, thickness=4.0), 90, Limits(1e-3)))
     assert not checks["thickness"].ok
     assert checks["thickness"].detail.endswith(f"as if drawn in {unit} and stated as mm")

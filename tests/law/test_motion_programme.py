@@ -8,9 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 
-from kin.law import programme as today
 from kin.law.formula.formula import Formula
-from kin.law.programme import IntentError, Segment
+from kin.law.programme import IntentError, polynomial_law
 from kin.law.sources.laws import NAMES, named, scca, split
 from kin.law.sources.motion import Motion
 from kin.law.sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State, programme
@@ -39,24 +38,6 @@ def closed(*segments):
     return programme([*segments, Dwell(TURN - math.fsum(s.over for s in segments))], TURN)
 
 
-def test_rises_returns_and_dwells_are_todays_bit_by_bit():
-    ours = programme(
-        [rise(100, 20.0), dwell(60), rise(120, -20.0, "modified-trapezoid"), dwell(20), dwell(60)], TURN
-    ).motion
-    theirs = today.programme(
-        [
-            Segment("rise", rad(100), 20.0, today.law("modified-sine")),
-            Segment("dwell", rad(60)),
-            Segment("return", rad(120), 20.0, today.law("modified-trapezoid")),
-            Segment("dwell", rad(20)),
-            Segment("dwell", rad(60)),
-        ],
-        TURN,
-    ).motion
-    assert ours.functions == theirs.functions
-    assert (ours.knots == theirs.knots).all()
-
-
 def test_absolute_strokes_land_on_their_level():
     motion = programme([to(90, 12.0), to(60, 3.5, "cycloidal"), dwell(60), to(60, -2.0), to(90, 0.0)], TURN)
     at = np.radians([90, 150, 180, 270, 360])
@@ -68,13 +49,23 @@ def test_absolute_strokes_land_on_their_level():
     ]
 
 
-def test_a_return_runs_an_asymmetric_law_backwards():
-    motion = closed(rise(120, 8.0, "double-harmonic"), rise(120, -8.0, "double-harmonic"))
+@pytest.mark.parametrize("law", [named("double-harmonic"), polynomial_law([0, 0, 0, 4, -3])], ids=lambda law: law.name)
+def test_a_return_runs_an_asymmetric_law_backwards(law):
+    motion = closed(Move(rad(120), law, by=8.0), Move(rad(120), law, by=-8.0))
     u = np.linspace(0.01, 0.99, 41)
+    assert np.abs(law.derivatives(u, 0)[0] + law.derivatives(1.0 - u, 0)[0] - 1.0).max() > 0.1
     up, down = motion.derivatives(u * rad(120), 0)[0], motion.derivatives(rad(120) * (2 - u), 0)[0]
     assert up == pytest.approx(down, abs=1e-14)
     # S'' is the same on both sides of the turn: only rest-to-motion jerks are left
     assert all(jump[0] >= 3 for joint in motion.joints for jump in joint.jumps)
+
+
+def test_a_split_polynomial_accelerates_over_its_share_of_a_return_too():
+    """A symmetric one alone can be split: of a return the share is that of the segment, from its start."""
+    law = split(polynomial_law([0, 0, 3, -2]), 0.2)
+    motion = closed(Move(rad(120), law, by=8.0), Move(rad(120), law, by=-8.0))
+    bend = motion.derivatives(rad(120) * (1.0 + np.array([0.1, 0.19, 0.21, 0.9])), 2)[2]
+    assert np.sign(bend).tolist() == [-1.0, -1.0, 1.0, 1.0]
 
 
 @settings(max_examples=examples(30), deadline=None)
@@ -178,16 +169,6 @@ def test_a_segment_by_formula_is_the_law_it_writes():
         closed(Given(rad(120), Formula("sqrt(u)", ("u",))))
 
 
-def test_repeated_motions_fill_the_turn():
-    part = programme([rise(50, 3.0), dwell(10), to(50, 0.0), dwell(10)], rad(120))
-    motion = part.repeated(3)
-    assert motion.total == pytest.approx(TURN, rel=1e-15)
-    theta = np.linspace(0.01, 2, 40)
-    for turn in range(3):
-        assert motion.derivatives(theta + turn * rad(120), 2) == pytest.approx(part.derivatives(theta, 2), abs=1e-12)
-    assert len(motion.rests) == 6
-
-
 def test_dwells_at_both_ends_are_one():
     motion = programme([dwell(30), rise(90, 4.0), to(120, 0.0), dwell(120)], TURN)
     assert [(math.degrees(r.begin), math.degrees(r.end)) for r in motion.rests] == [pytest.approx((240, 390))]
@@ -255,5 +236,4 @@ def test_a_motion_keeps_its_kind():
     motion = closed(rise(90, 3.0), to(90, 0.0))
     assert isinstance(motion.raised(2.0), Motion)
     assert motion.raised(2.0).rests[0].level == 2.0
-    assert motion.repeated(1) is motion
     assert motion.from_lowest() is motion

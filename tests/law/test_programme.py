@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.programmes import Segment, law, programme
 
-from kin.law.programme import LAWS, IntentError, Segment, law, polynomial_law, programme
+from kin.law.programme import LAWS, IntentError, polynomial_law
 
 # Rothbart, Cam Design Handbook (2004), chapters 2, 3: peak velocity, acceleration, jerk for unit stroke and interval.
 PUBLISHED = {
@@ -206,15 +207,6 @@ def test_the_end_tolerance_of_a_polynomial_law_is_1e_12():
         polynomial_law([0, 1 + 1.1e-12])
 
 
-def test_an_unknown_law_lists_the_names():
-    with pytest.raises(IntentError) as caught:
-        law("modifed-sine")
-    assert caught.value.message == (
-        "no law is called 'modifed-sine'; did you mean modified-sine? (laws: parabolic, harmonic, cycloidal, "
-        "modified-trapezoid, modified-sine, modified-constant-velocity, polynomial-345, polynomial-4567)"
-    )
-
-
 def degrees(value):
     return math.radians(value)
 
@@ -246,37 +238,6 @@ def test_neighbouring_dwells_are_one_stretch():
     )
     assert made.motion.knots.tolist() == [0, 0.75, 1.75, 2.0, 3.0]
     assert made.at_end(0)[0] == 0
-
-
-@pytest.mark.parametrize(
-    ("segments", "field", "message"),
-    [
-        (
-            [Segment("rise", degrees(120), 20.0, LAWS["cycloidal"]), Segment("dwell", degrees(50))],
-            "motion",
-            "the segments cover 170 degrees, 180 are wanted",
-        ),
-        ([], "motion", "a motion needs at least one segment"),
-        ([Segment("dwell", 0.0)], "motion[0]", "the angle of a dwell must be above 0, not 0"),
-        (
-            [Segment("dwell", 1.0), Segment("rise", 1.0, -2.0, LAWS["cycloidal"])],
-            "motion[1]",
-            "the stroke of a rise must be above 0, not -2 (a negative one is a return)",
-        ),
-        (
-            [Segment("return", 1.0, 0.0, LAWS["cycloidal"])],
-            "motion[0]",
-            "the stroke of a return must be above 0, not 0",
-        ),
-        ([Segment("rise", 1.0, 1.0)], "motion[0]", "a rise needs a law"),
-        ([Segment("dwell", 1.0, 1.0)], "motion[0]", "a dwell has neither stroke nor law"),
-        ([Segment("dwell", math.nan)], "motion[0]", "the angle of a dwell must be above 0, not nan"),
-    ],
-)
-def test_programmes_that_do_not_add_up_are_refused(segments, field, message):
-    with pytest.raises(IntentError) as caught:
-        programme(segments, math.pi)
-    assert (caught.value.field, caught.value.message) == (field, message)
 
 
 def test_the_angles_may_miss_by_1e_9_rad_and_no_more():

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.programmes import Segment, law, programme
 
 from kin.law.formula.formula import Formula
 from kin.law.from_formula import lift_from_formula
-from kin.law.programme import LAWS, IntentError, Segment, law, polynomial_law, programme
+from kin.law.programme import LAWS, IntentError, polynomial_law
 from kin.law.support_function import lift_constant_breadth, lift_from_fourier, lift_hypocycloid, lift_reuleaux
 
 TURN = 2 * math.pi

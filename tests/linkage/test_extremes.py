@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from support.programmes import Segment, law, programme
 
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.family import Profile
@@ -14,7 +15,6 @@ from camgeo.checks.declared import CLOSING, PRESSURE, RATIO
 from camgeo.curve.curve import Curve
 from camgeo.curve.wunderlich import PitchShape
 from camgeo.synthesis.checks import motion_checks
-from kin.law.programme import Segment, law, programme
 from kin.law.transmission import from_delta, from_law
 
 CAM = DoubleRollerCam(2, 1, 60.0, 1.0, DeltaRoute((), ()), "refuse")  # whose own law is not asked for
@@ -29,12 +29,12 @@ def test_a_rise_between_two_looks_is_not_overlooked():
         else Segment("dwell", (90.0 / 7.0 - 0.01) * degree)
         for way in ("rise", "dwell", "return", "dwell")
     ]
-    motion = from_law(7, 5, 60.0, programme(steps, math.pi / 7.0, "law"))
+    motion = from_law(7, 5, 60.0, programme(steps, math.pi / 7.0))
     pitch = Curve.whole(PitchShape(motion))
     closing, steep = motion_checks(CAM, motion, Profile(pitch, pitch, 1.0), (CLOSING.name, RATIO.name))
     assert steep.value == pytest.approx(2e-3, rel=2e-3)
     assert 0.0 < closing.value < 1e-13
-    flat = from_law(7, 5, 60.0, programme([Segment("dwell", math.pi / 7.0)], math.pi / 7.0, "law"))
+    flat = from_law(7, 5, 60.0, programme([Segment("dwell", math.pi / 7.0)], math.pi / 7.0))
     worst = []
     for one in (motion, flat):
         pitch = Curve.whole(PitchShape(one))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support.cases import few
 from support.heavy import ezdxf, shapely, trimesh
+from support.programmes import Segment, law, programme
 
 from camgeo.cli.main import main
 from camgeo.output import pipeline
@@ -14,7 +15,6 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed, intended
 from kin.judge.contour_checks import Limits
 from kin.judge.verify import verify
-from kin.law.programme import Segment, law, programme
 from kin.law.support_function import Circle, lift_constant_breadth, lift_from_fourier
 from kin.read.files import read_drawing
 
@@ -238,7 +238,7 @@ def test_laws_of_longer_arms():
 
 
 def test_lifts_farther_out():
-    rise = programme([Segment("rise", 2.0, 20.0, law("cycloidal")), Segment("dwell", np.pi - 2.0)], np.pi, "motion")
+    rise = programme([Segment("rise", 2.0, 20.0, law("cycloidal")), Segment("dwell", np.pi - 2.0)], np.pi)
     for lift in (lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}, (3.0, 2.0)), lift_constant_breadth(40.0, rise)):
         moved = lift.moved(-0.3, 1.25)
         theta = np.linspace(0.0, 2 * np.pi, 41)

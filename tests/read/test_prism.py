@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support import followers
 from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_stl
 from support.cases import examples
+from support.solids import sound
 
 from kin.contour.contour import Contour
-from kin.follower.follower import DoubleRoller, Yoke
 from kin.follower.frame import implied_limit
 from kin.judge.contour_checks import DwellAsked, judge_contour
 from kin.judge.verify import Intent, Limits, verify
@@ -34,8 +35,8 @@ POINTS = {
     "double roller": roller_points(EDGES, HOLLOW, 8.0),
 }
 INTENTS = {
-    "yoke": Intent(Yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0), bore=10.0, thickness=THICK),
-    "double roller": Intent(DoubleRoller(from_delta(*HOLLOW, {}), 8.0), bore=10.0, thickness=THICK),
+    "yoke": Intent(followers.yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0), bore=10.0, thickness=THICK),
+    "double roller": Intent(followers.double_roller(from_delta(*HOLLOW, {}), 8.0), bore=10.0, thickness=THICK),
 }
 LIMITS = Limits(tolerance=0.05)
 YOKE = INTENTS["yoke"]
@@ -109,7 +110,7 @@ def test_tilted_in_single_precision_and_back(tmp_path, name):
     solid = read_stl(path)
     assert solid.prism
     assert 5e-7 < solid.uneven < 2e-5
-    assert solid.oriented
+    assert sound(solid)
     assert len(solid.contour) == len(POINTS[name])
     assert len(solid.holes) == 1
     assert solid.faces == (solid.z_min, solid.z_max)
@@ -128,7 +129,7 @@ def test_walls_with_corners_halfway_up(tmp_path, middle):
     solid = read_stl(path)
     assert solid.prism
     assert 5e-7 < solid.uneven < 2e-5
-    assert solid.oriented
+    assert sound(solid)
     assert not failures(path)
     leaning = triangles + np.where(np.abs(triangles[:, :, 2:] - middle) < 1.0, [1e-3, 0.0, 0.0], 0.0)
     assert "thickness" in failures(write_stl(path, leaning))
@@ -188,12 +189,12 @@ def test_walls_that_lean_by_twice_what_rounding_explains(tmp_path, angle, share)
     corners = np.unique(triangles[triangles[:, :, 2] > 4.0], axis=0)
     chosen = corners[: max(2, int(share * len(corners)))]
     at = (triangles[:, :, None] == chosen).all(axis=3).any(axis=2)
-    for factor, sound in ((0.5, True), (4.0, False)):
+    for factor, whole in ((0.5, True), (4.0, False)):
         off = factor * rounding(triangles.astype(np.float32))
         leaning = triangles + at[:, :, None] * off * np.array([np.cos(angle), np.sin(angle), 0.0])
         path = write_stl(tmp_path / "cam.stl", leaning)
-        assert read_stl(path).prism is sound
-        assert ("thickness" in failures(path)) is not sound
+        assert read_stl(path).prism is whole
+        assert ("thickness" in failures(path)) is not whole
 
 
 @pytest.mark.parametrize("form", ["%.6g", "%.9g"])
@@ -262,7 +263,7 @@ def test_what_was_found_counts_for_a_linkage_as_well():
     contour = Contour.from_vertices(
         support_points(400, 25.0, ((1, -18.0, 13 / 30 - 8.5), (3, 0, 1.0), (5, 0, 13 / 30)))
     )
-    intent = Intent(Yoke(lift, 50.0), mechanism=mechanism, dwell=DwellAsked(0.01, 0.1))
+    intent = Intent(followers.yoke(lift, 50.0), mechanism=mechanism, dwell=DwellAsked(0.01, 0.1))
     phi = 2.0 * np.pi / 120 * np.arange(120)
     off = implied_limit(mechanism, 1e-3)
     sure, unsure = (judge_contour(contour, intent, phi, LIMITS, uneven).linkage for uneven in (0.0, 1e-3))

@@ -409,14 +409,6 @@ def test_units_that_are_none_for_a_cam(tmp_path: Path) -> None:
     assert read_dxf(saved(document, tmp_path)).units_mm is None
 
 
-def test_the_auditor_only_when_asked(tmp_path: Path) -> None:
-    document = new()
-    document.modelspace().add_circle((0, 0), 1.0, dxfattribs={"layer": "CUT"})
-    path = saved(document, tmp_path)
-    assert read_dxf(path).audit is None
-    assert read_dxf(path, audit=True).audit == ()
-
-
 # --- layers
 
 

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.meshfiles import BORE, HEIGHT, OUTER, N, binary, quads, ring, text
+from support.solids import sound
 
 from kin.contour.contour import Contour
 from kin.read.files import ReadError, Solid, read_stl
@@ -23,7 +24,7 @@ def test_a_ring(tmp_path: Path) -> None:
     solid = read_stl(binary(tmp_path / "cam.stl", ring()))
     assert solid.prism
     assert solid.closed
-    assert solid.oriented
+    assert sound(solid)
     assert (solid.z_min, solid.z_max, solid.thickness, solid.height) == (0.0, 8.0, 8.0, 4.0)
     assert solid.triangles == 8 * N
     assert (solid.degenerate, solid.duplicate) == (0, 0)
@@ -49,7 +50,7 @@ def test_neither_the_order_of_triangles_nor_of_their_corners_matters(tmp_path: P
     triangles = triangles[np.arange(len(triangles))[:, None], (np.arange(3) + shift[:, None]) % 3]
     solid = read_stl(binary(tmp_path / "cam.stl", triangles))
     assert solid.prism
-    assert solid.oriented
+    assert sound(solid)
     assert len(solid.contour) == N
     assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area, rel=1e-13)
 
@@ -57,7 +58,7 @@ def test_neither_the_order_of_triangles_nor_of_their_corners_matters(tmp_path: P
 def test_the_text_form_gives_the_same(tmp_path: Path) -> None:
     solid = read_stl(text(tmp_path / "cam.stl", ring()))
     assert solid.form == "text"
-    assert solid.oriented
+    assert sound(solid)
     assert solid.prism
     assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area, rel=1e-14)
 
@@ -73,7 +74,7 @@ def test_negative_zero_is_zero(tmp_path: Path) -> None:
     low[::2] = False
     triangles[:, :, 2][low] = -0.0
     solid = read_stl(binary(tmp_path / "cam.stl", triangles))
-    assert solid.oriented
+    assert sound(solid)
     assert solid.prism
 
 
@@ -89,7 +90,7 @@ def test_parts_made_by_trimesh_and_manifold(tmp_path: Path, scale: float) -> Non
         path.write_bytes(data if isinstance(data := part.export(file_type=form), bytes) else data.encode())
         solid = read_stl(path)
         assert solid.closed
-        assert solid.oriented == part.is_winding_consistent
+        assert sound(solid) == part.is_winding_consistent
         assert solid.volume == pytest.approx(part.volume, rel=1e-6)
         assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area * scale**2, rel=1e-6)
         assert len(solid.holes) == 1
@@ -105,7 +106,7 @@ def test_a_stepped_part_is_cut_where_it_is_widest(tmp_path: Path) -> None:
     solid = read_stl(path)
     assert not solid.prism
     assert solid.closed
-    assert solid.oriented
+    assert sound(solid)
     assert solid.faces == (0.0, 6.0, 20.0)
     assert solid.height == pytest.approx(3.0)
     round_share = 32.0 * np.sin(2.0 * np.pi / 64)
@@ -136,12 +137,12 @@ def test_a_cone_is_no_prism_and_a_level_at_half_height_is_avoided(tmp_path: Path
     single = np.concatenate([tapered(OUTER, top, 0.0, HEIGHT), inner, lids])
     solid = read_stl(binary(tmp_path / "cone.stl", single))
     assert not solid.prism
-    assert solid.oriented
+    assert sound(solid)
     assert solid.height == 4.0
     assert solid.contour.area == pytest.approx(0.64 * Contour.from_vertices(OUTER).area, rel=1e-3)
     halves = [tapered(OUTER, middle, 0.0, 4.0), tapered(middle, top, 4.0, HEIGHT)]
     solid = read_stl(binary(tmp_path / "cone.stl", np.concatenate([*halves, inner, lids])))
-    assert solid.oriented
+    assert sound(solid)
     assert solid.height == 6.0
     assert solid.contour.area == pytest.approx(0.49 * Contour.from_vertices(OUTER).area, rel=1e-3)
 
@@ -151,7 +152,7 @@ def test_walls_with_corners_halfway_up_still_make_a_prism(tmp_path: Path) -> Non
     low, high = ring(high=3.0), ring(low=3.0)
     walls = np.concatenate([low[: 4 * N], high[: 4 * N]])
     solid = read_stl(binary(tmp_path / "cam.stl", np.concatenate([walls, whole[4 * N :]])))
-    assert solid.oriented
+    assert sound(solid)
     assert solid.prism
     assert solid.height == 4.0
     assert solid.contour.area == pytest.approx(Contour.from_vertices(OUTER).area, rel=1e-13)
@@ -164,7 +165,7 @@ def test_walls_with_corners_halfway_up_still_make_a_prism(tmp_path: Path) -> Non
 
 
 def fields(solid: Solid) -> tuple[bool, bool, tuple[int, ...], int, int]:
-    return solid.closed, solid.oriented, tuple(solid.edges), solid.degenerate, solid.duplicate
+    return solid.closed, sound(solid), tuple(solid.edges), solid.degenerate, solid.duplicate
 
 
 @pytest.mark.parametrize("lid", [4 * N, 5 * N + 7, 8 * N - 1])
@@ -182,7 +183,7 @@ def test_a_lid_turned_over(tmp_path: Path) -> None:
 
 def test_a_part_turned_inside_out(tmp_path: Path) -> None:
     solid = read_stl(binary(tmp_path / "cam.stl", ring()[:, ::-1]))
-    assert solid.oriented
+    assert sound(solid)
     assert solid.volume < 0.0
     assert solid.contour.area > 0.0
 
@@ -195,7 +196,7 @@ def test_duplicate_triangles_the_same_way_and_the_other(tmp_path: Path) -> None:
     pillow = np.array([[8.0, 8.0, 1.0], [9.0, 8.0, 1.0], [8.0, 9.0, 1.0]])
     loose = np.concatenate([triangles, [pillow, pillow[::-1]]])
     solid = read_stl(binary(tmp_path / "cam.stl", loose))
-    assert solid.oriented
+    assert sound(solid)
     assert solid.duplicate == 1
     assert not solid.prism
 

@@ -22,6 +22,7 @@ from camgeo.files.three_mf import Item, write_3mf
 from camgeo.files.triangulate import sides
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import Bound, Polygon
+from camgeo.output.pipeline import judged
 from camgeo.schema.errors import RecipeErrors
 from kin.read.files import ReadError, read_solid
 from kin.read.mesh.threemf import read_3mf, read_placed
@@ -383,7 +384,7 @@ def test_a_damaged_model_is_told(plain, name):
     with pytest.raises(ReadError) as caught:
         read_3mf(spoilt)
     assert message in str(caught.value)
-    assert failures(spoilt, recipe, design) == {"watertight"}
+    assert failures(spoilt, recipe, design) == {"readable"}
 
 
 def archive_of(path, members):
@@ -512,3 +513,13 @@ def test_a_3mf_needs_a_thickness(tmp_path, capsys):
     recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\nexport: {files: [3mf]}\n")
     assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 2
     assert "3mf needs a thickness; give part.thickness, or leave 3mf out" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("encoding", ["rot13", "cp99999", "utf-7", "idna", "hex"])
+def test_encodings_that_are_none_or_are_not_read(plain, encoding):
+    recipe, _, sound, _ = plain
+    spoilt = rewritten(sound, lambda text: text.replace('encoding="UTF-8"', f'encoding="{encoding}"', 1))
+    with pytest.raises(ReadError, match=r"3dmodel\.model is not sound: "):
+        read_3mf(spoilt)
+    report = judged(recipe, [spoilt])
+    assert [check["name"] for check in report["checks"] if not check["ok"]] == ["readable"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,6 +34,7 @@ export: {files: [dxf]}
 verify: {angles: 120}
 """
 TRAIN = "dynamics: {mass: 0.4, damping: 20, stiffness: 2.0e5, preload: 150, rpm: 600}\n"
+FOLLOWED = TRAIN.replace("rpm: 600", "rpm: 600, transient: true")
 PAIR = """\
 name: pair
 cam: {kind: flat-pair, ratio: 2, arm: 30, delta: {cos: {1: 252}}}
@@ -62,7 +64,7 @@ def test_what_a_recipe_says_of_its_train() -> None:
 
 
 def test_the_report_of_a_train_under_a_spring() -> None:
-    outcome = pipeline.check(recipe())
+    outcome = pipeline.check(recipe(FOLLOWED))
     found = outcome.report["dynamics"]
     assert outcome.ok
     assert found["natural_ratio"] == pytest.approx(math.sqrt(0.5e6) / (20.0 * math.pi))
@@ -98,7 +100,7 @@ def test_lengths_in_inches() -> None:
 
 
 def test_beyond_the_speed_at_which_float_begins_the_check_fails() -> None:
-    fast = recipe(TRAIN.replace("600", "900"))
+    fast = recipe(FOLLOWED.replace("600", "900"))
     outcome = pipeline.check(fast)
     assert not outcome.ok
     failed = {(check["name"], check.get("file")) for check in outcome.report["checks"] if not check["ok"]}
@@ -112,7 +114,7 @@ def test_beyond_the_speed_at_which_float_begins_the_check_fails() -> None:
 
 
 def test_play_makes_impacts() -> None:
-    outcome = pipeline.check(recipe(TRAIN.replace("preload: 150", "backlash: 0.02")))
+    outcome = pipeline.check(recipe(FOLLOWED.replace("preload: 150", "backlash: 0.02")))
     assert outcome.ok
     intended, cut = outcome.report["dynamics"]["runs"]
     assert intended["impacts"]["count"] == 10
@@ -129,7 +131,7 @@ def test_turns_that_do_not_settle_are_told_by_their_range() -> None:
     cam = (
         "cam: {kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}\n"
     )
-    train = "dynamics: {mass: 0.4, damping: 25, stiffness: 6.0e+6, backlash: 0.05, rpm: 300}\n"
+    train = "dynamics: {mass: 0.4, damping: 25, stiffness: 6.0e+6, backlash: 0.05, rpm: 300, transient: true}\n"
     impacts = pipeline.check(recipe(train, cam)).report["dynamics"]["runs"][0]["impacts"]
     assert not impacts["settled"]
     found = impacts["of_turns"]
@@ -155,7 +157,7 @@ def test_a_dwell_that_ends_with_the_turn_ends_at_360() -> None:
 
 @pytest.mark.slow
 def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None:
-    holds, flies = (section(recipe(TRAIN.replace("600", rpm)))["runs"][0] for rpm in ("600", "900"))
+    holds, flies = (section(recipe(FOLLOWED.replace("600", rpm)))["runs"][0] for rpm in ("600", "900"))
     assert holds["transient"]["turns_to_one_percent"] > 0.0
     assert flies["impacts"]["free_deg"] > 0.0
     assert "turns_to_one_percent" not in flies["transient"]
@@ -163,7 +165,7 @@ def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None
 
 @pytest.mark.parametrize(("play", "faces"), [("0.02", ["lower", "upper"]), ("50", [])])
 def test_which_faces_bear(play: str, faces: list[str]) -> None:
-    report = pipeline.check(recipe(TRAIN.replace("preload: 150", f"backlash: {play}"))).report
+    report = pipeline.check(recipe(FOLLOWED.replace("preload: 150", f"backlash: {play}"))).report
     assert report["dynamics"]["runs"][0]["impacts"]["faces"] == faces
     check = next(check for check in report["checks"] if check["name"] == "least-backlash")
     assert ("touches neither face" in check.get("detail", "")) == (not faces)
@@ -177,12 +179,48 @@ def test_a_course_that_cannot_be_followed_is_told(monkeypatch: pytest.MonkeyPatc
             super().__init__(min(most, 1000))
 
     monkeypatch.setattr(impacts, "Work", Little)
-    run = section(recipe())["runs"][0]
+    run = section(recipe(FOLLOWED))["runs"][0]
     assert run["steady"]["holds"]
     assert (run["transient"], run["impacts"]) == (None, None)
     assert "degrees of turn 1 and no further" in run["transient_why"]
     with pytest.raises(RecipeErrors, match=r"dynamics: followed from rest to .* degrees of turn 1 and no further"):
-        pipeline.check(recipe(TRAIN.replace("preload: 150", "backlash: 0.02")))
+        pipeline.check(recipe(FOLLOWED.replace("preload: 150", "backlash: 0.02")))
+
+
+@pytest.mark.parametrize("held", ["preload: 150", "backlash: 0.02"])
+def test_nothing_is_followed_that_was_not_asked_for(held: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    from kin.dynamics import impacts
+
+    followed = pipeline.check(recipe(FOLLOWED.replace("preload: 150", held))).report
+    monkeypatch.delattr(impacts, "course")
+    plain = pipeline.check(recipe(TRAIN.replace("preload: 150", held))).report
+    assert plain["checks"] == followed["checks"]
+    for before, after in zip(plain["dynamics"]["runs"], followed["dynamics"]["runs"], strict=True):
+        assert before == {key: value for key, value in after.items() if key not in {"transient", "impacts"}}
+        assert (after["transient"]["turns"], after["transient"]["turns_most"]) > (1, 19)
+
+
+@pytest.mark.parametrize("stiffness", ["2.0e5", "1.0e12"])
+def test_all_runs_together_look_at_a_bounded_number_of_places(stiffness: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    from camgeo.synthesis import dynamics
+    from kin.dynamics import impacts
+
+    monkeypatch.setattr(dynamics, "MOST_PLACES", 300_000)
+    places = []
+
+    def counted(*given: Any, **named: Any) -> impacts.Course:
+        course = real(*given, **named)
+        places.append(course.places)
+        return course
+
+    real = impacts.course
+    monkeypatch.setattr(impacts, "course", counted)
+    train = FOLLOWED.replace("2.0e5", stiffness).replace("preload: 150", "backlash: 0.02").replace("damping: 20, ", "")
+    with suppress(RecipeErrors):
+        for run in section(recipe(train))["runs"]:
+            reached = 0 if run["transient"] is None else run["transient"]["turns"]
+            assert reached == 20 or f"of turn {reached + 1} and no further" in run["transient_why"]
+    assert sum(places) < 1.1 * 300_000
 
 
 @pytest.mark.parametrize("held", ["preload: 8", "backlash: 0.02"])
@@ -302,7 +340,7 @@ def test_a_spoilt_file_shows_in_its_own_run(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_two_rollers_rattle_as_two_faces_of_the_same_motion_do() -> None:
-    train = TRAIN.replace("preload: 150", "backlash: 0.05")
+    train = FOLLOWED.replace("preload: 150", "backlash: 0.05")
     motion = "motion: [{rise: 12, over: 80, law: modified-sine}, {dwell: 100}]}\n"
     found = []
     for cam in ("constant-breadth, base_radius: 28", "constant-diameter, base_radius: 28, roller_radius: 8"):

@@ -13,22 +13,24 @@ import urllib.error
 import urllib.request
 from html.parser import HTMLParser
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 from support.cases import few
-from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, wait
+from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, unpacked, wait
 
 from camgeo.cli.main import main
 from camgeo.cli.watch import watch
 from camgeo.curve.ring import Ring, disc
-from camgeo.recipe.loading import load
+from camgeo.recipe.loading import load, load_text
+from camgeo.report.document import ROUNDING
 from camgeo.report.page import svg, tables
 from camgeo.report.page.content import content
 from camgeo.report.page.outline import MEASURED, read
-from camgeo.report.page.pack import packed, unpacked
-from camgeo.report.page.page import LOCAL, RELOAD, data, encoded, page
+from camgeo.report.page.pack import packed
+from camgeo.report.page.page import LOCAL, RELOAD, asset, data, encoded, page
 from camgeo.report.page.scene import STEPS
 from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
@@ -94,7 +96,9 @@ def test_the_page_is_one_sound_small_file_that_asks_for_nothing(made: Made) -> N
     assert "}}" not in made.text.partition("<script")[0].replace("}}", "}", made.text.count("@media"))
     named = {key: value for _, attributes in elements.found for key, value in attributes.items() if value}
     assert not [value for key, value in named.items() if key in {"src", "action", "srcset", "poster"}]
-    assert {a["href"] for tag, a in elements.found if "href" in a} == {"data:,"}
+    files = {quote(file["path"]) for file in made.outcome.report["files"]}
+    assert files
+    assert {a["href"] for tag, a in elements.found if "href" in a} == {"data:,", *files}
     assert not re.search(r"https?:|//[a-z]|url\(|@import|fetch\(|XMLHttp|WebSocket|EventSource", made.text)
     (policy,) = (a["content"] for tag, a in elements.found if a.get("http-equiv") == "Content-Security-Policy")
     assert policy is not None
@@ -160,7 +164,9 @@ def test_figures_are_shown_short_and_told_exactly(made: Made) -> None:
     table = made.text.partition('id="checks-head"')[2].partition("</section>")[0]
     for check in made.outcome.report["checks"]:
         if check["value"] is not None:
-            assert f"{check['value']:.6g}" in table
+            noise = check["ok"] and check["sense"] == "at_most" and 0.0 < abs(check["value"]) < ROUNDING
+            noise = noise and abs(check["value"]) < 1e-3 * (check["limit"] or 1.0)
+            assert ("below rounding" if noise else f"{check['value']:.6g}") in table
             if float(f"{check['value']:.6g}") != check["value"]:
                 assert repr(check["value"]) in table
     for file in made.outcome.report["files"]:
@@ -528,6 +534,88 @@ def test_the_data_is_small_and_holds_no_infinity(made: Made) -> None:
     assert "Infinity" not in text
     assert "NaN" not in text
     parsed(svg.moving(made.content.scene))
+
+
+# --- colours and axes -------------------------------------------------------------------------------------------------
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance of #rrggbb or #rgb (WCAG 2.2)."""
+    digits = colour[1:] if len(colour) == 7 else "".join(2 * digit for digit in colour[1:])
+    shares = [int(digits[at : at + 2], 16) / 255.0 for at in (0, 2, 4)]
+    linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one: str, other: str) -> float:
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def palettes() -> dict[str, dict[str, str]]:
+    """Colours by name, on a screen in the light and in the dark, and on paper."""
+    found: dict[str, dict[str, str]] = {"light": {}, "dark": {}, "print": {}}
+    for name in ("drawing.css", "page.css"):
+        for medium, block in re.findall(r"(@media [^{]*\{\s*)?:root \{(.*?)\}", asset(name), re.DOTALL):
+            kind = "dark" if "dark" in medium else "print" if "print" in medium else "light"
+            found[kind] |= dict(re.findall(r"--([a-z-]+): (#[0-9a-f]{3,6})", block))
+    return {kind: {**found["light"], **colours} for kind, colours in found.items()}
+
+
+def test_contrast_is_the_ratio_that_the_guidelines_define() -> None:
+    assert contrast("#ffffff", "#000") == pytest.approx(21.0)
+    assert contrast("#777777", "#ffffff") == pytest.approx(4.48, abs=0.01)
+
+
+@pytest.mark.parametrize("kind", ["light", "dark", "print"])
+def test_text_stands_out_from_its_ground(kind: str) -> None:
+    colours = palettes()[kind]
+    style = asset("page.css")
+    texts = set(re.findall(r"[ {]color: var\(--([a-z]+)\)", style))
+    texts |= set(re.findall(r"text[^{}]*\{[^{}]*fill: var\(--([a-z]+)\)", style))
+    assert texts == {"ink", "quiet", "good", "bad", "one", "two", "accent"}
+    grounds = [(text, ground) for text in texts for ground in ("page", "panel")]
+    grounds += [("bad", "bad-ground"), ("ink", "bad-ground"), ("quiet", "bad-ground"), ("quiet", "rest")]
+    low = {pair: round(contrast(*map(colours.__getitem__, pair)), 2) for pair in grounds}
+    assert {pair: ratio for pair, ratio in low.items() if ratio < 4.5} == {}
+
+
+TIMED = (
+    "cam:\n  kind: disc\n  base_radius: 40\n  follower: {kind: roller, radius: 9}\n"
+    "  motion: [{rise: 15, over: 110, law: modified-sine}, {dwell: 60},"
+    " {return: 15, over: 100, law: cycloidal}, {dwell: 90}]\n"
+)
+
+
+def plots_of(more: str) -> dict[str, tuple[str, np.ndarray, str, tuple[tuple[float, str], ...]]]:
+    recipe = load_text(TIMED + more, "cam.yaml")
+    shown = content(recipe, designed(recipe), []).plots
+    return {plot.title: (plot.unit, plot.series[0].values, plot.note, plot.limits) for plot in shown}
+
+
+def test_derivatives_are_by_second_where_the_speed_is_given() -> None:
+    plain, timed = plots_of(""), plots_of("dynamics: {mass: 1, stiffness: 1.0e6, preload: 500, rate: 2000, rpm: 120}\n")
+    assert plain["Lift"][0] == timed["Lift"][0] == "mm"
+    rate = 120.0 * 2.0 * math.pi / 60.0
+    for order, name in enumerate(("Velocity", "Acceleration", "Jerk"), start=1):
+        power = ["", "²", "³"][order - 1]
+        assert (plain[name][0], timed[name][0]) == (f"mm/rad{power}", f"mm/s{power}")
+        assert (plain[name][2], timed[name][2]) == ("", "at 120 rpm")
+        assert timed[name][1] == pytest.approx(plain[name][1] * rate**order, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("limit", "lines"),
+    [
+        ("{at_most: 35}", {35.0, -35.0}),
+        ("{at_most: 35, on_return: 45}", {35.0, -45.0}),
+        ("{on_return: 45}", {-45.0}),
+    ],
+)
+def test_limits_of_the_pressure_angle_are_lines_in_its_plot(limit: str, lines: set[float]) -> None:
+    assert plots_of("")["Pressure angle"][3] == ()
+    shown = plots_of(f"limits: {{pressure-angle: {limit}}}\n")["Pressure angle"][3]
+    assert set(shown) == {(line, f"limit {abs(line):g}°") for line in lines}
 
 
 # --- the watch --------------------------------------------------------------------------------------------------------

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 import threading
 import time
 from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 from support.browser import Browser, executable
 from support.pages import SHAFT, SHOWN, Made, fetched, of, wait
+from support.rendered import rendered, share
 
 from camgeo.cli.watch import watch
 from camgeo.synthesis.design import designed
@@ -174,6 +177,67 @@ def test_nothing_sticks_out_or_lies_over_its_neighbour(
         browser.size(1280, 800)
 
 
+def test_the_axes_are_named_with_their_units(browser: Browser, tmp_path: Path) -> None:
+    made = of("as-figure-9-2a")
+    page_ = opened(browser, made, tmp_path)
+    texts = "[...plot.querySelectorAll('.axis')].map((text) => text.textContent)"
+    axes = page_.ask(f"[...document.querySelectorAll('.plot svg')].map((plot) => {texts})")
+    over = ["relative" if plot.get("over") else "shaft" for plot in made.data["plots"]]
+    over += ["relative"] * len(made.data["errors"])
+    assert [x for _, x in axes] == [f"{name} angle, °" for name in over]
+    assert {"relative", "shaft"} == set(over)
+    assert [y for y, _ in axes][:3] == ["output, °", "velocity, °/rad", "acceleration, °/rad²"]
+    units = [plot["unit"] for plot in made.data["plots"]]
+    assert all(y.endswith(unit) for (y, _), unit in zip(axes, units, strict=False))
+
+
+def test_each_plot_is_saved_as_a_picture_by_itself(browser: Browser, tmp_path: Path) -> None:
+    page_ = opened(browser, of("as-figure-9-2a"), tmp_path)
+    page_.ask("""(() => {
+      window.saved = [];
+      const made = URL.createObjectURL;
+      URL.createObjectURL = (blob) => { window.saved.push(blob); return made.call(URL, blob); };
+      HTMLAnchorElement.prototype.click = function () { window.named = [...(window.named || []), this.download]; };
+      for (const button of document.querySelectorAll('.plot .save')) button.click();
+    })()""")
+    pictures = page_.ask("Promise.all(window.saved.map((blob) => blob.text()))")
+    assert len(pictures) == page_.ask("document.querySelectorAll('.plot').length")
+    assert page_.ask("window.named")[1] == "as-figure-9-2a-velocity.svg"
+    for picture in pictures:
+        root = ET.fromstring(picture)
+        assert not re.search(r"var\(|class=|<style", picture)
+        assert any("angle, °" in (element.text or "") for element in root.iter())
+    image = rendered(pictures[1])
+    assert share(image, "#ffffff") > 0.5
+    assert share(image, "#1f5f99") > 0.001  # the curve
+    assert page_.problems == []
+
+
+def test_the_address_leads_to_an_angle_and_follows_it(browser: Browser, tmp_path: Path) -> None:
+    page_ = opened(browser, of("shu-wu"), tmp_path, "#deg=75")
+    page_.ask("location.hash = '#deg=120'")
+    page_.wait("document.documentElement.dataset.degrees === '120.0000'")
+    page_.key("ArrowRight")
+    page_.wait("location.hash === '#deg=121'")
+    assert page_.problems == []
+
+
+def test_on_a_phone_the_drawing_stays_in_sight(browser: Browser, tmp_path: Path) -> None:
+    browser.size(390, 844, mobile=True)
+    try:
+        page_ = opened(browser, of("shu-wu"), tmp_path)
+        for part in (".plot:nth-of-type(3)", ".plots .rests", ".checks"):
+            page_.ask(f"document.querySelector('{part}').scrollIntoView({{block: 'center'}})")
+            box = [
+                page_.ask(f"document.querySelector('figure').getBoundingClientRect().{e}") for e in ("top", "bottom")
+            ]
+            assert box[0] == pytest.approx(0.0, abs=1.0)
+            assert 150.0 < box[1] < 0.4 * 844
+        assert page_.problems == []
+    finally:
+        browser.size(1280, 800)
+
+
 @pytest.mark.slow
 def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser: Browser, tmp_path: Path) -> None:
     path = tmp_path / "a.yaml"
@@ -200,6 +264,8 @@ def test_a_watched_page_reloads_itself_where_it_stood_and_shows_a_fault(browser:
         browser.problems.clear()
         browser.open(address[0] + "#deg=45")
         browser.wait("document.getElementById('fault')?.hidden")
+        assert browser.ask("document.querySelectorAll('th a').length") > 0
+        assert browser.ask("document.querySelectorAll('th a[href]').length") == 0  # the server has no files
         path.write_text("half", encoding="utf-8")
         browser.wait("document.getElementById('fault').textContent === 'a.yaml:1:1: <nothing>'")
         assert not browser.ask("document.getElementById('fault').hidden")

@@ -53,7 +53,7 @@ def text(path: Path, triangles: np.ndarray) -> Path:
     return path
 
 
-def in_3mf(path: Path, triangles: np.ndarray) -> Path:
+def in_3mf(path: Path, triangles: np.ndarray, model_name: str = "m.model") -> Path:
     points, numbers = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
     vertices = "".join(f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>' for x, y, z in points.tolist())
     rows = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in numbers.reshape(-1, 3).tolist())
@@ -64,9 +64,9 @@ def in_3mf(path: Path, triangles: np.ndarray) -> Path:
     )
     link = (
         '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" '
-        'Target="/m.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+        f'Target="/{model_name}" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
     )
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("_rels/.rels", link)
-        archive.writestr("m.model", model)
+        archive.writestr(model_name, model)
     return path

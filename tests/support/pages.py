@@ -13,7 +13,6 @@ import numpy as np
 
 from camgeo.output.pipeline import shown
 from camgeo.recipe.loading import load
-from camgeo.report.page.pack import unpacked
 from camgeo.report.page.page import page
 from camgeo.report.page.scene import STEPS
 from support.places import RECIPES
@@ -77,3 +76,12 @@ def told(stream: Any) -> dict[str, Any]:
         if line.startswith("data: "):
             event: dict[str, Any] = json.loads(line[6:])
             return event
+
+
+def unpacked(row: dict[str, Any], count: int) -> np.ndarray:
+    """The values (count,) of a packed row, as the page's script reads them."""
+    if "c" in row:
+        return np.full(count, row["c"])
+    if "n" in row:
+        return np.array([np.nan if v is None else v for v in row["n"]], dtype=np.float64)
+    return np.cumsum(row["v"]) / 10.0 ** row["d"]

@@ -21,6 +21,7 @@ from support.sweepers import FOUR_BAR, MEANS
 
 from camgeo.cli import sweep
 from camgeo.cli.main import main
+from camgeo.cli.progress import Progress
 from camgeo.sweep.search import search
 
 FIRST = "dwell 49.7 deg, dwell-relative 24.85 deg, margin 3.83333 mm"
@@ -28,6 +29,7 @@ RUN = """\
 import sys
 from support.sweepers import MEANS
 from camgeo.cli.main import main
+from camgeo.cli.progress import Progress
 from camgeo.cli import sweep
 if __name__ == "__main__":
     sweep._means = lambda: MEANS
@@ -133,6 +135,15 @@ def test_a_disk_that_refuses_exits_3(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "four-bar: " in capsys.readouterr().err
 
 
+def test_a_file_named_sweep_is_told_with_what_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "out" / "four-bar"
+    folder.mkdir(parents=True)
+    (folder / "sweep").write_text("mine")
+    assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out")]) == 3
+    advice = "not a folder, where the sweep keeps its results: move it or remove it"
+    assert capsys.readouterr().err == f"camgeo: four-bar: {folder / 'sweep'}: {advice}\n"
+
+
 def test_a_full_disk_is_told_with_its_place(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -227,6 +238,26 @@ def test_progress_is_shown_on_a_terminal_and_taken_away_again(tmp_path: Path) ->
     assert b"\x1b[Kfour-bar: 448 of 825 designs, " in said
     assert b" s left ..." in said
     assert said.endswith(b"\r\x1b[K")
+
+
+def test_progress_is_said_in_lines_where_there_is_no_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    progress = Progress("four-bar", every=0.0)
+    progress("448 of 825 designs")
+    progress("2 of 3 polished")
+    progress.clear()
+    assert capsys.readouterr().err == "four-bar: 448 of 825 designs\nfour-bar: 2 of 3 polished\n"
+    for every in (None, 1e9):
+        Progress("four-bar", every)("448 of 825 designs")
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.usefixtures("no_pictures")
+def test_a_sweep_whose_standard_error_is_piped_says_how_far_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sweep, "_EVERY", 0.0)
+    assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    assert "four-bar: 448 of 825 designs, " in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

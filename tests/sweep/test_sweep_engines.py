@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 import os
 import signal
 import socket
@@ -163,7 +164,7 @@ def test_workers_refuse_a_job_that_they_read_otherwise(
     [
         ("tcp://127.0.0.1:1", "no Dask scheduler answers at tcp://127.0.0.1:1: "),
         ("nonsense", "nonsense is not the address of a Dask scheduler, such as tcp://host:8786"),
-        ("tcp://here:port", "no Dask scheduler answers at tcp://here:port: Port could not be cast"),
+        ("tcp://here:port", "tcp://here:port is not the address of a Dask scheduler, such as tcp://host:8786"),
     ],
 )
 def test_a_scheduler_that_is_none_is_told_at_once(address: str, message: str) -> None:
@@ -191,6 +192,22 @@ def test_a_listener_that_is_no_scheduler_is_told_in_time(says: bytes, monkeypatc
         listener.shutdown(socket.SHUT_RDWR)
     for connection in accepted:
         connection.close()
+
+
+def test_distributed_prints_no_lines_of_its_own(caplog: pytest.LogCaptureFixture) -> None:
+    loggers = [logging.getLogger(name) for name in ("distributed.client", "tornado.application")]
+    for logger in loggers:
+        logger.addHandler(caplog.handler)
+    try:
+        with engines._quiet():
+            for logger in loggers:
+                logger.error("Failed to reconnect to scheduler")
+        assert not caplog.records
+        loggers[0].error("as before")
+        assert [record.getMessage() for record in caplog.records][:1] == ["as before"]
+    finally:
+        for logger in loggers:
+            logger.removeHandler(caplog.handler)
 
 
 def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:

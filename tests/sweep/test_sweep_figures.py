@@ -164,15 +164,6 @@ def test_a_design_depends_on_no_other_to_the_last_bit():
         assert np.array_equal(column, np.concatenate([part.figures[name] for part in parts]), equal_nan=True), name
 
 
-def test_both_engines_give_the_same_bits():
-    pytest.importorskip("numba")
-    rng = np.random.default_rng(2)
-    values = rng.uniform((10, 3, 95), (20, 12, 110), (200, 3))
-    both = [evaluate(recipe(), (*PIVOT, "linkage.rocker"), values, engine=engine) for engine in ("numpy", "compiled")]
-    for name, column in both[0].figures.items():
-        assert np.array_equal(column, both[1].figures[name], equal_nan=True), name
-
-
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("shape", "given"),

@@ -13,7 +13,8 @@ from camgeo.recipe.loading import load, load_text
 from camgeo.sweep.search import refine
 from camgeo.sweep.search.ask import Ask
 from camgeo.sweep.search.figures import evaluate
-from camgeo.sweep.search.refine import polish
+from camgeo.sweep.search.rebuilt import mechanism_in, recipe_with
+from camgeo.sweep.search.refine import PolishError, output_error, polish
 from camgeo.synthesis.linkage import mechanism_of
 
 pytest.importorskip("scipy")
@@ -126,6 +127,38 @@ def test_designs_made_one_by_one(monkeypatch):
     asked = ask(kind=FOUR_BAR + dyads, rank="swing", vary="linkage.rocker: {from: 104, to: 106}")
     given, before = start(asked, (105.0,))
     assert polish(asked, given)[1]["swing"] > before["swing"]
+
+
+def narrow(asked, values):
+    """The dwell (deg) that a file within the tolerance has at least."""
+    recipe = recipe_with(asked.recipe, list(values), list(values.values()))
+    (longest,) = mechanism_in(recipe).dwells(recipe.dwell.band - 2.0 * output_error(recipe), "shaft", most=1)
+    return math.degrees(longest.length)
+
+
+def test_a_dwell_is_polished_off_the_knifes_edge():
+    # eight numbers with which a ripple just fills the band: within 0.001 mm it may leave it
+    asked = Ask.of(load(RECIPES / "long-dwell.yaml"))
+    numbers = (2.938, -0.0487, -0.0206, -0.0628, 14.833, 79.28, 61.85, 60.0)
+    given = dict(zip((axis.path for axis in asked.sweep.vary), numbers, strict=True))
+    assert narrow(asked, given) < 0.85 * start(asked, numbers)[1]["dwell"]
+    values, after = polish(asked, given)
+    assert narrow(asked, values) > 0.99 * after["dwell"]
+    assert after["dwell"] > 90.0
+
+
+@pytest.mark.parametrize("tolerance", ["0.05", "4"])
+def test_a_tolerance_that_leaves_nothing_of_the_band_is_refused_with_one_that_does(tolerance):
+    def coarse(tolerance):
+        text = TEXT.replace("KIND", FOUR_BAR).replace("VARY", RANGES).replace("LIMITS", "").replace("RANK", "dwell")
+        return Ask.of(load_text(f"{text}export: {{tolerance: {tolerance}}}\n", "a.yaml"))
+
+    given = start(asked := coarse(tolerance), (18.0, 8.5, 105.0))[0]
+    with pytest.raises(PolishError, match=r"give (export.tolerance at most|a smaller export.tolerance)") as refused:
+        polish(asked, given)
+    most = str(refused.value).rpartition(" ")[2]
+    if most != "export.tolerance":
+        assert output_error(coarse(most).recipe) < 0.5 * asked.recipe.dwell.band
 
 
 def exact(recipe):

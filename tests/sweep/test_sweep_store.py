@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import os
 import time
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from support.sweepers import GRID, ask, calls, fail, hills, job
 
+from camgeo.common.errors import SurroundingsError
 from camgeo.recipe.loading import read
 from camgeo.sweep.search import job as jobs
+from camgeo.sweep.search import store
 from camgeo.sweep.search.ask import Ask
 from camgeo.sweep.search.gather import Ranking
 from camgeo.sweep.search.job import Job, VersionsError, result
@@ -20,7 +23,7 @@ from camgeo.sweep.search.run import How, chunks_of, compute, gathered
 from camgeo.sweep.search.store import ChunkError, Chunks, decode, encode
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Callable
 
 BEST = Ranking("dwell", most=True)
 
@@ -98,6 +101,57 @@ def test_a_chunk_that_is_spoilt_before_it_is_gathered_is_computed_again(filled: 
     again = gathered(job(), filled, BEST)
     assert again.index.tolist() == expected.index.tolist()
     assert again.counts == expected.counts
+
+
+def _pipe(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def _device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without pipes among its files")
+@pytest.mark.parametrize("fresh", [False, True])
+@pytest.mark.parametrize(
+    ("place", "kind"), [(_pipe, "a pipe or a device"), (_device, "a pipe or a device"), (Path.mkdir, "a folder")]
+)
+def test_what_is_no_file_is_not_opened_but_told(
+    filled: Chunks, tmp_path: Path, place: Callable[[Path], None], kind: str, fresh: bool
+) -> None:
+    path = filled.path(1)
+    path.unlink()
+    place(path)
+    with pytest.raises(SurroundingsError, match=rf"chunk-0000001.bin: {kind}, where .*: move it or remove it"):
+        compute(job(compute=fail), filled, How(1), fresh=fresh)
+    with pytest.raises(SurroundingsError, match=kind):
+        filled.read(1)
+    path.rename(tmp_path / "elsewhere")  # as the message says
+    assert compute(job(), filled, How(1), fresh=fresh).damaged == 0
+
+
+def test_of_a_large_file_no_more_is_read_than_a_chunk_may_have(filled: Chunks, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = filled.path(1)
+    with path.open("r+b") as stream:
+        stream.truncate(1 << 27)
+    work = compute(job(), filled, How(1))
+    assert (work.damaged, work.computed) == (1, filled.plan.chunk)
+    monkeypatch.setattr(store, "_MOST_BYTES", 64)
+    with pytest.raises(ChunkError, match="torn or changed"):
+        filled.read(1)
+
+
+@pytest.mark.parametrize("place", ["out", "out/sweep", "out/sweep/KEY"])
+def test_a_file_in_the_place_of_a_folder_is_told_before_anything_is_computed(place: str, tmp_path: Path) -> None:
+    chunks = chunks_of(job(), tmp_path / "out")
+    path = tmp_path / place.replace("KEY", chunks.folder.name)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("mine")
+    with pytest.raises(SurroundingsError, match=r"not a folder, where .*: move it or remove it") as refused:
+        compute(job(compute=fail), chunks, How(1))
+    assert refused.value.path == path
+    path.rename(tmp_path / "elsewhere")  # as the message says
+    assert compute(job(), chunks, How(1)).computed == GRID.count
 
 
 def test_a_wrong_result_is_refused_before_it_is_written(filled: Chunks) -> None:

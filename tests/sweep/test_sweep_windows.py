@@ -1,4 +1,4 @@
-"""Windows of samples within a band: both engines against each other and all windows; ends against `longest_window`."""
+"""Windows of samples within a band: against two pointers and all windows; ends against `longest_window`."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.scanned import scanned
 
-from camgeo.sweep.search import windows
 from camgeo.sweep.search.ends import Ends, _Cubic, _passed, cell_bounds, ends, greatest, least, lengths
 from camgeo.sweep.search.linkages import angles
 from camgeo.sweep.search.windows import Samples, longest
@@ -34,26 +34,18 @@ def sampled(f, x):
     return Samples(f[0], *cell_bounds(*f), np.stack([x[0], np.broadcast_to(angles(f[0].shape[1]), x[0].shape)]))
 
 
-def interpreted(samples, band):
-    """The function that numba compiles, not compiled."""
-    found = np.full((2, 2, samples.value.shape[0]), -1)
-    windows._scan(samples, band, np.empty((2, 2 * samples.value.shape[1]), dtype=np.intp), found[0], found[1])
-    return found
-
-
 @pytest.mark.parametrize("n", [24, 60, 360])
 @pytest.mark.parametrize("band", [1e-9, 0.003, 0.2, 2.0, 50.0])
-def test_the_engines_find_the_same_windows(n, band):
-    pytest.importorskip("numba")
+def test_the_windows_are_those_of_two_pointers(n, band):
     samples = sampled(*waves(n, 60, n))
-    by_numpy, compiled = (longest(samples, band, engine) for engine in ("numpy", "compiled"))
-    assert np.array_equal(by_numpy.start, compiled.start)
-    assert np.array_equal(by_numpy.cells, compiled.cells)
+    found, (start, cells) = longest(samples, band), scanned(samples, band)
+    assert np.array_equal(found.start, start)
+    assert np.array_equal(found.cells, cells)
 
 
 @settings(deadline=None, max_examples=examples(60))
 @given(st.data())
-def test_the_engines_agree_on_values_with_many_ties(data):
+def test_they_are_so_for_values_with_many_ties(data):
     n = data.draw(st.sampled_from([4, 8, 24]))
     rows = data.draw(st.lists(st.lists(st.integers(-3, 3), min_size=n, max_size=n), min_size=1, max_size=4))
     value = np.array(rows, dtype=float)
@@ -62,8 +54,8 @@ def test_the_engines_agree_on_values_with_many_ties(data):
     x = np.broadcast_to((np.cumsum(steps) - steps) * TURN / steps.sum(), value.shape)
     samples = Samples(value, np.minimum(value, after), np.maximum(value, after), np.stack([x, angles(n) + 0 * x]))
     band = data.draw(st.sampled_from([0.5, 1.0, 2.0, 2.5, 6.0]))
-    found = longest(samples, band, "numpy")
-    start, cells = interpreted(samples, band)
+    found = longest(samples, band)
+    start, cells = scanned(samples, band)
     assert np.array_equal(found.start, start)
     assert np.array_equal(found.cells, cells)
 
@@ -111,30 +103,18 @@ def reach_of_all(samples, band, row, k):
 @pytest.mark.parametrize("band", [0.01, 0.1, 0.6, 30.0])
 def test_no_window_reaches_farther(band):
     samples = sampled(*waves(5, 12, 40))
-    found = longest(samples, band, "numpy")
+    found = longest(samples, band)
     for k in (0, 1):
         for row in range(12):
             assert (found.start[k, row], found.cells[k, row]) == reach_of_all(samples, band, row, k)
 
 
-@pytest.mark.parametrize("engine", ["numpy", "compiled"])
-def test_a_constant_is_one_window(engine):
-    if engine == "compiled":
-        pytest.importorskip("numba")
+def test_a_constant_is_one_window():
     flat = np.full((2, 24), 3.0)
-    found = longest(Samples(flat, flat, flat, (angles(24) + 0 * flat)[None]), 1e-9, engine)
+    found = longest(Samples(flat, flat, flat, (angles(24) + 0 * flat)[None]), 1e-9)
     assert (found.cells == 24).all()
     none = flat[:0]
-    assert longest(Samples(none, none, none, none[None]), 1.0, engine).start.shape == (1, 0)
-
-
-def test_the_engine_is_the_compiled_one_where_there_is_numba(monkeypatch):
-    for found, engine in ((object(), "compiled"), (None, "numpy")):
-        windows.best_engine.cache_clear()
-        monkeypatch.setattr("importlib.util.find_spec", lambda _, found=found: found)
-        assert windows.best_engine() == engine
-    monkeypatch.undo()
-    windows.best_engine.cache_clear()
+    assert longest(Samples(none, none, none, none[None]), 1.0).start.shape == (1, 0)
 
 
 def lengths_of(wave, band):
@@ -180,25 +160,6 @@ def test_the_error_falls_with_the_fourth_power_of_the_step():
 
 
 @pytest.mark.slow
-def test_where_nothing_can_be_written_the_compiled_engine_is_not_kept(monkeypatch):
-    numba = pytest.importorskip("numba")
-    compiler = numba.njit
-
-    def barred(cache=False, **how):
-        if cache:
-            raise RuntimeError("cannot cache function '_scan': no locator available for file 'windows.py'")
-        return compiler(**how)
-
-    monkeypatch.setattr(numba, "njit", barred)
-    windows._compiled.cache_clear()
-    samples = sampled(*waves(3, 5, 60))
-    try:
-        compiled = longest(samples, 0.2, "compiled")
-    finally:
-        windows._compiled.cache_clear()
-    assert np.array_equal(compiled, longest(samples, 0.2, "numpy"))
-
-
 def test_a_window_over_the_shaft_is_not_the_one_over_the_relative_angle():
     over_shaft, relative = lengths_of(waves(2, 30, 360), 0.02)
     assert np.abs(over_shaft - relative).max() > 0.05

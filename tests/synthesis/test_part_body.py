@@ -1,6 +1,7 @@
 """Parts from recipes: what places itself, the least walls with the names of their edges, and what is refused."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -79,6 +80,37 @@ def test_the_mark_lies_on_the_ray_at_zero_as_far_out_as_the_wall_lets_it():
     assert not checks["wall"].ok
     assert checks["wall"].detail.startswith("mark and contour: 1.4")
     assert farther.contour is None
+
+
+@pytest.mark.parametrize(
+    ("part", "tight"),
+    [("mark: {width: 60}", True), ("mark: {width: 30, length: 40}, chamfer: 1", True), ("mark: {width: 4}", False),
+     ("mark: {width: 9, radius: 20}", False), ("mark: {as: cut}, wall: 60", True)],
+)  # fmt: skip
+def test_a_mark_without_room_fails_with_what_would_have_some(part, tight):
+    def marked(text):
+        return found(recipe_of(f"{{thickness: 8, {text}}}", cam="cam: {kind: support, p: 25 + 2*cos(3*t)}\n"))
+
+    design, checks = marked(part)
+    assert not checks["mark"].ok
+    assert design.contour is None
+    size, wall = re.search(r"long; (?:(\{.*\}) has|a part\.wall of (.*) leaves some)$", checks["mark"].detail).groups()
+
+    def mended(share):
+        values = re.sub(r"[\d.]+", lambda number: f"{share * float(number[0]):.9g}", size or wall)
+        return re.sub(*(("mark: {.*?}", f"mark: {values}") if size else ("wall: 60", f"wall: {values}")), part)
+
+    design, checks = marked(mended(1.0))
+    assert "mark" not in checks
+    assert checks["wall"].ok
+    assert opening(design, "mark")
+    if tight:  # a hundredth more has no room
+        assert not marked(mended(1.01))[1]["mark"].ok
+
+
+def test_a_mark_where_the_ray_meets_no_metal_is_left_out():
+    _, checks = found(recipe_of("{thickness: 8, mark: {}}", cam="cam: {kind: support, p: 25, shaft: [60, 0]}\n"))
+    assert checks["mark"].detail.endswith("; no other has any, leave it out")
 
 
 # --- walls ----------------------------------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
-"""The tables of docs/recipe.md, from the schema: `python tests/validation/recipe_page.py` writes them anew."""
+"""Contents and tables of docs/recipe.md, from the schema: `python tests/validation/recipe_page.py` writes them anew."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from camgeo.cams.disc import FOLLOWERS
@@ -64,6 +65,32 @@ def below(found, path):
             yield from below(field.form.instead, f"{path}.{field.name}")
 
 
+def is_motion(field):
+    return field.form is not None and field.form.instead is not None
+
+
+def motions(found):
+    """Each motion that a kind of cam takes, by its name in the schema's tables."""
+    return {f"{name}.{field.name}": field for name, one in found.items() for field in one.fields if is_motion(field)}
+
+
+def spans(of_cams):
+    """What each motion is of: the unit of its strokes, and the greatest angle of a segment."""
+    lines = ["| cam | motion | stroke | segment up to |", "| --- | --- | --- | --- |"]
+    for name, motion in of_cams.items():
+        kind, key = name.removeprefix("cam ").split(".")
+        rise, over = motion.inner.field("rise"), motion.inner.field("over")
+        lines.append(f"| `{kind}` | `{key}` | {UNITS[rise.unit or rise.kind]} | {over.at_most:g} deg |")
+    return "\n".join(lines)
+
+
+def contents(text):
+    """The sections of a page as links."""
+    titles = [title for title in re.findall(r"^## (.*)$", text, re.MULTILINE) if title != "Contents"]
+    places = [re.sub(r"[^a-z0-9 -]", "", title.lower()).replace(" ", "-") for title in titles]
+    return "\n".join(f"- [{title}](#{place})" for title, place in zip(titles, places, strict=True))
+
+
 def figures():
     lines = ["| figure | unit | best | needs | sweep | meaning |", "| --- | --- | --- | --- | --- | --- |"]
     for name, figure in FIGURES.items():
@@ -82,10 +109,18 @@ def tables():
             found[f"{noun} {kind}"] = one
             found.update(below(one, f"{noun} {kind}"))
     found.update({f"file {kind}": file for kind, file in FILES.items()})
+    of_cams = motions(found)
+    found = {name: one for name, one in found.items() if not name.startswith(tuple(of_cams))}
+    motion = of_cams["cam disc.motion"]  # the others have the same keys or fewer, which a test holds
+    found["motion"] = motion.inner
+    found.update(below(motion.inner, "motion"))
+    found["motion as a mapping"] = motion.form.instead
+    found.update(below(motion.form.instead, "motion"))
     # flat pair and double roller share their routes, csv has no keys
     first = {one: name for name, one in reversed(found.items()) if one.fields}
     written = {name: table(one) for name, one in found.items() if first.get(one) == name}
-    return {**written, "figures": figures()}
+    text = PAGE.read_text(encoding="utf-8")
+    return {**written, "motions": spans(of_cams), "figures": figures(), "contents": contents(text)}
 
 
 def main():

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from support import followers
 from support.disc_followers import (
     CURVES,
     FOLLOWERS,
@@ -29,7 +30,6 @@ from camgeo.curve.undercut.trim import trimmed
 from kin.contour.contour import Contour
 from kin.follower import guide
 from kin.follower.deviation import deviation
-from kin.follower.follower import FlatFace, Roller
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 from kin.law.sources.lobe import lobe
@@ -152,10 +152,10 @@ def circle(radius, x=0.0, y=0.0):
 
 def test_d18_eccentrics():
     eccentric = circle(30.0, 10.0)
-    flat = FlatFace(lift_from_fourier(30.0, {1: 10.0}, {}))
+    flat = followers.flat_face(lift_from_fourier(30.0, {1: 10.0}, {}))
     assert flat.contact(eccentric, PHI) == pytest.approx(30.0 + 10.0 * np.cos(PHI), abs=1e-13)
     assert flat.judge(eccentric, PHI).motion.max < 1e-12
-    roller = Roller(guide.Translating(), 12.0, STILL)
+    roller = followers.roller(guide.Line(), 12.0, STILL)
     expected = 10.0 * np.cos(PHI) + np.sqrt(42.0**2 - 100.0 * np.sin(PHI) ** 2)
     assert roller.contact(eccentric, PHI) == pytest.approx(expected, abs=1e-12)
 
@@ -167,20 +167,20 @@ def test_d18_tangent_cam_and_arc_flank():
     quarter = math.tan((180 * DEGREE - wide) / 4)
     corners = np.array([[base / math.cos(wide), 0.0], [x, y], [-base, 0.0], [x, -y]])
     tangent = Contour.from_bulges(corners, np.array([0.0, quarter, quarter, 0.0]))
-    roller = Roller(guide.Translating(), 10.0, STILL)
+    roller = followers.roller(guide.Line(), 10.0, STILL)
     off = np.radians(np.linspace(-5.0, 18.0, 24))  # of the flank's normal, as long as the flank is touched
     off = off[off >= 0.0]
     assert roller.contact(tangent, wide - off) == pytest.approx(30.0 / np.cos(off), abs=1e-12)
     # the flank an arc of 70 about a point 50 beyond the shaft: the face rises by (70 - r1)(1 - cos)
     x = 50.0
     arc = circle(70.0, -x)
-    flank = FlatFace(Lift(STILL)).contact(arc, off)
+    flank = followers.flat_face(Lift(STILL)).contact(arc, off)
     assert flank == pytest.approx(base + (70.0 - base) * (1.0 - np.cos(off)), abs=1e-12)
 
 
 def test_d18_harmonic_flat():
     """50 mm harmonic, flat, least radius 25: a circle of 50 about (-25, 0), its face 50 wide."""
     lift = lift_from_fourier(50.0, {1: -25.0}, {})
-    follower = FlatFace(lift)
+    follower = followers.flat_face(lift)
     assert follower.judge(circle(50.0, -25.0), PHI).motion.max < 1e-12
     assert np.ptp(lift.derivatives(PHI, 1)[1]) == pytest.approx(50.0, abs=1e-12)

@@ -23,6 +23,27 @@ def test_the_page_has_no_table_besides():
     assert sorted(marks) == sorted(recipe_page.tables())
 
 
+def test_every_motion_has_the_keys_that_the_page_shows_once():
+    cams = {f"cam {kind}": table for kind, table in recipe_page.CAMS.items()}
+    of_cams = recipe_page.motions(cams)
+    assert len(of_cams) >= 6
+    shown = of_cams["cam disc.motion"]
+    segment, sources = meanings(shown.inner), meanings(shown.form.instead)
+    for name, motion in of_cams.items():
+        assert meanings(motion.inner) == segment, name
+        other = meanings(motion.form.instead)
+        assert other.items() <= sources.items(), name
+        assert {key.split(".")[0] for key in sources.keys() - other.keys()} <= {"repeat", "segments", "units"}, name
+
+
+def meanings(table):
+    """What each key of a table, and of the tables in it, is said to mean."""
+    own = {field.name: field.about for field in table.fields}
+    return own | {
+        f"{path}.{key}": about for path, below in recipe_page.below(table, "") for key, about in meanings(below).items()
+    }
+
+
 def test_the_page_names_every_law_and_function():
     text = recipe_page.PAGE.read_text(encoding="utf-8")
     assert [name for name in NAMES if f"`{name}`" not in text] == []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias, cast
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -11,19 +11,17 @@ from camgeo.curve.ring import Ring, disc
 from camgeo.report.page import curves, guided, outline
 from camgeo.report.page.followers import SHAFT, cam, double_roller, flat, flat_pair
 from camgeo.report.page.scene import Body, Scene, Shape, pivot
+from camgeo.synthesis.view import Drawer, Round, View, entry, view_of
+from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from camgeo.cams.constant_diameter import ConstantDiameterCam
-    from camgeo.cams.disc_cams import OscillatingFaceCam, OscillatingRoundCam, TranslatingFaceCam, TranslatingRoundCam
-    from camgeo.curve.moving_frame import Displacement
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
+    from kin.law.contacts import Arrangement, Guide
     from kin.numeric.arrays import Array
 
 JOINT = 0.045  # of the cam's reach: the size of a joint
@@ -64,8 +62,7 @@ def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
     exact = outline.Exact.of(design, outline.Exact.looks(files))
     drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)
-    touch = next((name for name in TOUCHES if design.follower.name.endswith(name)), "roller")
-    plots.append(curves.curvature(recipe, design, exact, touch))
+    plots.append(curves.curvature(recipe, design, exact))
     errors = [FileError(file.name, *(row / recipe.mm for row in exact.error(file))) for file in files]
     scene = scene.scaled(1.0 / recipe.mm)
     middle = slice(exact.per // 2, None, exact.per)
@@ -126,120 +123,100 @@ def _mechanism(
         where = "; ".join(check.detail for check in design.driven.checks if not check.ok and check.detail)
         slides = "The mechanism does not make a full turn: the cam is shown in a frame that only slides. "
         note = f"{slides}{where[0].upper()}{where[1:]}. {note}" if where else slides + note
-    drawn_as = DRAWN[design.follower.name]
-    bodies, more = drawn_as.bodies(recipe, design, reach, size)
-    shaft = pivot("shaft", 0.0, 0.0, size, drawn_as.letter)
+    view = view_of(recipe, design)
+    bodies, more = DRAWN[design.follower.arrangement](view, reach, size)
+    shaft = pivot("shaft", 0.0, 0.0, size, "O" if view.guide.unit == "deg" else "")
     return Scene((disk, shaft, *bodies), note), [*curves.motion(recipe, design), *more], SHAFT
 
 
-class _Drawn(NamedTuple):
-    """How a follower is drawn: its bodies with the plots they give, and the letter at the shaft."""
-
-    bodies: Callable[[Recipe, Design, float, float], tuple[list[Body], list[curves.Plot]]]
-    letter: str
+_Drawing: TypeAlias = "tuple[list[Body], list[curves.Plot]]"
 
 
-def _faces(_: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
-    return flat(cast("Lift", design.intent), design.yoke_breadth, reach, size), []
+def _faces(view: View[Translating, Flat], reach: float, size: float) -> _Drawing:
+    return flat(view, reach, size), []
 
 
-def _two_rollers(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
-    bodies, angles = double_roller(cast("Transmission", design.intent), recipe.cam.touch_radius, size)
-    return bodies, [curves.pressure(dict(zip(("roller A", "roller B"), angles, strict=True)))]
+def _two_rollers(view: View[Oscillating, Roller], _: float, size: float) -> _Drawing:
+    bodies, angles = double_roller(view, size)
+    return bodies, [curves.pressure(view.recipe, dict(zip(("roller A", "roller B"), angles, strict=True)))]
 
 
-def _two_faces(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
-    bodies, lever = flat_pair(cast("Transmission", design.intent), size)
-    return bodies, [curves.levers(recipe, lever)]
+def _two_faces(view: View[Oscillating, Flat], _: float, size: float) -> _Drawing:
+    bodies, lever = flat_pair(view, size)
+    return bodies, [curves.levers(view.recipe, lever)]
 
 
-_Touch: TypeAlias = "Callable[[float, Array, float], guided.Touch]"
-"""Radius, pressure angle at the page's steps and size of a joint to what touches the cam."""
-TOUCHES: dict[str, _Touch] = {
-    "roller": lambda radius, _, size: guided.roller(radius, size),
-    "knife edge": lambda _, __, size: guided.knife_edge(size),
-    "shoe": guided.shoe,
-}
-
-
-def _touching(design: Design) -> str:
-    """What touches the cam, without how it is led."""
-    return design.follower.name.partition(" ")[2]
-
-
-def _pressed(recipe: Recipe, design: Design, size: float) -> tuple[guided.Touch, Array, list[Body], list[curves.Plot]]:
+def _pressed(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array, list[Body], list[curves.Plot]]:
     """Return what touches a cam about a centre, the displacement at the page's steps, the contact and the plot."""
-    name = _touching(design)
-    s = design.position.rows(SHAFT, 0)[0]
-    angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
-    touch = TOUCHES[name](recipe.cam.touch_radius, angle, size)
-    return touch, s, [guided.touched(design.profile, size, touch.within)], [curves.pressure({name: angle}, SIGN)]
+    angle = view.pressure(SHAFT)
+    touch = guided.touch_of(view.touch, angle, size)
+    plots = [curves.pressure(view.recipe, {view.touch.word: angle}, SIGN)]
+    return touch, view.travel(SHAFT)[0], [guided.touched(view.design.profile, size, touch.within)], plots
 
 
-def _on_stem(recipe: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
-    touch, s, found, plots = _pressed(recipe, design, size)
-    along = cast("TranslatingRoundCam", recipe.cam).guide
-    x, y = guided.centres(along, s)
-    return [*guided.on_stem(touch, x, float(y[0]), reach, size), *found], plots
+def _on_stem(view: View[Translating, Round], reach: float, size: float) -> _Drawing:
+    touch, s, found, plots = _pressed(view, size)
+    return [*guided.on_stem(touch, view.datum + s, view.guide.offset, reach, size), *found], plots
 
 
-def _on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
-    touch, s, found, plots = _pressed(recipe, design, size)
-    arm = cast("OscillatingRoundCam", recipe.cam).guide
-    return [*guided.on_arm(touch, arm, s, (arm.length, 0.0), size), *found], plots
+def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
+    touch, s, found, plots = _pressed(view, size)
+    return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.length or 0.0, 0.0), size), *found], plots
 
 
-def _faced(recipe: Recipe, design: Design, size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
+def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
     """Return the displacement, the run of the contact along a face, the contact, and plots of both."""
-    s = design.position.rows(SHAFT, 0)[0]
-    place = recipe.cam.contact_place(design.intent, design.profile)(SHAFT)
-    angle = recipe.cam.pressure_angle(design.intent, design.profile)(SHAFT)
-    plots = [curves.pressure({_touching(design): angle}), curves.along(recipe, place)]
+    place, angle = view.place(SHAFT), view.pressure(SHAFT)
+    plots = [curves.pressure(view.recipe, {view.touch.word: angle}), curves.along(view.recipe, place)]
     margin = guided.MARGIN * size
-    return s, float(place.min()) - margin, float(place.max()) + margin, [guided.touched(design.profile, size)], plots
+    found = [guided.touched(view.design.profile, size)]
+    return view.travel(SHAFT)[0], float(place.min()) - margin, float(place.max()) + margin, found, plots
 
 
-def _face_on_stem(recipe: Recipe, design: Design, reach: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
-    s, low, high, found, plots = _faced(recipe, design, size)
-    cam = cast("TranslatingFaceCam", recipe.cam)
-    if cam.width is not None:
-        low, high = -0.5 * cam.width, 0.5 * cam.width
-    face = cam.face(cast("Displacement", design.intent))
-    x = face.level + s
-    return [*guided.on_stem(guided.face(cam.tilt, low, high, size), x, cam.offset, reach, size), *found], plots
+def _face_on_stem(view: View[Translating, Flat], reach: float, size: float) -> _Drawing:
+    s, low, high, found, plots = _faced(view, size)
+    if view.touch.width is not None:
+        low, high = -0.5 * view.touch.width, 0.5 * view.touch.width
+    face = guided.face(view.touch.tilt, low, high, size)
+    return [*guided.on_stem(face, view.datum + s, view.guide.offset, reach, size), *found], plots
 
 
-def _face_on_arm(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
-    s, low, high, found, plots = _faced(recipe, design, size)
-    face = cast("OscillatingFaceCam", recipe.cam).face(cast("Displacement", design.intent))
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    at = (middle, -face.side * face.face)
+def _face_on_arm(view: View[Oscillating, Flat], _: float, size: float) -> _Drawing:
+    s, low, high, found, plots = _faced(view, size)
+    nearer, middle, half = view.touch.nearer, 0.5 * (low + high), 0.5 * (high - low)
+    at = (middle, -view.guide.side * nearer)
     # a face that lies beyond the pivot's parallel is held at its near end: to its middle the arm would cross the cam
-    short = half if face.face < 0.0 else 0.0
-    return [*guided.on_arm(guided.face(0.0, -half, half, size), face, s, at, size, short=short), *found], plots
+    short = half if nearer < 0.0 else 0.0
+    face = guided.face(0.0, -half, half, size)
+    return [*guided.on_arm(face, view.contacts[0], s, at, size, short=short), *found], plots
 
 
-def _roller_frame(recipe: Recipe, design: Design, _: float, size: float) -> tuple[list[Body], list[curves.Plot]]:
-    cam, s = cast("ConstantDiameterCam", recipe.cam), design.position.rows(SHAFT, 0)[0]
-    x, _y = guided.centres(cam.guide, s)
-    hole = 0.5 * (recipe.part.bore or 0.0)
-    bodies = guided.roller_frame(x, cam.apart(design.intent), cam.touch_radius, hole, size)
+def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Drawing:
+    first, second = view.contacts
+    hole, radius = 0.5 * (view.recipe.part.bore or 0.0), view.touch.radius
+    x = first.datum + view.travel(SHAFT)[0]
+    bodies = guided.roller_frame(x, first.datum + second.datum, radius, hole, size)
     found, angles = [], {}
     for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
-        found.append(guided.touched(design.profile, size, cam.touch_radius, on=on, name=f"contact of {name}"))
-        angles[name] = cam.pressure_angle(design.intent, design.profile)(SHAFT + on)
-    return [*bodies, *found], [curves.pressure(angles, SIGN)]
+        found.append(guided.touched(view.design.profile, size, radius, on=on, name=f"contact of {name}"))
+        angles[name] = view.pressure(SHAFT + on)
+    return [*bodies, *found], [curves.pressure(view.recipe, angles, SIGN)]
 
 
-DRAWN: dict[str, _Drawn] = {
-    "flat face": _Drawn(_faces, ""),
-    "yoke": _Drawn(_faces, ""),
-    "square frame": _Drawn(_faces, ""),  # of a linkage that does not turn right round
-    "double roller": _Drawn(_two_rollers, "O"),
-    "flat pair": _Drawn(_two_faces, "O"),
-    "translating flat face": _Drawn(_face_on_stem, ""),
-    "oscillating flat face": _Drawn(_face_on_arm, "O"),
-    "roller yoke": _Drawn(_roller_frame, ""),
-    **{f"translating {name}": _Drawn(_on_stem, "") for name in TOUCHES},
-    **{f"oscillating {name}": _Drawn(_on_arm, "O") for name in TOUCHES},
-}
+DRAWN: dict[Arrangement, Drawer[[float, float], _Drawing]] = dict(
+    [
+        entry(Translating, Roller, _on_stem),
+        entry(Translating, Shoe, _on_stem),
+        entry(Translating, KnifeEdge, _on_stem),
+        entry(Translating, Flat, _face_on_stem),
+        entry(Translating, Flat, _faces, 2),
+        entry(Translating, Roller, _roller_frame, 2),
+        entry(Oscillating, Roller, _on_arm),
+        entry(Oscillating, Shoe, _on_arm),
+        entry(Oscillating, KnifeEdge, _on_arm),
+        entry(Oscillating, Flat, _face_on_arm),
+        entry(Oscillating, Roller, _two_rollers, 2),
+        entry(Oscillating, Flat, _two_faces, 2),
+    ]
+)
+"""How each follower is drawn: its bodies and the plots they give, from the cam's reach and the size of a joint."""

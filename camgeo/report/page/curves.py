@@ -10,11 +10,13 @@ import numpy as np
 
 from camgeo.checks.declared import BENT
 from camgeo.curve.support import is_sharp
+from camgeo.recipe.figures import ON_RETURN, ON_RISE, PRESSURE_ANGLE
 from camgeo.report.page.followers import SHAFT
 from camgeo.synthesis.design import intended
+from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.linked import Driven
@@ -24,7 +26,8 @@ if TYPE_CHECKING:
 
 ORDER = 3
 DERIVATIVES = ("", "velocity", "acceleration", "jerk")
-POWERS = ("", "/rad", "/rad²", "/rad³")
+POWERS = ("/rad", "/rad²", "/rad³")
+TIMES = ("/s", "/s²", "/s³")
 DEGREES = 180.0 / math.pi
 COUNTS = 0.5  # of the longest dwell within a band: shorter ones are not told
 
@@ -59,19 +62,30 @@ class Rest:
     name: str
 
 
-def derivatives(title: str, unit: str, rows: Array) -> list[Plot]:
-    """Return plots of a motion and its derivatives by the shaft angle, rows (4, STEPS + 1)."""
+def derivatives(recipe: Recipe, title: str, unit: str, rows: Array) -> list[Plot]:
+    """Return plots of a motion and its derivatives, rows (4, STEPS + 1) by the shaft angle, as `per` has them."""
     found = [Plot(title, unit, (Series(title.lower(), rows[0]),), dwells=True)]
-    for name, power, row in zip(DERIVATIVES[1:], POWERS[1:], rows[1:], strict=True):
-        found.append(Plot(name.capitalize(), unit + power, (Series(name, row),), dwells=True))
+    for order, name in enumerate(DERIVATIVES[1:], start=1):
+        factor, power, note = per(recipe, order)
+        series = (Series(name, factor * rows[order]),)
+        found.append(Plot(name.capitalize(), unit + power, series, dwells=True, note=note))
     return found
+
+
+def per(recipe: Recipe, order: int) -> tuple[float, str, str]:
+    """Return factor, unit and note of a derivative: by radian, or by second where the shaft's speed is given."""
+    if recipe.dynamics is None:
+        return 1.0, POWERS[order - 1], ""
+    rpm = recipe.dynamics.rpm
+    return (rpm * TURN / 60.0) ** order, TIMES[order - 1], f"at {rpm:g} rpm"
 
 
 def motion(recipe: Recipe, design: Design) -> list[Plot]:
     """Return plots of the follower's motion: what the motion table holds, at the page's steps."""
     position = design.position
     unit = "°" if position.unit == "deg" else length_unit(recipe)
-    return derivatives(position.title.capitalize(), unit, position.turn(SHAFT, ORDER) * position.shown(recipe.mm))
+    rows = position.turn(SHAFT, ORDER) * position.shown(recipe.mm)
+    return derivatives(recipe, position.title.capitalize(), unit, rows)
 
 
 def output(recipe: Recipe, driven: Driven) -> list[Plot]:
@@ -80,7 +94,7 @@ def output(recipe: Recipe, driven: Driven) -> list[Plot]:
     at, end = mechanism.at(driven.theta[:-1], ORDER), mechanism.at(driven.theta[-1:], ORDER, -1)
     rows = np.concatenate([at.over_shaft(at.output), end.over_shaft(end.output)], axis=1)
     unit, scale = ("°", DEGREES) if mechanism.unit == "deg" else (length_unit(recipe), 1.0 / recipe.mm)
-    found = derivatives("Output", unit, scale * rows)
+    found = derivatives(recipe, "Output", unit, scale * rows)
     if mechanism.dyads:
         first, scale_1 = mechanism.linkage, DEGREES if mechanism.linkage.unit == "deg" else 1.0 / recipe.mm
         values = scale_1 * np.concatenate([at.outputs[0][0], end.outputs[0][0]])
@@ -88,7 +102,9 @@ def output(recipe: Recipe, driven: Driven) -> list[Plot]:
         found.append(Plot("Output of the first loop", name, (Series("first loop", values),)))
     frame = DEGREES * np.concatenate([at.over_shaft(at.frame[:2]), end.over_shaft(end.frame[:2])], axis=1)
     found.append(Plot("Frame", "°", (Series("angle of the frame", frame[0]),)))
-    found.append(Plot("Velocity of the frame", "°/rad", (Series("velocity of the frame", frame[1]),)))
+    factor, power, note = per(recipe, 1)
+    turning = (Series("velocity of the frame", factor * frame[1]),)
+    found.append(Plot("Velocity of the frame", f"°{power}", turning, note=note))
     names = ("transmission angle", "force angle")
     angles = tuple(Series(name, DEGREES * row) for name, row in zip(names, driven.angles(), strict=True))
     note = "force angle: between the force of the frame and the direction in which it does nothing"
@@ -96,10 +112,23 @@ def output(recipe: Recipe, driven: Driven) -> list[Plot]:
     return found
 
 
-def pressure(angles: Mapping[str, Array], note: str = "") -> Plot:
-    """Return the plot of pressure angles, rad (STEPS + 1,) each, by the name of what touches."""
+def pressure(recipe: Recipe, angles: Mapping[str, Array], note: str = "") -> Plot:
+    """Return the plot of pressure angles, rad (STEPS + 1,) each, by the name of what touches, and of their limits."""
     series = tuple(Series(name, DEGREES * row) for name, row in angles.items())
-    return Plot("Pressure angle", "°", series, dwells=True, note=note)
+    return Plot("Pressure angle", "°", series, limits=_bounds(recipe, series), dwells=True, note=note)
+
+
+def _bounds(recipe: Recipe, series: Sequence[Series]) -> tuple[tuple[float, str], ...]:
+    """Return the limits of a pressure angle on the sides on which it is plotted: above 0 a rise, below 0 a return."""
+    values = np.concatenate([one.values for one in series])
+    sides = {PRESSURE_ANGLE: (1.0, -1.0), ON_RISE: (1.0,), ON_RETURN: (-1.0,)}
+    return tuple(
+        (side * limit.at_most, f"limit {limit.at_most:g}°")
+        for limit in recipe.limits
+        if limit.at_most is not None
+        for side in sides.get(limit.figure, ())
+        if (side * values).max() > 0.0
+    )
 
 
 def levers(recipe: Recipe, found: tuple[Array, Array]) -> Plot:
@@ -116,10 +145,10 @@ def along(recipe: Recipe, place: Array) -> Plot:
     return Plot("Contact on the face", unit, (Series("contact", place / recipe.mm),), dwells=True, note=note)
 
 
-def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller") -> Plot:
+def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
     """Return the plot of what undercut hangs on: the contour's radius of curvature, or a pitch curve's curvature.
 
-    `touch` names what follows the pitch curve. Of a ring, which is undercut where it is hollow, no margin is reported.
+    Of a ring, which is undercut where it is hollow, no margin is reported.
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
     found = next((check for check in design.checks if check.name in BENT), None)
@@ -133,8 +162,15 @@ def curvature(recipe: Recipe, design: Design, exact: Exact, touch: str = "roller
     if radius:
         values = closed(exact.curvature[:: exact.per]) * recipe.mm
         limit = recipe.mm / radius
-        series = (Series("curvature of the pitch curve", values),)
-        return Plot("Curvature of the pitch curve", f"1/{unit}", series, over, ((limit, touch),), note=margin)
+        series, touch = (Series("curvature of the pitch curve", values),), design.follower.contacts[0].touch.word
+        return Plot(
+            "Curvature of the pitch curve",
+            f"1/{unit}",
+            series,
+            over,
+            ((limit, touch),),
+            note=margin,
+        )
     values = closed(exact.radius[:: exact.per]) / recipe.mm
     return Plot("Radius of curvature", unit, (Series("radius of curvature", values),), over, ((0.0, ""),), note=margin)
 

@@ -1,4 +1,4 @@
-"""Scenes of the followers that stand by themselves: flat face, yoke, double roller, flat pair.
+"""Scenes of the followers that stand by themselves: yoke, double roller, flat pair.
 
 The shaft turns clockwise and stands at the origin; the line from it to a follower's pivot, and the normal of face 1,
 lie along +x. Angles of `step` k are k/STEPS of a turn.
@@ -17,8 +17,8 @@ from kin.numeric.angles import TURN
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
+    from camgeo.synthesis.view import View
+    from kin.law.contacts import Flat, Oscillating, Roller, Translating
     from kin.numeric.arrays import Array
 
 SHAFT = TURN * np.arange(STEPS + 1) / STEPS
@@ -52,41 +52,30 @@ def edge_ahead(ring: Ring) -> float:
     return float(ahead[np.argmin(np.abs(ahead[:, 1])), 0]) if len(ahead) else float(np.abs(beyond).max())
 
 
-def touched(lift: Lift, theta: Array) -> tuple[Array, Array]:
-    """Distance of a face and offset of its contact along it, at normals theta (n,): p and p', mm."""
-    p, slope = lift.derivatives(theta, 1)
-    return p, slope
-
-
 def contact(name: str, x: Array, y: Array, direction: Array | float, size: float, *, within: float = 0.0) -> Body:
     """Return a contact with the direction in which it pushes, the arrow longer by what it runs `within` a roller."""
     return Body(name, "contacts", arrow(6.0 * size + within, size), poses(x, y, direction))
 
 
-def flat(lift: Lift, breadth: float | None, reach: float, size: float) -> list[Body]:
-    """Return a flat face, or the yoke of two faces `breadth` apart, with guides and contacts; `reach` is the cam's."""
-    p, slope = touched(lift, SHAFT)
+def flat(view: View[Translating, Flat], reach: float, size: float) -> list[Body]:
+    """Return the yoke of two parallel faces, with guides and contacts; `reach` is the cam's."""
+    p, slope = view.travel(SHAFT, 1)
+    breadth = view.contacts[1].datum
     thick, half_stem, gap = 2.2 * size, 1.3 * size, 1.0 * size
     run = 4.5 * size
     first_guide = float(p.max()) + thick + gap
     length = first_guide + run + 2.0 * size - float(p.min())
     stem = box(thick, -half_stem, length, half_stem)
-    moving = poses(p, 0.0, 0.0)
-    if breadth is None:
-        tall = float(np.abs(slope).max()) + 3.0 * size
-        plate = Shape("follower", (box(0.0, -tall, thick, tall),), "flat face")
-        found = [Body("flat face", "follower", (plate, Shape("follower", (stem,))), moving)]
-    else:
-        tall = reach + 1.2 * size
-        outer = box(-breadth - thick, -tall - thick, thick, tall + thick)
-        frame = Shape("follower", (outer, box(-breadth, -tall, 0.0, tall)), "yoke")
-        found = [Body("yoke", "follower", (frame, Shape("follower", (stem,))), moving)]
-    found.append(guide(first_guide, run, half_stem, size))
-    found.append(contact("contact on face 1", p, slope, 0.0, size))
-    if breadth is not None:
-        q, back = touched(lift, SHAFT + 0.5 * TURN)
-        found.append(contact("contact on face 2", -q, -back, 0.5 * TURN, size))
-    return found
+    tall = reach + 1.2 * size
+    outer = box(-breadth - thick, -tall - thick, thick, tall + thick)
+    frame = Shape("follower", (outer, box(-breadth, -tall, 0.0, tall)), "yoke")
+    q, back = view.travel(SHAFT + 0.5 * TURN, 1)
+    return [
+        Body("yoke", "follower", (frame, Shape("follower", (stem,))), poses(p, 0.0, 0.0)),
+        guide(first_guide, run, half_stem, size),
+        contact("contact on face 1", p, slope, 0.0, size),
+        contact("contact on face 2", -q, -back, 0.5 * TURN, size),
+    ]
 
 
 def guide(start: float, length: float, half: float, size: float, y: float = 0.0) -> Body:
@@ -98,10 +87,10 @@ def guide(start: float, length: float, half: float, size: float, y: float = 0.0)
     return Body("guide", "ground", tuple(shapes), still())
 
 
-def double_roller(law: Transmission, radius: float, size: float) -> tuple[list[Body], tuple[Array, Array]]:
+def double_roller(view: View[Oscillating, Roller], size: float) -> tuple[list[Body], tuple[Array, Array]]:
     """Return the arm with its two rollers, and for rollers A and B the pressure angle (STEPS + 1,), rad."""
-    psi, slope = law.psi_of_shaft(SHAFT, 1)
-    arm, alpha = law.arm, law.alpha
+    psi, slope = view.travel(SHAFT, 1)
+    arm, alpha, radius = view.guide.pivot, view.contacts[0].apart, view.touch.radius
     ends = [(arm * float(np.cos(s * alpha)), arm * float(np.sin(s * alpha))) for s in (-1.0, 1.0)]
     width = min(1.9 * size, 1.4 * radius)
     arms = tuple(bar((0.0, 0.0), end, width) for end in ends)
@@ -133,23 +122,13 @@ def double_roller(law: Transmission, radius: float, size: float) -> tuple[list[B
     return bodies, (angles[0], angles[1])
 
 
-def flat_pair(law: Transmission, size: float) -> tuple[list[Body], tuple[Array, Array]]:
+def flat_pair(view: View[Oscillating, Flat], size: float) -> tuple[list[Body], tuple[Array, Array]]:
     """Return the pair of faces, and for faces A and B the lever of the contact about the pivot (STEPS + 1,), mm."""
-    from kin.follower.envelope import PairSupport
-
-    support, away = PairSupport(law), 2.0 * law.arm
-    swing, half = 0.5 * law.psi_of_shaft(SHAFT, 0)[0], 0.5 * law.alpha
+    away, half, thick = view.guide.pivot, view.contacts[0].apart, 2.0 * size
+    swing = view.travel(SHAFT)[0]
     found: list[Body] = []
-    levers, thick = [], 2.0 * size
-    places = []
-    for side in (-1.0, 1.0):
-        theta = SHAFT + side * half - swing
-        q, slope = support.derivatives(theta, 1)
-        direction = theta - SHAFT
-        c, s = np.cos(direction), np.sin(direction)
-        x, y = q * c - slope * s, q * s + slope * c
-        places.append((x, y, direction))
-        levers.append(np.hypot(x - away, y))
+    touched = view.touched(SHAFT)
+    levers = [np.abs(place - away) for place in touched]
     tall = max(float(lever.max()) for lever in levers) + 3.0 * size
     shapes = []
     for side in (-1.0, 1.0):
@@ -160,6 +139,6 @@ def flat_pair(law: Transmission, size: float) -> tuple[list[Body], tuple[Array, 
     hub = Shape("follower", (disc(0.0, 0.0, 1.9 * size),), "pair of faces")
     found.append(Body("pair of faces", "follower", (*shapes, hub), poses(away, 0.0, -swing)))
     found.append(pivot("pivot", away, 0.0, size, "P", angle=0.0))
-    for name, (x, y, direction) in zip(("face A", "face B"), places, strict=True):
-        found.append(contact(f"contact on {name}", x, y, direction, size))
+    for name, side, place in zip(("face A", "face B"), (-1.0, 1.0), touched, strict=True):
+        found.append(contact(f"contact on {name}", place.real, place.imag, side * half - swing, size))
     return found, (levers[0], levers[1])

@@ -8,18 +8,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from camgeo.curve.ring import Ring, bar, box, disc
 from camgeo.report.page.followers import SHAFT, contact, guide
 from camgeo.report.page.scene import Body, Shape, pin, pivot, poses
+from kin.law.contacts import Roller, Shoe
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from camgeo.cams.family import Profile
-    from camgeo.curve.moving_frame import Guide
+    from camgeo.synthesis.view import Round
+    from kin.law import contacts
+    from kin.law.contacts import Contact, Oscillating
     from kin.numeric.arrays import Array
 
 WIDTH = 1.9  # of an arm, in sizes of a joint
@@ -40,6 +43,16 @@ class Touch:
     foot: float = 0.0
     ahead: float = 0.0
     within: float = 0.0
+
+
+def touch_of(touch: Round, angle: Array, size: float) -> Touch:
+    """Return what touches the cam about a centre, at pressure angles (n,)."""
+    match touch:
+        case Roller(radius=radius):
+            return roller(radius, size)
+        case Shoe(radius=radius):
+            return shoe(radius, angle, size)
+    return knife_edge(size)
 
 
 def roller(radius: float, size: float, name: str = "roller") -> Touch:
@@ -91,32 +104,22 @@ def on_stem(touch: Touch, x: Array, y: float, reach: float, size: float) -> list
     ]
 
 
-class Arm(Protocol):
-    """An arm about a pivot at a distance from the shaft."""
-
-    @property
-    def pivot(self) -> float:
-        """Distance of the pivot from the shaft, mm."""
-        ...
-
-    @property
-    def rest(self) -> float:
-        """Angle between the line from pivot to shaft and the arm, at displacement 0, rad."""
-        ...
-
-    @property
-    def side(self) -> int:
-        """+1 trailing, -1 leading."""
-        ...
-
-
-def on_arm(touch: Touch, arm: Arm, s: Array, at: tuple[float, float], size: float, *, short: float = 0.0) -> list[Body]:
+def on_arm(
+    touch: Touch,
+    contact: Contact[Oscillating, contacts.Touch],
+    s: Array,
+    at: tuple[float, float],
+    size: float,
+    *,
+    short: float = 0.0,
+) -> list[Body]:
     """Return the follower on an arm at swings s (n,); `at` is where the touch's axes stand in the arm's.
 
     The arm's own x leads from the pivot to what touches, its travel is `side` times y. It is drawn to a place that lies
     `short` nearer the pivot than `at`.
     """
-    angle = math.pi + arm.side * (arm.rest + s)
+    arm = contact.guide
+    angle = math.pi + arm.side * (contact.datum + s)
     (x, y), c, n = at, np.cos(angle), np.sin(angle)
     end = (x - short, y + arm.side * touch.foot)
     shape = Shape("follower", (bar((0.0, 0.0), end, WIDTH * size),), "arm")
@@ -140,12 +143,6 @@ def touched(profile: Profile, size: float, within: float = 0.0, *, on: float = 0
     push = normal if profile.roller_radius >= 0.0 else -normal
     direction = np.unwrap(np.angle(push))
     return contact(name, point.real, point.imag, direction, size, within=within)
-
-
-def centres(guide_of: Guide, s: Array) -> tuple[Array, Array]:
-    """Return x and y (n,) of a roller's centre in the frame of the ground."""
-    place, _ = guide_of.place(np.zeros_like(s), s)
-    return place.real, place.imag
 
 
 def roller_frame(x: Array, apart: float, radius: float, hole: float, size: float) -> list[Body]:

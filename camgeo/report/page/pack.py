@@ -31,13 +31,3 @@ def packed(values: Array, extent: float | None = None) -> dict[str, Any]:
         return {"n": [round(v, digits) if np.isfinite(v) else None for v in values.tolist()]}
     whole = np.round(values * 10.0**digits).astype(np.int64)
     return {"d": digits, "v": [int(whole[0]), *np.diff(whole).tolist()]}
-
-
-def unpacked(row: dict[str, Any], count: int) -> Array:
-    """Return the values (count,) of a packed row, as the page's script reads them."""
-    if "c" in row:
-        return np.full(count, row["c"])
-    if "n" in row:
-        return np.array([np.nan if v is None else v for v in row["n"]], dtype=np.float64)
-    values: Array = np.cumsum(row["v"]) / 10.0 ** row["d"]
-    return values

@@ -115,9 +115,22 @@
     }
   }
 
+  // the address follows the angle at rest, so that it can be kept or passed on; browsers allow a few changes a second
+  let later = 0;
+  function noted() {
+    clearTimeout(later);
+    later = setTimeout(() => history.replaceState(null, "", `#deg=${Number(degrees.toFixed(2))}`), 250);
+  }
+
   function held(next) {
     play(false);
     turnTo(next);
+    noted();
+  }
+
+  function turned() {
+    play(!playing);
+    if (!playing) noted();
   }
 
   // shaft angle at which the relative angle has this value; it rises with the shaft's
@@ -160,6 +173,13 @@
     return { found, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
   }
 
+  // the thousandfold in which great and small values are counted, with its name
+  function thousands(size) {
+    const power = size >= 1e5 || size < 1e-3 ? 3 * Math.floor(Math.log10(size) / 3 + 1e-9) : 0;
+    const raised = String(power).replace(/./g, (sign) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[sign] || "⁻");
+    return power ? [10 ** power, `10${raised} `] : [1, ""];
+  }
+
   // indices of values in runs without a hole
   function runs(values) {
     const found = [];
@@ -171,11 +191,14 @@
     return found;
   }
 
-  const HEIGHT = 138;
-  const LEFT = 48;
+  const HEIGHT = 166;
+  const LEFT = 62;
   const RIGHT = 8;
   const TOP = 8;
-  const BOTTOM = 20;
+  const BOTTOM = 36;
+  const [HEAD, SAVED] = [40, 560]; // px of a saved plot: above it for its title, and its width
+  const LETTERS = 22; // that fit along the upright axis
+  const KEPT = ["fill", "stroke", "stroke-width", "stroke-dasharray", "font-size"]; // of a style, in a saved plot
 
   class Plot {
     constructor(plot) {
@@ -191,13 +214,18 @@
       this.figure = html("figure", "plot", find("plots"));
       const caption = html("figcaption", "", this.figure);
       const title = plot.title;
-      const notes = [plot.over === "relative" ? "over the relative angle" : "", plot.note].filter(Boolean);
-      html("b", "", caption, title);
-      this.value = html("span", "value", caption);
+      const words = html("div", "", caption);
+      html("b", "", words, title);
+      this.value = html("span", "value", words);
       this.spans = this.rows.map((row, i) => html("span", i ? "second-text" : "first-text", this.value));
       const told = this.rows.map((row) => `${row.name} from ${tidy(row.least)} to ${tidy(row.most)}`).join(", ");
+      const save = html("button", "save", caption, "SVG");
+      save.type = "button";
+      save.title = "save this plot as SVG";
+      save.setAttribute("aria-label", `save ${title} as SVG`);
+      save.addEventListener("click", () => this.save());
       this.svg = made("svg", { role: "img", "aria-label": `${title}, ${plot.unit}: ${told}` }, this.figure);
-      if (notes.length) html("small", "", this.figure, notes.join("; "));
+      if (plot.note) html("small", "", this.figure, plot.note);
       this.svg.addEventListener("pointerdown", (event) => {
         this.svg.setPointerCapture(event.pointerId);
         this.drag(event);
@@ -230,8 +258,8 @@
       return TOP + ((this.high - value) / (this.high - this.low)) * (HEIGHT - TOP - BOTTOM);
     }
 
-    draw() {
-      this.width = Math.max(180, this.figure.clientWidth);
+    draw(width = Math.max(180, this.figure.clientWidth)) {
+      this.width = width;
       this.svg.replaceChildren();
       this.svg.setAttribute("viewBox", `0 0 ${this.width} ${HEIGHT}`);
       const line = (name, x1, y1, x2, y2) => made("line", { class: name, x1, y1, x2, y2 }, this.svg);
@@ -245,22 +273,32 @@
           }
         }
       }
-      const { found, digits } = ticks(this.low, this.high, 5);
+      const [unit, counted] = thousands(Math.max(Math.abs(this.low), Math.abs(this.high)));
+      const { found, digits } = ticks(this.low / unit, this.high / unit, 5);
       for (const value of found) {
-        const y = this.y(value);
-        line(Math.abs(value) < 1e-12 * (this.high - this.low) ? "zero" : "grid", LEFT, y, this.width - RIGHT, y);
+        const y = this.y(value * unit);
+        const zero = Math.abs(value * unit) < 1e-12 * (this.high - this.low);
+        line(zero ? "zero" : "grid", LEFT, y, this.width - RIGHT, y);
         const text = made("text", { x: LEFT - 5, y: y + 4, "text-anchor": "end" }, this.svg);
         text.textContent = digits > 4 ? value.toExponential(0) : value.toFixed(digits).replace("-", "−");
       }
+      const name = this.plot.title[0].toLowerCase() + this.plot.title.slice(1);
+      const measure = counted + this.plot.unit;
+      const upright = name.length + measure.length < LETTERS ? `${name}, ${measure}` : measure;
+      const middle = [0.5 * (LEFT + this.width - RIGHT), 0.5 * (TOP + HEIGHT - BOTTOM)];
+      const axis = (text, place) => (made("text", { ...place, "text-anchor": "middle" }, this.svg).textContent = text);
+      axis(upright, { class: "axis", transform: `translate(11 ${middle[1]}) rotate(-90)` });
+      axis(`${this.plot.over === "relative" ? "relative" : "shaft"} angle, °`, { class: "axis", x: middle[0], y: HEIGHT - 5 });
       for (let angle = 0; angle <= 360; angle += 90) {
         line("grid", this.x(angle), TOP, this.x(angle), HEIGHT - BOTTOM);
-        const place = { x: this.x(angle) + (angle === 360 ? 7 : 0), y: HEIGHT - 5 };
+        const place = { x: this.x(angle) + (angle === 360 ? 7 : 0), y: HEIGHT - BOTTOM + 14 };
         place["text-anchor"] = angle === 360 ? "end" : "middle";
         made("text", place, this.svg).textContent = `${angle}°`;
       }
       for (const [value, name] of this.limits) {
         line("limit", LEFT, this.y(value), this.width - RIGHT, this.y(value));
-        const place = { x: this.width - RIGHT - 2, y: this.y(value) + 11, "text-anchor": "end" };
+        const below = value > 0.5 * (this.low + this.high);
+        const place = { x: this.width - RIGHT - 2, y: this.y(value) + (below ? 11 : -4), "text-anchor": "end" };
         if (name) made("text", place, this.svg).textContent = name;
       }
       this.rows.forEach((row, i) => {
@@ -309,6 +347,40 @@
         const name = this.rows.length > 1 ? `${row.name.replace(/ angle$/, "")} ` : "";
         this.spans[i].textContent = (i ? ", " : "") + name + tidy(value === null ? NaN : value, this.plot.unit);
       });
+    }
+
+    // the plot as a picture by itself, what the style sheet says written into it
+    picture() {
+      this.draw(SAVED);
+      const copy = this.svg.cloneNode(true);
+      const parts = [...copy.querySelectorAll("*")];
+      [...this.svg.querySelectorAll("*")].forEach((part, i) => {
+        const style = getComputedStyle(part);
+        for (const name of KEPT) parts[i].setAttribute(name, style.getPropertyValue(name));
+      });
+      for (const part of [this.cursor, ...this.dots]) parts[[...this.svg.querySelectorAll("*")].indexOf(part)].remove();
+      for (const part of parts) part.removeAttribute("class");
+      const high = HEIGHT + HEAD;
+      const place = { width: this.width, height: high, viewBox: `0 ${-HEAD} ${this.width} ${high}` };
+      for (const [key, value] of Object.entries({ ...place, "font-family": "sans-serif" })) copy.setAttribute(key, value);
+      const style = getComputedStyle(root);
+      const colour = (name) => style.getPropertyValue(name).trim();
+      const title = made("text", { x: 6, y: 17 - HEAD, "font-size": "13px", fill: colour("--ink") });
+      title.textContent = `${data.name}: ${this.plot.title}`;
+      const note = made("text", { x: 6, y: 32 - HEAD, "font-size": "11px", fill: colour("--quiet") });
+      note.textContent = this.plot.note;
+      copy.prepend(made("rect", { y: -HEAD, width: SAVED, height: high, fill: colour("--panel") }), title, note);
+      this.draw();
+      show();
+      return new XMLSerializer().serializeToString(copy);
+    }
+
+    save() {
+      const link = html("a");
+      link.href = URL.createObjectURL(new Blob([this.picture()], { type: "image/svg+xml" }));
+      link.download = `${data.name}-${this.plot.title.toLowerCase().replace(/[^a-z0-9.]+/g, "-")}.svg`;
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 10000);
     }
 
     drag(event) {
@@ -407,7 +479,7 @@
 
   // --- controls -----------------------------------------------------------------------------------------------------
 
-  find("play").addEventListener("click", () => play(!playing));
+  find("play").addEventListener("click", turned);
   find("slider").addEventListener("input", (event) => held(Number(event.target.value)));
   for (const kind of ["contacts", "forces"]) {
     find(kind).addEventListener("change", (event) => drawing.classList.toggle(`hide-${kind}`, !event.target.checked));
@@ -433,7 +505,7 @@
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const step = event.shiftKey ? 10 : 1;
     const keys = {
-      " ": () => play(!playing),
+      " ": turned,
       ArrowLeft: () => held(degrees - step),
       ArrowRight: () => held(degrees + step),
       Home: () => held(0),
@@ -500,10 +572,15 @@
     fit();
   });
   fit();
-  // #deg=90 begins there and stands still, #deg=90&play turns on from there
-  const begin = /^#deg=(-?[0-9.]+)(&play)?$/.exec(location.hash);
-  if (begin) turnTo(Number(begin[1]));
-  const still = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-  play(begin ? Boolean(begin[2]) : !still);
+  // #deg=90 goes there and stands still, #deg=90&play turns on from there
+  function addressed() {
+    const place = /^#deg=(-?[0-9.]+)(&play)?$/.exec(location.hash);
+    if (!place) return false;
+    turnTo(Number(place[1]));
+    play(Boolean(place[2]));
+    return true;
+  }
+  window.addEventListener("hashchange", addressed);
+  if (!addressed()) play(!window.matchMedia("(prefers-reduced-motion: reduce)").matches);
   root.dataset.ready = "true";
 })();

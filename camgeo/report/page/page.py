@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from camgeo.report.document import finite
-from camgeo.report.page import svg, tables
+from camgeo.report.page import looks, svg, tables
 from camgeo.report.page.pack import packed
 from camgeo.report.page.scene import STEPS
 
@@ -42,7 +42,7 @@ def page(recipe: Recipe, found: Content, report: dict[str, Any]) -> str:
         "dynamics": tables.dynamics(report),
         "skipped": tables.skipped(report),
         "recipe": escape(recipe.text),
-        "style": asset("drawing.css") + asset("page.css"),
+        "style": asset("drawing.css") + looks.rules() + asset("page.css"),
         "script": asset("page.js"),
         "data": encoded(data(recipe, found)),
     }

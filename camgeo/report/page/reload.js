@@ -10,6 +10,8 @@
     "background:#7a1405;color:#fff;white-space:pre-wrap;font:13px/1.5 monospace";
   box.hidden = true;
   document.body.append(box);
+  // the server has no files: they lie in the folder that it exports to
+  for (const link of document.querySelectorAll("th a")) link.removeAttribute("href");
   const events = new EventSource("/events");
   events.onmessage = (message) => {
     const event = JSON.parse(message.data);

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.report.page.looks import colours, literal
+
 if TYPE_CHECKING:
     from camgeo.report.page.scene import Body, Label, Scene, Shape
     from kin.numeric.arrays import Array
@@ -16,6 +18,14 @@ if TYPE_CHECKING:
 NAMESPACE = "http://www.w3.org/2000/svg"
 SIDE = 640.0  # px: the longer side of a drawing, in its own units
 OTHER = "other"  # in the role of a contour that does not show
+LARGE = 1.5  # times a page's px: pictures are looked at small
+LETTER, HALO = 13.0, 3.0  # px: the size of a letter, and of the ground's edge round it
+DROP = 0.34  # of a letter's size, from its middle to its base line
+LINES = ' fill-rule="evenodd" stroke-linejoin="round" stroke-linecap="round"'
+FONT = (
+    f'font-family="Georgia, Times New Roman, serif" font-style="italic" font-weight="600" '
+    f'font-size="{LETTER * LARGE:g}" text-anchor="middle"'
+)
 BESIDE = 13.0  # px from a joint's middle to that of its letter, along either axis
 
 
@@ -37,51 +47,77 @@ class View:
         return View(scale, x0, y1, scale * (x1 - x0), scale * (y1 - y0))
 
 
+@dataclass(frozen=True)
+class _Pen:
+    """How a drawing is written: decimal digits, and a px in the scene's unit where no style sheet says how it looks."""
+
+    digits: int
+    px: float | None = None
+
+
 def moving(scene: Scene) -> str:
     """Return the drawing at shaft angle 0 as an `svg` element; the group of body k has the id `body-k`."""
-    return _drawing(scene, 0, 'id="drawing" role="img" aria-label="the mechanism, to scale"', scene.digits)
+    return _drawing(scene, 0, 'id="drawing" role="img" aria-label="the mechanism, to scale"', _Pen(scene.digits))
 
 
-def still(scene: Scene, step: int, style: str, title: str) -> str:
-    """Return a picture at a step of the turn as an SVG file, with its `style` within it."""
+def still(scene: Scene, step: int, title: str) -> str:
+    """Return a picture at a step of the turn as an SVG file, on a ground of its own.
+
+    Colours and widths are literal attributes, and each letter is drawn twice: programs other than browsers know no
+    variables of style sheets and no strokes that do not scale, and paint the edge of a letter over it.
+    """
     view = View.of(scene)
-    size = f'style="--px:1.5" xmlns="{NAMESPACE}" width="{view.width:.0f}" height="{view.height:.0f}" role="img"'
-    head = f"<title>{escape(title)}</title><style>{style}</style>"
+    size = f'xmlns="{NAMESPACE}" width="{view.width:.0f}" height="{view.height:.0f}" role="img"'
+    over = (
+        f'x="-1" y="-1" width="{view.width + 2.0:.0f}" height="{view.height + 2.0:.0f}"'  # the whole of px at the rim
+    )
+    ground = f'<rect {over} fill="{colours()["ground"]}"/>'
+    head = f"<title>{escape(title)}</title>{ground}"
     shown = [replace(body, shapes=tuple(s for s in body.shapes if OTHER not in s.role)) for body in scene.bodies]
-    return _drawing(replace(scene, bodies=tuple(shown)), step, size, scene.digits - 1, head) + "\n"
+    scene = replace(scene, bodies=tuple(shown))
+    return _drawing(scene, step, size, _Pen(scene.digits - 1, LARGE / view.scale), head) + "\n"
 
 
-def _drawing(scene: Scene, step: int, attributes: str, digits: int, head: str = "") -> str:
+def _drawing(scene: Scene, step: int, attributes: str, pen: _Pen, head: str = "") -> str:
+    digits = pen.digits
     view = View.of(scene)
-    bodies = "".join(_body(body, index, step, digits) for index, body in enumerate(scene.bodies))
+    bodies = "".join(_body(body, index, step, pen) for index, body in enumerate(scene.bodies))
     letters = "".join(
-        _letter(view, label, index, body.placed(np.array([[label.x, label.y]]), step)[0], digits)
+        _letter(view, label, index, body.placed(np.array([[label.x, label.y]]), step)[0], pen)
         for index, body in enumerate(scene.bodies)
         for label in body.labels
     )
     place = f"scale({view.scale:.7g} {-view.scale:.7g}) translate({-view.x:.{digits}f} {-view.y:.{digits}f})"
+    kind, lines, font = (' class="drawing"', "", 'class="letters"') if pen.px is None else ("", LINES, FONT)
     return (
-        f'<svg {attributes} viewBox="0 0 {view.width:.2f} {view.height:.2f}" class="drawing">{head}'
-        f'<g transform="{place}">{bodies}</g><g class="letters" aria-hidden="true">{letters}</g></svg>'
+        f'<svg {attributes} viewBox="0 0 {view.width:.2f} {view.height:.2f}"{kind}>{head}'
+        f'<g transform="{place}"{lines}>{bodies}</g><g {font} aria-hidden="true">{letters}</g></svg>'
     )
 
 
-def _body(body: Body, index: int, step: int, digits: int) -> str:
+def _body(body: Body, index: int, step: int, pen: _Pen) -> str:
+    digits = pen.digits
     x, y, angle = body.at(step)
     place = f"translate({x:.{digits}f} {y:.{digits}f}) rotate({math.degrees(angle):.4f})"
-    shapes = "".join(_shape(shape, digits) for shape in body.shapes)
+    shapes = "".join(_shape(shape, pen) for shape in body.shapes)
     name = escape(body.name)
     return f'<g id="body-{index}" class="body {body.kind}" transform="{place}"><title>{name}</title>{shapes}</g>'
 
 
-def _shape(shape: Shape, digits: int) -> str:
-    path = "".join(ring.path(digits) for ring in shape.rings)
+def _shape(shape: Shape, pen: _Pen) -> str:
+    path = "".join(ring.path(pen.digits) for ring in shape.rings)
     title = f"<title>{escape(shape.name)}</title>" if shape.name else ""
-    return f'<path class="{shape.role}" d="{path}">{title}</path>'
+    look = f'class="{shape.role}"' if pen.px is None else literal(shape.role, pen.px)
+    return f'<path {look} d="{path}">{title}</path>'
 
 
-def _letter(view: View, label: Label, index: int, place_of: Array, digits: int) -> str:
-    x, y = place_of.tolist()
-    at = f"{label.x:.{digits}f} {label.y:.{digits}f}"
-    place = f'x="{view.scale * (x - view.x) + BESIDE:.1f}" y="{view.scale * (view.y - y) - BESIDE:.1f}"'
-    return f'<text data-body="{index}" data-at="{at}" {place}>{escape(label.text)}</text>'
+def _letter(view: View, label: Label, index: int, place_of: Array, pen: _Pen) -> str:
+    x, y = (place_of * (1.0, -1.0) * view.scale + (BESIDE - view.scale * view.x, view.scale * view.y - BESIDE)).tolist()
+    text = escape(label.text)
+    if pen.px is None:
+        at = f"{label.x:.{pen.digits}f} {label.y:.{pen.digits}f}"
+        return f'<text data-body="{index}" data-at="{at}" x="{x:.1f}" y="{y:.1f}">{text}</text>'
+    place = f'x="{x:.1f}" y="{y + DROP * LETTER * LARGE:.1f}"'
+    ground = colours()["ground"]
+    halo = f'stroke="{ground}" stroke-width="{HALO * LARGE:.1f}" stroke-linejoin="round"'
+    return f'<text {place} {halo}>{text}</text><text {place} fill="{colours()["ink"]}">{text}</text>'

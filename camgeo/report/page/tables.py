@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from html import escape
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from camgeo.checks.declared import CHECKS
 from camgeo.report.bound import sign
-from camgeo.report.document import pieces_word
+from camgeo.report.document import measured, pieces_word, value_text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,11 +67,14 @@ def _remark(remark: dict[str, Any]) -> str:
 
 def _row(state: tuple[str, str], one: dict[str, Any], limit: str, over: str, told: str) -> str:
     """Return the row of a check or a remark; `state` is its class and its word."""
+    value = number(one["value"])
+    if state[1] == "holds" and one["value"] is not None:
+        value = _hinted(value_text(one), one["value"])
     detail = f'<div class="detail">{escape(told)}</div>' if told else ""
     return (
         f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
         f'<th scope="row">{escape(one["name"])}{detail}</th>'
-        f'<td class="number">{number(one["value"])}</td>'
+        f'<td class="number">{value}</td>'
         f"<td>{escape(_unit(one['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(one['at_deg'], over))}"
         f"{_cell(escape(one.get('file', '')), 'file')}</tr>"
     )
@@ -94,12 +98,14 @@ def written(report: dict[str, Any]) -> str:
             cells = [
                 _bytes(file["bytes"]),
                 pieces,
-                *(number(file.get(key)) for key in ("tolerance", "geometry_error", "measured_error")),
-                f"{number(motion.get('max'))} {unit}".strip(),
-                number(motion.get("rms")),
+                *(number(file.get(key)) for key in ("tolerance", "geometry_error")),
+                _error(file.get("measured_error"), file),
+                f"{_error(motion.get('max'), file)} {unit}".strip(),
+                _error(motion.get("rms"), file),
             ]
         body = "".join(f'<td class="number">{cell}</td>' for cell in cells)
-        rows.append(f'<tr><th scope="row">{escape(file["path"])}</th>{body}</tr>')
+        link = f'<a href="{quote(file["path"])}">{escape(file["path"])}</a>'
+        rows.append(f'<tr><th scope="row">{link}</th>{body}</tr>')
     if not rows:
         return "<p>No files were made.</p>"
     unit = "in" if report["units"] == "inch" else "mm"
@@ -113,7 +119,7 @@ def linkage(report: dict[str, Any]) -> str:
     if section is None:
         return ""
     text = [
-        f'<tr><th scope="row">{name}</th><td class="number">{number(value)}</td><td>{_unit(unit)}</td>'
+        f'<tr><th scope="row">{name}</th><td class="number">{_error(value, {})}</td><td>{_unit(unit)}</td>'
         f"<td>{_place(at, 'shaft')}</td></tr>"
         for name, value, unit, at in _linkage_rows(section)
     ]
@@ -207,10 +213,16 @@ def facts(report: dict[str, Any]) -> str:
 
 def number(value: float | None) -> str:
     """Return a figure to six digits, the exact one as a hint where that says more."""
-    if value is None:
-        return NONE
-    short, exact = f"{value:.6g}", repr(value)
-    return short if float(short) == value else f'<span title="{exact}">{short}</span>'
+    return NONE if value is None else _hinted(f"{value:.6g}", value)
+
+
+def _error(value: float | None, file: dict[str, Any]) -> str:
+    """Return a measured error of a file; what only rounding made is called that."""
+    return NONE if value is None else _hinted(measured(value, limit=file.get("tolerance")), value)
+
+
+def _hinted(short: str, value: float) -> str:
+    return short if short == f"{value:.6g}" and float(short) == value else f'<span title="{value!r}">{short}</span>'
 
 
 def _place(at: float | None, over: str) -> str:

@@ -28,6 +28,8 @@ R = TypeVar("R")
 _TRIED = 0.5  # seconds of work after which it is clear how long the rest takes
 _PAYS = 2.0  # seconds of remaining work from which more processes pay
 _PATIENCE = 10.0  # seconds for a scheduler to answer
+_NO_ADDRESS = "is not the address of a Dask scheduler, such as tcp://host:8786"
+_CHATTY = frozenset({"distributed", "tornado", "asyncio"})  # whose loggers print what is said here in our words
 _WORKERLESS = 6  # times as long for its first worker to come
 
 
@@ -79,7 +81,7 @@ def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
     from distributed import Client, wait
 
     first_of: Callable[..., Any] = wait
-    with _connected(Client, address) as client, _lost(address):
+    with _quiet(), _connected(Client, address) as client, _lost(address):
         key, left = job.key, list(reversed(numbers))
         running: dict[Any, int] = {}
         alone = 0
@@ -102,13 +104,29 @@ def dask(job: Job, numbers: Sequence[int], address: str) -> Results:
 
 
 @contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep distributed from printing lines of its own: whatever stops the run is raised."""
+    import logging
+
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.split(".")[0] in _CHATTY]
+    before = [logger.disabled for logger in loggers]
+    for logger in loggers:
+        logger.disabled = True
+    try:
+        yield
+    finally:
+        for logger, disabled in zip(loggers, before, strict=True):
+            logger.disabled = disabled
+
+
+@contextmanager
 def _connected(client: Any, address: str) -> Iterator[Any]:  # noqa: ANN401 - distributed has no types
     """A client of the scheduler, closed in the end; what it still had in hand is then dropped by the scheduler."""
     _heard(address)  # first: a client that finds nobody takes half a minute to say so, or for ever
     try:
         opened = client(address, timeout=_PATIENCE, set_as_default=False)
     except OSError as error:
-        raise EngineError(f"the server at {address} is not a Dask scheduler: {error}") from error
+        raise EngineError(f"the server at {address} is not a Dask scheduler") from error
     with opened:
         yield opened
 
@@ -122,10 +140,13 @@ def _heard(address: str) -> None:
     try:
         parts = urlsplit(address if "://" in address else f"tcp://{address}")
         if not parts.hostname or not parts.port:
-            raise EngineError(f"{address} is not the address of a Dask scheduler, such as tcp://host:8786")
+            raise EngineError(f"{address} {_NO_ADDRESS}")
         socket.create_connection((parts.hostname, parts.port), _PATIENCE).close()
-    except (OSError, ValueError) as error:
-        raise EngineError(f"no Dask scheduler answers at {address}: {error}") from error
+    except ValueError as error:
+        raise EngineError(f"{address} {_NO_ADDRESS}") from error
+    except OSError as error:
+        why = f": {error.strerror}" if error.strerror else ""
+        raise EngineError(f"no Dask scheduler answers at {address}{why}") from error
     try:
         kind = asyncio.run(asyncio.wait_for(_kind_of(address), _PATIENCE))
     except TimeoutError:
@@ -134,7 +155,7 @@ def _heard(address: str) -> None:
     except MemoryError:  # its first bytes were read as a length
         raise EngineError(f"the server at {address} speaks another protocol than a Dask scheduler") from None
     except (OSError, ValueError) as error:
-        raise EngineError(f"the server at {address} is not a Dask scheduler: {error}") from error
+        raise EngineError(f"the server at {address} is not a Dask scheduler") from error
     if kind != "Scheduler":
         raise EngineError(f"the server at {address} is not a Dask scheduler, but a {kind}")
 
@@ -165,4 +186,4 @@ def _lost(address: str) -> Iterator[None]:
     except (CancelledError, OSError) as error:
         raise EngineError(f"the connection to the scheduler at {address} was lost") from error
     except KilledWorker as error:
-        raise EngineError(f"workers of {address} were killed before their chunk was done: {error}") from error
+        raise EngineError(f"workers of {address} were killed before their chunk was done") from error

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.figures import Limit
     from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.recipe import Recipe
-    from camgeo.sweep.search.windows import Engine
 
 __all__ = ["REASONS", "Evaluator", "Found", "Scene", "asked_of", "compute", "evaluate"]
 
@@ -42,7 +41,7 @@ Codes: TypeAlias = NDArray[np.uint8]
 REASONS = ("", "impossible", "undercut", "shaft-outside", "binds", "reverses", "limits")
 BLOCK = 11_520  # samples of a block: a dozen arrays of them stay in a cache of 1 MB
 _SAMPLES = 360
-_DWELLS = (DWELL, "dwell-relative")
+DWELLS = (DWELL, "dwell-relative")
 
 
 class Found(NamedTuple):
@@ -90,7 +89,6 @@ def evaluate(
     *,
     figures: Sequence[str] | None = None,
     samples: int | None = None,
-    engine: Engine | None = None,
 ) -> Found:
     """Give the figures of designs in which the fields at `paths` have the values (m, k), as the recipe writes them.
 
@@ -98,7 +96,7 @@ def evaluate(
     of 4. A design that does not exist or does not turn has nan for all figures. One that breaks a limit of the
     recipe's sweep is computed no further: its dwells are -inf. Raises ValueError for a path at which no number stands.
     """
-    return Evaluator.of(recipe, paths, figures=figures, samples=samples, engine=engine).found(values)
+    return Evaluator.of(recipe, paths, figures=figures, samples=samples).found(values)
 
 
 class _Motion(Protocol):
@@ -132,7 +130,6 @@ class Evaluator:
     wanted: tuple[str, ...]
     limits: tuple[Limit, ...]
     count: int
-    engine: Engine | None
 
     @staticmethod
     def of(
@@ -141,7 +138,6 @@ class Evaluator:
         *,
         figures: Sequence[str] | None = None,
         samples: int | None = None,
-        engine: Engine | None = None,
     ) -> Evaluator:
         """See `evaluate`. Raises ValueError for a path at which no number stands."""
         sweep = recipe.sweep
@@ -149,7 +145,7 @@ class Evaluator:
         wanted = tuple(dict.fromkeys((*(figures or asked_of(recipe)), *(limit.figure for limit in limits))))
         count = samples or (sweep.angles if sweep else _SAMPLES)
         recipe.text_with(dict.fromkeys(paths, 1.0))  # raises where no number stands
-        return Evaluator(recipe, tuple(paths), wanted, limits, -(-count // 4) * 4, engine)
+        return Evaluator(recipe, tuple(paths), wanted, limits, -(-count // 4) * 4)
 
     @cached_property
     def cams(self) -> Cams:
@@ -186,7 +182,7 @@ class Evaluator:
             here = {name: column[block] for name, column in figures.items()}
             index, windows = self._block(values[block], here, reason[block])
             kept.append((index + first, windows))
-        for name in _DWELLS:
+        for name in DWELLS:
             if name in figures:
                 figures[name][reason == BROKEN] = -np.inf
                 parts = [windows[name] for index, windows in kept if len(index)]
@@ -302,7 +298,7 @@ class Evaluator:
             figures["peak-acceleration"][index] = self.scale * greatest(np.abs(bent), smooth)
 
     def _windows(self, motion: _Motion) -> dict[str, Ends]:
-        names = [name for name in _DWELLS if name in self.wanted]
+        names = [name for name in DWELLS if name in self.wanted]
         if not names:
             return {}
         output = motion.output, motion.rate
@@ -313,7 +309,7 @@ class Evaluator:
             "dwell-relative": (theta, np.ones_like(theta)),
         }
         abscissae = np.stack([over[name][0] for name in names])
-        start, cells = longest(Samples(output[0], *bounds, abscissae), self._band, self.engine)
+        start, cells = longest(Samples(output[0], *bounds, abscissae), self._band)
         return {name: ends((start[k], cells[k]), output, over[name], bounds) for k, name in enumerate(names)}
 
     def _lengths(self, linkage: Linkage, dimensions: tuple[str, ...], values: Array) -> Lengths:

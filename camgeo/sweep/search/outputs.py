@@ -16,7 +16,7 @@ from camgeo.report.listed import listed
 from camgeo.sweep.search.gather import MOST_ROWS
 from camgeo.sweep.search.pictures import draw_best, draw_map
 from camgeo.sweep.search.recipes import curve_of, loaded, recipe_text
-from camgeo.sweep.search.table import as_csv, as_parquet, columns
+from camgeo.sweep.search.table import as_csv, as_parquet, columns, with_polished
 from camgeo.version import __version__
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ def outputs(
     """
     files = Files()
     units = ask.units(found.figures)
-    heads = columns(ask.plan, found, units)
+    table, polished = with_polished(found, best, ask.ranking)
+    heads = columns(ask.plan, table, units, polished if ask.sweep.refine else None)
     files.make(TABLES[:1], lambda: [as_csv(heads)])
     about = {"recipe": ask.recipe.name, "camgeo": __version__, "units": ask.recipe.units}
     files.make(TABLES[1:], lambda: [as_parquet(heads, about)])
@@ -68,6 +69,10 @@ def outputs(
     if best:
         files.make(PICTURES[2:], lambda: _curves(ask, best, files.made))
     report = _report(ask, found, best, reasons)
+    report["counts"]["rows"] = table.rows
+    for design in best:
+        if design.why:
+            files.skipped.append({"what": f"polishing {design.file}", "why": design.why})
     report["files"] = [listed(name, data) for name, data in files.made.items()]
     report["skipped"] = files.skipped
     report["run"] = run

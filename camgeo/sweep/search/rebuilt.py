@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.recipe.recipe import Recipe
+    from kin.linkage.mechanism import Mechanism
 
 Array: TypeAlias = NDArray[np.float64]
 Codes: TypeAlias = NDArray[np.uint8]
@@ -94,16 +95,22 @@ def chains(recipe: Recipe, paths: Sequence[str], values: Array, count: int) -> t
     return margin, rows
 
 
-def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
-    """Fill in the rows (n,) of one mechanism, and return its least margin: -inf where it binds."""
+def mechanism_in(recipe: Recipe) -> Mechanism:
+    """The mechanism of a recipe with a linkage. TypeError for one on a cam without a lift, which no recipe has."""
     from camgeo.cams.flat_faced import breadth_of
     from camgeo.synthesis.linkage import mechanism_of
-    from kin.linkage.loop import BindingError
 
     lift = recipe.cam.intent()
     if not isinstance(lift, Lift):
         raise TypeError("a linkage is driven by the lift of a frame")
-    mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])
+    return mechanism_of(recipe, lift, breadth_of(lift)[0])
+
+
+def _chain(recipe: Recipe, count: int, rows: list[Array]) -> float:
+    """Fill in the rows (n,) of one mechanism, and return its least margin: -inf where it binds."""
+    from kin.linkage.loop import BindingError
+
+    mechanism = mechanism_in(recipe)
     theta = angles(count)
     try:
         at = mechanism.at(theta, 2)

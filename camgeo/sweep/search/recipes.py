@@ -15,6 +15,7 @@ from camgeo.schema.edit import without
 from camgeo.schema.fields import MOST_TEXT
 from camgeo.schema.yaml_source import Mapping, read_source, scalars
 from camgeo.sweep.search.pictures import Curve
+from camgeo.sweep.search.rebuilt import mechanism_in
 
 if TYPE_CHECKING:
     import collections.abc
@@ -29,7 +30,7 @@ _POINTS = 720  # of a curve, over a turn
 class Best:
     """A best design: its place from 1, the index it has or comes from, whether it was polished, values, figures.
 
-    `values` by path, as the recipe writes them; `figures` in mm and degrees.
+    `values` by path, as the recipe writes them; `figures` in mm and degrees; `why` it could not be polished.
     """
 
     place: int
@@ -37,6 +38,7 @@ class Best:
     polished: bool
     values: dict[str, float]
     figures: dict[str, float]
+    why: str = ""
 
     @property
     def file(self) -> str:
@@ -102,20 +104,14 @@ def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
     In degrees or the recipe's units. Raises PlaceError for a linkage that does not turn, TypeError for one on a cam
     without a lift, which no recipe has, and IntentError as the intent does.
     """
-    intent = recipe.cam.intent()
     if recipe.linkage is None:
         from camgeo.synthesis.motion_table import motion_table
 
-        (_, name, *_), rows = motion_table(replace(recipe, verify=replace(recipe.verify, angles=_POINTS)), intent)
+        sampled = replace(recipe, verify=replace(recipe.verify, angles=_POINTS))
+        (_, name, *_), rows = motion_table(sampled, recipe.cam.intent())
         word, _, unit = name.partition("_")
         return Curve(label, rows[:, 0], rows[:, 1]), f"{word} ({unit})"
-    from camgeo.synthesis.linkage import mechanism_of
-    from kin.law.support_function import Lift
-
-    if not isinstance(intent, Lift):
-        raise TypeError("a linkage is driven by a cam with a lift")
-    breadth = float(intent.derivatives(np.array([0.0, math.pi]), 0).sum())
-    mechanism = mechanism_of(recipe, intent, breadth)
+    mechanism = mechanism_in(recipe)
     shaft = np.linspace(0.0, 2.0 * math.pi, _POINTS + 1)
     output = mechanism.at(mechanism.relative(shaft), 0).output[0]
     swings = mechanism.unit == "deg"

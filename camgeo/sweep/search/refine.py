@@ -3,6 +3,9 @@
 The figure to be best in is seldom smooth. A dwell is longest where its ripple just fills the band, and one step farther
 it falls in two. So differential evolution searches a cloud of designs about the start, all computed together, and
 Nelder and Mead's simplex walks on from the best of them; both from scipy, with a fixed seed.
+
+A cam within its tolerance moves the output by a little, and a ripple that just fills the band then leaves it. So dwells
+are sought within a band less twice that error: a file's dwell is at least as long as the one that was sought.
 """
 
 from __future__ import annotations
@@ -14,12 +17,16 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from camgeo.sweep.search.figures import Evaluator, asked_of
+from camgeo.common.rounding import downward
+from camgeo.sweep.search.figures import DWELLS, Evaluator, asked_of
+from camgeo.sweep.search.rebuilt import mechanism_in, recipe_with
+from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.recipe.figures import Limit
+    from camgeo.recipe.recipe import Recipe
     from camgeo.sweep.search.ask import Ask
 
 Array: TypeAlias = NDArray[np.float64]
@@ -35,6 +42,12 @@ _DIGITS = 6  # of each range, that a polished value keeps
 _WORTH = 1e-3
 _IDLE = 1e-9  # relatively: what is gained by less is rounding, and the start stays
 _FAR = 1e6  # what breaks a limit is worse than anything that does not
+_ROOM = 1.05  # times the output error of the start: that of designs near it differs by a few percent
+_ROUNDS = 3  # of a search whose result has a greater output error than it was sought with
+
+
+class PolishError(KinError, ValueError):
+    """A design that cannot be polished."""
 
 
 @dataclass(frozen=True)
@@ -78,18 +91,21 @@ def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[s
     """Give a design that is as good or better, and its figures in mm and degrees.
 
     `values` are those of a design of the sweep by their paths. Only what varies over a range moves, within that range;
-    listed values stay. The result keeps the sweep's limits, or is the start. Raises ModuleNotFoundError without scipy.
+    listed values stay. The result keeps the sweep's limits, or is the start. Dwells are sought within the band less
+    twice the output error within the tolerance of the files; the figures are those within the band itself. Raises
+    PolishError where that error leaves nothing of the band, and ModuleNotFoundError without scipy.
     """
     paths = [axis.path for axis in ask.sweep.vary]
     start = np.array([values[path] for path in paths])
     goal = _goal(ask, paths, start)
     designs = start[None]
     if len(goal.free):
-        found = goal.values(_sought(goal)[None])[0]
+        goal, found = _settled(ask, goal)
         designs = np.stack([start, found, _rounded(goal, found)])
     # all figures, in the end; the search itself looks at those that rank or limit
-    figures = replace(goal.evaluator, wanted=asked_of(ask.recipe)).found(designs).figures
-    loss = goal.loss_of(figures)
+    figures = replace(goal.evaluator, recipe=_unlimited(ask), wanted=asked_of(ask.recipe)).found(designs).figures
+    whole = goal.loss_of(figures)
+    loss = np.where(whole < _FAR, goal.loss(designs), whole)
     best = 0
     if len(designs) > 1 and loss[1] < min(loss[0] - _IDLE * abs(loss[0]), _FAR):
         # written with no more digits than it is worth, unless that costs a part of what was gained
@@ -100,14 +116,71 @@ def polish(ask: Ask, values: dict[str, float]) -> tuple[dict[str, float], dict[s
     )
 
 
+def _settled(ask: Ask, goal: _Goal) -> tuple[_Goal, Array]:
+    """Search; where its result has a greater output error than it was sought with, again from there.
+
+    Gives the goal with the band of the last search, and its values (axes,): the start where no search holds.
+    """
+    if not {limit.figure for limit in goal.limits}.union({goal.rank}) & set(DWELLS):
+        return goal, goal.values(_sought(goal)[None])[0]
+    recipe, paths, start, error = _unlimited(ask), goal.evaluator.paths, goal.start, 0.0
+    off = output_error(recipe_with(ask.recipe, paths, start))
+    for _ in range(_ROUNDS):
+        error = _ROOM * off
+        goal = replace(goal, evaluator=replace(goal.evaluator, recipe=_narrowed(recipe, error)), start=start)
+        start = goal.values(_sought(goal)[None])[0]
+        try:
+            off = output_error(recipe_with(ask.recipe, paths, start))
+        except PolishError:
+            break
+        if off <= error:
+            return goal, start
+    return goal, goal.start
+
+
+def output_error(recipe: Recipe) -> float:
+    """Greatest error of the output within the tolerance of a recipe's files, rad or mm.
+
+    Raises PolishError where the mechanism may bind within it, or twice the error fills the dwell's band.
+    """
+    from kin.follower.frame import implied_limit
+
+    export, mechanism = recipe.export, mechanism_in(recipe)
+    tolerance = max((file.tolerance or export.tolerance for file in export.files), default=export.tolerance)
+    error = implied_limit(mechanism, tolerance)
+    told = f"{tolerance / recipe.mm:.6g} {'in' if recipe.units == 'inch' else 'mm'}"
+    if error is None:
+        raise PolishError(f"the mechanism may bind within the tolerance of {told}: give a smaller export.tolerance")
+    swings = mechanism.unit == "deg"
+    off = math.radians(error) if swings else error
+    if recipe.dwell is None or 2.0 * _ROOM * off < recipe.dwell.band:
+        return off
+    size = f"{error:.3g} deg" if swings else f"{error / recipe.mm:.3g} {'in' if recipe.units == 'inch' else 'mm'}"
+    most = downward(tolerance / recipe.mm * recipe.dwell.band / (4.0 * off))
+    raise PolishError(
+        f"within the tolerance of {told} the output may be off by {size} either way, which leaves nothing of "
+        f"dwell.band: give export.tolerance at most {most}"
+    )
+
+
+def _narrowed(recipe: Recipe, error: float) -> Recipe:
+    """The recipe with its dwell's band less twice an error of the output, rad or mm."""
+    dwell = recipe.dwell
+    return recipe if dwell is None else replace(recipe, dwell=replace(dwell, band=dwell.band - 2.0 * error))
+
+
+def _unlimited(ask: Ask) -> Recipe:
+    """The recipe with a sweep that computes all designs, whatever limits are broken."""
+    return replace(ask.recipe, sweep=replace(ask.sweep, limits=()))
+
+
 def _goal(ask: Ask, paths: Sequence[str], start: Array) -> _Goal:
     sweep = ask.sweep
     free = np.array([i for i, axis in enumerate(sweep.vary) if not axis.values], dtype=np.intp)
     low = np.array([axis.low for axis in sweep.vary])[free]
     high = np.array([axis.high for axis in sweep.vary])[free]
-    recipe = replace(ask.recipe, sweep=replace(sweep, limits=()))  # whatever limits are broken
     wanted = (sweep.rank, *(limit.figure for limit in sweep.limits))
-    evaluator = Evaluator.of(recipe, paths, figures=wanted, samples=max(sweep.angles, _ANGLES))
+    evaluator = Evaluator.of(_unlimited(ask), paths, figures=wanted, samples=max(sweep.angles, _ANGLES))
     return _Goal(evaluator, sweep.rank, ask.ranking.most, sweep.limits, start, free, low, high - low)
 
 

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from camgeo.common.errors import SurroundingsError
-from camgeo.output.output_folder import BusyError, Family, Run
+from camgeo.common.errors import BusyError, SurroundingsError
+from camgeo.output.output_folder import Family, Run
 from camgeo.sweep.search.engines import at_once
 from camgeo.sweep.search.job import Job
 from camgeo.sweep.search.outputs import PICTURES, REPORT, TABLES, outputs
 from camgeo.sweep.search.recipes import Best, recipe_text
+from camgeo.sweep.search.refine import PolishError
 from camgeo.sweep.search.run import chunks_of, compute, gathered
 
 if TYPE_CHECKING:
@@ -32,14 +33,14 @@ FILES = Family(REPORT, ("sweep.", "sweep-", "best-"), "sweep-")
 _WAIT = 30.0  # seconds for another run of the recipe to have put its files in place, which takes it milliseconds
 _AGAIN = 0.05
 _NEAR = 0.15  # of an axis's range in every value: polishing would lead designs nearer than that to one place
-_SAME = 1e-3  # of an axis's range: designs nearer than that in every value are one, as far as polishing can tell
+_APART = 0.05  # of an axis's range: designs nearer than that in every value, once polished, count as one
 
 
 class Polish(Protocol):
     """Makes a design better without breaking a limit."""
 
     def __call__(self, ask: Ask, values: dict[str, float], /) -> tuple[dict[str, float], dict[str, float]]:
-        """Values of a design that is as good or better, and its figures, in mm and degrees."""
+        """Values of a design that is as good or better, and its figures, in mm and degrees; or PolishError."""
 
 
 class Measure(Protocol):
@@ -129,7 +130,7 @@ def demand_room(ask: Ask, out: Path) -> None:
 def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None = None) -> list[Best]:
     """The best designs with all their figures.
 
-    If asked for it is the best that lie apart, polished, those that have become the same as one.
+    If the sweep says so it is the best that lie apart, polished, of those that then lie near to each other the best.
     """
     places = _apart(ask, found) if ask.sweep.refine else range(min(ask.sweep.keep, found.rows))
     plain = [
@@ -144,7 +145,8 @@ def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None
     ]
     if not ask.sweep.refine:
         return _measured(ask, plain, means.measure)
-    polished = sorted(_polished(ask, plain, means.polish, how, told), key=lambda design: _order(ask, design))
+    polished = _measured(ask, _polished(ask, plain, means.polish, how, told), means.measure)
+    polished.sort(key=lambda design: _order(ask, design))
     best: list[Best] = []
     for design in polished:
         if not any(_same(ask, design, other) for other in best):
@@ -154,7 +156,7 @@ def best_of(ask: Ask, found: Gathered, means: Means, how: How, told: Told | None
 
 def _measured(ask: Ask, plain: list[Best], measure: Measure) -> list[Best]:
     """Designs with the figures that the search went without."""
-    if not plain or set(ask.all_figures) <= set(plain[0].figures):
+    if all(set(ask.all_figures) <= set(design.figures) for design in plain):
         return plain
     found = measure(ask, np.array([list(design.values.values()) for design in plain]))
     return [
@@ -197,7 +199,10 @@ def _polished(ask: Ask, plain: list[Best], polish: Polish, how: How, told: Told 
 
 
 def _polish(polish: Polish, ask: Ask, design: Best) -> Best:
-    values, figures = polish(ask, design.values)
+    try:
+        values, figures = polish(ask, design.values)
+    except PolishError as error:
+        return replace(design, why=str(error))
     return replace(design, polished=values != design.values, values=values, figures=figures)
 
 
@@ -206,9 +211,9 @@ def _by_path(ask: Ask, row: Any) -> dict[str, float]:  # noqa: ANN401 - a row of
 
 
 def _same(ask: Ask, one: Best, other: Best) -> bool:
-    """Whether two designs are the same but for what polishing leaves open."""
+    """Whether two designs lie so near to each other that they count as one."""
     return all(
-        abs(one.values[axis.path] - other.values[axis.path]) <= _SAME * abs(axis.high - axis.low)
+        abs(one.values[axis.path] - other.values[axis.path]) <= _APART * abs(axis.high - axis.low)
         for axis in ask.plan.axes
     )
 

@@ -1,8 +1,9 @@
 """Results of chunks on disk: written as they land, whole or not at all, and checked when they are read.
 
 A chunk's file ends with the checksum of all before it and opens with whose chunk it is, so a torn one, a changed one
-and one of another sweep all count as not there. Any number of runs may write the same folder at once: what they write
-under one name is the same to the byte, and a rename puts it there.
+and one of another sweep all count as not there. What is no regular file is never opened, and refused. Any number of
+runs may write the same folder at once: what they write under one name is the same to the byte, and a rename puts it
+there.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import hashlib
 import json
 import os
 import re
+import stat
 import time
 from contextlib import suppress
 from dataclasses import dataclass
@@ -18,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.common.errors import SurroundingsError
 from camgeo.common.system import patient
 from kin.numeric.errors import KinError
 
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
 
 _MAGIC = b"camgeo sweep chunk 1\n"
 _LEFT_OVER = 3600.0  # seconds after which a file still unfinished is a killed run's; writing one takes milliseconds
+_MOST_BYTES = 1 << 24  # of a chunk's file: its designs with a hundred figures and more take less
 _CHUNK = re.compile(r"chunk-[0-9]{7}\.bin")
 _UNFINISHED = re.compile(r"\.chunk-[0-9]{7}\.[0-9]+\.part")
 
@@ -76,13 +80,23 @@ class Chunks:
     plan: Plan
 
     def open(self, *, fresh: bool = False) -> None:
-        """Make the folder, clear away what killed runs left unfinished, and, where `fresh`, every chunk."""
-        self.folder.mkdir(parents=True, exist_ok=True)
+        """Make the folder, clear away what killed runs left unfinished, and, where `fresh`, every chunk.
+
+        Raises SurroundingsError where something else stands in the place of a folder, or of a chunk's file.
+        """
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except (FileExistsError, NotADirectoryError):
+            raise _in_the_way(self.folder) from None
+        for number in range(self.plan.chunks):
+            _regular(self.path(number))
         for path in self.folder.iterdir():
             # another run may be clearing away, or finishing, the same file
             with suppress(FileNotFoundError):
                 if (fresh and _CHUNK.fullmatch(path.name)) or (
-                    _UNFINISHED.fullmatch(path.name) and time.time() - path.stat().st_mtime > _LEFT_OVER
+                    _UNFINISHED.fullmatch(path.name)
+                    and time.time() - path.lstat().st_mtime > _LEFT_OVER
+                    and not path.is_dir()
                 ):
                     path.unlink()
 
@@ -91,9 +105,15 @@ class Chunks:
         return self.folder / f"chunk-{number:07d}.bin"
 
     def read(self, number: int) -> dict[str, NDArray[np.float64]] | None:
-        """Figures of a chunk, or None where there is no file; raises ChunkError where there is a bad one."""
+        """Figures of a chunk, or None where there is no file; raises ChunkError where there is a bad one.
+
+        Raises SurroundingsError where something else than a file stands there.
+        """
+        if not _regular(self.path(number)):
+            return None
         try:
-            data = self.path(number).read_bytes()
+            with self.path(number).open("rb") as stream:
+                data = stream.read(_MOST_BYTES)
         except FileNotFoundError:
             return None
         return decode(data, self.key, *self.plan.span(number))
@@ -121,3 +141,21 @@ class Chunks:
         except BaseException:
             part.unlink(missing_ok=True)
             raise
+
+
+def _regular(path: Path) -> bool:
+    """Whether there is a file; raises SurroundingsError for what is none: a pipe waits, a device may have no end."""
+    try:
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return False
+    if stat.S_ISREG(mode):
+        return True
+    kind = "a folder" if stat.S_ISDIR(mode) else "a pipe or a device"
+    raise SurroundingsError(f"{kind}, where the sweep keeps a file of its results: move it or remove it", path)
+
+
+def _in_the_way(folder: Path) -> SurroundingsError:
+    """What stands where a folder, or one above it, is to be made."""
+    place = next(path for path in reversed((folder, *folder.parents)) if os.path.lexists(path) and not path.is_dir())
+    return SurroundingsError("not a folder, where the sweep keeps its results: move it or remove it", place)

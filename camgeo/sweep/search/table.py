@@ -4,28 +4,50 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
 from camgeo.recipe.figures import FORMER
+from camgeo.sweep.search.gather import MOST_ROWS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from camgeo.sweep.search.ask import Unit
-    from camgeo.sweep.search.gather import Gathered
+    from camgeo.sweep.search.gather import Gathered, Ranking
     from camgeo.sweep.search.plan import Plan
+    from camgeo.sweep.search.recipes import Best
 
     Columns: TypeAlias = Mapping[str, NDArray[np.float64] | NDArray[np.int64]]
 
 
-def columns(plan: Plan, found: Gathered, units: Mapping[str, Unit]) -> Columns:
+def with_polished(found: Gathered, best: Sequence[Best], ranking: Ranking) -> tuple[Gathered, NDArray[np.bool_]]:
+    """The designs kept and the polished ones, best first, at most MOST_ROWS; and which of them are polished (n,).
+
+    A polished design has the index of the one that it comes from, whose own row stays.
+    """
+    new = [design for design in best if design.polished]
+    index = np.append([design.index for design in new], found.index).astype(np.int64)
+    values = np.vstack([*(list(design.values.values()) for design in new), found.values])
+    figures = {
+        name: np.append([design.figures[name] for design in new], column) for name, column in found.figures.items()
+    }
+    polished = np.arange(len(index)) < len(new)
+    order = np.lexsort((index, ~polished, -ranking.score(figures)))[:MOST_ROWS]
+    rows = {name: column[order] for name, column in figures.items()}
+    return replace(found, index=index[order], values=values[order], figures=rows), polished[order]
+
+
+def columns(
+    plan: Plan, found: Gathered, units: Mapping[str, Unit], polished: NDArray[np.bool_] | None = None
+) -> Columns:
     """The columns (n,) by their heads: place from 1, index, the fields varied by their paths, figures with units.
 
-    Renamed figures stand under their former names too, behind all others.
+    Renamed figures stand under their former names too, behind all others; last, where there is one, `polished`, 0 or 1.
     """
     figures = {name: values / units[name].divisor for name, values in found.figures.items()}
     former = {FORMER[name]: name for name in figures if name in FORMER}
@@ -35,6 +57,7 @@ def columns(plan: Plan, found: Gathered, units: Mapping[str, Unit]) -> Columns:
         **{axis.path: found.values[:, i] for i, axis in enumerate(plan.axes)},
         **{_head(name, units[name].name): values for name, values in figures.items()},
         **{_head(old, units[name].name): figures[name] for old, name in former.items()},
+        **({} if polished is None else {"polished": polished.astype(np.int64)}),
     }
 
 

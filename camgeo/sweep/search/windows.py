@@ -1,32 +1,24 @@
-"""The longest stretch of samples whose values stay within a band: which samples, found alike by two engines.
+"""The longest stretch of samples whose values stay within a band: which samples.
 
 A function of period n samples is known by its nodes and by its greatest and least value over each cell, cell i lying
 between nodes i and i + 1. A window (start i, c cells) is a run of whole cells within the band that no further cell on
 either side fits into. Of all windows the one is taken that reaches farthest along the abscissa, its ends drawn out
 into the cells beside it as if the function ran straight there. A straight line and a bent one that begins level leave
 a cell at most a fourth of it apart: of windows whose lengths differ by less than half a cell either may be taken.
-
-The engines are numpy, and the plain function `_scan` compiled by numba. Both only compare, and do the same arithmetic
-on the same numbers in the same order, so they find the same windows bit for bit.
 """
 
 from __future__ import annotations
 
 import math
-from functools import lru_cache
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-__all__ = ["Engine", "Samples", "Windows", "best_engine", "longest"]
+__all__ = ["Samples", "Windows", "longest"]
 
 Array: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.intp]
-Engine: TypeAlias = Literal["numpy", "compiled"]
 
 _TURN = 2 * math.pi
 _SLACK = 1e-9  # rad: windows shorter than the best by more than this are left out unmeasured
@@ -51,128 +43,7 @@ class Windows(NamedTuple):
     cells: Indices
 
 
-@lru_cache(maxsize=1)
-def best_engine() -> Engine:
-    """Name the engine that is used unless another is asked for: compiled where numba is installed."""
-    from importlib.util import find_spec
-
-    return "compiled" if find_spec("numba") else "numpy"
-
-
-def longest(samples: Samples, band: float, engine: Engine | None = None) -> Windows:
-    """Find the longest window of each function, of those equally long the first; band above 0.
-
-    Raises ModuleNotFoundError for `compiled` without numba.
-    """
-    if (engine or best_engine()) == "numpy":
-        return _by_levels(samples, band)
-    _, m, n = shape = samples.abscissae.shape
-    found = Windows(np.empty(shape[:2], dtype=np.intp), np.empty(shape[:2], dtype=np.intp))
-    if m:
-        _compiled()(samples, band, np.empty((2, 2 * n), dtype=np.intp), found.start, found.cells)
-    return found
-
-
-@lru_cache(maxsize=1)
-def _compiled() -> Callable[..., None]:
-    from numba import njit
-
-    compiled: Callable[..., None]
-    # no fastmath: sums in another order, or fused, would be other numbers
-    try:
-        compiled = njit(cache=True, nogil=True, error_model="numpy")(_scan)
-    except RuntimeError:  # no folder can be written to keep it in: then each process compiles it anew, for a second
-        compiled = njit(nogil=True, error_model="numpy")(_scan)
-    return compiled
-
-
-def _scan(samples: Samples, band: float, queue: Indices, start: Indices, cells: Indices) -> None:
-    """Run two pointers round each function, the window's extremes at the heads of two monotone queues.
-
-    All in one: it is compiled, and runs the same where it is not.
-    """
-    value, low, high, abscissae = samples
-    count, m, n = abscissae.shape
-    best = np.empty(count)
-    for row in range(m):
-        best[:] = -1.0
-        # queues of cells: least values rising, greatest falling
-        head_low, tail_low, head_high, tail_high = 0, 0, 0, 0
-        last = 0  # nodes i .. last are in the window
-        for i in range(n):
-            last = max(last, i)
-            while head_low < tail_low and queue[0, head_low] < i:
-                head_low += 1
-            while head_high < tail_high and queue[1, head_high] < i:
-                head_high += 1
-            least = most = value[row, i]
-            if head_low < tail_low:
-                cell = queue[0, head_low]
-                least = low[row, cell if cell < n else cell - n]
-                cell = queue[1, head_high]
-                most = high[row, cell if cell < n else cell - n]
-            while last < i + n:
-                cell = last if last < n else last - n
-                bottom, top = min(least, low[row, cell]), max(most, high[row, cell])
-                if not top - bottom <= band:
-                    break
-                least, most = bottom, top
-                while head_low < tail_low:
-                    cell_before = queue[0, tail_low - 1]
-                    if low[row, cell_before if cell_before < n else cell_before - n] < low[row, cell]:
-                        break
-                    tail_low -= 1
-                queue[0, tail_low] = last
-                tail_low += 1
-                while head_high < tail_high:
-                    cell_before = queue[1, tail_high - 1]
-                    if high[row, cell_before if cell_before < n else cell_before - n] > high[row, cell]:
-                        break
-                    tail_high -= 1
-                queue[1, tail_high] = last
-                tail_high += 1
-                last += 1
-            if last == i + n:
-                start[:, row] = 0
-                cells[:, row] = n
-                break
-            before, j = i - 1 if i else n - 1, last if last < n else last - n
-            if max(most, high[row, before]) - min(least, low[row, before]) <= band:
-                continue  # a window from the node before holds this one
-            after = j + 1 if j + 1 < n else 0
-            floor, ceiling = most - band, least + band
-            f_i, f_j, f_before, f_after = value[row, i], value[row, j], value[row, before], value[row, after]
-            for k in range(count):
-                x_i, x_j = abscissae[k, row, i], abscissae[k, row, j]
-                x_before, x_after = abscissae[k, row, before], abscissae[k, row, after]
-                if before > i:
-                    x_before -= 2.0 * math.pi
-                if last >= n:
-                    x_j += 2.0 * math.pi
-                if last + 1 >= n:
-                    x_after += 2.0 * math.pi
-                if (x_after - x_before) + 1e-9 < best[k]:
-                    continue
-                left, right = 1.0, 1.0
-                left_side, right_side = 0, 0
-                if f_before > ceiling:
-                    left, left_side = (ceiling - f_i) / (f_before - f_i), 1
-                elif f_before < floor:
-                    left, left_side = (f_i - floor) / (f_i - f_before), -1
-                if f_after > ceiling:
-                    right, right_side = (ceiling - f_j) / (f_after - f_j), 1
-                elif f_after < floor:
-                    right, right_side = (f_j - floor) / (f_j - f_after), -1
-                left = left * (x_i - x_before)
-                right = right * (x_after - x_j)
-                more = max(left, right) if left_side * right_side < 0 else left + right
-                reach = (x_j - x_i) + more
-                if reach > best[k]:
-                    best[k] = reach
-                    start[k, row], cells[k, row] = i, last - i
-
-
-def _by_levels(samples: Samples, band: float) -> Windows:
+def longest(samples: Samples, band: float) -> Windows:
     """Find the windows by extremes over 1, 2, 4, ... cells from each node.
 
     Levels that fit tell how long the longest window is at least, and so from which nodes on none can be; from the nodes
@@ -258,7 +129,7 @@ def _promising(fits: list[NDArray[np.bool_]], abscissa: Array) -> NDArray[np.boo
 def _reach(
     rows: tuple[Array, Array], window: tuple[Indices, Indices, Indices], limits: tuple[Array, Array], band: float
 ) -> Array:
-    """Length of each window with its ends drawn out straight; the arithmetic of `_scan`."""
+    """Length of each window with its ends drawn out straight."""
     value, abscissa = rows
     row, i, cells = window
     bottom, top = limits

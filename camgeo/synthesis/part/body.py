@@ -12,6 +12,8 @@ from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar,
 from camgeo.synthesis.part.walls import contour_gap, distance_inside
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from camgeo.curve.curve import Curve
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.part import Hub, Mark, Part, SetScrew
@@ -23,12 +25,22 @@ MARGIN = 1e-9  # mm: rounding of a wall that is just held
 
 
 @dataclass(frozen=True)
+class Unmarked:
+    """A mark without room: the greatest of its shape that has some, or the wall, mm, that leaves some to it."""
+
+    mark: Mark
+    fits: Mark | None = None
+    wall: float = 0.0
+
+
+@dataclass(frozen=True)
 class Body:
     """A part without its contour.
 
     `openings` from the bore outward; `bore` is its diameter or width; `hub` and `screw` as the recipe has them, None
     without. `placed` says how many lightening holes were asked for and found. `least_radius` is the contour's, mm,
     where it is convex. `outer` is the diameter of a ring, of which the contour is an opening too; None for a disc.
+    `unmarked` is a mark that has no room.
     """
 
     thickness: float | None
@@ -40,6 +52,7 @@ class Body:
     placed: Placed | None = None
     least_radius: float = math.inf
     outer: float | None = None
+    unmarked: Unmarked | None = None
 
     @property
     def fineness(self) -> float:
@@ -91,8 +104,9 @@ def body_of(part: Part, contour: Curve) -> Body:
     openings = [*_shaft(part), *_drilled(part)]
     hub = None if part.hub is None else disc("hub", "HOLES", (0.0, 0.0), 0.5 * part.hub.diameter)
     edge = part.chamfer or 0.0
-    if part.mark is not None:
-        openings.append(_mark(part.mark, contour, (part.wall or part.mark.width) + edge))
+    mark = None if part.mark is None else _marked(part.mark, contour, part.wall, edge)
+    if isinstance(mark, Opening):
+        openings.append(mark)
     placed = None
     if part.lightening is not None:
         there = openings if hub is None else [*openings, hub]
@@ -100,7 +114,8 @@ def body_of(part: Part, contour: Curve) -> Body:
         openings += found
     radius = math.inf if part.chamfer is None else least_radius(contour)[0]
     shaft = (part.bore, part.hub, part.set_screw)
-    return Body(part.thickness, tuple(openings), *shaft, part.chamfer, placed, radius, part.outer)
+    unmarked = mark if isinstance(mark, Unmarked) else None
+    return Body(part.thickness, tuple(openings), *shaft, part.chamfer, placed, radius, part.outer, unmarked)
 
 
 def _shaft(part: Part) -> list[Opening]:
@@ -136,14 +151,48 @@ def _round(name: str, circle: float, hole: float, angle: float) -> Opening:
     return disc(name, "HOLES", polar(0.5 * circle, angle), 0.5 * hole)
 
 
-def _mark(mark: Mark, contour: Curve, wall: float) -> Opening:
-    """The mark, its outer end where it is asked for or as far out on the ray as the wall lets it."""
+def _marked(mark: Mark, contour: Curve, wall: float | None, edge: float) -> Opening | Unmarked:
+    """The mark where it is asked for, or as far out on the ray as the wall lets it; else what would have room."""
+    placed = _placed(mark, contour, wall, edge)
+    if placed is not None:
+        return placed
+    # of the same shape, but longer than wide
+    shape = mark if mark.width < mark.length else replace(mark, length=2.0 * mark.width)
+
+    def scaled(share: float) -> Mark:
+        return replace(shape, width=share * shape.width, length=share * shape.length)
+
+    share = _greatest(lambda share: _placed(scaled(share), contour, wall, edge) is not None)
+    if share > 0.0:
+        return Unmarked(mark, scaled(share))
+    if wall is None:
+        return Unmarked(mark)
+    return Unmarked(mark, wall=wall * _greatest(lambda share: _placed(mark, contour, share * wall, edge) is not None))
+
+
+def _greatest(fits: Callable[[float], bool]) -> float:
+    """Greatest share of 1 that fits, to a thousandth of 1 and on the safe side; 0 if none does, 1 if that does."""
+    low, high = (1.0, 1.0) if fits(1.0) else (0.0, 1.0)
+    while high - low > 1e-3:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if fits(middle) else (low, middle)
+    return low
+
+
+def _placed(mark: Mark, contour: Curve, asked: float | None, edge: float) -> Opening | None:
+    """The mark, with this wall or its own width between it and the contour; None without room."""
     depth = mark.depth if mark.kind == "engrave" else None
     layer: Layer = "ENGRAVE" if mark.kind == "engrave" else "MARK"
+    wall = (asked or mark.width) + edge
 
     def at(outer: float) -> Opening:
         return Opening("mark", layer, slot(outer - mark.length, outer, mark.width), depth=depth)
 
+    def lacking(outer: float) -> float:
+        return wall - MARGIN - contour_gap(contour, at(outer).chain).wall
+
+    if mark.width >= mark.length:
+        return None  # no slot
     if mark.radius is not None:
         return at(mark.radius)
     outer = contour.size
@@ -153,7 +202,11 @@ def _mark(mark: Mark, contour: Curve, wall: float) -> Opening:
         if want <= MARGIN:
             break
         outer -= want
+        if outer <= 0.0:
+            return None  # nowhere on the ray
     outer = STEP * math.floor(outer / STEP)
-    while outer > mark.length and contour_gap(contour, at(outer).chain).wall < wall - MARGIN:
-        outer = STEP * round(outer / STEP - 1.0)  # its sides are nearer than its end
+    while (lack := lacking(outer)) > 0.0:  # its sides are nearer than its end
+        if outer <= mark.length:
+            return None
+        outer = STEP * round(outer / STEP - max(1.0, math.floor(lack / STEP)))
     return at(outer)

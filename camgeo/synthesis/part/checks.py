@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from camgeo.checks.declared import CHAMFER, LIGHTENING, WALL
+from camgeo.checks.declared import CHAMFER, LIGHTENING, MARK, WALL
+from camgeo.common.rounding import downward, upward
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.measures import farthest
 from camgeo.curve.support import is_sharp
@@ -14,14 +16,16 @@ from camgeo.synthesis.checks import slack
 from camgeo.synthesis.part.shapes import Opening, disc, strip
 from camgeo.synthesis.part.walls import Gap, contour_gap, inside_gap, outside_gap
 from kin.judge.check import Check
+from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from camgeo.curve.curve import Curve
-    from camgeo.synthesis.part.body import Body
+    from camgeo.synthesis.part.body import Body, Unmarked
 
 MOST_NAMED = 6  # pairs named in a message
+ROUND = {"bore": "part.bore", "bolt hole": "part.bolts.hole", "dowel": "part.dowel.hole"}  # openings and their keys
 ROUNDING = 1e-9  # mm, by which a wall that is just held may lie below its limit
 
 
@@ -35,7 +39,7 @@ class Pair(NamedTuple):
     def __str__(self) -> str:
         """Tell the pair, the wall and the place."""
         x, y = (coordinate if abs(coordinate) > ROUNDING else 0.0 for coordinate in self.gap.place)
-        place = "" if self.gap.place == NOWHERE else f" at ({x:.4g}, {y:.4g})"
+        place = "" if self.gap.place == NOWHERE else f" at {place_text(x, y, digits=4)}"
         return f"{self.one} and {self.other}: {self.gap.wall:.4g} mm{place}"
 
 
@@ -57,9 +61,12 @@ def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Call
         more = f"; and {left} more {'pair' if left == 1 else 'pairs'}" if left > 0 else ""
         worst = pairs[0].gap
         at_deg = None if worst.parameter is None else shaft_deg(worst.parameter)
-        checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told + more))
+        told += more + _free_of_thin_walls(thin, body, limit)
+        checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told))
     if body.chamfer is not None:
         checks.append(_chamfer_check(body, contour, shaft_deg))
+    if body.unmarked is not None:
+        checks.append(_mark_check(body.unmarked))
     if body.placed is not None:
         placed = body.placed
         count = len(placed.diameters)
@@ -84,6 +91,49 @@ def _chamfer_check(body: Body, contour: Curve, shaft_deg: Callable[[float], floa
     radius, at = least_radius(contour)
     sharp = "the contour's least radius of curvature must be above the chamfer"
     return Check(CHAMFER.name, radius > chamfer, radius, chamfer, "mm", shaft_deg(at), "at_least", detail=sharp)
+
+
+def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
+    """Say which diameters of bore, bolt holes and dowel hole, and which outline of a ring, would leave every wall.
+
+    Of two openings the later of the recipe's gives way; empty where another edge must, or where nothing is left.
+    """
+    across = {opening.name: 2.0 * opening.circle[1] for opening in body.openings if opening.circle is not None}
+    most: dict[str, float] = {}
+    outer = 0.0
+    for pair in thin:
+        lack = 2.0 * (limit - pair.gap.wall)
+        if (pair.one, pair.other) == ("opening", "outline"):
+            outer = max(outer, lack)
+            continue
+        if pair.gap.wall < 0.0 and any(one.circle is None and one.name in pair[:2] for one in body.openings):
+            return ""  # how far a hole and a shape with corners overlap is no diameter
+        keys = {name: key for name in (pair.one, pair.other) for word, key in ROUND.items() if name.startswith(word)}
+        own = sorted((list(ROUND.values()).index(key), key, name) for name, key in keys.items() if name in across)
+        if not own:
+            return ""
+        _, key, name = own[-1]
+        shared = len(own) == 2 and own[0][1] == key  # both are of one size
+        most[key] = min(most.get(key, math.inf), across[name] - (0.5 * lack if shared else lack))
+    if not most or min(most.values()) <= 0.0:
+        return ""
+    told = [f"a {key} below {downward(size)} mm" for key, size in most.items()]
+    if outer:
+        told.append(f"a part.outer larger by more than {upward(outer)} mm")
+    return f"; {' and '.join(told)} would do"
+
+
+def _mark_check(unmarked: Unmarked) -> Check:
+    """The check that fails as there is no room for a mark: how large it may be, or how large the wall."""
+    mark, fits = unmarked.mark, unmarked.fits
+    width = 0.0 if fits is None else fits.width
+    would = "; no other has any, leave it out"
+    if fits is not None:
+        would = f"; {{width: {downward(fits.width)} mm, length: {downward(fits.length)} mm}} has"
+    elif unmarked.wall > 0.0:
+        would = f"; a part.wall of {downward(unmarked.wall)} mm leaves some"
+    detail = f"no room on the ray at 0 for a mark {mark.width:.6g} mm wide and {mark.length:.6g} mm long{would}"
+    return Check(MARK.name, ok=False, value=mark.width, limit=width, unit="mm", sense="at_most", detail=detail)
 
 
 def _holds(wall: float, least: float | None) -> bool:

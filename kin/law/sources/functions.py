@@ -12,7 +12,7 @@ from kin.numeric.elementary import cos, sin
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.law.segment import Series, Stretch
+    from kin.law.segment import Series
 
 
 @dataclass(frozen=True)
@@ -116,20 +116,6 @@ class Flank:
     def __call__(self, v: Series, /) -> Series:
         """Give the displacement, 1 at the nose."""
         return v**5.0 * _horner(self.coefficients, 1.0 - v)
-
-
-@dataclass(frozen=True)
-class Together:
-    """Sum of functions."""
-
-    parts: tuple[Stretch, ...]
-
-    def __call__(self, u: Series, /) -> Series:
-        """Give the sum."""
-        total = self.parts[0](u)
-        for part in self.parts[1:]:
-            total = total + part(u)
-        return total
 
 
 def _horner(coefficients: Sequence[float], x: Series) -> Series:

@@ -11,7 +11,7 @@ import numpy as np
 
 from kin.law.joints import ORDERS, Joint, joints_of
 from kin.law.piecewise import Piecewise, Side
-from kin.law.programme import IntentError, Programme
+from kin.law.programme import IntentError
 from kin.law.segment import Affine, Constant
 from kin.law.sources.peaks import extremes
 
@@ -38,14 +38,28 @@ class Rest(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Motion(Programme):
+class Motion:
     """Displacement S over [0, total] rad, mm or rad; `around` says how the end is followed by the beginning.
 
     With 1 the motion repeats. With -1 it goes on as S(total) - S(t - total), as a constant-breadth cam does after its
     half turn. With None nothing is said.
     """
 
+    motion: Piecewise
     around: int | None = 1
+
+    @property
+    def total(self) -> float:
+        """Angle covered, rad."""
+        return float(self.motion.knots[-1])
+
+    def at_start(self, order: int) -> Array:
+        """Give the derivatives 0..order at the first angle, (order + 1,)."""
+        return self.motion.derivatives(0.0, order, 1)[:, 0]
+
+    def at_end(self, order: int) -> Array:
+        """Give the derivatives 0..order at the last angle, (order + 1,)."""
+        return self.motion.derivatives(self.total, order, -1)[:, 0]
 
     def derivatives(self, theta: float | Array, order: int, side: Side = 1) -> Array:
         """Give S and its derivatives at theta (n,) in [0, total], (order + 1, n); at a break the limit from `side`."""
@@ -132,16 +146,6 @@ class Motion(Programme):
         least = self.range[0]
         return self if abs(least) <= _CLOSED * self._size else self.raised(-least)
 
-    def repeated(self, count: int) -> Motion:
-        """The motion `count` times over, one after another."""
-        if count == 1:
-            return self
-        knots, functions = self.motion.knots, self.motion.functions
-        total = self.total * count
-        places = np.concatenate([knots[:-1] + i * (total / count) for i in range(count)] + [np.array([total])])
-        moved = [_later(f, i * (total / count)) for i in range(count) for f in functions]
-        return Motion(Piecewise(places, tuple(moved)), self.around)
-
     def periodic(self, field: str = "motion", unit: str = "mm") -> Piecewise:
         """S with period `total`, joined in S and S'; a dwell or a function that runs over the end is one stretch."""
         self.demand_joined(field, unit)
@@ -167,12 +171,6 @@ def _remedy(at: float, order: int) -> str:
 
 def _raised(function: Stretch, by: float) -> Stretch:
     return Constant(function.value + by) if isinstance(function, Constant) else Affine.of(function, offset=by)
-
-
-def _later(function: Stretch, by: float) -> Stretch:
-    if isinstance(function, Constant) or by == 0.0:
-        return function
-    return Affine.of(function, start=by)
 
 
 def joined(knots: Sequence[float], functions: Sequence[Stretch], around: int | None = 1) -> Motion:

@@ -239,7 +239,8 @@ def _state(parts: Sequence[_Part], i: int, way: int, around: int | None) -> Arra
     if state is None:
         first = parts[i] if way > 0 else other
         where = math.degrees(first.end)
-        problem = f"two matched segments meet at {where:.6g} degrees: give the first one `at_end: {{v: ..., a: ...}}`"
+        which = "the last entry" if first is parts[-1] else "the first one"
+        problem = f"two matched segments meet at {where:.6g} degrees: give {which} `at_end: {{v: ..., a: ...}}`"
         if other is parts[i]:
             problem = "a matched segment that stands alone has no neighbour to match: "
             problem += "add one, such as a dwell" if around == 1 else "add one, or give it `at_end: {v: 0, a: 0}`"

@@ -14,6 +14,7 @@ from kin.law.sources.smoothing import TableError
 
 MM_PER_INCH = 25.4
 
+_NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?|nan|inf(?:inity)?)", re.IGNORECASE)
 _SEPARATORS = {";": "semicolons", "\t": "tabs", " ": "blanks", ",": "commas"}
 
 
@@ -43,10 +44,7 @@ def read_table(
         cells = _numbers(line, separator)
         if not cells:
             raise _unread(line, separator, i, field)
-        try:
-            theta[row], s[row] = float(cells[0]), float(cells[1])
-        except ValueError:
-            raise _unread(line, separator, i, field) from None
+        theta[row], s[row] = float(cells[0]), float(cells[1])
         places = max(places, _places(cells[1]))
     theta *= math.pi / 180 / (2 if angles == "crank" else 1)
     scale = {"mm": 1.0, "inch": MM_PER_INCH, "degrees": math.pi / 180}[unit]
@@ -73,11 +71,7 @@ def _numbers(line: str, separator: str) -> tuple[str, str] | None:
     if len(cells) != 2:
         return None
     first, second = (cell.strip().strip('"').replace(",", ".") for cell in cells)
-    try:
-        float(first), float(second)
-    except ValueError:
-        return None
-    return first, second
+    return (first, second) if _NUMBER.fullmatch(first) and _NUMBER.fullmatch(second) else None
 
 
 def _unread(line: str, separator: str, number: int, field: str) -> TableError:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from kin.numeric.places import place_text
 from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
@@ -117,7 +118,7 @@ def join(free: Indices, ends: Array, tolerance: float, partner: Indices, path: P
     crowded = np.flatnonzero(met > 1)
     if crowded.size:
         x, y = ends[free[crowded[0]]].tolist()
-        message = f"{met[crowded[0]] + 1} ends meet at ({x:.9g}, {y:.9g}), where two should"
+        message = f"{met[crowded[0]] + 1} ends meet at {place_text(x, y, digits=9)}, where two should"
         raise ReadError("branch", message, path, (x, y))
     partner[free[i]], partner[free[j]] = free[j], free[i]
 
@@ -135,7 +136,6 @@ def opening(free: Indices, ends: Array, gap: float, path: Path) -> ReadError:
     missing = wide > MISSING_SHARE * float(np.ptp(ends, axis=0).max())
     more = f"; {len(free) // 2} such places" if len(free) > 2 else ""
     what = "the contour is open, a segment is missing" if missing else "the contour is open"
-    message = (
-        f"{what} between ({x:.9g}, {y:.9g}) and ({x2:.9g}, {y2:.9g}): {wide:.3g} apart, permitted is {gap:.3g}{more}"
-    )
+    places = f"{place_text(x, y, digits=9)} and {place_text(x2, y2, digits=9)}"
+    message = f"{what} between {places}: {wide:.3g} apart, permitted is {gap:.3g}{more}"
     return ReadError("open" if missing else "gap", message, path, (x, y), wide)

@@ -14,6 +14,7 @@ from kin.contour.pieces import ARC, Pieces
 from kin.read.drawing.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.read.errors import ReadError
 from kin.read.nesting import counter_clockwise, demand_few, met, nested
+from kin.read.size import demand_few_pieces
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -83,7 +84,6 @@ class Drawing:
     version         of DXF, such as "AC1024", or "SVG"
     measurement     $MEASUREMENT: 0 English, 1 metric, None if not stated
     extents         $EXTMIN and $EXTMAX, mm; None if not stated
-    audit           messages of ezdxf's auditor, None if it was not asked
     engraved        what is engraved, counter-clockwise, if it was asked for
     """
 
@@ -99,7 +99,6 @@ class Drawing:
     version: str
     measurement: int | None
     extents: Box | None
-    audit: tuple[str, ...] | None
     engraved: tuple[Contour, ...] = ()
 
 
@@ -122,7 +121,6 @@ def drawing_of(
     version: str,
     measurement: int | None = None,
     extents: Box | None = None,
-    audit: tuple[str, ...] | None = None,
 ) -> Drawing:
     """Join what is to be cut, and what is engraved, in drawing units, to the contours of a drawing in mm.
 
@@ -131,6 +129,7 @@ def drawing_of(
     """
     scale = 1.0 if unit is None else unit
     pieces, run = gathered(found.shapes)
+    demand_few_pieces(len(run), path)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
     same, usual = closeness(pieces)
     gap = usual if gap is None else gap
@@ -162,7 +161,6 @@ def drawing_of(
         version=version,
         measurement=measurement,
         extents=extents,
-        audit=audit,
         engraved=scratched,
     )
 

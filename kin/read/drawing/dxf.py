@@ -18,6 +18,7 @@ from kin.read.drawing.dxf_entities import CURVES, NOTES, facing, shape_of
 from kin.read.drawing.shapes import UnfitError, check
 from kin.read.errors import ReadError
 from kin.read.home import prepare_home
+from kin.read.size import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,6 +32,12 @@ UNIT_MM = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254,
 UNIT_NAMES = {"mm": 1.0, "millimetre": 1.0, "millimeter": 1.0, "inch": 25.4, "inches": 25.4, "in": 25.4, "cm": 10.0}
 UNIT_COMMENT = re.compile(rb"^[ \t]*999[ \t]*\r?\n[^\r\n]*\bunits?[ \t]*[:=][ \t]*(\w+)", re.IGNORECASE | re.MULTILINE)
 COMMENT_BYTES = 4000
+# A number with an underscore, which Python reads: 1_0 as 10. Before it the code of a group that is a number.
+UNDERSCORED = re.compile(
+    rb"^[ \t]*(?:[1-9]\d|1[1-7]\d|2[1-8]\d|37\d|38\d|4[0246]\d|10[1-7]\d)[ \t]*\r?\n"
+    rb"[ \t]*([-+.\deE]*\d_\d[-+.\deE_]*)[ \t]*\r?$",
+    re.MULTILINE,
+)
 END_MARK = re.compile(rb"(^|\n)[ \t]*0[ \t]*\r?\n[ \t]*EOF\s*$")
 MOST_ENTITIES = 20_000  # that blocks may bring in
 DEEPEST = 16  # of blocks within blocks
@@ -46,7 +53,6 @@ def read_dxf(
     gap: float | None = None,
     layer: str | None = None,
     *,
-    audit: bool = False,
     engraved: bool = False,
 ) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
@@ -55,14 +61,13 @@ def read_dxf(
     layer   the one to cut. Default: CUT, with holes also from BORE, HOLES, MARK and 0, if there is something on CUT;
             else all layers but those of reference geometry. The outermost closed chain is the contour, those inside
             it are holes.
-    audit   have ezdxf's auditor look at the file too, which takes as long again
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs and splines in one plane, with the place and the size of the gap.
     """
     path = Path(path)
-    raw = path.read_bytes()
+    raw = contents(path, "dxf")
     document = parsed(raw, path)
     with damage_reported(path):
         unit = unit_of(document, raw[:COMMENT_BYTES], path)
@@ -70,7 +75,6 @@ def read_dxf(
         drawn = everything(document, path)
         found = entities_to_cut(document, drawn, layer, path)
         marks = entities_engraved(drawn, path) if engraved else None
-        messages = tuple(e.message for e in document.audit().errors) if audit else None
         low, high = (document.header.get(name) for name in ("$EXTMIN", "$EXTMAX"))
         stated = low is not None and high is not None and low[0] <= high[0] and low[1] <= high[1]
         extents = Box(*(float(v) * scale for v in (*low[:2], *high[:2]))) if stated else None
@@ -84,7 +88,6 @@ def read_dxf(
         version=document.dxfversion,
         measurement=measurement,
         extents=extents,
-        audit=messages,
     )
 
 
@@ -102,7 +105,13 @@ def damage_reported(path: Path) -> Iterator[None]:
     except ReadError:
         raise
     except (*DAMAGE, DXFError) as error:
-        raise ReadError("syntax", f"not a sound DXF file: {type(error).__name__}: {error}", path) from error
+        line = re.search(r"\bline:? (\d+)", str(error))  # the one thing of ezdxf's own words that helps
+        where = (
+            f"line {line[1]} cannot be read"
+            if line
+            else "a record in it is incomplete, or no number stands where one belongs"
+        )
+        raise ReadError("syntax", f"not a sound DXF file: {where}; save it anew from CAD", path) from error
 
 
 def parsed(raw: bytes, path: Path) -> Document:
@@ -113,6 +122,10 @@ def parsed(raw: bytes, path: Path) -> Document:
         raise ReadError("unsupported", "this is a binary DXF file; save it as text", path)
     if END_MARK.search(raw[-200:]) is None:
         raise ReadError("truncated", "the end mark EOF is missing: the file is cut short, or no DXF file", path)
+
+    if b"_" in raw and (found := UNDERSCORED.search(raw)):
+        line = raw.count(b"\n", 0, found.start(1)) + 1
+        raise ReadError("syntax", f"line {line}: {found[1].decode('ascii')} is not a number", path)
 
     prepare_home()
     from ezdxf.filemanagement import dxf_stream_info, read

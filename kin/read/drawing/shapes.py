@@ -58,4 +58,5 @@ def check(*numbers: Array, limit: float = LARGEST) -> None:
     for array in numbers:
         bad = array[~(np.abs(array) <= limit)]
         if bad.size:
-            raise UnfitError("range", f"a value of {bad.flat[0]:g}")
+            what = f"a value of {bad.flat[0]:g}" if np.isfinite(bad.flat[0]) else "a value that is not finite"
+            raise UnfitError("range", what)

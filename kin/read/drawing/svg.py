@@ -17,7 +17,8 @@ from kin.read.drawing.affine import Affine
 from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, Drawing, Found, drawing_of
 from kin.read.drawing.shapes import Shape, UnfitError, shape
 from kin.read.drawing.svg_path import NUMBER, path_of
-from kin.read.errors import ReadError
+from kin.read.errors import ReadError, xml_fault
+from kin.read.size import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -68,7 +69,7 @@ def read_svg(path: Path | str, gap: float | None = None, *, engraved: bool = Fal
     lines, arcs of circles and cubics, and for elements and transforms that are not read.
     """
     path = Path(path)
-    root = _parsed(path.read_bytes(), path)
+    root = _parsed(contents(path, "svg"), path)
     unit = unit_of(root, path)
     elements = list(_elements(root, "", TURNED_OVER, path))
     by_name = any(one.layer == CUT for one in elements)
@@ -91,7 +92,7 @@ def _parsed(raw: bytes, path: Path) -> Element:
         # entities, by which a small file could grow without bound, are refused above
         root = ET.fromstring(raw)  # noqa: S314
     except (ET.ParseError, ValueError, LookupError) as error:
-        raise ReadError("syntax", f"not a sound SVG file: {error}", path) from error
+        raise ReadError("syntax", f"not a sound SVG file: {xml_fault(error)}", path) from error
     if root.tag != f"{SVG}svg":
         raise ReadError("syntax", f"not an SVG file: its first element is {root.tag}", path)
     if root.get("transform") or "transform" in root.get("style", ""):
@@ -109,11 +110,12 @@ def unit_of(root: Element, path: Path) -> float | None:
     if numbers is None or len(numbers) != 4 or not (numbers[2] > 0.0 and numbers[3] > 0.0):
         raise ReadError("syntax", f"the viewBox is {box!r}", path)
     scales = [size / extent for size, extent in zip(sizes, numbers[2:], strict=True) if size is not None]
+    if not all(UNITS[0] <= scale <= UNITS[1] for scale in scales):
+        bounds = f"{UNITS[0]:g} to {UNITS[1]:g} mm"
+        raise ReadError("range", f"by width and viewBox a unit of the drawing is not {bounds} long", path)
     if len(scales) == 2 and not abs(scales[0] - scales[1]) <= SQUARE * scales[0]:
         message = f"a unit is {scales[0]:.9g} mm along the width and {scales[1]:.9g} mm along the height"
         raise ReadError("unsupported", message, path)
-    if scales and not UNITS[0] <= scales[0] <= UNITS[1]:
-        raise ReadError("range", f"a unit of {scales[0]:.6g} mm", path)
     return scales[0] if scales else None
 
 
@@ -122,7 +124,7 @@ def _length(text: str | None, path: Path) -> float | None:
     if text is None or text.strip() == "auto" or text.strip().endswith("%"):
         return None
     found = LENGTH.fullmatch(text)
-    if found is None or found[2].lower() not in UNIT_MM or not float(found[1]) > 0.0:
+    if found is None or found[2].lower() not in UNIT_MM or not 0.0 < float(found[1]) < math.inf:
         raise ReadError("syntax", f"the size of the page is {text!r}", path)
     return float(found[1]) * UNIT_MM[found[2].lower()]
 

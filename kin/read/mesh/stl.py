@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -11,10 +12,12 @@ import numpy as np
 from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
 from kin.numeric.distinct import distinct
+from kin.numeric.places import place_text
 from kin.read.bodies import MOST_BODIES, beside
 from kin.read.errors import ReadError
 from kin.read.mesh.prism import Outline, evened, upright
 from kin.read.nesting import counter_clockwise, demand_few, met, nested
+from kin.read.size import contents
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -97,11 +100,6 @@ class Solid:
         return self.edges.open == 0 and self.edges.crowded == 0
 
     @property
-    def oriented(self) -> bool:
-        """Whether the mesh is closed and its triangles all face the same side."""
-        return self.closed and self.edges.misdirected == 0
-
-    @property
     def thickness(self) -> float:
         """Height of the part, mm."""
         return self.z_max - self.z_min
@@ -137,7 +135,7 @@ def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
     does not close or is not one contour with holes. All other faults are in the Solid's fields.
     """
     path = Path(path)
-    corners, form = triangles_of(path.read_bytes(), path)
+    corners, form = triangles_of(contents(path, "stl"), path)
     return solid_of(corners, form, heights, path)
 
 
@@ -291,7 +289,8 @@ def facets(raw: bytes, path: Path) -> Array:
     body, mark, _ = text.rpartition(b"endsolid")
     if not mark:
         raise ReadError("truncated", "the end mark endsolid is missing", path)
-    words = body.partition(b"\n")[2].split()
+    body = body.partition(b"\n")[2]
+    words = body.split()
     if not words:
         raise ReadError("empty", "the file holds no triangles", path)
     if b"endsolid" in words:
@@ -307,10 +306,25 @@ def facets(raw: bytes, path: Path) -> Array:
         if wrong.size:
             message = f"facet {wrong[0] + 1} has {table[wrong[0], column]!r} where {word!r} belongs"
             raise ReadError("syntax", message, path)
+    numbers = table[:, NUMBERS]
+    found = None
+    if b"_" not in body:  # Python reads 1_0 as 10
+        with suppress(ValueError):
+            found = numbers.astype(np.float64).reshape(-1, 3, 3)
+    if found is None:
+        which = next(i for i, word in enumerate(numbers.ravel()) if not _is_number(word))
+        text = numbers.ravel()[which].decode("latin-1")
+        message = f"facet {which // numbers.shape[1] + 1}: the coordinate {text} is not a number"
+        raise ReadError("syntax", message, path)
+    return found
+
+
+def _is_number(word: bytes) -> bool:
     try:
-        return table[:, NUMBERS].astype(np.float64).reshape(-1, 3, 3)
-    except ValueError as error:
-        raise ReadError("syntax", f"a coordinate is not a number: {error}", path) from error
+        float(word)
+    except ValueError:
+        return False
+    return b"_" not in word
 
 
 def section(mesh: Mesh, height: float) -> tuple[float, Outline]:
@@ -360,7 +374,7 @@ def rings(outline: Outline, path: Path) -> list[Indices]:
         if wrong.any():
             x, y = points[np.flatnonzero(wrong)[0]].tolist()
             places = np.count_nonzero(wrong)
-            raise ReadError(reason, f"{what} at ({x:.9g}, {y:.9g}); {places} such points", path, (x, y))
+            raise ReadError(reason, f"{what} at {place_text(x, y, digits=9)}; {places} such points", path, (x, y))
     following = np.full(len(points), -1, dtype=np.intp)
     following[start] = end
     step = following.tolist()

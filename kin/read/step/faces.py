@@ -15,6 +15,7 @@ import numpy as np
 from kin.contour.biarc import arcs_along
 from kin.contour.nearest import nearest
 from kin.numeric.angles import TURN
+from kin.numeric.places import place_text
 from kin.read.drawing.shapes import Shape, shape
 from kin.read.step.curves import Spline, edge_of, spline_of
 
@@ -306,7 +307,7 @@ def _check_loop(space: Space, number: int, uses: list[Use], edges: dict[int, Edg
         gap = float(np.linalg.norm(start - end))
         if gap > space.accuracy:
             x, y, z = end.tolist()
-            where = f"edge #{one.number} ends at ({x:.9g}, {y:.9g}, {z:.9g}) mm"
+            where = f"edge #{one.number} ends at {place_text(x, y, z, digits=9)} mm"
             message = f"{where}, {gap:.3g} mm from where #{other.number} starts"
             raise space.file.error(number, message, "open")
 

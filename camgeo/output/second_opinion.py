@@ -1,0 +1,292 @@
+"""A second opinion on files: what ezdxf, shapely, trimesh and manifold3d say of them, as checks beside the judge's own.
+
+Whoever receives a file opens it with these libraries. They are imported here, when a second opinion is wanted, and
+nowhere else: reading and judging do without them (docs/architecture.md). The contour comes from kin's reader, the exact
+one from the design as a polygon with a proved bound; meshes are read by trimesh itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from camgeo.checks.declared import (
+    AUDIT,
+    CONTOUR_AREA,
+    CONTOUR_DISTANCE,
+    CONTOUR_VALID,
+    MESH_BODIES,
+    MESH_STATUS,
+    MESH_VOLUME,
+    MESH_WATERTIGHT,
+    MESH_WINDING,
+    READABLE,
+    SECOND_OPINIONS,
+)
+from camgeo.common.errors import SurroundingsError
+from camgeo.files.errors import demand_uninterrupted, install
+from camgeo.fit.nodes import MOST_PIECES, ToleranceError
+from camgeo.fit.pieces import Polygon
+from camgeo.output.file_intent import intent_of_file
+from camgeo.output.job import Job
+from camgeo.output.skipped import scene_of
+from kin.judge.check import Check, about, at_most, failed
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from camgeo.common.clock import Clock
+    from camgeo.output.skipped import Skipped
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.report.document import FileResult
+    from camgeo.synthesis.design import Design
+    from kin.contour.contour import Contour
+    from kin.numeric.arrays import Array
+
+MOST_NAMED = 5  # faults named in a message
+MOST_TRIANGLES = 200_000  # trimesh and manifold3d take seconds beyond
+SHARE = 0.1  # of the tolerance, within which exact contour and file are made polygons
+OTHER_KINDS = {
+    "gcode": "no library of these reads a milling program",
+    "csv": "a table has no contour",
+    "glb": "a GLB is to look at",
+    "html": "a page is to look at",
+}
+NOTHING = "there is nothing to measure, or to hold it against"
+UNMADE = "a check of the exact contour fails"
+LIBRARIES = ("shapely", "trimesh", "scipy.sparse", "networkx", "lxml", "manifold3d")
+
+
+class Opinion(NamedTuple):
+    """The checks on files, and what was left out with the reason."""
+
+    checks: tuple[Check, ...] = ()
+    skipped: tuple[Skipped, ...] = ()
+
+    def more(self, *checks: Check) -> Opinion:
+        """Add checks."""
+        return Opinion((*self.checks, *checks), self.skipped)
+
+    def less(self, *skipped: Skipped) -> Opinion:
+        """Leave more out."""
+        return Opinion(self.checks, (*self.skipped, *skipped))
+
+
+class _Skip(Exception):  # noqa: N818 - no error: a row that is left out, with the reason
+    """Leaves a library's rows on one file out."""
+
+
+def demand_libraries(recipe: Recipe) -> None:
+    """Import the libraries; raises SurroundingsError, saying how to get it, where one is missing."""
+    from importlib import import_module
+
+    from kin.read.home import prepare_home
+
+    prepare_home()
+    for name in LIBRARIES:
+        try:
+            import_module(name)
+        except ImportError as error:
+            demand_uninterrupted(error)
+            missing = name.partition(".")[0]
+            raise SurroundingsError(f"a second opinion needs {missing}: {install('check')}", recipe.path) from error
+
+
+def second_opinion_on(
+    files: Sequence[FileResult], recipe: Recipe, design: Design, checks: Sequence[Check], clock: Clock
+) -> Opinion:
+    """Ask the libraries about files that were judged, with `checks` as the outcome.
+
+    A file that kin refuses to read is left out: what would cost without bound is refused there.
+    """
+    if design.contour is None:
+        return Opinion().less(*((f"second opinion[{file.path.name}]", UNMADE) for file in files))
+    job = Job.of(recipe, design, clock)
+    unread = {check.file for check in checks if check.name == READABLE.name and not check.ok}
+    scene = replace(scene_of(recipe, design), second_opinion=True)
+    opinion = Opinion()
+    for file in files:
+        name = file.path.name
+        why = OTHER_KINDS.get(file.request.kind, "")
+        if file.body != "cam" or (file.request.kind == "3mf" and file.request.parts == "all"):
+            why = "it holds other bodies than the cam"
+        elif name in unread:
+            why = "the file cannot be read"
+        if why:
+            opinion = opinion.less((f"second opinion[{name}]", why))
+            continue
+        due = [row.name for row in SECOND_OPINIONS if row.of_file is not None and row.of_file(scene, file.request)]
+        with clock.stage("second opinion"):
+            for libraries, ask in ASKED:
+                rows = [row for row in due if row.partition(":")[0] in libraries]
+                why = NOTHING
+                try:
+                    checks = ask(job, file) if rows else []
+                except _Skip as left:
+                    checks, why = [], str(left)
+                left_out = [(f"{row}[{name}]", why) for row in rows if row not in {check.name for check in checks}]
+                opinion = opinion.more(*(about(check, name) for check in checks)).less(*left_out)
+    return opinion
+
+
+def _of_audit(_: Job, file: FileResult) -> list[Check]:
+    """Have ezdxf's auditor look at a DXF: what it finds wrong counts, also where it would mend it."""
+    from kin.read.drawing.dxf import damage_reported, parsed
+
+    try:
+        with damage_reported(file.path):
+            auditor = parsed(file.path.read_bytes(), file.path).audit()
+    except ReadError as error:
+        return [failed(AUDIT.name, error.message)]
+    messages = [entry.message for entry in (*auditor.errors, *auditor.fixes)]
+    more = [f"and {len(messages) - MOST_NAMED} more"] if len(messages) > MOST_NAMED else []
+    return [at_most(AUDIT.name, len(messages), 0, "faults", detail="; ".join([*messages[:MOST_NAMED], *more]))]
+
+
+# --- shapely ----------------------------------------------------------------------------------------------------------
+
+
+def _of_contour(job: Job, file: FileResult) -> list[Check]:
+    """Hold the contour as read, cut into a polygon, against the exact one as a polygon: valid, area, distance."""
+    import shapely
+
+    tolerance = file.tolerance
+    if file.contour is None or tolerance is None:
+        raise _Skip("no contour could be read from the file")
+    job, failures = job.of_file(file.request)
+    if failures:
+        raise _Skip("there is no exact contour to compare with")
+    try:
+        exact = job.outlines.within("polyline", SHARE * tolerance)
+        if not isinstance(exact, Polygon):
+            raise TypeError("the exact contour is compared as a polygon")
+        drawn = polygon_of(file.contour, SHARE * tolerance)
+    except (ToleranceError, ValueError) as error:
+        raise _Skip(f"no polygon within a tenth of the tolerance: {error}") from error
+    shape, meant = shapely.Polygon(drawn), shapely.Polygon(exact.vertices)
+    area, reach = float(meant.area), float(meant.length)
+    reason = "" if shape.is_valid else str(shapely.is_valid_reason(shape))
+    off = abs(float(shape.area) - area)
+    told = f"{float(shape.area):.9g} mm^2, of the exact contour {area:.9g}"
+    away = max(_farthest(drawn, exact.vertices), _farthest(exact.vertices, drawn))
+    where = f"at ({away.x:.6g}, {away.y:.6g}) mm; both as polygons, each within a tenth of the tolerance"
+    return [
+        at_most(CONTOUR_VALID.name, 0 if shape.is_valid else 1, 0, "faults", detail=reason),
+        at_most(CONTOUR_AREA.name, off, 2.0 * reach * tolerance, "mm^2", detail=told),
+        at_most(CONTOUR_DISTANCE.name, away.distance, (1.0 + 2.0 * SHARE) * tolerance, "mm", detail=where),
+    ]
+
+
+def polygon_of(contour: Contour, tolerance: float) -> Array:
+    """Vertices (n, 2) of a polygon within `tolerance` mm of a contour: splines as arcs, arcs as equal chords.
+
+    The half of the tolerance is for each. Raises ValueError where more than a million chords are needed.
+    """
+    arcs, _ = contour.as_arcs(0.5 * tolerance) if contour.beziers.count else contour.as_arcs()
+    bent = np.abs(arcs.curvature)
+    # the sagitta of a chord over a length s of an arc is at most s^2 kappa/8, and no more than the arc's diameter
+    parts = np.ceil(arcs.length * np.sqrt(bent / (4.0 * tolerance)))
+    parts = np.maximum(parts, np.ceil(arcs.length * bent))
+    if not parts.sum() <= MOST_PIECES:
+        raise ValueError(f"{parts.sum():.3g} chords are needed, more than {MOST_PIECES}")
+    vertices: Array = arcs.cut(np.maximum(parts, 1.0).astype(np.intp))[0].start
+    return vertices
+
+
+class _Away(NamedTuple):
+    distance: float
+    x: float
+    y: float
+
+
+def _farthest(points: Array, polygon: Array) -> _Away:
+    """The vertex or edge's middle of one polygon that is farthest from another's edges."""
+    import shapely
+
+    tried = np.concatenate([points, 0.5 * (points + np.roll(points, -1, axis=0))])
+    edges = shapely.STRtree(shapely.linestrings(np.stack([polygon, np.roll(polygon, -1, axis=0)], axis=1)))
+    (place, _), distance = edges.query_nearest(shapely.points(tried), return_distance=True, all_matches=False)
+    k = int(np.argmax(distance))
+    return _Away(float(distance[k]), *map(float, tried[place[k]]))
+
+
+# --- trimesh and manifold3d -------------------------------------------------------------------------------------------
+
+
+def _of_mesh(job: Job, file: FileResult) -> list[Check]:
+    """Have trimesh read a mesh: closed, turned one way, one body, of the exact volume; and manifold3d take it."""
+    import trimesh
+
+    try:
+        count = _triangles(file)
+    except ReadError as error:
+        raise _Skip(f"the file cannot be read: {error.message}") from error
+    if count > MOST_TRIANGLES:
+        raise _Skip(f"{count} triangles are more than {MOST_TRIANGLES}")
+
+    try:
+        read = trimesh.load_mesh(file.path)
+        closed, turned, bodies = bool(read.is_watertight), bool(read.is_winding_consistent), int(read.body_count)
+        status = _status(read)
+    except Exception as error:  # noqa: BLE001 - its readers raise whatever their own libraries do
+        return [failed(MESH_WATERTIGHT.name, f"trimesh does not read it: {str(error) or type(error).__name__}")]
+    inward = turned and float(read.volume) <= 0.0
+    return [
+        _held(MESH_WATERTIGHT.name, closed, "not every edge has two triangles"),
+        _held(MESH_WINDING.name, turned and not inward, "the triangles face inward" if inward else "they differ"),
+        at_most(MESH_BODIES.name, bodies, 1, "bodies"),
+        *_volume(job, file, read),
+        _held(MESH_STATUS.name, status == "NoError", status),
+    ]
+
+
+def _status(read: Any) -> str:  # noqa: ANN401 - trimesh has no types
+    """What manifold3d says of a mesh."""
+    import manifold3d
+
+    points, triangles = np.asarray(read.vertices, np.float64), np.asarray(read.faces, np.uint64)
+    return str(manifold3d.Manifold(manifold3d.Mesh64(points, triangles)).status()).rpartition(".")[2]
+
+
+def _held(name: str, holds: bool, why: str) -> Check:
+    return at_most(name, 0 if holds else 1, 0, "faults", detail="" if holds else why)
+
+
+def _triangles(file: FileResult) -> int:
+    """Count a mesh's triangles by kin's reader, which is quick."""
+    if file.request.kind == "stl":
+        from kin.read.mesh.stl import triangles_of
+
+        return len(triangles_of(file.path.read_bytes(), file.path)[0])
+    from kin.read.mesh.threemf import read_placed
+
+    return sum(len(one.corners) for one in read_placed(file.path))
+
+
+def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN401 - trimesh has no types
+    """Hold trimesh's volume against the exact one, as the judge holds its own."""
+    from kin.judge.contour_checks import volume_check
+    from kin.judge.part_checks import layers_volume_check
+
+    job, _ = job.of_file(file.request)
+    intent = intent_of_file(job.recipe, job.design, file.request.kind)
+    mm, tolerance = file.units, file.tolerance
+    if file.contour is None or mm is None or tolerance is None or intent.thickness is None:
+        return []
+    volume = mm**3 * float(read.volume)
+    if intent.layers:
+        check = layers_volume_check(volume, file.contour, intent, tolerance)
+    else:
+        check = volume_check(volume, intent.thickness, file.contour, intent, tolerance)
+    return [replace(check, name=MESH_VOLUME.name)]
+
+
+ASKED: tuple[tuple[frozenset[str], Callable[[Job, FileResult], list[Check]]], ...] = (
+    (frozenset({"ezdxf"}), _of_audit),
+    (frozenset({"shapely"}), _of_contour),
+    (frozenset({"trimesh", "manifold3d"}), _of_mesh),
+)
+"""Libraries, and what makes their rows of a file."""

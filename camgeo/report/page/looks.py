@@ -1,0 +1,71 @@
+"""How the parts of a drawing look, by their role: on a page in light or dark, in a picture in the light colours."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import NamedTuple
+
+
+class Look(NamedTuple):
+    """Names of the colours of fill and edge, empty without; width of the edge in px, opacity of the fill."""
+
+    fill: str
+    edge: str
+    width: float = 0.0
+    opacity: float = 1.0
+
+
+LOOKS = {
+    "metal": Look("metal", "metal-edge", 1.5),
+    "hub": Look("", "quiet", 1.2),
+    "mark": Look("", "metal-edge", 2.2),
+    "timing mark": Look("", "metal-edge", 2.2),
+    "follower": Look("follower", "follower-edge", 1.5, 0.75),
+    "roller": Look("ground", "follower-edge", 1.5, 0.85),
+    "rocker": Look("link", "link-edge", 1.5),
+    "block": Look("link", "link-edge", 1.5),
+    "rod": Look("rod", "rod-edge", 1.5),
+    "output": Look("output", "output-edge", 1.5),
+    "fixed": Look("fixed", "ink", 1.2),
+    "foot": Look("fixed", "ink", 1.2),
+    "hatch": Look("", "quiet", 1.2),
+    "pin": Look("pin", "ink", 1.2),
+    "force": Look("", "contact", 1.8),
+    "force tip": Look("contact", ""),
+    "force dot": Look("contact", ""),
+    "load": Look("", "load", 2.6),
+    "load tip": Look("load", ""),
+    "load dot": Look("load", ""),
+}
+
+
+def rules() -> str:
+    """Return a rule of CSS for each role, the colours as variables, so that a page in the dark has its own."""
+    return "".join(
+        f".drawing .{role.replace(' ', '.')} {{ fill: {_variable(look.fill)}; fill-opacity: {look.opacity}; "
+        f"stroke: {_variable(look.edge)}; stroke-width: {look.width}px; }}\n"
+        for role, look in LOOKS.items()
+    )
+
+
+def _variable(name: str) -> str:
+    return f"var(--{name})" if name else "none"
+
+
+@cache
+def colours() -> dict[str, str]:
+    """Return the light colours of the style by their names, `#rrggbb`."""
+    from camgeo.report.page.page import asset
+
+    return dict(re.findall(r"--([a-z-]+): (#[0-9a-f]{6})", asset("drawing.css").partition("@media")[0]))
+
+
+def literal(role: str, px: float) -> str:
+    """Return how a role looks as attributes of SVG, which every program reads; `px` is its length in the drawing."""
+    look = LOOKS[role]
+    fill, edge = (colours()[name] if name else "none" for name in look[:2])
+    text = f'fill="{fill}" stroke="{edge}"'
+    if look.edge:
+        text += f' stroke-width="{look.width * px:.4g}"'
+    return text if look.opacity == 1.0 or not look.fill else f'{text} fill-opacity="{look.opacity}"'

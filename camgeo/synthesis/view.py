@@ -1,0 +1,113 @@
+"""A design as whoever draws it asks: its follower's contacts by guide and touch, and what moves over the shaft angle.
+
+A table from arrangement to what draws it is made of entries. Types are checked: a drawer for an arm takes the views of
+arms alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Concatenate, Generic, ParamSpec, TypeAlias, TypeVar
+
+import numpy as np
+
+from kin.law.contacts import (
+    Arrangement,
+    Contact,
+    Flat,
+    G_co,
+    Guide,
+    KnifeEdge,
+    Oscillating,
+    Roller,
+    Shoe,
+    T_co,
+    Touch,
+    Translating,
+)
+from kin.numeric.angles import TURN
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.numeric.arrays import Array
+
+Round: TypeAlias = Roller | Shoe | KnifeEdge
+G = TypeVar("G", Translating, Oscillating)
+T = TypeVar("T", Roller, KnifeEdge, Shoe, Flat)
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+@dataclass(frozen=True, eq=False)
+class View(Generic[G_co, T_co]):
+    """A recipe with its design, and the contacts of the follower."""
+
+    recipe: Recipe
+    design: Design
+    contacts: tuple[Contact[G_co, T_co], ...]
+
+    @property
+    def guide(self) -> G_co:
+        """That of contact 1."""
+        return self.contacts[0].guide
+
+    @property
+    def touch(self) -> T_co:
+        """That of contact 1."""
+        return self.contacts[0].touch
+
+    @property
+    def datum(self) -> float:
+        """Own position of contact 1 where the follower's is 0: foot or level, mm, or rest, rad."""
+        return self.contacts[0].datum
+
+    def travel(self, shaft: Array, order: int = 0) -> Array:
+        """Position of the follower from the zero of its contacts, mm or rad, and derivatives, (order + 1, n)."""
+        return self.design.position.travel(shaft, order)
+
+    def pressure(self, shaft: Array) -> Array:
+        """Pressure angle, rad (n,), above 0 where the cam drives a rise."""
+        return self.recipe.cam.pressure_angle(self.design.intent, self.design.profile)(shaft)
+
+    def place(self, shaft: Array) -> Array:
+        """Where a flat face is touched, mm along it (n,), from the axis of its stem or the pivot of its arm."""
+        return self.recipe.cam.contact_place(self.design.intent, self.design.profile)(shaft)
+
+    def touched(self, shaft: Array) -> list[Array]:
+        """Where each contact touches in the frame of the ground, mm, as complex numbers (n,)."""
+        found = []
+        for t in self.design.position.contacts(shaft, shaft).values():
+            point = self.design.profile.curve.sample(np.mod(t, TURN)).point
+            found.append((point[:, 0] + 1j * point[:, 1]) * np.exp(-1j * shaft))
+        return found
+
+    def of(self, guide: type[G], touch: type[T]) -> View[G, T]:
+        """The same view of contacts of that guide and touch; TypeError for others."""
+        contacts = []
+        for one in self.contacts:
+            if not (isinstance(one.guide, guide) and isinstance(one.touch, touch)):
+                raise TypeError(f"no {touch.__name__} on a guide {guide.__name__}: {one}")
+            contacts.append(Contact(one.guide, one.touch, one.datum, one.sense, one.apart, one.turned))
+        return View(self.recipe, self.design, tuple(contacts))
+
+
+def view_of(recipe: Recipe, design: Design) -> View[Guide, Touch]:
+    """View a design whatever its follower is."""
+    return View(recipe, design, design.follower.contacts)
+
+
+Drawer: TypeAlias = "Callable[Concatenate[View[Guide, Touch], P], R]"
+
+
+def entry(
+    guide: type[G], touch: type[T], by: Callable[Concatenate[View[G, T], P], R], contacts: int = 1
+) -> tuple[Arrangement, Drawer[P, R]]:
+    """Make the entry of a table: an arrangement, and what draws views of it."""
+
+    def draw(view: View[Guide, Touch], /, *args: P.args, **kwargs: P.kwargs) -> R:
+        return by(view.of(guide, touch), *args, **kwargs)
+
+    return Arrangement(guide, touch, contacts), draw

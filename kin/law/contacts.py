@@ -1,0 +1,189 @@
+"""What touches a cam, as data: guides, touches, contacts, arrangements; one record for who makes a cam and who judges.
+
+Lengths are mm, angles radians. The frame runs round the standing cam by the shaft angle, and a guide stands in it: a
+line of travel along its x axis, or a pivot on that axis. A contact's own position on its guide grows away from the
+shaft: the distance along the line from the foot of the shaft, or the angle at the pivot between the line to the shaft
+and the arm, which of a flat face is its own parallel through the pivot.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, Generic, Literal, TypeAlias, TypeVar
+
+if TYPE_CHECKING:
+    from kin.numeric.arrays import Array
+
+Side: TypeAlias = Literal[-1, 1]
+Unit: TypeAlias = Literal["mm", "deg"]
+TRAILING: Side = 1
+LEADING: Side = -1
+
+
+@dataclass(frozen=True)
+class Translating:
+    """A line of travel that passes the shaft at `offset` e, mm, above 0 on the side from which the surface comes."""
+
+    offset: float = 0.0
+    unit: ClassVar[Unit] = "mm"
+    word: ClassVar[str] = "translating"
+
+
+@dataclass(frozen=True)
+class Oscillating:
+    """An arm about a pivot at a distance from the shaft, mm; `length` to the touch's centre, None for a flat face.
+
+    `side` is TRAILING where the cam is touched clockwise of the pivot as drawn, LEADING where it is on the other side.
+    """
+
+    pivot: float
+    side: Side = TRAILING
+    length: float | None = None
+    unit: ClassVar[Unit] = "deg"
+    word: ClassVar[str] = "oscillating"
+
+
+@dataclass(frozen=True)
+class Roller:
+    """A roller that turns on its pin; `radius` in mm."""
+
+    radius: float
+    word: ClassVar[str] = "roller"
+
+
+@dataclass(frozen=True)
+class KnifeEdge:
+    """A point."""
+
+    radius: ClassVar[float] = 0.0
+    word: ClassVar[str] = "knife edge"
+
+
+@dataclass(frozen=True)
+class Shoe:
+    """A curved shoe that slides; `radius` in mm."""
+
+    radius: float
+    word: ClassVar[str] = "shoe"
+
+
+@dataclass(frozen=True)
+class Flat:
+    """A flat face. On a line of travel its normal stands `tilt` ahead of that, rad, on an arm across the arm.
+
+    `width`, mm, is centred on the stem's axis, None for a face as wide as it needs to be; a face on an arm stands
+    `nearer` the shaft, mm, than its parallel through the pivot.
+    """
+
+    tilt: float = 0.0
+    width: float | None = None
+    nearer: float = 0.0
+    radius: ClassVar[float] = 0.0
+    word: ClassVar[str] = "flat face"
+
+
+Guide: TypeAlias = Translating | Oscillating
+Touch: TypeAlias = Roller | KnifeEdge | Shoe | Flat
+G_co = TypeVar("G_co", bound=Guide, covariant=True)
+T_co = TypeVar("T_co", bound=Touch, covariant=True)
+TouchT = TypeVar("TouchT", bound=Touch)
+
+
+@dataclass(frozen=True)
+class Contact(Generic[G_co, T_co]):
+    """One touch of a follower, which at shaft angle phi is where its guide stands at phi + turned.
+
+    Its own position is datum - apart + sense * the follower's: a sense of 1 pushes the follower towards greater
+    positions, -1 towards lesser ones. `datum` is foot, rest or level; `apart` is how far two contacts that share their
+    guide stand from its middle.
+    """
+
+    guide: G_co
+    touch: T_co
+    datum: float = 0.0
+    sense: Side = 1
+    apart: float = 0.0
+    turned: float = 0.0
+
+    @property
+    def zero(self) -> float:
+        """Own position where the follower's is 0."""
+        return self.datum - self.apart
+
+    def position(self, own: Array) -> Array:
+        """Position of the follower from the contact's own."""
+        position: Array = self.sense * (own - self.datum + self.apart)
+        return position
+
+    def own(self, position: Array) -> Array:
+        """The contact's own position from the follower's."""
+        own: Array = self.zero + self.sense * position
+        return own
+
+    def away_from(self, side: Side) -> Contact[G_co, T_co]:
+        """The contact with its own position counted away from metal that lies inside (1) or outside (-1)."""
+        sense: Side = 1 if self.sense == side else -1
+        return replace(self, datum=side * self.datum, apart=side * self.apart, sense=sense)
+
+    def raised(self, by: float) -> Contact[G_co, T_co]:
+        """The contact for positions of the follower that count from `by` below their zero."""
+        return replace(self, datum=self.datum - self.sense * by)
+
+
+def opposite(touch: TouchT, apart: float, datum: float = 0.0) -> tuple[Contact[Translating, TouchT], ...]:
+    """Two contacts of a frame on a line through the shaft, so far apart, mm, the second half a turn on."""
+    guide = Translating()
+    return Contact(guide, touch, datum), Contact(guide, touch, apart - datum, -1, turned=math.pi)
+
+
+def on_one_arm(
+    pivot: float, length: float | None, touch: TouchT, datum: float, apart: float
+) -> tuple[Contact[Oscillating, TouchT], ...]:
+    """Contact A, which trails the pivot and keeps the swing below, and B, which leads it and pushes it on."""
+    return (
+        Contact(Oscillating(pivot, TRAILING, length), touch, datum, -1, apart),
+        Contact(Oscillating(pivot, LEADING, length), touch, datum, 1, apart),
+    )
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """What a recipe says of a follower before anything is computed: guide, touch, the greatest number of contacts."""
+
+    guide: type[Guide]
+    touch: type[Touch]
+    contacts: int = 1
+
+    @property
+    def unit(self) -> Unit:
+        """Of the follower's position and of motion errors."""
+        return self.guide.unit
+
+    @property
+    def backlash_unit(self) -> Unit:
+        """Of the backlash of a follower that is held from both sides: faces on arms stand wider by an angle."""
+        return self.unit if self.touch is Flat else "mm"
+
+    @property
+    def offers(self) -> frozenset[str]:
+        """What figures may be taken of it.
+
+        swings: two contacts on one arm; plate: faces that a linkage can carry; guided: on a stem or an arm of its own;
+        roller: round about a centre; rolling: a roller that the cam turns; stem, arm: one such contact; face,
+        stem-face: flat.
+        """
+        stem, flat, two = self.guide is Translating, self.touch is Flat, self.contacts > 1
+        swings, plate = two and not stem, two and stem and flat
+        held = {
+            "swings": swings,
+            "plate": plate,
+            "guided": not (swings or plate),
+            "roller": not flat,
+            "rolling": self.touch is Roller and not swings,
+            "stem": stem and not flat and not two,
+            "arm": not stem and not two,
+            "face": flat and not swings,
+            "stem-face": stem and flat and not two,
+        }
+        return frozenset(name for name, holds in held.items() if holds)

@@ -1,0 +1,11 @@
+"""Places as messages say them."""
+
+from __future__ import annotations
+
+ROUNDING = 1e-9
+"""mm: what doubles of some metres leave of a coordinate that is 0, and more than a message is read for."""
+
+
+def place_text(*coordinates: float, digits: int = 6) -> str:
+    """Write coordinates in brackets, with `digits` significant digits; one below ROUNDING is 0."""
+    return f"({', '.join(f'{0.0 if abs(c) < ROUNDING else c:.{digits}g}' for c in coordinates)})"

@@ -1,0 +1,89 @@
+"""Command lines by chance: every command and option, with names and numbers that make sense and none."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from attacks.outcome import Attack
+from camgeo.recipe.export import KINDS
+from camgeo.recipe.starter import KINDS as STARTERS
+
+if TYPE_CHECKING:
+    from random import Random
+
+SMALL = b"cam: {kind: support, p: 9 + cos(3*t)}\nexport: {tolerance: 0.01, files: [dxf]}\nverify: {angles: 60}\n"
+NAMES = [
+    "cam.yaml",
+    "cam.yaml",
+    "cam.yaml",
+    "other.yaml",
+    "none.yaml",
+    "",
+    ".",
+    "folder",
+    "cam.dxf",
+    "-",
+    "a\nb",
+    "x" * 300,
+]
+NAMES += ["cam.yaml/", "/", "\u00fc.yaml", "empty.yaml", "/dev/null", "..", "cam.dxf.yaml", " ", "\udcff.yaml"]
+LENGTHS = [
+    "0.01",
+    "0",
+    "-1",
+    "nan",
+    "inf",
+    "1e400",
+    "0.0005in",
+    "1 furlong",
+    "",
+    "1_0",
+    "\u0661",
+    "1e-12",
+    "10",
+    "1 mm mm",
+]
+OPTIONS: dict[str, list[list[str]]] = {
+    "export": [["-v"], ["--json"], ["--only"], ["--out"], ["--tolerance"], ["--jobs"], ["--nothing"]],
+    "check": [["-v"], ["--json"], ["--out"], ["--tolerance"], ["--jobs"]],
+    "verify": [["-v"], ["--json"], ["--units"], ["--tolerance"], ["--second-opinion"]],
+    "report": [["--out"], ["--picture"], ["--at"], ["--check"]],
+    "laws": [["--picture"], ["--json"], ["--only"]],
+    "new": [],
+    "schema": [["--json"]],
+    "study": [["--help"]],
+    "sweep": [["--help"]],
+}
+GIVEN = {
+    "--only": [*KINDS, "dwg", ""],
+    "--out": ["out", "folder", "cam.yaml", "", "/dev/null/out", "a/b/c", "."],
+    "--tolerance": LENGTHS,
+    "--jobs": ["1", "0", "-1", "x", "1.5", "\u0661", ""],
+    "--units": ["mm", "inch", "cm", "furlong", ""],
+    "--picture": ["svg", "png", "gif", "", "laws.svg", "folder"],
+    "--at": ["60", "nan", "x", "1e400", "-720", ""],
+}
+
+
+def called(rng: Random, number: int) -> Attack:
+    """One command line of words by chance."""
+    command = rng.choice([*OPTIONS, "export", "check", "verify", "report", "nonsense", ""])
+    words = [command] if rng.random() < 0.97 else []
+    wanted = {"verify": rng.randrange(1, 4), "new": rng.randrange(3), "laws": 0, "schema": 0}.get(
+        command, rng.randrange(3)
+    )
+    names = [rng.choice(NAMES) for _ in range(wanted)]
+    if command == "new" and names:
+        names[0] = rng.choice([*STARTERS, "disc-rollr", "", "DISC", "support "])
+    if command in {"verify", "report", "check", "export"} and names:
+        names[0] = rng.choice(["cam.yaml", names[0]])
+    words += names
+    for option in rng.sample(OPTIONS.get(command, []), min(len(OPTIONS.get(command, [])), rng.randrange(3))):
+        words += option
+        if option[0] in GIVEN and rng.random() < 0.95:
+            words.append(rng.choice(GIVEN[option[0]]))
+    if command in {"study", "sweep"} and "--help" not in words:
+        words.append("--help")
+    drawing = b"0\nEOF\n"
+    files = {"cam.yaml": SMALL, "other.yaml": SMALL.replace(b"9 +", b"10 +"), "empty.yaml": b"", "cam.dxf": drawing}
+    return Attack(f"call {number}", tuple(words), {**files, "folder/kept.txt": b"kept"})

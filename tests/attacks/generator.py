@@ -1,0 +1,43 @@
+"""The attack of a number: the same for the same seed, whoever asks for it."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import TYPE_CHECKING
+
+from attacks import calls, files, recipes, wider
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from attacks.outcome import Attack
+
+WAYS: tuple[Callable[[Random, int], Attack], ...] = (
+    recipes.sound,
+    recipes.of_any_kind,
+    recipes.wrong,
+    files.altered,
+    wider.furnished,
+    wider.tabled,
+    recipes.wrong,
+    files.altered,
+    calls.called,
+    wider.sized,
+    recipes.of_any_kind,
+    recipes.wrong,
+    files.altered,
+    wider.furnished,
+    files.altered,
+    wider.bomb,
+    recipes.sound,
+    recipes.wrong,
+    files.altered,
+    calls.called,
+    wider.searched,
+)
+"""Ways to attack, in turn."""
+
+
+def attack_of(seed: int, number: int) -> Attack:
+    """Give the attack of a number, deterministic in both."""
+    return WAYS[number % len(WAYS)](Random(f"attack {seed} {number}"), number)

@@ -1,0 +1,46 @@
+"""The command's entry: numpy starts with one thread there, and the environment of a program stays its own."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+from support.places import ROOT
+
+COMMAND = """
+import os, sys
+import camgeo.cli.main as cli
+def environment(_):
+    import numpy
+    print([os.environ.get(name) for name in sorted(entry._THREADS)])
+    return 0
+from camgeo import __main__ as entry
+cli.main = lambda: environment(None)
+entry.main()
+"""
+LIBRARY = """
+import os
+before = dict(os.environ)
+import camgeo, camgeo.pytest_plugin, camgeo.testing
+camgeo.design(camgeo.load("recipes/rabinowitz.yaml"))
+assert dict(os.environ) == before
+"""
+NAMES = ("MKL_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
+@pytest.mark.parametrize(
+    ("given", "seen"),
+    [({}, "['1', '1', '1', '1']"), ({"OMP_NUM_THREADS": "3"}, "[None, '3', None, None]")],
+    ids=["unset", "set"],
+)
+def test_a_command_starts_one_thread_unless_told_otherwise(given: dict[str, str], seen: str) -> None:
+    bare = {name: value for name, value in os.environ.items() if name not in NAMES}
+    done = subprocess.run([sys.executable, "-c", COMMAND], env=bare | given, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == seen
+
+
+def test_the_library_leaves_the_environment_alone() -> None:
+    bare = {name: value for name, value in os.environ.items() if name not in NAMES}
+    subprocess.run([sys.executable, "-c", LIBRARY], env=bare, cwd=ROOT, check=True)

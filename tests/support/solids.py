@@ -1,0 +1,13 @@
+"""What a sound mesh is, as its reader tells it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kin.read.mesh.stl import Solid
+
+
+def sound(solid: Solid) -> bool:
+    """Whether the mesh is closed and its triangles all face the same side."""
+    return solid.closed and solid.edges.misdirected == 0
