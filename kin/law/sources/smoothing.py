@@ -28,7 +28,7 @@ _MOST_SPANS = 1000
 _UNITS = {1.0: " mm", 25.4: " in", math.radians(1.0): " deg"}  # as recipes may write them
 _ONE_BY_ONE = 300_000  # rows times counts that are tried one after another; beyond that the next to hold is halved
 _LEAPS = 1.3  # from one count to the next where each is dear
-_PLAIN = 4  # rows a span, at least, where no joint is looked for
+_PLAIN, _FEW = 4, 30  # rows a span, at least, and spans that are not many, where no joint is looked for
 _ZERO = 2.0  # readings within which the least displacement of a table is meant to be 0
 _PINNED = 0.01  # of the reading, within which the least value is then 0
 _SCATTER, _MANY = 100.0, 60  # readings: 8 times the sixth differences of rows that err within the reading; of so many
@@ -120,7 +120,7 @@ class EqualSpans:
         return basis.sites, basis.spans(coefficients)
 
     def _fewest(self, rows: Samples, ends: Ends | None, between: tuple[float, float], step: int) -> int:
-        most = max(1, min(len(rows.s) // _PLAIN, _MOST_SPANS) // step)
+        most = max(1, min(max(len(rows.s) // _PLAIN, min(_FEW, len(rows.s) // 2)), _MOST_SPANS) // step)
 
         def holds(count: int) -> bool:
             off = nearest(rows.theta, rows.s, count * step, ends, between)[2]
