@@ -29,6 +29,7 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
     """A cam between two opposite rollers of one frame, from the motion over one half turn."""
 
     kind: ClassVar[str] = "constant-diameter"
+    gain: ClassVar[float | None] = None
     offers: ClassVar[frozenset[str]] = GuidedCam.offers | {"rolling"}
     base_radius: float
     roller_radius: float

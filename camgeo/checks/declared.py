@@ -391,6 +391,7 @@ FORM_CLOSURE = Declared(
     of_file=_form_closed,
     field="export.tolerance",
     own_field="verify.motion_error",
+    remedy=remedies.looser,
     backlash=True,
 )
 OUTPUT = Declared(

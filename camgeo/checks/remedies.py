@@ -141,6 +141,15 @@ def wider(check: Entry, report: Entry, recipe: Recipe) -> str:
     return f"a tolerance of {upward(check['value'] + 0.2 * tolerance)}, or {anew}"
 
 
+def looser(check: Entry, _report: Entry, recipe: Recipe) -> str:
+    """Tell which motion error would permit a play: the limits of both are proportional where the recipe gives it."""
+    given, value, limit = recipe.verify.motion_error, check["value"], check["limit"]
+    if given is None or value is None or not limit:
+        return ""
+    own = math.degrees(given) if recipe.cam.unit == "deg" else given / recipe.mm
+    return f"verify.motion_error above {upward(own * value / limit)}"
+
+
 def _tighter(check: Entry, report: Entry, recipe: Recipe) -> str:
     """Tell of the tolerance that would bring a motion error to its limit, and that there is another way."""
     tolerance = next((file["tolerance"] for file in report["files"] if file["path"] == check.get("file")), None)

@@ -1,7 +1,8 @@
 """The numbers a format holds: how far a vertex moves when it is written, and what that leaves to the fit.
 
 An STL holds single-precision numbers, so that at 50 mm a vertex moves by up to 2.7e-6 mm. A 3MF holds decimals, of
-which nine are written: 7.1e-10 mm.
+which nine are written: 7.1e-10 mm. Programs that save it again mostly do so in single precision; where the tolerance
+allows it, that is kept back too.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 # Least tolerance that is accepted, in worst displacements of a vertex. The quarter that is left to the fit makes the
-# sagitta over two edges (8 e) twice the displacement, which rounding cannot turn into a dent.
+# sagitta over two edges (8 e) twice the displacement, which rounding cannot turn into a dent. So it is of numbers in
+# which a file is saved again: a tolerance that is finer is kept by the file itself alone.
 _LEAST = 1.25
 
 
@@ -33,12 +35,14 @@ class Precision:
     file, name   as messages have them: "an STL", "single precision"
     nearest      the number that is written for each of any array
     spacing      at most how far two neighbouring numbers of a size (mm) are apart
+    again        coarser numbers in which other programs save the file again; None for none
     """
 
     file: str
     name: str
     nearest: Callable[[Array], Array]
     spacing: Callable[[float], float]
+    again: Precision | None = None
 
     def in_units(self, mm: float) -> Precision:
         """The same numbers of a file whose unit is `mm` mm long: in mm, what a reader makes of them."""
@@ -48,7 +52,8 @@ class Precision:
         def spacing(size: float) -> float:
             return mm * self.spacing(size / mm) + 4.0 * float(np.spacing(size))  # the quotient and the product round
 
-        return replace(self, nearest=lambda values: self.nearest(values / mm) * mm, spacing=spacing)
+        again = None if self.again is None else self.again.in_units(mm)
+        return replace(self, nearest=lambda values: self.nearest(values / mm) * mm, spacing=spacing, again=again)
 
     def rounded(self, points: Array) -> tuple[Array, float]:
         """Points (n, d) as written, without negative zeros, and the farthest that one moved."""
@@ -66,6 +71,8 @@ class Precision:
     def fit_tolerance(self, tolerance: float, size: float) -> float:
         """Return what a file's tolerance leaves to the fit of a polygon with coordinates up to `size` mm.
 
+        What saving it again in coarser numbers may take is kept back where as much is left.
+
         Raises ToleranceError, with the least tolerance that can be held, where too little is left.
         """
         moved = self.bound(size + tolerance)
@@ -77,7 +84,8 @@ class Precision:
                 f"rounding to {self.name} alone moves points by {moved:.3g} mm; at least {upward(least, 3)} mm",
                 least,
             )
-        return tolerance - moved
+        left, more = tolerance - moved, 0.0 if self.again is None else self.again.bound(size + tolerance)
+        return left - more if left >= _LEAST * more else left
 
     def within(self, what: str, deviation: float, tolerance: float) -> None:
         """Raise ToleranceError for a deviation, in mm, above the tolerance or not a number."""
@@ -113,4 +121,6 @@ def _nine_decimals(values: Array) -> Array:
 
 SINGLE = Precision("an STL", "single precision", _single, lambda size: float(np.spacing(np.float32(size))))
 # the product above is rounded too, which shows beyond 4.5 km
-DECIMALS = Precision("a 3MF", "nine decimals", _nine_decimals, lambda size: 1.0 / _UNIT + 2.0 * float(np.spacing(size)))
+DECIMALS = Precision(
+    "a 3MF", "nine decimals", _nine_decimals, lambda size: 1.0 / _UNIT + 2.0 * float(np.spacing(size)), again=SINGLE
+)

@@ -184,7 +184,12 @@ FIGURES: dict[str, Figure] = {
     ),
     RADIUS: Figure("least radius of curvature of the contour", Kind.LENGTH, "most"),
     HOLLOW_RADIUS: Figure("least radius of the contour's hollows, infinite without one", Kind.LENGTH, "most", "roller"),
-    PITCH_RADIUS: Figure("least radius of curvature of the pitch curve", Kind.LENGTH, "most", "roller"),
+    PITCH_RADIUS: Figure(
+        "least radius of curvature of the pitch curve, in a ring that of its hollows, infinite without one",
+        Kind.LENGTH,
+        "most",
+        "roller",
+    ),
     SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
     LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
     "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", "all", swept=False),

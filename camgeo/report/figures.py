@@ -122,14 +122,9 @@ def _radius(_: Recipe, design: Design) -> Measured:
     return Measured(value, "mm", bent.at_deg, bent.detail)
 
 
-def _pitch_radius(recipe: Recipe, design: Design) -> Measured:
-    """Of its convex places; the check of a ring is of its hollows."""
-    if recipe.cam.metal > 0:
-        return _of_check(next(check for check in design.checks if check.name in BENT))
-    from camgeo.curve.curvature import least_radius
-
-    radius, at = least_radius(design.profile.base)
-    return Measured(radius, "mm", design.position.shaft_deg(at))
+def _pitch_radius(_: Recipe, design: Design) -> Measured:
+    """What the check of that name holds: of the places where the cam may undercut, the hollows of a ring."""
+    return _of_check(next(check for check in design.checks if check.name in BENT))
 
 
 def _hollow_radius(recipe: Recipe, design: Design) -> Measured:

@@ -214,7 +214,7 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
 def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> Remark | None:
     """A limit that the tolerance of a file implies, and that is no small part of the stroke or of the rollers."""
     from camgeo.synthesis.design import intended
-    from kin.judge.contour_checks import is_loose, play_of, stroke_of
+    from kin.judge.contour_checks import direct_play, is_loose, stroke_of
 
     if recipe.verify.motion_error is not None or not files:
         return None
@@ -228,7 +228,7 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
             continue
         direct, size, of = follower.direct_limit(tolerance), whole, word
         if closure is not None and check.name == closure.name:
-            direct = play_of(closure, direct)
+            direct = direct_play(follower, tolerance)
             size, of = (whole, word) if closure.radius is None else (closure.radius, "roller's radius")
         elif check.name != MOTION.name:
             continue

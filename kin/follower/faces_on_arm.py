@@ -244,7 +244,7 @@ class FlatPair(OfTransmission):
     @property
     def closure(self) -> Closure:
         """The angle by which the faces stand wider than they need."""
-        return Closure(self.play_limit, lever=1.0)
+        return Closure(self.play_limit, lever=2.0)
 
     @cached_property
     def support(self) -> PairSupport:

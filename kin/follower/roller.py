@@ -155,7 +155,7 @@ class RollerYoke(_Guided):
     @property
     def closure(self) -> Closure:
         """The way that the frame can travel with the cam at rest."""
-        return Closure(self.play_limit, lever=1.0, radius=self.radius)
+        return Closure(self.play_limit, lever=2.0, radius=self.radius)
 
     def play_limit(self, tolerance: float) -> float:
         """Greatest play or interference, mm: what either roller may be off."""

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kin.contour.contour import Contour
-    from kin.follower.base import Closure
     from kin.follower.frame import DwellFound, LinkageVerdict
     from kin.judge.holes import Hole
     from kin.judge.layers import CrossHole, Layer
@@ -212,7 +211,7 @@ def _motion_checks(judged: Judged, intent: Intent, limits: Limits, slack: float)
     if play.extremes == "sampled" and given is not None:
         worst += ALLOWANCE * abs(worst)
     detail = closure.detail(play)
-    vacuous = given is None and is_loose(limit, play_of(closure, direct), closure.radius or size)
+    vacuous = given is None and is_loose(limit, direct_play(follower, limits.tolerance), closure.radius or size)
     checked = at_most(closure.name, worst, limit, play.unit, at=at, detail=detail, slack=room)
     checks.append(_unlimited(checked) if vacuous else checked)
     if closure.tight is not None:
@@ -231,9 +230,10 @@ def is_loose(limit: float, direct: float, size: float, share: float = MOST_SHARE
     return limit > share * size and limit > STEEP * direct
 
 
-def play_of(closure: Closure, direct: float) -> float:
-    """Play, mm or degrees, of two contacts that are each off by a motion error, mm or degrees."""
-    return 2.0 * (closure.lever or 1.0) * direct
+def direct_play(follower: Follower, tolerance: float) -> float:
+    """What the limit of play, mm or degrees, is at a pressure angle of 0: two contacts, each off by the tolerance."""
+    angular = follower.closure is not None and follower.closure.radius is None
+    return 2.0 * (follower.direct_limit(tolerance) if angular else tolerance)
 
 
 def _unlimited(check: Check) -> Check:

@@ -8,7 +8,7 @@ and 3. The constants of the "modified" laws follow here from their accelerations
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
@@ -57,7 +57,8 @@ class Peaks:
 class Law:
     """A normalised motion law s(u) on [0, 1] with its peaks.
 
-    A return falls by s(u), or with `reverses` runs the law backwards, s(1 - u): the same for a symmetric law.
+    A return runs the law backwards, s(1 - u). Of a symmetric law that is 1 - s(u), by which it falls; one that is not
+    symmetric, or may not be, is marked `reverses`.
     """
 
     name: str
@@ -217,7 +218,8 @@ def polynomial_law(coefficients: Sequence[float], field: str = "motion") -> Law:
             f"a polynomial law must lead from 0 to 1; this one leads from s(0) = {start:.12g} to s(1) = {end:.12g}",
             field,
         )
-    return _smooth(f"polynomial {list(values)}", values, 0.0, _polynomial_peaks(values))
+    law = _smooth(f"polynomial {list(values)}", values, 0.0, _polynomial_peaks(values))
+    return replace(law, reverses=True)
 
 
 def _polynomial_peaks(coefficients: tuple[float, ...]) -> Peaks:

@@ -127,7 +127,7 @@ def test_remarks_are_shown_everywhere_and_fail_nothing(tmp_path: Path, capsys: p
     assert report["ok"]
     assert [one["name"] for one in report["remarks"]] == ["pressure-angle", "thick"]
     assert set(report["remarks"][0]) == {"name", "value", "rule", "unit", "at_deg", "sentence"}
-    page = (tmp_path / "out" / "roller" / "roller.html").read_text()
+    page = (tmp_path / "out" / "roller" / "roller.html").read_text(encoding="utf-8")
     assert page.count('<tr class="remark">') == 2
     assert "up to 45 is the rule for oscillating followers" in page
     assert main(["check", str(path), "--json"]) == 0

@@ -98,9 +98,9 @@ def disc(base: float, follower: str, more: str = "", track: str = "") -> str:
     )
 
 
-def diameter(base: float, radius: float) -> str:
+def diameter(base: float, radius: float, more: str = FILES) -> str:
     lift = "motion: [{rise: 20, over: 60, law: cycloidal}, {dwell: 120}]"
-    return f"cam: {{kind: constant-diameter, base_radius: {base!r}, roller_radius: {radius!r}, {lift}}}{FILES}"
+    return f"cam: {{kind: constant-diameter, base_radius: {base!r}, roller_radius: {radius!r}, {lift}}}{more}"
 
 
 def said(text: str) -> str:
@@ -405,6 +405,7 @@ def sprung(preload: float, rate: float) -> str:
 
 
 COARSE = FILES.replace("0.001", "0.002")
+FINER = "\nverify: {{motion_error: 0.001}}\nexport: {{tolerance: {}, files: [dxf]}}\n"
 
 
 def needle(cos: float) -> str:
@@ -470,6 +471,11 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
         lambda radius: disc(
             34.0 - radius, f"kind: roller, radius: {radius!r}", "\nlimits: {radius-of-curvature: {at_least: 14}}"
         ),
+    ),
+    (
+        diameter(30.0, 8.0, FINER.format(0.002)),
+        r"a tolerance of about (\S+), or verify",
+        lambda tolerance: diameter(30.0, 8.0, FINER.format(tolerance)),
     ),
     (
         support("p: 25 + 2*cos(3*t)", LIMITED).replace("0.001,", "0.002,"),

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from support.cases import examples
 
 from kin.law.formula.formula import Formula
-from kin.law.programme import IntentError
+from kin.law.programme import IntentError, polynomial_law
 from kin.law.sources.laws import NAMES, named, scca, split
 from kin.law.sources.motion import Motion
 from kin.law.sources.programme import Dwell, Given, Matched, Move, RiseAndFall, State, programme
@@ -49,13 +49,23 @@ def test_absolute_strokes_land_on_their_level():
     ]
 
 
-def test_a_return_runs_an_asymmetric_law_backwards():
-    motion = closed(rise(120, 8.0, "double-harmonic"), rise(120, -8.0, "double-harmonic"))
+@pytest.mark.parametrize("law", [named("double-harmonic"), polynomial_law([0, 0, 0, 4, -3])], ids=lambda law: law.name)
+def test_a_return_runs_an_asymmetric_law_backwards(law):
+    motion = closed(Move(rad(120), law, by=8.0), Move(rad(120), law, by=-8.0))
     u = np.linspace(0.01, 0.99, 41)
+    assert np.abs(law.derivatives(u, 0)[0] + law.derivatives(1.0 - u, 0)[0] - 1.0).max() > 0.1
     up, down = motion.derivatives(u * rad(120), 0)[0], motion.derivatives(rad(120) * (2 - u), 0)[0]
     assert up == pytest.approx(down, abs=1e-14)
     # S'' is the same on both sides of the turn: only rest-to-motion jerks are left
     assert all(jump[0] >= 3 for joint in motion.joints for jump in joint.jumps)
+
+
+def test_a_split_polynomial_accelerates_over_its_share_of_a_return_too():
+    """A symmetric one alone can be split: of a return the share is that of the segment, from its start."""
+    law = split(polynomial_law([0, 0, 3, -2]), 0.2)
+    motion = closed(Move(rad(120), law, by=8.0), Move(rad(120), law, by=-8.0))
+    bend = motion.derivatives(rad(120) * (1.0 + np.array([0.1, 0.19, 0.21, 0.9])), 2)[2]
+    assert np.sign(bend).tolist() == [-1.0, -1.0, 1.0, 1.0]
 
 
 @settings(max_examples=examples(30), deadline=None)

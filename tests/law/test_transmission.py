@@ -331,7 +331,7 @@ def test_a_law_may_run_through_its_joint():
     half = 0.5 * start
     first = polynomial_law([0, half, 3 - 2 * half, half - 2])
     back = -0.5 * end
-    last = polynomial_law([0, 0, 3 - back, back - 2])
+    last = polynomial_law([0, back, 3 - 2 * back, back - 2])  # a return runs it from its end to its start
     moves = programme([Segment("rise", delta / 2, rise, first), Segment("return", delta / 2, rise, last)], delta)
     assert moves.at_start(1)[1] == pytest.approx(0.2)
     assert moves.at_end(1)[1] == pytest.approx(-0.25)

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.cases import examples
+from support.places import RECIPES
 
 from camgeo.recipe.loading import load_text
 from camgeo.report.figures import of_design
@@ -231,7 +232,18 @@ def test_a_ring_s_metal_is_bent_the_other_way() -> None:
     at = curve.sample(np.linspace(0.0, 2.0 * math.pi, 100_001))
     assert found["radius-of-curvature"].value == pytest.approx(-(at.speed / at.turn)[at.turn < 0].max(), rel=1e-6)
     assert found["hollow-radius"].value == pytest.approx((at.speed / at.turn)[at.turn > 0].min(), rel=1e-6)
-    assert found["hollow-radius"].value == pytest.approx((found["pitch-radius"].value or 0.0) + 9.0, abs=1e-9)
+    assert found["radius-of-curvature"].value == pytest.approx((found["pitch-radius"].value or 0.0) - 9.0, abs=1e-9)
+
+
+def test_check_figure_and_limit_of_a_ring_s_pitch_curve_are_one() -> None:
+    """Of its hollows, also where it has none: its convex places cannot undercut."""
+    text = (RECIPES / "disc-ring.yaml").read_text() + "\nlimits: {pitch-radius: {at_least: 1000}}\n"
+    made = checks(text)
+    assert made["pitch-radius"].value == made["limit:pitch-radius"].value == math.inf
+    assert made["limit:pitch-radius"].ok
+    hollow = checks(disc("kind: roller, radius: 9;", more="limits: {pitch-radius: {at_least: 1}}\n"))
+    assert hollow["pitch-radius"].value == hollow["limit:pitch-radius"].value
+    assert math.isfinite(hollow["pitch-radius"].value or math.inf)
 
 
 # --- limits -----------------------------------------------------------------------------------------------------------

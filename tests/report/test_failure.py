@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -13,6 +14,8 @@ CAMS = {
     "support": "{kind: support, p: 25 + 2*cos(3*t)}",
     "breadth": "{kind: constant-breadth, base_radius: 40, motion: [{rise: 20, over: 120, law: harmonic}, {dwell: 60}]}",
     "roller": "{kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}",
+    "diameter": "{kind: constant-diameter, base_radius: 30, roller_radius: 8, motion: "
+    "[{rise: 20, over: 120, law: cycloidal}, {dwell: 60}]}",
     "pair": "{kind: flat-pair, ratio: 3, arm: 60, delta: {cos: {1: 100}}}",
 }
 LIMITED = "\nverify: {motion_error: 0.001}"
@@ -50,7 +53,16 @@ def test_a_motion_limit_of_ones_own() -> None:
     assert told("motion", 0.0015432111, 0.001, "support", LIMITED) == said
     said = "a tolerance of about 0.001, or verify.motion_error above 0.002"
     assert told("motion", 0.002, 0.001, "roller", LIMITED, file="cam.dxf") == said
+    assert told("motion", 0.002, 0.001, "diameter", LIMITED, file="cam.dxf") == said
     assert told("motion", 0.002, 0.001, "roller", LIMITED, file="sent.dxf") == "verify.motion_error above 0.002"
+
+
+def test_a_motion_error_that_permits_the_play() -> None:
+    """Of a given one the limit of the play is a multiple: 0.001 degrees over an arm of 60 mm."""
+    limit = 0.001 * 60.0 * math.pi / 180.0
+    assert told("form-closure", 1.5 * limit, limit, "roller", LIMITED) == "verify.motion_error above 0.0015"
+    assert told("form-closure", 0.003, 0.002, "diameter", LIMITED) == "verify.motion_error above 0.0015"
+    assert told("form-closure", 0.003, 0.002, "diameter") == ""
 
 
 def test_a_smaller_bore_where_one_would_do() -> None:

@@ -153,7 +153,7 @@ def split(law: Law, share: float, field: str = "law") -> Law:
             knots.append(1 - after * (1 - end))
     knots[-1] = 1.0
     motion = Piecewise(np.array(knots), tuple(functions))
-    return Law(f"{law.name} (split {share:.6g})", motion, peaks(motion), law.reverses)
+    return Law(f"{law.name} (split {share:.6g})", motion, peaks(motion))
 
 
 def sines(weights: Mapping[int, float], name: str) -> Law:
