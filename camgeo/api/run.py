@@ -124,10 +124,14 @@ def _unlisted(kind: str) -> str:
 
 
 def _no_file(path: Path) -> str:
-    """Say why a path leads to no file; empty where it does."""
+    """Say why a path leads to no file, or to one larger than is read; empty where it does."""
+    from kin.read.files import SUFFIXES
+    from kin.read.size import oversize
+
     try:
         if path.is_file():
-            return ""
+            kind = SUFFIXES.get(path.suffix.lower())
+            return "" if kind is None else oversize(path, kind)
         if path.is_dir():
             return "a folder; name the files in it"
         return "not a regular file" if path.exists() else "the file does not exist"

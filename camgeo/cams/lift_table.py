@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 Angles: TypeAlias = Literal["cam", "crank"]
 Unit: TypeAlias = Literal["mm", "inch", "degrees"]  # of displacements
 
-MAX_BYTES = 50_000_000
+MAX_BYTES = 16_000_000
+MAX_ROWS = 200_000
 _FIELD = "table"
 
 
@@ -86,10 +87,12 @@ def read_rows(
 
 
 def _text(data: bytes) -> str:
+    """The text of a table; raises Complaint for none, and for more than is read."""
+    rest = "leave rows out; a row for each hundredth of a degree will do"
     if len(data) > MAX_BYTES:
-        raise Complaint(
-            f"larger than {MAX_BYTES} bytes", "leave rows out; a row for each hundredth of a degree will do"
-        )
+        raise Complaint(f"larger than {MAX_BYTES} bytes", rest)
+    if max(data.count(b"\n"), data.count(b"\r")) > MAX_ROWS:
+        raise Complaint(f"more than {MAX_ROWS} rows", rest)
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return data.decode("utf-16", "replace")
     if b"\0" in data:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from camgeo.files.curves import CONFUSION, centre_of, circle_of, curves_of, inset, measures, point
-from camgeo.files.errors import MissingExtraError, install
+from camgeo.files.errors import MissingExtraError, demand_uninterrupted, install
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import ArcSpline, Bound
 
@@ -42,6 +42,7 @@ def need_kernel() -> None:
         import OCP
         import OCP.STEPControl
     except ImportError as error:
+        demand_uninterrupted(error)
         raise MissingExtraError(f"a STEP file needs Open CASCADE: {install('step')}") from error
     version = str(OCP.__version__)
     if not version.startswith(f"{VERSION}."):

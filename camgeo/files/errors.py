@@ -10,3 +10,9 @@ class MissingExtraError(KinError, ImportError):
 def install(extra: str) -> str:
     """How to get an extra of this package, which no index has: from a clone of it."""
     return f"pip install '.[{extra}]' in a clone of camgeo"
+
+
+def demand_uninterrupted(error: ImportError) -> None:
+    """Raise the interrupt by which an import was ended: a binding reports one so while it is set up."""
+    if isinstance(error.__cause__, KeyboardInterrupt):
+        raise error.__cause__

@@ -26,7 +26,7 @@ from camgeo.checks.declared import (
     SECOND_OPINIONS,
 )
 from camgeo.common.errors import SurroundingsError
-from camgeo.files.errors import install
+from camgeo.files.errors import demand_uninterrupted, install
 from camgeo.fit.nodes import MOST_PIECES, ToleranceError
 from camgeo.fit.pieces import Polygon
 from camgeo.output.file_intent import intent_of_file
@@ -90,6 +90,7 @@ def demand_libraries(recipe: Recipe) -> None:
         try:
             import_module(name)
         except ImportError as error:
+            demand_uninterrupted(error)
             missing = name.partition(".")[0]
             raise SurroundingsError(f"a second opinion needs {missing}: {install('check')}", recipe.path) from error
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from kin.contour.arcs import Arcs
 from kin.read.errors import ReadError
+from kin.read.size import contents
 
 __all__ = ["ARC_MM", "Move", "Program", "arcs_of", "read_gcode"]
 
@@ -76,7 +77,7 @@ def read_gcode(path: Path | str) -> Program:
     """Read a program; raises OSError as the file system does, ReadError for what is not read, with its line."""
     path = Path(path)
     try:
-        text = path.read_bytes().decode("ascii")
+        text = contents(path, "gcode").decode("ascii")
     except UnicodeDecodeError as error:
         raise ReadError("syntax", f"byte {error.start} is not ASCII", path) from error
     machine = _Machine(path)

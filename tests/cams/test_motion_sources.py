@@ -519,3 +519,18 @@ def test_a_displacement_without_end_is_refused_with_its_line(cell, tmp_path):
     error = fault("{table: lift.csv}", tmp_path)
     assert (error.line, error.path) == (2, "cam.motion.table")
     assert "lift.csv, line 31: the displacement is not finite" in str(error)
+
+
+def test_a_table_of_more_rows_than_any_motion_needs(tmp_path, monkeypatch):
+    monkeypatch.setattr("camgeo.cams.lift_table.MAX_ROWS", 400)
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text(
+        "cam: {kind: constant-breadth, base_radius: 40, motion: {table: lift.csv, angle: cam, units: mm}}\n"
+    )
+    for end in ("\n", "\r\n", "\r"):
+        rows = [f"{k / 5};{5 - 5 * math.cos(math.radians(k / 5)):.6f}" for k in range(901)]
+        (tmp_path / "lift.csv").write_bytes(end.join(rows).encode())
+        with pytest.raises(RecipeErrors, match=r"motion\.table: more than 400 rows, given 'lift\.csv'; leave rows out"):
+            load(recipe)
+        (tmp_path / "lift.csv").write_bytes(end.join(rows[::3]).encode())
+        load(recipe)

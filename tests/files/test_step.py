@@ -382,6 +382,23 @@ def test_without_the_extra_the_run_says_what_to_install(tmp_path, monkeypatch, c
         )
 
 
+def test_an_interrupt_while_the_kernel_is_imported_is_no_missing_package(tmp_path, monkeypatch, capsys):
+    real = builtins.__import__
+
+    def stopped(name, *args, **kwargs):
+        if name.split(".")[0] == "OCP":
+            raise ImportError("initialization failed") from KeyboardInterrupt()
+        return real(name, *args, **kwargs)
+
+    monkeypatch.setattr(builtins, "__import__", stopped)
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text(f"{CAM}part: {{thickness: 8}}\nexport: {{files: [step]}}\n")
+    assert main(["export", str(recipe), "--out", str(tmp_path / "out")]) == 130
+    assert "Open CASCADE" not in capsys.readouterr().err
+    with pytest.raises(KeyboardInterrupt):
+        need_kernel()
+
+
 @kernel
 def test_another_version_of_the_kernel_is_told(monkeypatch):
     import OCP

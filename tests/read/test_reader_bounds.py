@@ -8,13 +8,16 @@ import numpy as np
 import pytest
 from support.meshfiles import in_3mf, ring
 
+from camgeo.cli.main import main
 from kin.contour import intersections
 from kin.contour.contour import Contour
 from kin.contour.intersections import first_meeting
-from kin.read.files import ReadError, read_drawing, read_solid
+from kin.read.files import SUFFIXES, ReadError, kind_of, read_drawing, read_solid
+from kin.read.gcode import read_gcode
 from kin.read.mesh import threemf
 from kin.read.mesh.mesh import Mesh
 from kin.read.nesting import MOST_CONTOURS, nested
+from kin.read.size import MOST_BYTES
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="-50 -50 100 100">'
 
@@ -108,3 +111,69 @@ def test_pieces_drawn_over_one_another(tmp_path):
     path.write_text(HEAD + '<circle r="20"/>' * 1200 + "</svg>")
     with pytest.raises(ReadError, match="more than 64 pieces are drawn over one another"):
         read_drawing(path)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_a_file_is_refused_by_its_size_before_it_is_read(tmp_path, monkeypatch, capsys, suffix):
+    """Two files with nothing on disk, a byte too large and 3 GiB."""
+    monkeypatch.chdir(tmp_path)
+    path, kind = tmp_path / f"cam{suffix}", SUFFIXES[suffix]
+    recipe = tmp_path / "cam.yaml"
+    recipe.write_text("cam: {kind: support, p: 25 + 2*cos(3*t)}\n")
+    read = {"dxf": read_drawing, "svg": read_drawing, "gcode": read_gcode}.get(kind_of(path), read_solid)
+    for size, told in ((MOST_BYTES[kind] + 1, "MB are read"), (3 << 30, "3221 MB, and of a")):
+        with path.open("wb") as stream:
+            stream.truncate(size)
+        with pytest.raises(ReadError, match=told):
+            read(path)
+        assert main(["verify", str(recipe), str(path)]) == 2
+        assert told in capsys.readouterr().err
+
+
+def test_a_drawing_of_more_pieces_than_a_contour_has(tmp_path, monkeypatch):
+    corners = np.column_stack([np.cos(t := np.arange(100) / 50 * math.pi), np.sin(t)]).tolist()
+    path = tmp_path / "cam.svg"
+    whole = f'<path d="M{"L".join(f"{x!r} {y!r}" for x, y in corners)}Z"/>'
+    loose = "".join(
+        f'<path d="M{x!r} {y!r}L{u!r} {v!r}"/>'
+        for (x, y), (u, v) in zip(corners, corners[1:] + corners[:1], strict=True)
+    )
+    for text in (whole, loose):
+        path.write_text(f"{HEAD}{text}</svg>")
+        assert len(read_drawing(path).contour) == 100
+        with monkeypatch.context() as patch:
+            patch.setattr("kin.read.size.MOST_PIECES", 99)
+            patch.setattr("kin.read.drawing.svg_path.MOST_PIECES", 99)
+            with pytest.raises(ReadError, match=r"more than 99 pieces|have 100 pieces; up to 99 are read"):
+                read_drawing(path)
+
+
+def test_items_and_components_that_repeat_a_mesh(tmp_path, monkeypatch):
+    """A mesh through a component is no repetition; many items of it, or objects that hold it, are."""
+    path = in_3mf(tmp_path / "part.3mf", ring())
+    import zipfile
+
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name).decode() for name in archive.namelist()}
+    holder = '<object id="{}" name="cam"><components><component objectid="1"/></components></object>'
+    ten = "".join(map(holder.format, range(2, 12)))
+    cases = {
+        (holder.format(2), '<item objectid="2"/>'): True,
+        ("", '<item objectid="1"/>' * 10): False,
+        (ten, "".join(f'<item objectid="{k}"/>' for k in range(2, 12))): False,
+        (
+            holder.format(2).replace('<component objectid="1"/>', '<component objectid="1"/>' * 10),
+            '<item objectid="2"/>',
+        ): False,
+    }
+    monkeypatch.setattr(threemf, "MOST_TRIANGLES", 100)
+    for (objects, items), sound in cases.items():
+        with zipfile.ZipFile(path, "w") as archive:
+            for name, text in parts.items():
+                held = text.replace("</resources>", f"{objects}</resources>")
+                archive.writestr(name, held.replace('<item objectid="1"/>', items))
+        if sound:
+            assert len(threemf.read_placed(path)) == 1
+        else:
+            with pytest.raises(ReadError, match="more than 100 triangles or"):
+                threemf.read_placed(path)

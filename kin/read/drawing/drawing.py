@@ -14,6 +14,7 @@ from kin.contour.pieces import ARC, Pieces
 from kin.read.drawing.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.read.errors import ReadError
 from kin.read.nesting import counter_clockwise, demand_few, met, nested
+from kin.read.size import demand_few_pieces
 
 if TYPE_CHECKING:
     from collections import Counter
@@ -128,6 +129,7 @@ def drawing_of(
     """
     scale = 1.0 if unit is None else unit
     pieces, run = gathered(found.shapes)
+    demand_few_pieces(len(run), path)
     pieces = pieces.enlarged(scale) if scale != 1.0 else pieces
     same, usual = closeness(pieces)
     gap = usual if gap is None else gap

@@ -18,6 +18,7 @@ from kin.read.drawing.dxf_entities import CURVES, NOTES, facing, shape_of
 from kin.read.drawing.shapes import UnfitError, check
 from kin.read.errors import ReadError
 from kin.read.home import prepare_home
+from kin.read.size import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -66,7 +67,7 @@ def read_dxf(
     lines, arcs and splines in one plane, with the place and the size of the gap.
     """
     path = Path(path)
-    raw = path.read_bytes()
+    raw = contents(path, "dxf")
     document = parsed(raw, path)
     with damage_reported(path):
         unit = unit_of(document, raw[:COMMENT_BYTES], path)

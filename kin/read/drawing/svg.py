@@ -18,6 +18,7 @@ from kin.read.drawing.drawing import BESIDE, CUT, ENGRAVED, REFERENCE, Drawing, 
 from kin.read.drawing.shapes import Shape, UnfitError, shape
 from kin.read.drawing.svg_path import NUMBER, path_of
 from kin.read.errors import ReadError, xml_fault
+from kin.read.size import contents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -68,7 +69,7 @@ def read_svg(path: Path | str, gap: float | None = None, *, engraved: bool = Fal
     lines, arcs of circles and cubics, and for elements and transforms that are not read.
     """
     path = Path(path)
-    root = _parsed(path.read_bytes(), path)
+    root = _parsed(contents(path, "svg"), path)
     unit = unit_of(root, path)
     elements = list(_elements(root, "", TURNED_OVER, path))
     by_name = any(one.layer == CUT for one in elements)

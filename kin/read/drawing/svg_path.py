@@ -11,6 +11,7 @@ import numpy as np
 from kin.contour.bezier import Beziers
 from kin.read.drawing.affine import ALIKE
 from kin.read.drawing.shapes import Shape, UnfitError, check, shape
+from kin.read.size import MOST_PIECES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -59,7 +60,9 @@ def path_of(text: str, to: Affine) -> list[Shape]:
         cubics.clear()
 
     pen = (0.0, 0.0)
-    for piece in pieces_of(text):
+    for count, piece in enumerate(pieces_of(text)):
+        if count >= MOST_PIECES:
+            raise UnfitError("range", f"it has more than {MOST_PIECES} pieces")
         if piece.start != pen or (chords if piece.letter == "C" else cubics):
             close()
         pen = piece.end

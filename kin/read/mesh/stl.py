@@ -17,6 +17,7 @@ from kin.read.bodies import MOST_BODIES, beside
 from kin.read.errors import ReadError
 from kin.read.mesh.prism import Outline, evened, upright
 from kin.read.nesting import counter_clockwise, demand_few, met, nested
+from kin.read.size import contents
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -134,7 +135,7 @@ def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
     does not close or is not one contour with holes. All other faults are in the Solid's fields.
     """
     path = Path(path)
-    corners, form = triangles_of(path.read_bytes(), path)
+    corners, form = triangles_of(contents(path, "stl"), path)
     return solid_of(corners, form, heights, path)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from kin.read.errors import ReadError, xml_fault
 from kin.read.mesh.stl import LARGEST, Solid, solid_of
+from kin.read.size import oversize
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -31,13 +32,14 @@ CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02 "
 LINK = "http://schemas.openxmlformats.org/package/2006/relationships Relationship"
 MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 UNIT_MM = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
-MOST_BYTES = 1 << 29  # of a member of the archive when unpacked
+MOST_BYTES = 1 << 26  # of a member of the archive when unpacked
 # Models pack to a fifth or a tenth. What packs to next to nothing says the same over and over: so many times its packed
 # size, and a free allowance, are unpacked.
 MOST_UNPACKED, FREE_BYTES = 50, 1 << 18
 # Vertices that no triangle has: up to a share of all, and a free allowance.
 LOOSE_SHARE, FREE_LOOSE = 0.5, 1000
-# Components may repeat one mesh, or nothing at all, without end: what all items together may hold.
+# Components and items may repeat one mesh, or nothing at all, without end: what they may put together besides each mesh
+# of the file three times, as where a component holds it, an item that, and nothing is repeated.
 MOST_TRIANGLES = 2_000_000
 MOST_COMPONENTS = 1 << 14
 DEEPEST = 16  # of components within components
@@ -89,6 +91,8 @@ def read_3mf(path: Path | str, heights: Sequence[float] = ()) -> Solid:
 def read_placed(path: Path | str) -> tuple[Placed, ...]:
     """Read every object that is built, in the order of the build; raises as `read_3mf` does."""
     path = Path(path)
+    if problem := oversize(path, "3mf"):
+        raise ReadError("range", problem, path)
     try:
         with zipfile.ZipFile(path) as archive:
             links = _Links()
@@ -176,6 +180,7 @@ class _Model:
         self.current: _Object | None = None
         self.items: list[tuple[str, Array]] = []
         self.components = 0  # that have been put together
+        self.room = 0  # for triangles, once the model has been read
 
     def start(self, tag: str, given: dict[str, str]) -> None:
         if tag == f"{CORE}vertex":
@@ -203,13 +208,15 @@ class _Model:
         """Every object that is built and printed."""
         if self.mm is None:
             raise self._fault("there is no model in it")
-        found, room = [], MOST_TRIANGLES
+        found = []
+        self.room = MOST_TRIANGLES + sum(len(one.corners) for one in self.objects.values())  # three corners each
         for name, place in self.items:
             one = self._named(name)
             if not one.printed:
                 continue
-            corners = self._corners(one, room, 0) * self.mm
-            room -= len(corners)
+            corners = self._corners(one, 0)
+            self._demand_room(len(corners))
+            corners = corners * self.mm
             if not len(corners):
                 raise ReadError("empty", f"object {one.name or name!r} holds no triangles", self.path)
             there = np.concatenate((place[:3], self.mm * place[3:]))
@@ -218,7 +225,14 @@ class _Model:
             found.append(Placed(one.name, corners, there, self.mm))
         return tuple(found)
 
-    def _corners(self, one: _Object, room: int, depth: int) -> Array:
+    def _demand_room(self, triangles: int = 0) -> None:
+        """Refuse components and triangles that are put together without end."""
+        self.room -= triangles
+        if self.room < 0 or self.components > MOST_COMPONENTS:
+            most = f"more than {MOST_TRIANGLES} triangles or {MOST_COMPONENTS} components"
+            raise ReadError("range", f"{most}, those that repeat an object counted", self.path)
+
+    def _corners(self, one: _Object, depth: int) -> Array:
         """Triangles (t, 3, 3) of an object and all its components, in the file's unit."""
         if depth > DEEPEST:
             raise ReadError("unsupported", f"components lie more than {DEEPEST} deep, or hold themselves", self.path)
@@ -233,12 +247,11 @@ class _Model:
         self._demand_used(one, len(points), corners)
         parts = [points[corners]]
         for name, place in one.components:
-            room -= len(parts[-1])
             self.components += 1
-            if room <= 0 or self.components > MOST_COMPONENTS:
-                most = f"more than {MOST_TRIANGLES} triangles or {MOST_COMPONENTS} components"
-                raise ReadError("range", f"{most}, those that repeat an object counted", self.path)
-            parts.append(_moved(self._corners(self._named(name), room, depth + 1), place))
+            self._demand_room()
+            part = self._corners(self._named(name), depth + 1)
+            self._demand_room(len(part))
+            parts.append(_moved(part, place))
         one.whole, one.under = np.concatenate(parts), self.components - before
         return one.whole
 

@@ -21,6 +21,7 @@ from kin.read.bodies import MOST_BODIES, beside
 from kin.read.drawing.drawing import Found, drawing_of
 from kin.read.errors import ReadError
 from kin.read.mesh.stl import Section
+from kin.read.size import contents
 from kin.read.step.faces import Plane, Tube, face_of
 from kin.read.step.part21 import exchange
 from kin.read.step.space import space_of
@@ -96,7 +97,7 @@ def read_step(path: Path | str, heights: Sequence[float] = ()) -> StepSolid:
     read and where a section is not one closed contour with holes in it.
     """
     path = Path(path)
-    body = _Body.of(exchange(path.read_bytes(), path))
+    body = _Body.of(exchange(contents(path, "step"), path))
     misfit = body.misfit
     asked = [body.checked(z) for z in heights] or [body.widest()]
     drawings = [body.section(z) for z in asked]
