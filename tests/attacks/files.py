@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 
     from attacks.outcome import Done
 
-CAMS = 12  # cams whose files are altered, of one seed
+CAMS = 12  # cams whose files are altered, of so many attacks
+SHARED = 400
 KINDS = ("dxf", "dxf", "dxf", "svg", "stl", "3mf", "step", "ngc")
 MILLING = "manufacture: {cutter: 4, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 6, safe_height: 5}\n"
 FAILS, PASSES, ANY = (1,), (0,), (0, 1, 2)
@@ -42,12 +43,12 @@ class Spoilt:
 
 
 @lru_cache(maxsize=2 * CAMS)
-def exported(seed: int, number: int) -> tuple[Cam, dict[str, bytes]]:
+def exported(share: int, number: int) -> tuple[Cam, dict[str, bytes]]:
     """A sound cam and its files by suffix, `yaml` among them; the same for the same numbers."""
     import camgeo
 
     for attempt in range(40):
-        rng = Random(f"cam {seed} {number} {attempt}")
+        rng = Random(f"cam {share} {number} {attempt}")
         cam = drawn(rng)
         files = [f"{{dxf: {{as: {rng.choice(['arcs', 'polyline'])}}}}}", "svg", "stl", "3mf"]
         files += ["step"] if number == 0 else ["gcode"] if number % 2 else []
@@ -66,9 +67,9 @@ def exported(seed: int, number: int) -> tuple[Cam, dict[str, bytes]]:
     raise AssertionError("no cam by chance could be made")
 
 
-def altered(rng: Random, number: int, seed: int) -> Attack:
+def altered(rng: Random, number: int) -> Attack:
     """One file of a sound cam, altered, and verified by its recipe."""
-    cam, files = exported(seed, rng.randrange(CAMS))
+    cam, files = exported(number // SHARED, rng.randrange(CAMS))
     kind = rng.choice([kind for kind in KINDS if kind in files])
     change = rng.choice(CHANGES[kind])
     spoilt = change(rng, files[kind], cam)

@@ -5,24 +5,39 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from attacks import calls, files, recipes
+from attacks import calls, files, recipes, wider
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from attacks.outcome import Attack
 
-WAYS = ("sound", "any kind", "wrong", "wrong", "file", "file", "file", "call")
+WAYS: tuple[Callable[[Random, int], Attack], ...] = (
+    recipes.sound,
+    recipes.of_any_kind,
+    recipes.wrong,
+    files.altered,
+    wider.furnished,
+    wider.tabled,
+    recipes.wrong,
+    files.altered,
+    calls.called,
+    wider.sized,
+    recipes.of_any_kind,
+    recipes.wrong,
+    files.altered,
+    wider.furnished,
+    files.altered,
+    wider.bomb,
+    recipes.sound,
+    recipes.wrong,
+    files.altered,
+    calls.called,
+    wider.searched,
+)
+"""Ways to attack, in turn."""
 
 
 def attack_of(seed: int, number: int) -> Attack:
     """Give the attack of a number, deterministic in both."""
-    rng = Random(f"attack {seed} {number}")
-    way = WAYS[number % len(WAYS)]
-    if way == "sound":
-        return recipes.sound(rng, number)
-    if way == "any kind":
-        return recipes.of_any_kind(rng, number)
-    if way == "wrong":
-        return recipes.wrong(rng, number)
-    if way == "file":
-        return files.altered(rng, number, seed)
-    return calls.called(rng, number)
+    return WAYS[number % len(WAYS)](Random(f"attack {seed} {number}"), number)

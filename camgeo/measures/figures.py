@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from typing import Any
 
     from camgeo.curve.extremes import Extreme
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check

@@ -1,0 +1,286 @@
+"""Disc cams with all that a recipe may hold besides, tables, sizing, searches, and files that cost."""
+
+from __future__ import annotations
+
+import io
+import re
+import struct
+import zipfile
+from typing import TYPE_CHECKING
+
+import numpy as np
+from support.brute_disc import motion
+
+from attacks.cams import SHARE, drawn, reported
+from attacks.outcome import Attack
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from random import Random
+
+    from attacks.outcome import Done
+
+LONG = 60.0  # s: a set of bodies is moved against one another, a search makes many designs
+SMOOTH = ("cycloidal", "polynomial-345", "polynomial-4567")
+
+
+def with_motion(text: str, given: str) -> str:
+    """The recipe with another motion."""
+    return re.sub(r"motion: \[.*\]\}", lambda _: f"motion: {given}}}", text, count=1)
+
+
+def tabled(rng: Random, number: int) -> Attack:
+    """A law as a table, rounded to its last digit; the motion felt on the drawing stays at the rows."""
+    cam = drawn(rng)
+    while cam.touching.sense or any(law not in {*SMOOTH, ""} for _, _, law in cam.rows):
+        cam = drawn(rng)
+    step, decimals = rng.choice([1, 1, 2, 3]), rng.choice([2, 3, 3, 4])
+    degrees = np.arange(0.0, 360.0, step)
+    rows = np.round(motion(list(cam.rows), degrees), decimals)
+    table = "angle;lift\n" + "".join(
+        f"{angle:g};{lift:.{decimals}f}\n" for angle, lift in zip(degrees, rows, strict=True)
+    )
+    reading = 10.0**-decimals * rng.choice([0.5, 1.0, 2.0])
+    text = with_motion(cam.text("{dxf: {as: arcs}}"), f"{{table: table.csv, reading: {reading:.6f}}}")
+
+    def judge(done: Done, folder: Path) -> list[str]:
+        path = folder / "out" / "cam" / "cam.dxf"
+        report = reported(done)
+        if done.status or report is None:
+            refused = [word for word in ("scatter", "the displacement steps", "stands out") if word in done.err]
+            return [f"verdict: a sound table is refused: {done.err[:300]}"] if refused else []
+        limit = next(check["limit"] for check in report["checks"] if check["name"] == "motion")
+        off = cam.error(path)
+        # the rows are half a digit off the law, the motion a reading off the rows, the file a limit off the motion
+        most = 0.5 * 10.0**-decimals + reading + limit
+        return (
+            [] if off <= SHARE * most + cam.margin else [f"verdict: {off:.6g} off the table's law, {most:.6g} at most"]
+        )
+
+    files = {"cam.yaml": text.encode(), "table.csv": table.encode()}
+    return Attack(f"table {number}", ("export", "cam.yaml", "--json"), files, (0, 1, 2), judge)
+
+
+def sized(rng: Random, number: int) -> Attack:
+    """A cam whose size is found."""
+    cam = drawn(rng)
+    limits = []
+    if rng.random() < 0.8:
+        angle = f"at_most: {rng.uniform(10, 50):.2f}" + (
+            f", on_return: {rng.uniform(10, 60):.2f}" if rng.random() < 0.5 else ""
+        )
+        limits.append(f"pressure-angle: {{{angle}}}")
+    if rng.random() < 0.6 or not limits:
+        limits.append(f"radius-of-curvature: {{at_least: {rng.uniform(1, 60):.2f}}}")
+    text = cam.text("dxf").replace(f"base_radius: {cam.base!r}", f"sizing: {{{', '.join(limits)}}}")
+    if rng.random() < 0.7:
+        text = re.sub(r"(offset|pivot): [-\d.e]+, |, (offset): [-\d.e]+", "", text)
+    return Attack(
+        f"sized {number}", (rng.choice(["export", "check"]), "cam.yaml"), {"cam.yaml": text.encode()}, (0, 1, 2)
+    )
+
+
+FEATURES = [
+    "bolts: {count: 3, circle: 24, hole: 3}",
+    "hub: {diameter: 14, height: 8}",
+    "chamfer: 0.4",
+    "mark: {}",
+    "mark: {width: 60}",
+    "mark: {as: engrave, length: 3}",
+    "keyway: din6885",
+    "lightening: {ring: 5, wall: 3}",
+    "wall: 60",
+    "dowel: {circle: 22, hole: 3}",
+    "flat: {across: 7}",
+    "set_screw: {diameter: 3}",
+]
+MILLING = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 3, safe_height: 5}\n"
+MOTIONS = [
+    "{formula: 3*(1 - cos(t))}",
+    "{formula: 3*(1 - cos(4000*t))}",
+    "{formula: 2*sin(t)**4}",
+    "{points: [[0, 0], [90, 6], [120, 6], [250, 0]]}",
+    "{lobe: {lift: 8, half: 68, powers: [2, 8, 14, 20, 26]}}",
+    "{repeat: 3, segments: [{rise: 3, over: 50, law: cycloidal}, {return: 3, over: 50, law: cycloidal}, {dwell: 20}]}",
+    "[{rise: 5, over: 120, law: {polynomial: [0, 0, 3, -2]}}, {return: 5, over: 120, law: cubic}, {dwell: 120}]",
+]
+
+
+def furnished(rng: Random, number: int) -> Attack:
+    """A disc cam with features, a train, limits, a set or a program."""
+    cam, seconds, files, more = drawn(rng), 5.0, ["dxf", "stl"], ""
+    text = cam.text("FILES")
+    if rng.random() < 0.5:
+        text = with_motion(text, rng.choice(MOTIONS))
+    way = rng.choice(["part", "part", "set", "train", "limits", "program", "ring", "trim", "exact"])
+    if way == "part":
+        text = text.replace("bore: 8}", "bore: 8, " + ", ".join(rng.sample(FEATURES, rng.randrange(1, 4))) + "}")
+        files = rng.sample(["dxf", "svg", "stl", "3mf", "glb"], 2)
+    elif way == "set":
+        files, seconds = ["{" + rng.choice(["stl", "3mf", "glb"]) + ": {parts: all}}"], LONG
+        text = text.replace(f"tolerance: {cam.tolerance!r}", "tolerance: 0.01")
+    elif way == "train":
+        transient = ", transient: true" if rng.random() < 0.3 else ""
+        more = f"dynamics: {{mass: {rng.uniform(0.01, 2):.3g}, stiffness: {10 ** rng.uniform(3, 12):.3g}, damping: "
+        more += f"{rng.choice([0, 20, 1000])}, preload: {10 ** rng.uniform(-1, 4):.3g}, "
+        more += f"rpm: {10 ** rng.uniform(0, 4):.3g}{transient}}}\n"
+        seconds = 10.0 if transient else seconds
+    elif way == "limits":
+        figures = [
+            "pressure-angle",
+            "radius-of-curvature",
+            "peak-velocity",
+            "peak-jerk",
+            "size",
+            "wall",
+            "motion-error",
+            "pieces",
+        ]
+        figures += [
+            "roller-speed",
+            "face-width",
+            "peak-acceleration",
+            "contact-travel",
+            "pitch-radius",
+            "contour-error",
+        ]
+        rows = [
+            f"{name}: {{{rng.choice(['at_most', 'at_least'])}: {10 ** rng.uniform(-3, 3):.4g}}}"
+            for name in rng.sample(figures, 3)
+        ]
+        more = f"limits: {{{', '.join(rows)}}}\n"
+    elif way == "program":
+        more, files = MILLING, ["gcode", "{csv: {as: inspection}}"]
+    elif way == "ring":
+        text = text.replace("follower:", "track: internal, follower:").replace("bore: 8", f"outer: {4 * cam.base + 60}")
+    elif way == "trim":
+        text = text.replace("kind: disc", "kind: disc, undercut: trim")
+        text = text.replace(f"base_radius: {cam.base!r}", f"base_radius: {rng.uniform(2, 15):.3f}")
+    else:
+        files = [
+            rng.choice(
+                ["{dxf: {as: spline}}", "{svg: {as: spline}}", "{csv: {as: contacts}}", "{csv: {as: polar}}", "html"]
+            )
+        ]
+    text = text.replace("FILES", ", ".join(files)) + more
+    words = (rng.choice(["export", "check", "export"]), "cam.yaml", *rng.sample(["-v"], rng.randrange(2)))
+    return Attack(f"disc {way} {number}", words, {"cam.yaml": text.encode()}, (0, 1, 2), seconds=seconds)
+
+
+def searched(rng: Random, number: int) -> Attack:
+    """A small search, or a study."""
+    cam = drawn(rng)
+    if rng.random() < 0.3:
+        words = ("study", "cam.yaml", "--form", rng.choice(["polyline", "stl"]), "--patience", "0.05")
+        return Attack(f"study {number}", words, {"cam.yaml": cam.text("dxf").encode()}, (0, 1, 2, 3), seconds=LONG)
+    axis = rng.choice(
+        ["cam.base_radius", "cam.base_radius", "cam.motion[0].over", "cam.follower.radius", "part.bore", "cam.x"]
+    )
+    span = rng.choice(
+        ["{from: 20, to: 60, steps: 5}", "{from: 60, to: 20, steps: 3}", "{from: 0, to: 0, steps: 2}", "[30, 40]", "[]"]
+    )
+    rank = rng.choice(["size", "pressure-angle", "peak-jerk", "radius-of-curvature", "nothing"])
+    text = cam.text("dxf", f"sweep: {{vary: {{{axis}: {span}}}, rank: {rank}, keep: 2}}\n")
+    return Attack(f"sweep {number}", ("sweep", "cam.yaml", "--jobs", "1"), {"cam.yaml": text.encode()}, seconds=LONG)
+
+
+# --- files that cost --------------------------------------------------------------------------------------------------
+
+
+MODEL = '<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="80mm" viewBox="-40 -40 80 80">'
+
+
+def zipped(model: str) -> bytes:
+    link = '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" '
+    link += 'Target="/3D/3dmodel.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("_rels/.rels", link)
+        archive.writestr("3D/3dmodel.model", model)
+    return stream.getvalue()
+
+
+def components(deep: int, wide: int) -> bytes:
+    """Objects of many components of the one before."""
+    corners = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    faces = "".join(
+        f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+    )
+    body = f'<object id="1"><mesh><vertices>{corners}</vertices><triangles>{faces}</triangles></mesh></object>'
+    for k in range(2, deep + 2):
+        row = f'<component objectid="{k - 1}"/>' * wide
+        body += f'<object id="{k}"><components>{row}</components></object>'
+    return zipped(f'{MODEL}{body}</resources><build><item objectid="{deep + 1}"/></build></model>')
+
+
+def bomb(rng: Random, number: int) -> Attack:
+    """A file that is small, or plain, and costs."""
+    way = rng.choice(
+        [
+            "3mf",
+            "3mf loose",
+            "svg path",
+            "svg groups",
+            "dxf points",
+            "dxf blocks",
+            "step",
+            "stl",
+            "ngc",
+            "table",
+            "yaml",
+        ]
+    )
+    files = {"cam.yaml": drawn(rng).text("dxf", MILLING).encode()}
+    some = rng.choice([3_000, 30_000, 120_000])
+    around = np.column_stack(
+        [30.0 * np.cos(np.arange(some) * 2 * np.pi / some), 30.0 * np.sin(np.arange(some) * 2 * np.pi / some)]
+    )
+    if way == "3mf":
+        name, raw = "cam.3mf", components(rng.choice([3, 12, 400]), 10)
+    elif way == "3mf loose":
+        head = f'{MODEL}<object id="1"><mesh>'
+        rows = '<vertex x="1" y="2" z="3"/>' * some
+        name, raw = (
+            "cam.3mf",
+            zipped(f"{head}<vertices>{rows}</vertices><triangles/></mesh></object></resources><build/></model>"),
+        )
+    elif way == "svg path":
+        points = " ".join(f"{x:.6f},{y:.6f}" for x, y in around)
+        name, raw = (
+            "cam.svg",
+            f'{SVG}<path d="M {points} Z"/></svg>'.encode(),
+        )
+    elif way == "svg groups":
+        deep = rng.choice([100, 3_000, 30_000])
+        name, raw = (
+            "cam.svg",
+            f'<svg xmlns="http://www.w3.org/2000/svg">{"<g>" * deep}<circle r="5"/>{"</g>" * deep}</svg>'.encode(),
+        )
+    elif way in {"dxf points", "dxf blocks"}:
+        points = "".join(f"10\n{x:.6f}\n20\n{y:.6f}\n" for x, y in around)
+        body = f"0\nLWPOLYLINE\n100\nAcDbEntity\n8\nCUT\n100\nAcDbPolyline\n90\n{some}\n70\n1\n{points}"
+        if way == "dxf blocks":
+            body = "0\nCIRCLE\n8\nCUT\n10\n0\n20\n0\n40\n30\n" * (some // 10)
+        name, raw = "cam.dxf", f"0\nSECTION\n2\nENTITIES\n{body}0\nENDSEC\n0\nEOF\n".encode()
+    elif way == "step":
+        points = "".join(f"#{k + 10}=CARTESIAN_POINT('',({x:.6f},{y:.6f},0.));\n" for k, (x, y) in enumerate(around))
+        name, raw = "cam.step", f"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n{points}ENDSEC;\nEND-ISO-10303-21;\n".encode()
+    elif way == "stl":
+        records = np.zeros(some, np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")]))
+        records["corners"] = np.random.default_rng(number).normal(size=(some, 3, 3))
+        name, raw = "cam.stl", bytes(80) + struct.pack("<I", some) + records.tobytes()
+    elif way == "ngc":
+        name, raw = (
+            "cam.ngc",
+            ("G21 G90\n" + "".join(f"G1 X{x:.5f} Y{y:.5f} F100\n" for x, y in around) + "M30\n").encode(),
+        )
+    elif way == "table":
+        rows = "".join(f"{k * 360 / some:.6f};{rng.random():.3f}\n" for k in range(some))
+        files = {"cam.yaml": with_motion(drawn(rng).text("dxf"), "{table: cam.csv}").encode()}
+        name, raw = "cam.csv", rows.encode()
+    else:
+        deep = rng.choice([100, 5_000])
+        name, raw = "cam.yaml", b"cam: " + b"{a: " * deep + b"1" + b"}" * deep
+    words = ("check", "cam.yaml") if name in {"cam.csv", "cam.yaml"} else ("verify", "cam.yaml", name)
+    return Attack(f"bomb {way} {some} {number}", words, {**files, name: raw}, (1, 2))
