@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from support.places import ROOT
 
@@ -37,3 +39,17 @@ def test_a_family_is_told_of(kind: str) -> None:
     assert FAMILIES[kind].kind == kind
     assert f"({kind}" in SAID or f", {kind})" in SAID
     assert f"`{kind}`" in (ROOT / "docs" / "which-cam.md").read_text(encoding="utf-8")
+
+
+EACH = "as-figure-1 print-constant-diameter disc-arm-flat disc-flat disc-ring disc-roller w-ellipse w-booth shu-wu"
+
+
+@pytest.mark.parametrize("name", EACH.split())
+def test_an_exact_cam_goes_to_another_process(name: str) -> None:
+    exact = load(ROOT / "recipes" / f"{name}.yaml").cam.exact()
+    same = pickle.loads(pickle.dumps(exact))
+    t = np.linspace(0.0, 1.0, 7)
+    assert (same.surface.pressure(t) == exact.surface.pressure(t)).all()
+    assert same.surface.curve.sample(t).point == pytest.approx(exact.surface.curve.sample(t).point, abs=0.0)
+    assert same.follower == exact.follower
+    assert pickle.dumps(exact.surface)
