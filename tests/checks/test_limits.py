@@ -200,7 +200,7 @@ def test_a_roller_s_motion_is_that_of_the_table() -> None:
     from camgeo.synthesis.motion_table import motion_table
 
     recipe = loaded(ROLLER.replace("angles: 120", "angles: 20000"))
-    _, table = motion_table(recipe, recipe.cam.exact().law)
+    _, table = motion_table(recipe, recipe.cam.exact().motion)
     said = (
         "{swing: {at_most: 1}, peak-velocity: {at_most: 1}, peak-acceleration: {at_most: 1}, peak-jerk: {at_most: 1}}"
     )

@@ -72,7 +72,7 @@ def test_the_opening_is_wider_than_its_roller():
     design = designed(recipe)
     _, _, radius = pitch(recipe)
     widest = -radius[radius < 0].max()
-    assert hollow_radius(recipe.cam, design.contour)[0] == pytest.approx(widest + 9.0, rel=1e-5)
+    assert hollow_radius(recipe.cam.side, design.contour)[0] == pytest.approx(widest + 9.0, rel=1e-5)
 
 
 def test_a_ring_without_hollows_has_no_limit():

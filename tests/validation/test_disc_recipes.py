@@ -449,7 +449,7 @@ def test_d16_sizing_of_a_stem():
     assert stem_needs(design.exact.law, *limits) == pytest.approx((31.499209525, 9.603238312), abs=NINE)
     assert least_stem(design.exact.law, *limits).foot == pytest.approx(17.617720017, abs=NINE)
     cam = recipe.cam
-    assert (cam.base_radius, cam.offset) == pytest.approx((19.354998723, 8.014481704), abs=NINE)
+    assert (cam.base_radius, cam.guide.offset) == pytest.approx((19.354998723, 8.014481704), abs=NINE)
     leans_of(pitch_of(design), 30.0, -45.0, NINE)
     proved(recipe, design)
     inline, _ = sized(30, 45, ", offset: 0", M02)
@@ -464,7 +464,7 @@ D16 = {"trailing": (16.727263336, 72.169575733, 12.668363853), "leading": (16.27
 def test_d16_sizing_of_an_arm(side):
     recipe, design = sized(35, 45, f", arm: {{length: 65, side: {side}}}", M07)
     cam = recipe.cam
-    found = (cam.base_radius, cam.pivot, math.degrees(cam.guide.rest))
+    found = (cam.base_radius, cam.guide.pivot, math.degrees(cam.led.rest))
     assert found == pytest.approx(D16[side], abs=1e-6)
     leans_of(pitch_of(design), 35.0, -45.0, 1e-6)
     proved(recipe, design)
