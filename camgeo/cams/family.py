@@ -251,6 +251,16 @@ class ExactCam(ABC):
         """What kin judges files by: the follower with its motion, made of the same contacts by kin's own means."""
 
     @property
+    def breaks(self) -> Array:
+        """Parameters of the law at which a derivative may jump, rising."""
+        return self.law.breaks
+
+    @property
+    def rounding(self) -> float:
+        """By how much the law may be off through the rounding of a recipe's own formula; 0 where there is none."""
+        return self.law.rounding
+
+    @property
     def joints(self) -> tuple[Joint, ...]:
         """Where derivatives of the motion that a recipe gives jump; displacements in mm or rad."""
         return ()

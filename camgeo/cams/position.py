@@ -31,16 +31,6 @@ class Position(Protocol):
         """What it is called: `lift` or `swing`."""
         ...
 
-    @property
-    def breaks(self) -> Array:
-        """Parameters of the law at which a derivative may jump, rising."""
-        ...
-
-    @property
-    def rounding(self) -> float:
-        """By how much the law may be off through the rounding of a recipe's own formula; 0 where there is none."""
-        ...
-
     def column(self, units: str) -> str:
         """Name of its column in a table, in a recipe's unit of length."""
         ...
@@ -88,35 +78,13 @@ class Position(Protocol):
 class Law(Protocol):
     """A motion over the shaft angle."""
 
-    @property
-    def breaks(self) -> Array:
-        """Shaft angles at which a derivative may jump, rising."""
-        ...
-
-    @property
-    def rounding(self) -> float:
-        """By how much it may be off through the rounding of a recipe's own formula."""
-        ...
-
     def derivatives(self, theta: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
         """Position and its derivatives at theta (n,), (order + 1, n)."""
         ...
 
 
 class _Turn(ABC):
-    """What follows from the law, and from `rows`."""
-
-    law: Law | Transmission
-
-    @property
-    def breaks(self) -> Array:
-        """Those of the law."""
-        return self.law.breaks
-
-    @property
-    def rounding(self) -> float:
-        """That of the law."""
-        return self.law.rounding
+    """What follows from `rows`."""
 
     @abstractmethod
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:

@@ -215,7 +215,7 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
     names = [name for name, k in _ORDERS.items() if k <= order]
     try:
         made = cells(
-            lambda t: position.by_parameter(t, order), between(0.0, TURN, design.motion.breaks.tolist()), share=_SHARE
+            lambda t: position.by_parameter(t, order), between(0.0, TURN, design.exact.breaks.tolist()), share=_SHARE
         )
     except RoughError:
         why = "the motion changes too abruptly to be resolved"

@@ -282,7 +282,7 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
 def _stroke(design: Design) -> tuple[float, float]:
     """Stroke in mm, or swing in rad and the arm in mm at which it is worked: 1 for a stroke."""
     t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
-    return design.motion.stroke(np.sort(np.concatenate([t, design.motion.breaks])))
+    return design.motion.stroke(np.sort(np.concatenate([t, design.exact.breaks])))
 
 
 def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:

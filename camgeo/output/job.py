@@ -62,7 +62,7 @@ class Job:
         """Begin the files of a design that has a contour; raises ValueError for one that has none."""
         if design.contour is None:
             raise ValueError(f"{recipe.name}: there is no contour to be made")
-        rounding = formula_rounding(design.motion.rounding, design.contour)
+        rounding = formula_rounding(design.exact.rounding, design.contour)
         return Job(recipe, design, Outlines(design.contour, clock or Clock(), rounding))
 
     def of_file(self, request: FileRequest) -> tuple[Job, tuple[Check, ...]]:

@@ -46,7 +46,7 @@ def _face_length(exact: ExactCam) -> Check:
     place = exact.surface.place
     if place is None:
         raise TypeError("no contact travels along a face")
-    t = spread(exact.motion.breaks, 2.0 * math.pi)
+    t = spread(exact.breaks, 2.0 * math.pi)
     low = _greatest(lambda u: -place(u), t)  # continuous too
     high = _greatest(place, t)
     return Check(TRAVEL.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
@@ -62,13 +62,13 @@ def _pressure_angle(exact: ExactCam) -> Check:
         worst = max(proved, key=lambda one: abs(one.value))
         value, at = math.degrees(math.atan(abs(worst.value) + slack(worst))), worst.at
         return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(at))
-    value, at = _greatest(lambda t: np.degrees(np.abs(surface.pressure(t))), spread(exact.motion.breaks, 2.0 * math.pi))
+    value, at = _greatest(lambda t: np.degrees(np.abs(surface.pressure(t))), spread(exact.breaks, 2.0 * math.pi))
     return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", exact.motion.shaft_deg(at))
 
 
 def _constant_diameter(exact: ExactCam) -> Check:
     """Constancy of the pitch curve's diameters through the shaft, for two opposite rollers."""
-    t = spread(np.mod(exact.motion.breaks, math.pi), math.pi)
+    t = spread(np.mod(exact.breaks, math.pi), math.pi)
     near, far = (np.hypot(*exact.surface.base.sample(t + by).point.T) for by in (0.0, math.pi))
     diameter = near + far
     mean = 0.5 * float(diameter.max() + diameter.min())

@@ -94,7 +94,7 @@ FAULTS = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_the_cam_of_another_swing_is_caught(tmp_path, intent, fault):
-    wrong = designed_of(*FAULTS[fault])[1].intent
+    wrong = designed_of(*FAULTS[fault])[1].exact.law
     assert failures(file_of(tmp_path, wrong), intent) >= {"contour", "motion", "linkage-error"}
 
 
