@@ -33,9 +33,16 @@ _SHAPE = 1.4  # the plate is filled about this much wider than deep
 def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
     """Closed mesh of a body's plates, joined, in its own axes, and how far its walls are off, mm.
 
-    Raises ToleranceError where the tolerance cannot be held in the precision, RegionError where an outline is not
-    simple or the plates do not hang together.
+    Raises ToleranceError where the tolerance cannot be held in the precision; RegionError, with the body's name, where
+    an outline is not simple, the plates do not hang together, or what is joined does not close once it is rounded.
     """
+    try:
+        return _joined(body, tolerance, precision)
+    except RegionError as error:
+        raise RegionError(f"{body.name}: {error}") from error
+
+
+def _joined(body: PrintBody, tolerance: float, precision: Precision) -> tuple[Mesh, float]:
     joined: Any = None
     worst = 0.0
     for plate in body.plates:
@@ -57,7 +64,7 @@ def body_mesh(body: PrintBody, *, tolerance: float, precision: Precision) -> tup
         joined = slab if joined is None else joined + slab
     pieces = len(joined.decompose())
     if pieces != 1:
-        raise RegionError(f"{body.name}: its plates make {pieces} separate bodies, where one is expected")
+        raise RegionError(f"its plates make {pieces} separate bodies, where one is expected")
     mesh, merged = meshed(joined, precision)
     precision.within(f"{body.name}: an outline", worst + merged, tolerance)
     return mesh, worst + merged

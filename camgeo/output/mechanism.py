@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from camgeo.output.job import Job
     from camgeo.recipe.export import FileRequest
     from camgeo.recipe.recipe import Recipe
-    from kin.judge.check import Check
 
 
 def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
@@ -33,11 +32,14 @@ def make_mechanism(job: Job, request: FileRequest, path: Path) -> Made:
     driven = job.design.driven
     if driven is not None and not driven.turns:
         return Made(())
-    checks: tuple[Check, ...] = ()
-    if not job.assemblies:
-        assembly, checks = _assembled(job, request)
-        job.assemblies.append(assembly)
+    first = not job.assemblies
+    if first:
+        job.assemblies.append(_assembled(job, request))
     made = make_parts(job, request, path, [member.body() for member in job.assemblies[0].members])
+    if not first:
+        return made
+    with job.clock.stage("collision"):  # last, as it is dear: a body that cannot be written is told at once
+        checks = collision_checks(job.assemblies[0])
     return Made(made.files, (*checks, *made.checks))
 
 
@@ -63,13 +65,11 @@ def _told(recipe: Recipe) -> Iterator[None]:
         raise recipe.error(error.field, message, None, remedy) from error
 
 
-def _assembled(job: Job, request: FileRequest) -> tuple[Assembly, tuple[Check, ...]]:
-    """Build the bodies round the contour as arcs within the file's tolerance, and turn them once round."""
+def _assembled(job: Job, request: FileRequest) -> Assembly:
+    """Build the bodies round the contour as arcs within the file's tolerance."""
     with job.refusals(request), job.clock.stage("bodies"):
         contour = job.outlines.within("arcs", job.tolerance(request))
         if not isinstance(contour, ArcSpline):
             raise TypeError("bodies stand round a contour of arcs")
         with _told(job.recipe):
-            assembly = assembly_of(job.recipe, job.design, contour)
-    with job.clock.stage("collision"):
-        return assembly, tuple(collision_checks(assembly))
+            return assembly_of(job.recipe, job.design, contour)

@@ -12,9 +12,9 @@ from camgeo.assembly.meshes import body_mesh, flat, laid_out, mirrored, standing
 from camgeo.common.units import UNIT_MM
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import Bound
+from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
 from camgeo.output.solid import cam_mesh, precision_of
-from camgeo.report.document import FileResult
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,7 +60,9 @@ def make_parts(job: Job, request: FileRequest, path: Path, bodies: Sequence[Prin
     Raises RecipeErrors and SurroundingsError as `make` does.
     """
     drawn = [mirrored(body) for body in bodies] if job.recipe.rotation == "ccw" else list(bodies)
-    parts = [_part(job, request, body) for body in drawn]
+    # the cam's own mesh last, as it is dear: a body that has none is told at once
+    meshed = {body.name: _part(job, request, body) for body in sorted(drawn, key=lambda body: body.name == CAM)}
+    parts = [meshed[body.name] for body in drawn]
     with job.clock.stage(f"write {request.kind}"):
         if request.kind == "glb":
             return _glb(job, request, path, parts)

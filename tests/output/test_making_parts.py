@@ -12,9 +12,11 @@ from support.parts import failures, recipe_of
 from camgeo.assembly.body import Plate, PrintBody
 from camgeo.files import stl, three_mf
 from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.output import pipeline
 from camgeo.output.job import Job
 from camgeo.output.parts import make_parts
 from camgeo.recipe.export import FileRequest
+from camgeo.recipe.loading import load_text
 from camgeo.report.document import Findings, document
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -203,3 +205,17 @@ def test_a_body_that_falls_apart_is_an_error_at_the_part(tmp_path):
     apart = replace(ROCKER, plates=(ROCKER.plates[0], Plate(disc(90.0, 0.0, 4.0), (), 4.0, 7.0)))
     with pytest.raises(RecipeErrors, match="mechanism: rocker: its plates make 2 separate bodies"):
         made(tmp_path, "stl", [CAM, BASE, apart], part="{thickness: 8, bore: 10}")
+
+
+def test_a_body_that_has_no_mesh_is_named_before_the_set_is_turned(tmp_path, monkeypatch):
+    def turned(_):
+        raise AssertionError("the set was turned first")
+
+    monkeypatch.setattr("camgeo.output.mechanism.collision_checks", turned)
+    text = """cam: {kind: double-roller, ratio: 4/3, arm: 10000, roller_radius: 8, delta: {cos: {1: 600}}}
+part: {thickness: 8, bore: 10}
+mechanism: {}
+export: {tolerance: 0.01, files: [{3mf: {parts: all}}]}
+"""
+    with pytest.raises(RecipeErrors, match=r"mechanism: arm: a triangle of the solid has no area in nine decimals"):
+        pipeline.export(load_text(text, "cam.yaml"), tmp_path)
