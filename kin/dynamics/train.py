@@ -196,7 +196,7 @@ def _demand_countable(running: Running, found: Response, starts: Array) -> None:
     _, fine = found.swings(starts, np.arange(len(found)))
     if fine.sum() <= MOST_SWUNG:
         return
-    fading = _SILENT_AFTER * max(np.count_nonzero(found.slow), _STRETCHES) / (found.step * MOST_SWUNG)
+    fading = _SILENT_AFTER * max(int(np.count_nonzero(found.slow)), _STRETCHES) / (found.step * MOST_SWUNG)
     least = 2.0 * running.train.mass * running.speed * fading
     raise DynamicsError(
         f"the natural frequency is {running.train.ratio(running.rpm):.4g} times the shaft's and the damping is "
