@@ -51,6 +51,8 @@ def pytest_configure(config: pytest.Config) -> None:
     """Go to work in projects that ask for it."""
     patterns: list[str] = config.getini(INI)
     out: str | None = config.getoption("camgeo_out")
+    if out == "":
+        raise pytest.UsageError("--camgeo-out: an empty name")
     if patterns:
         config.addinivalue_line("markers", "camgeo: a check of a recipe")
         kept = None if out is None else Path(config.invocation_params.dir, out)

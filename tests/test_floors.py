@@ -37,6 +37,7 @@ FLOORS = {
         output
         report.page
         assembly machining report
+        measures
         synthesis
         checks
         files

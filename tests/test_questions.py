@@ -83,7 +83,7 @@ def families() -> dict[str, Family]:
             classes=classes_in("camgeo/cams", "Cam"),
             kinds=frozenset(CAMS),
             nouns=frozenset(["cam"]),
-            exempt={"camgeo/recipe/starter.py": 1, "camgeo/report/figures.py": 1, "camgeo/synthesis/checks.py": 2},
+            exempt={"camgeo/recipe/starter.py": 1, "camgeo/measures/figures.py": 1, "camgeo/synthesis/checks.py": 2},
             home="camgeo/cams/",
         ),
         "followers": Family(
@@ -121,7 +121,7 @@ def families() -> dict[str, Family]:
                 "camgeo/cams/pairs.py": 4,
                 "camgeo/cams/sizing.py": 1,
                 "camgeo/report/page/outline.py": 1,
-                "camgeo/report/remarks.py": 1,
+                "camgeo/measures/remarks.py": 1,
                 "camgeo/sweep/search/cams.py": 1,
                 "camgeo/sweep/search/rebuilt.py": 2,
                 "camgeo/synthesis/checks.py": 3,

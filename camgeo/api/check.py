@@ -7,13 +7,14 @@ from dataclasses import asdict, dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from camgeo.measures.units import in_units
 from camgeo.report.bound import sign, words
-from camgeo.report.document import BELOW, in_units, value_text
+from camgeo.report.document import BELOW, value_text
 from kin.judge import check as judge
 
 if TYPE_CHECKING:
+    from camgeo.measures.figures import Measured
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.figures import Measured
 
 
 @dataclass(frozen=True)

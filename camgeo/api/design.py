@@ -65,7 +65,7 @@ class Design:
         """The checks that need no file: curvature, undercut, walls, and the recipe's limits of figures."""
         found = self.exact.checks
         if self.recipe.limits:
-            from camgeo.report.limits import limit_checks
+            from camgeo.measures.limits import limit_checks
 
             found = (*found, *limit_checks(self.recipe, self.exact, found, (), None))
         return tuple(Check.of(self.recipe, check) for check in found)
@@ -78,8 +78,8 @@ class Design:
     @cached_property
     def figures(self) -> Figures:
         """The figures of the design by name, such as `radius-of-curvature`; those that recipes limit."""
+        from camgeo.measures.figures import of_design
         from camgeo.recipe.figures import FIGURES, there
-        from camgeo.report.figures import of_design
 
         given = set(self.recipe.marks)
         offers = self.recipe.cam.offers

@@ -152,7 +152,8 @@ class TableAsked(MotionAsked):
 @lru_cache(maxsize=8)
 def _smoothed(asked: TableAsked, total: float, field: str, around: int | None) -> Motion:
     from kin.law.programme import IntentError
-    from kin.law.sources.table import TableError, from_table
+    from kin.law.sources.smoothing import TableError
+    from kin.law.sources.table import from_table
 
     field, samples = f"{field}.table", asked.rows.samples()
     if around != 1 and len(samples.s):

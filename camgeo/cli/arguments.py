@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 
 
-def file_name(text: str) -> str:
-    """Give the name of a file or a folder; raises ArgumentTypeError for an empty one."""
+def name_of(text: str) -> str:
+    """Give the name of a file, a folder or a place in a network; raises ArgumentTypeError for an empty one."""
     if not text:
         raise argparse.ArgumentTypeError("an empty name")
     return text
@@ -15,7 +15,7 @@ def file_name(text: str) -> str:
 def add_out(command: argparse.ArgumentParser, holds: str = "of the results") -> None:
     """Give a command the folder it writes to or looks at; `holds` ends `folder ...` in its help."""
     text = f"folder {holds} (default: out)"
-    command.add_argument("--out", type=file_name, default="out", metavar="DIR", help=text)
+    command.add_argument("--out", type=name_of, default="out", metavar="DIR", help=text)
 
 
 def processes(text: str) -> int:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camgeo.cli.arguments import file_name
+from camgeo.cli.arguments import name_of
 from camgeo.cli.exit_status import OK, SURROUNDINGS, WRONG
 from camgeo.files.errors import install
 
@@ -38,7 +38,7 @@ _COLUMNS = 4
 def add_arguments(command: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     command.add_argument("names", nargs="*", metavar="LAW", help="only these laws (default: all)")
-    command.add_argument("--picture", type=file_name, metavar="FILE", help="draw the laws too, as FILE.svg or FILE.png")
+    command.add_argument("--picture", type=name_of, metavar="FILE", help="draw the laws too, as FILE.svg or FILE.png")
     command.add_argument("--json", action="store_true", help="as JSON, for machines")
 
 

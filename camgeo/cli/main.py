@@ -14,7 +14,7 @@ from camgeo.cli import laws as laws_command
 from camgeo.cli import report as page_command
 from camgeo.cli import study as study_command
 from camgeo.cli import sweep as sweep_command
-from camgeo.cli.arguments import add_out, file_name, processes
+from camgeo.cli.arguments import add_out, name_of, processes
 from camgeo.cli.batch import Task, result, results
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.common.terminal import complain, escaped, open_streams, say, say_json, silence
@@ -111,7 +111,7 @@ def _parser() -> argparse.ArgumentParser:
     add_out(check, "of earlier results, whose files are compared with their reports")
     verify = command("verify", _verify, "Judge drawings, solids and programs of any origin by a recipe's motion.")
     verify.add_argument("recipe", metavar="RECIPE")
-    verify.add_argument("files", nargs="+", type=file_name, metavar="FILE")
+    verify.add_argument("files", nargs="+", type=name_of, metavar="FILE")
     _add_options(verify, "for all the files, in the recipe's unit or with its own: 0.0005in")
     verify.add_argument("--units", choices=UNIT_MM, help="unit of files that state none (R12 drawings, STL)")
     text = "have ezdxf, shapely, trimesh and manifold3d look at the files too (extra `check`)"
@@ -120,7 +120,7 @@ def _parser() -> argparse.ArgumentParser:
     sweep_command.add_arguments(sweep)
     new = command("new", _new, "A starter recipe, on the terminal or in a new file; without a KIND, the list of kinds.")
     new.add_argument("kind", nargs="?", metavar="KIND")
-    new.add_argument("file", nargs="?", type=file_name, metavar="FILE")
+    new.add_argument("file", nargs="?", type=name_of, metavar="FILE")
     study = command("study", study_command.run, "Error against run time of each output form; a recipe's margins.")
     study_command.add_arguments(study)
     report = command("report", page_command.run, "An HTML page: the animated mechanism, its curves, its checks.")

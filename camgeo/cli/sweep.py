@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from camgeo.cli.arguments import add_out, processes
+from camgeo.cli.arguments import add_out, name_of, processes
 from camgeo.cli.exit_status import FAILED, INTERRUPTED, OK, SURROUNDINGS, WRONG
 from camgeo.cli.progress import Progress
 from camgeo.common.terminal import complain, say, say_json
@@ -33,7 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     engine = parser.add_mutually_exclusive_group()
     text = "processes at once (default: as many as are worthwhile)"
     engine.add_argument("--jobs", type=processes, metavar="N", help=text)
-    engine.add_argument("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
+    engine.add_argument(
+        "--scheduler", type=name_of, metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786"
+    )
     parser.add_argument("--fresh", action="store_true", help="compute again what earlier runs have computed")
     parser.add_argument("-v", "--verbose", action="store_true", help="the best designs and the counts")
     parser.add_argument("--json", action="store_true", help="sweep.json, for machines")

@@ -15,8 +15,8 @@ from camgeo.files.triangulate import RegionError
 from camgeo.fit.bound import FormError
 from camgeo.fit.cache import Outlines, formula_rounding
 from camgeo.fit.nodes import ToleranceError
+from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import intent_of_file
-from camgeo.report.document import FileResult
 from camgeo.synthesis.design import permitted
 
 if TYPE_CHECKING:

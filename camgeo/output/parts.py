@@ -12,9 +12,9 @@ from camgeo.assembly.meshes import body_mesh, flat, laid_out, mirrored, standing
 from camgeo.common.units import UNIT_MM
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import Bound
+from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
 from camgeo.output.solid import cam_mesh, precision_of
-from camgeo.report.document import FileResult
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

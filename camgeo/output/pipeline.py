@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from camgeo.common.clock import Clock
+from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import intent_of_file
-from camgeo.report.document import FileResult, Findings, document, encoded
+from camgeo.report.document import Findings, document, encoded
 from camgeo.synthesis.design import Design, designed, permitted
 
 if TYPE_CHECKING:
@@ -211,19 +212,19 @@ def _findings(
             linkage = linkage_section(recipe, design.driven, files)
     train = None
     if recipe.dynamics is not None:
-        from camgeo.synthesis.dynamics import dynamics_of
+        from camgeo.measures.dynamics import dynamics_of
 
         with clock.stage("dynamics"):
             train = dynamics_of(recipe, design, [file.path for file in files if file.shows_cam], units)
         checks = [*checks, *train.checks]
     if recipe.limits:
-        from camgeo.report.limits import limit_checks
+        from camgeo.measures.limits import limit_checks
 
         with clock.stage("limits"):
             section = None if train is None else train.section
             checks = [*checks, *limit_checks(recipe, design, checks, files, section)]
     from camgeo.curve.measures import measures
-    from camgeo.report.remarks import dwells_lost, remarks_of
+    from camgeo.measures.remarks import dwells_lost, remarks_of
 
     with clock.stage("remarks"):
         remarks = remarks_of(recipe, design, checks, files)

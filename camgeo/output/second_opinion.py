@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from camgeo.common.clock import Clock
+    from camgeo.measures.file_result import FileResult
     from camgeo.output.skipped import Skipped
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
     from kin.contour.contour import Contour
     from kin.numeric.arrays import Array

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.files.table import write_table
+from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
-from camgeo.report.document import FileResult
 
 if TYPE_CHECKING:
     from pathlib import Path

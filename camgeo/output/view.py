@@ -9,9 +9,9 @@ import numpy as np
 
 from camgeo.common.units import UNIT_MM
 from camgeo.files.glb import Actor, write_glb
+from camgeo.measures.file_result import FileResult
 from camgeo.output.job import Made
 from camgeo.output.solid import cam_mesh
-from camgeo.report.document import FileResult
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -5,26 +5,24 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from camgeo.checks.declared import EVERY
 from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
-from camgeo.recipe.export import NO_CONTOUR, NO_PART
+from camgeo.measures.units import in_units, of_displacements
+from camgeo.recipe.export import NO_CONTOUR
 from camgeo.report.bound import is_strict, sign, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from camgeo.curve.measures import Measures
-    from camgeo.fit.pieces import Bound
-    from camgeo.recipe.export import FileRequest
+    from camgeo.measures.file_result import FileResult
+    from camgeo.measures.remarks import Remark
     from camgeo.recipe.recipe import Recipe
-    from kin.contour.contour import Contour
-    from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
     from kin.law.joints import Joint
@@ -32,69 +30,6 @@ if TYPE_CHECKING:
 BELOW = "below rounding"
 ROUNDING = 1e-11  # mm, in or degrees: what sums of doubles of some hundred leave, and no machine makes
 DESIGN = frozenset({"motion", "profile", "undercut", "figures", "linkage", "part"})  # stages of the exact cam
-UNIT_NAMES = {"mm": "mm", "inch": "in"}
-
-
-@dataclass(frozen=True)
-class FileResult:
-    """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
-
-    `body` is the one that it is judged as. `perimeter` and `area` (mm, mm^2) are those of its contour as read,
-    `units` (mm) is the unit of its numbers, None where there are none or nothing was read; `contour` is that contour,
-    in mm and as if not mirrored.
-    """
-
-    path: Path
-    request: FileRequest
-    tolerance: float | None
-    pieces: int | None
-    bound: Bound | None
-    measured_error: float | None
-    motion: MotionError | None
-    linkage: LinkageVerdict | None = None
-    body: str = "cam"
-    perimeter: float | None = None
-    area: float | None = None
-    units: float | None = None
-    contour: Contour | None = None
-
-    @property
-    def shows_cam(self) -> bool:
-        """Whether the file has the nominal cam's contour, and not another body's or none."""
-        return self.body == "cam" and self.request.kind not in NO_PART and self.request.compensation is None
-
-
-RemarkName = Literal[
-    "acceleration-jump",
-    "coarse-tolerance",
-    "dwell-shorter",
-    "large-cutter",
-    "large-roller",
-    "loose-motion-error",
-    "loose-output-error",
-    "metric-keyway",
-    "no-motion",
-    "pivot-clearance",
-    "pressure-angle",
-    "shaft-outside",
-    "sharp-corner",
-    "sizing",
-    "thick",
-    "thin",
-    "wide-dwell-band",
-]
-
-
-@dataclass(frozen=True)
-class Remark:
-    """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
-
-    name: RemarkName
-    value: float | None
-    rule: float | None
-    unit: str
-    sentence: str
-    at_deg: float | None = None
 
 
 @dataclass(frozen=True)
@@ -147,21 +82,6 @@ def document(recipe: Recipe, found: Findings) -> dict[str, Any]:
 def encoded(report: object) -> str:
     """A report, or several, as JSON text; strict JSON, so an infinite figure is null."""
     return json.dumps(finite(report), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | None, str]:
-    """A figure in mm, mm^2, mm^3 or mm by radian in the recipe's unit, with that unit's name; other units stay."""
-    name = UNIT_NAMES[recipe.units]
-    power = {"mm": 1, "mm^2": 2, "mm^3": 3}.get(unit.partition("/")[0])
-    if power is None:
-        return value, unit
-    return (None if value is None else value / recipe.mm**power), name + unit[2:]
-
-
-def of_displacements(recipe: Recipe) -> tuple[float, str]:
-    """Factor and unit in which the follower's displacements are reported: the recipe's, or degrees."""
-    swings = recipe.cam.unit == "deg" or recipe.cam.by_linkage
-    return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])
 
 
 def _check(recipe: Recipe, check: Check) -> dict[str, Any]:

@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from camgeo.report.document import in_units
+from camgeo.measures.units import in_units
 from camgeo.synthesis.linkage import OVER
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.document import FileResult
     from camgeo.synthesis.linkage import Driven
     from kin.follower.frame import LinkageVerdict
     from kin.follower.motion_error import MotionError, Play

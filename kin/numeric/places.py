@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-ROUNDING = 1e-9
-"""mm: what doubles of some metres leave of a coordinate that is 0, and more than a message is read for."""
+ROUNDING = 1e-7
+"""mm: what a search by doubles leaves of a coordinate that is 0, and finer than any message is read for."""
 
 
 def place_text(*coordinates: float, digits: int = 6) -> str:

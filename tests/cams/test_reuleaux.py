@@ -13,8 +13,8 @@ from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.fit.arcs import fit_arcs
 from camgeo.machining.cutter import CutterPath, cutter_path
+from camgeo.measures.remarks import remarks_of
 from camgeo.recipe.loading import load_text
-from camgeo.report.remarks import remarks_of
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed, intended, permitted
 from kin.contour.contour import Contour

@@ -63,6 +63,9 @@ def test_no_name_is_written_again() -> None:
     # a key of the report's sections, and kinds of cam
     kinds = ("'constant-breadth'", "'constant-diameter'")
     allowed = {path: [text for text in here if not text.endswith(kinds)] for path, here in found.items()}
+    # remarks have names of their own, one of them that of a figure too
+    remarks = allowed.get("measures/remarks.py", [])
+    allowed["measures/remarks.py"] = [text for text in remarks if not text.endswith("'pressure-angle'")]
     # a follower names the checks of its motion; one that is no check's name could not be made
     found = {path: here for path, here in allowed.items() if here and not path.startswith("cams/")}
     assert found == {}

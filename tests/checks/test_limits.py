@@ -16,6 +16,8 @@ from support.cases import examples, few
 
 from camgeo.checks.declared import CHECKS, EVERY, LIMIT
 from camgeo.cli.main import main
+from camgeo.measures.figures import of_design
+from camgeo.measures.limits import limit_checks
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES, PRESENT
 from camgeo.recipe.loading import load_text
@@ -23,8 +25,6 @@ from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.starter import KINDS, starter
 from camgeo.report.document import encoded
 from camgeo.report.failure import failure
-from camgeo.report.figures import of_design
-from camgeo.report.limits import limit_checks
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
 from camgeo.sweep.search.figures import REASONS, asked_of, evaluate

@@ -9,16 +9,16 @@ import pytest
 from support.places import RECIPES
 
 from camgeo.cli.main import main
+from camgeo.measures.remarks import remarks_of
 from camgeo.output.pipeline import check
 from camgeo.recipe.loading import load_text
 from camgeo.report.page import tables
-from camgeo.report.remarks import remarks_of
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from camgeo.report.document import Remark
+    from camgeo.measures.remarks import Remark
 
 FLAT = "cam: {kind: support, p: 30 + 3*cos(2*t)}\n"
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"

@@ -212,6 +212,7 @@ EMPTY = {
     "report, out": ["report", "{recipe}", "--out", ""],
     "study, out": ["study", "{recipe}", "--out", ""],
     "sweep, out": ["sweep", "{recipe}", "--out", ""],
+    "sweep, scheduler": ["sweep", "{recipe}", "--scheduler", ""],
     "verify, file": ["verify", "{recipe}", ""],
     "new, file": ["new", "support", ""],
     "laws, picture": ["laws", "--picture", ""],

@@ -335,7 +335,7 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
             "radius-of-curvature: -1 mm, more than 0 mm, at *",
             "  remedy   a p larger by more than 1 mm",
             "undercut-local: * mm, at most 0 mm, at *",
-            "  found    from * deg; * larger by more than 1 would have no undercut",
+            "  found    from * deg; * larger by more than 1 would have no undercut; or let * undercut: trim",
         ]
     )
     alone = run(project, "cams/small.yaml::motion[small.dxf]")
@@ -515,3 +515,9 @@ def test_it_can_be_switched_off(project: Pytester) -> None:
     result = project.runpytest_subprocess("-p", "no:camgeo")
     result.assert_outcomes(passed=1, warnings=1)
     result.stdout.fnmatch_lines(["*Unknown config option: camgeo_recipes*"])
+
+
+def test_keeping_files_needs_a_name(project: Pytester) -> None:
+    result = run(project, "--camgeo-out", "")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["*--camgeo-out: an empty name*"])

@@ -20,10 +20,10 @@ from support.cases import few
 
 from camgeo.checks.declared import CHECKS
 from camgeo.cli.main import main
+from camgeo.measures.remarks import RemarkName
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.recipe.starter import KINDS
-from camgeo.report.document import RemarkName
 from camgeo.report.page.content import DRAWN
 
 ROOT = Path(__file__).parents[2]

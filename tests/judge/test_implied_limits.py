@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import camgeo
+from camgeo.measures.remarks import LOOSE
 from camgeo.recipe.loading import load_text
-from camgeo.report.remarks import LOOSE
 from camgeo.synthesis.design import designed, intended
 from kin.judge.contour_checks import MOST_SHARE, NO_LIMIT, STEEP, is_loose, stroke_of
 

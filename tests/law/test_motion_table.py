@@ -11,7 +11,8 @@ from kin.law.sources.lobe import coefficients, lobe
 from kin.law.sources.points import from_points
 from kin.law.sources.programme import Dwell, Move, programme
 from kin.law.sources.ring import Samples
-from kin.law.sources.table import TableError, from_table
+from kin.law.sources.smoothing import TableError
+from kin.law.sources.table import from_table
 from kin.law.sources.table_text import read_table
 from kin.law.support_function import lift_constant_breadth
 

@@ -13,19 +13,19 @@ from hypothesis import strategies as st
 from support.cases import examples
 from support.places import RECIPES
 
+from camgeo.measures.figures import of_design
+from camgeo.measures.limits import limit_checks
+from camgeo.measures.remarks import remarks_of
 from camgeo.recipe.loading import load_text
-from camgeo.report.figures import of_design
-from camgeo.report.limits import limit_checks
-from camgeo.report.remarks import remarks_of
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
     from camgeo.cams.disc_cams import RoundCam
     from camgeo.curve.moving_frame import Displacement
+    from camgeo.measures.figures import Measured
+    from camgeo.measures.remarks import Remark
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.document import Remark
-    from camgeo.report.figures import Measured
     from kin.judge.check import Check
     from kin.numeric.arrays import Array
 

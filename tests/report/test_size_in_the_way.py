@@ -6,8 +6,8 @@ import re
 
 import pytest
 
+from camgeo.measures.remarks import remarks_of
 from camgeo.recipe.loading import load_text
-from camgeo.report.remarks import remarks_of
 from camgeo.synthesis.design import designed
 
 

@@ -84,7 +84,7 @@ def test_contacts_of_every_kind(name: str, tmp_path: Path) -> None:
 
 
 def test_pressure_angles_are_those_of_the_limits(tmp_path: Path) -> None:
-    from camgeo.report.figures import of_design
+    from camgeo.measures.figures import of_design
 
     recipe = load_text(KINDS["roller"], "cam.yaml")
     design = designed(recipe)

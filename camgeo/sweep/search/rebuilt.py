@@ -56,7 +56,7 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[s
 
     Of the part there is nothing but the contour: a bore has no bearing on these.
     """
-    from camgeo.report.figures import of_design
+    from camgeo.measures.figures import of_design
     from camgeo.synthesis.design import designed
 
     m = len(values)

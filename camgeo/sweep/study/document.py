@@ -5,7 +5,8 @@ from __future__ import annotations
 import platform
 from typing import TYPE_CHECKING, Any
 
-from camgeo.report.document import aligned, in_units
+from camgeo.measures.units import in_units
+from camgeo.report.document import aligned
 from camgeo.sweep.study.tolerance_ladder import Ended, Rung
 from camgeo.version import __version__
 

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
 
 FIRST_EXPONENT, LAST_EXPONENT = -1, -12  # of ten: the rungs, in the recipe's unit

@@ -38,8 +38,7 @@ class Pair(NamedTuple):
 
     def __str__(self) -> str:
         """Tell the pair, the wall and the place."""
-        x, y = (coordinate if abs(coordinate) > ROUNDING else 0.0 for coordinate in self.gap.place)
-        place = "" if self.gap.place == NOWHERE else f" at {place_text(x, y, digits=4)}"
+        place = "" if self.gap.place == NOWHERE else f" at {place_text(*self.gap.place, digits=4)}"
         return f"{self.one} and {self.other}: {self.gap.wall:.4g} mm{place}"
 
 

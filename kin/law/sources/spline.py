@@ -23,9 +23,9 @@ _AT_REST = 3  # coefficients that one level takes at an end
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """Quintic B-splines over sites a = x0 < x1 < ... < xm = b: clamped at both ends, or of period b - a.
+    """Quintic B-splines over sites a = x0 <= x1 <= ... <= xm = b: clamped at both ends, or of period b - a.
 
-    Clamped there are m + 5 coefficients, with a period m of them.
+    Clamped there are m + 5 coefficients, with a period m of them. At a site that stands k times derivative 6 - k jumps.
     """
 
     sites: Array
@@ -56,11 +56,18 @@ class Basis:
         """Coefficients that the six B-splines of spans (n,) take, (6, n)."""
         return (span + np.arange(DEGREE + 1)[:, None]) % self.size
 
+    @cached_property
+    def places(self) -> Array:
+        """The sites, each once."""
+        places: Array = self.sites[np.append(np.diff(self.sites) > 0.0, True)]
+        return places
+
     def spans(self, coefficients: Array) -> tuple[Affine, ...]:
-        """The spline as polynomials, one a span, about its start; the last clamped one about its end."""
+        """The spline as polynomials, one between two places, about its start; the last clamped one about its end."""
         c = coefficients[np.arange(len(self.sites) - 1 + DEGREE) % self.size]
-        knots, index = self.knots, np.arange(len(self.sites) - 1) + DEGREE
-        starts, width = self.sites[:-1].copy(), np.diff(self.sites)
+        wide = np.flatnonzero(np.diff(self.sites) > 0.0)
+        knots, index = self.knots, wide + DEGREE
+        starts, width = self.sites[wide], np.diff(self.sites)[wide]
         if not self.periodic:
             starts[-1] = self.sites[-1]
         taylor, factorial = np.empty((DEGREE + 1, len(starts))), 1.0
@@ -68,11 +75,12 @@ class Basis:
             low = DEGREE - k
             factorial *= k or 1
             values = _values(knots, index, starts, low)
-            at = np.arange(low + 1)[:, None] + np.arange(len(starts)) + k
+            at = np.arange(low + 1)[:, None] + wide + k
             taylor[k] = (values * c[at]).sum(axis=0) * width**k / factorial
             if k < DEGREE:  # coefficients of the derivative, a spline one degree lower over the same knots
                 i = np.arange(k + 1, len(c))
-                c = np.concatenate([np.zeros(k + 1), low * (c[i] - c[i - 1]) / (knots[i + low] - knots[i])])
+                apart = knots[i + low] - knots[i]  # none: a B-spline that vanishes everywhere
+                c = np.concatenate([np.zeros(k + 1), low * (c[i] - c[i - 1]) / np.where(apart > 0.0, apart, np.inf)])
         rows = zip(taylor.T.tolist(), starts.tolist(), width.tolist(), strict=True)
         return tuple(Affine(Power(tuple(row)), start=start, width=w) for row, start, w in rows)
 
@@ -92,10 +100,14 @@ def _values(knots: Array, index: Indices, x: Array, degree: int) -> Array:
 
 @dataclass(frozen=True)
 class Ends:
-    """Levels at which a spline rests at its ends; None: it has a period instead."""
+    """Levels at which a spline rests at its ends; None: it has a period instead.
+
+    `taken` coefficients have the level there: with 3 S' = S'' = 0, with 2 S' = 0, with 1 neither.
+    """
 
     start: float
     end: float
+    taken: tuple[int, int] = (_AT_REST, _AT_REST)
 
 
 def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
@@ -112,36 +124,90 @@ def through(x: Array, s: Array, ends: Ends | None) -> tuple[Affine, ...]:
     return basis.spans(fixed)
 
 
+@dataclass(frozen=True, eq=False)
+class Fitting:
+    """A basis at angles x (n,), with the coefficients that the ends settle."""
+
+    basis: Basis
+    x: Array
+    ends: Ends | None
+
+    @cached_property
+    def _rows(self) -> tuple[Indices, Array]:
+        return self.basis.rows(self.x)
+
+    @cached_property
+    def _taken(self) -> Indices:
+        return self.basis.columns(self._rows[0])
+
+    @cached_property
+    def fixed(self) -> Array:
+        """Coefficients that the ends settle, nan where they are free."""
+        return _fixed(self.basis, self.ends)
+
+    @cached_property
+    def free(self) -> Indices:
+        """Places of the free coefficients."""
+        return np.flatnonzero(np.isnan(self.fixed))
+
+    @cached_property
+    def matrix(self) -> Array:
+        """The free B-splines at x, (n, free)."""
+        matrix = np.zeros((len(self.x), self.basis.size))
+        np.add.at(matrix, (np.arange(len(self.x)), self._taken), self._rows[1])
+        return matrix[:, self.free]
+
+    def values(self, coefficients: Array) -> Array:
+        """The spline at x."""
+        values: Array = (self._rows[1] * coefficients[self._taken]).sum(axis=0)
+        return values
+
+    def products(self, *columns: Array) -> list[Array]:
+        """The free B-splines at x times columns (n,), summed over x: (free,) each."""
+        span, rows = self._rows
+        spans = len(self.basis.sites) - 1
+        taken, sums = self.basis.columns(np.arange(spans)), []
+        for column in columns:
+            total = np.zeros(self.basis.size)
+            for i in range(DEGREE + 1):
+                np.add.at(total, taken[i], np.bincount(span, rows[i] * column, spans))
+            sums.append(total[self.free])
+        return sums
+
+    def normal(self, weights: Array | float = 1.0) -> Array:
+        """Products of the free B-splines with each other, (free, free), each x counted by its weight."""
+        span, rows = self._rows
+        spans = len(self.basis.sites) - 1
+        taken, matrix = self.basis.columns(np.arange(spans)), np.zeros((self.basis.size, self.basis.size))
+        for i in range(DEGREE + 1):
+            for j in range(i, DEGREE + 1):
+                product = np.bincount(span, rows[i] * rows[j] * weights, spans)
+                np.add.at(matrix, (taken[i], taken[j]), product)
+                if i != j:
+                    np.add.at(matrix, (taken[j], taken[i]), product)
+        return matrix[np.ix_(self.free, self.free)]
+
+    def nearest(self, s: Array) -> Array:
+        """Coefficients of the least-squares spline for displacements s (n,)."""
+        fixed = self.fixed.copy()
+        if len(self.free):
+            rest = s - self.values(np.where(np.isnan(fixed), 0.0, fixed))
+            fixed[self.free] = np.linalg.solve(self.normal(), self.products(rest)[0])
+        return fixed
+
+
 def nearest(
     x: Array, s: Array, count: int, ends: Ends | None, between: tuple[float, float]
 ) -> tuple[Basis, Array, Array]:
     """Least-squares spline of `count` equal spans `between` two angles: basis, coefficients, residuals (n,)."""
-    basis = Basis(np.linspace(*between, count + 1), ends is None)
-    span, rows = basis.rows(x)
-    fixed = _fixed(basis, ends)
-    free = np.isnan(fixed)
-    known = np.where(free, 0.0, fixed)
-    taken = basis.columns(span)
-    rest = s - (rows * known[taken]).sum(axis=0)
-    size, spans = basis.size, len(basis.sites) - 1
-    matrix, right = np.zeros((size, size)), np.zeros(size)
-    columns = basis.columns(np.arange(spans))
-    for i in range(DEGREE + 1):
-        np.add.at(right, columns[i], np.bincount(span, rows[i] * rest, spans))
-        for j in range(i, DEGREE + 1):
-            product = np.bincount(span, rows[i] * rows[j], spans)
-            np.add.at(matrix, (columns[i], columns[j]), product)
-            if i != j:
-                np.add.at(matrix, (columns[j], columns[i]), product)
-    if free.any():
-        kept = np.flatnonzero(free)
-        fixed[free] = np.linalg.solve(matrix[np.ix_(kept, kept)], right[free])
-    return basis, fixed, s - (rows * fixed[taken]).sum(axis=0)
+    fitting = Fitting(Basis(np.linspace(*between, count + 1), ends is None), x, ends)
+    coefficients = fitting.nearest(s)
+    return fitting.basis, coefficients, s - fitting.values(coefficients)
 
 
 def _fixed(basis: Basis, ends: Ends | None) -> Array:
     """Coefficients that the ends settle, nan where they are free."""
     fixed = np.full(basis.size, np.nan)
     if ends is not None:
-        fixed[:_AT_REST], fixed[-_AT_REST:] = ends.start, ends.end
+        fixed[: ends.taken[0]], fixed[-ends.taken[1] :] = ends.start, ends.end
     return fixed

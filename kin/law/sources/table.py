@@ -4,39 +4,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kin.law.programme import IntentError
-from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, demand_whole, laid, merged
-from kin.law.sources.spline import Ends, nearest
+from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, demand_whole, merged
+from kin.law.sources.smoothing import Bounded, EqualSpans, TableError, Task
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.law.segment import Stretch
     from kin.law.sources.motion import Motion
-    from kin.numeric.arrays import Array
 
 
 _LEAST_ROWS = 8
-_MOST_SPANS = 1000
-_UNITS = {1.0: " mm", 25.4: " in", math.radians(1.0): " deg"}  # as recipes may write them
 _GAP = 1.5  # of the median of the five steps about it
 _LEAST_DWELL = math.radians(10)  # equal rows over less than that may be the top of a nose, rounded
-_ONE_BY_ONE = 300_000  # rows times counts that are tried one after another; beyond that the next to hold is halved
-_LEAPS = 1.3  # from one count to the next where each is dear
 _FOOT, _ANKLE = 3.0, 60.0  # readings above a dwell between which the motion's foot is looked for
-_ISOLATED = 20  # times the median of the fourth differences
-
-
-class TableError(IntentError):
-    """A table that is no motion; `line` is the line of the file at fault."""
-
-    def __init__(self, message: str, field: str, line: int, at: float | None = None) -> None:
-        super().__init__(f"line {line}: {message}", field, at)
-        self.line = line
+_ENDS = 2  # rows at each end of a dwell between which it may end
 
 
 @dataclass(frozen=True)
@@ -62,39 +48,45 @@ def from_table(
     """Smooth rows of a table within `reading`, the bound of |S - table| at every row.
 
     Between dwells runs the least-squares C4 quintic spline of fewest equal spans that does it, or of `spans`. Where
-    a table ends before the turn does, at the displacement it began with, the rest is a dwell; so are rows that are
-    equal over 10 degrees, or, where `dwells` (rad) are given, those. A dwell is exact, and S' = S'' = 0 at its ends.
+    that takes a span for less than four rows, joints are looked for at which the acceleration or the jerk jumps, and
+    the spline is one that keeps the reading if any over equal spans between them does. The rows bound the motion less
+    its least value (`around` 1) or its first (-1), where that is 0 within twice the reading.
+
+    Where a table ends before the turn does, at the displacement it began with, the rest is a dwell; so are rows that
+    are equal over 10 degrees, or, where `dwells` (rad) are given, those. A dwell is exact, and S' = 0 at its ends.
 
     TableError, with the line, for angles that do not rise, gaps, steps, rows that scatter by more than the reading.
     """
     _demand_rows(rows, total, field)
     if not (math.isfinite(reading) and reading > 0):
         raise IntentError(f"the reading error must be above 0, not {reading:.6g}", f"{field}.reading")
-    rows, event = _one_turn(rows, _Task(rows, reading, total, around), field)
+    rows, event = _one_turn(rows, Task(rows, reading, total, around), field)
     demand_whole(rows, total, around, field)
-    task = _Task(rows, reading, total, around)
+    if around is None and abs(rows.s[0]) <= reading:
+        rows = rows._replace(s=np.append(0.0, rows.s[1:]))  # where the motion begins
+    task = Task(rows, reading, total, around)
     found = _found(task) if dwells is None else _given(task, dwells, field)
     if event is not None:
         found = merged(sorted([*found, event]), len(rows.s))
     _demand_even(rows, found, field)
-    smoother = _Smoother(task, spans, field)
-    if around == -1:
-        smoother.step, smoother.image = 2, (total, float(rows.s[0] + rows.s[-1]))
-    motion = laid(rows, found, total, around, smoother)
-    return Smoothed(motion, smoother.count, smoother.residual, smoother.line)
+    equal = EqualSpans(task, spans)
+    motion = equal.laid(found)
+    if motion is not None and (spans is not None or task.keeps(motion)):
+        return Smoothed(motion, equal.count, equal.residual, equal.line)
+    bounded = Bounded(task, field)
+    if dwells is None:
+        found = [_shortened(dwell) for dwell in found]
+    motion = bounded.laid(found)
+    if not task.keeps(motion):
+        lowest = task.lowest(motion)
+        motion = bounded.laid([lowest.levelled(dwell, reading) for dwell in found], lowest)
+    return Smoothed(motion, bounded.count, bounded.residual, bounded.line)
 
 
-class _Task(NamedTuple):
-    """Rows to smooth, how closely, over which angle."""
-
-    rows: Samples
-    reading: float
-    total: float
-    around: int | None
-
-    def tell(self, value: float, digits: int = 6) -> str:
-        """A displacement in the table's own unit, as a message has it."""
-        return f"{value / self.rows.unit:.{digits}g}{_UNITS.get(self.rows.unit, '')}"
+def _shortened(dwell: Dwelling) -> Dwelling:
+    """The dwell without the rows at its ends: where between them it ends is found from the motion beside it."""
+    less = min(_ENDS, (dwell.last - dwell.first) // 3)
+    return Dwelling(dwell.first + less, dwell.last - less, dwell.level)
 
 
 def _demand_rows(rows: Samples, total: float, field: str) -> None:
@@ -116,7 +108,7 @@ def _demand_rows(rows: Samples, total: float, field: str) -> None:
         raise TableError(f"the table covers more than {math.degrees(total):.6g} degrees", field, int(rows.lines[i]))
 
 
-def _one_turn(rows: Samples, task: _Task, field: str) -> tuple[Samples, Dwelling | None]:
+def _one_turn(rows: Samples, task: Task, field: str) -> tuple[Samples, Dwelling | None]:
     """Rows of a repeating motion without a closing one; and the dwell that the table leaves out."""
     total, reading = task.total, task.reading
     if task.around != 1:
@@ -141,7 +133,7 @@ def _one_turn(rows: Samples, task: _Task, field: str) -> tuple[Samples, Dwelling
     return rows, Dwelling(n - 1, n, 0.5 * float(rows.s[0] + rows.s[-1]))
 
 
-def _found(task: _Task) -> list[Dwelling]:
+def _found(task: Task) -> list[Dwelling]:
     """Dwells where rows are equal over 10 degrees and more."""
     rows, total, around = task.rows, task.total, task.around
     n = len(rows.s)
@@ -164,7 +156,7 @@ def _found(task: _Task) -> list[Dwelling]:
     return sorted(found)
 
 
-def _foot(task: _Task, end: int, way: int, middle: int) -> int:
+def _foot(task: Task, end: int, way: int, middle: int) -> int:
     """Row at which the motion leaves a dwell, on the side `way` of its last equal row.
 
     Rounded rows stay equal for a while after the motion has begun. It begins as a cube, so the cube roots of the first
@@ -194,7 +186,7 @@ def _foot(task: _Task, end: int, way: int, middle: int) -> int:
     return int(inside[int(np.argmin(apart))])
 
 
-def _given(task: _Task, dwells: Sequence[tuple[float, float]], field: str) -> list[Dwelling]:
+def _given(task: Task, dwells: Sequence[tuple[float, float]], field: str) -> list[Dwelling]:
     """Dwells from a row to a row at given angles; the rows between must be within the reading of their mean."""
     rows, reading, total, around = task.rows, task.reading, task.total, task.around
     n, found = len(rows.s), []
@@ -235,113 +227,4 @@ def _demand_even(rows: Samples, dwells: Sequence[Dwelling], field: str) -> None:
             f"{math.degrees(about[i - 1]):.6g}",
             field,
             int(rows.lines[i]),
-        )
-
-
-@dataclass
-class _Smoother:
-    """Least squares with the fewest spans, a multiple of `step`; keeps their count and the worst row.
-
-    Of rows that are laid a second time, upside down, `image` has the angle of the half and what the two add up to.
-    """
-
-    task: _Task
-    spans: int | None
-    field: str
-    step: int = 1
-    count: int = 0
-    residual: float = 0.0
-    line: int = 0
-    image: tuple[float, float] | None = None
-
-    def __call__(
-        self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
-    ) -> tuple[Array, Sequence[Stretch]]:
-        inside = rows if ends is None else rows.part(slice(1, -1))
-        step = self.step if ends is None else 1
-        count = self.spans or self._fewest(inside, ends, between, step)
-        basis, coefficients, off = nearest(inside.theta, inside.s, count, ends, between)
-        worst = int(np.argmax(np.abs(off))) if len(off) else 0
-        if len(off) and abs(off[worst]) > self.residual:
-            self.residual, self.line = float(abs(off[worst])), int(inside.lines[worst])
-        self.count += count
-        return basis.sites, basis.spans(coefficients)
-
-    def _fewest(self, rows: Samples, ends: Ends | None, between: tuple[float, float], step: int) -> int:
-        most = max(1, min(len(rows.s) // 2, _MOST_SPANS) // step)
-
-        def holds(count: int) -> bool:
-            off = nearest(rows.theta, rows.s, count * step, ends, between)[2]
-            return bool(np.abs(off).max(initial=0.0) <= self.task.reading * (1 + 1e-9))
-
-        low = min(most, max(8, _ONE_BY_ONE // max(1, len(rows.s))))
-        for count in range(1, low + 1):
-            if holds(count):
-                return count * step
-        while low < most:
-            high = min(most, math.ceil(low * _LEAPS))
-            if not holds(high):
-                low = high
-                continue
-            while high - low > 1:
-                middle = (low + high) // 2
-                low, high = (low, middle) if holds(middle) else (middle, high)
-            return high * step
-        raise self._fault(rows, nearest(rows.theta, rows.s, most * step, ends, between)[2])
-
-    def _fault(self, rows: Samples, off: Array) -> TableError:
-        """Say why no spline stays within the reading: a row that stands out, a step, or scatter."""
-        s = rows.s
-        fourth = np.abs(np.diff(s, 4)) if len(s) > 4 else np.zeros(1)
-        peak, usual = int(np.argmax(fourth)), float(np.median(fourth))
-        reached = float(np.abs(off).max())
-        if len(s) > 8 and fourth[peak] > _ISOLATED * max(usual, self.task.reading / 4):
-            return self._single(rows, peak + 2)
-        worst = int(np.argmax(np.abs(off)))
-        return TableError(
-            f"the rows scatter about any smooth curve: the closest one is {self.task.tell(reached, 3)} off here, the "
-            f"reading error is {self.task.tell(self.task.reading)}; smooth the table, or give a reading error "
-            "above that",
-            self.field,
-            int(rows.lines[worst]),
-        )
-
-    def _written(self, theta: float, s: float) -> float:
-        """A displacement on the side of the motion on which the table has it."""
-        if self.image is None:
-            return s
-        half, total = self.image
-        return total - s if theta % (2 * half) >= half - SAME_ANGLE else s
-
-    def _single(self, rows: Samples, i: int) -> TableError:
-        """Say which row stands out, or where the table steps, near row i."""
-        s = rows.s
-
-        def there(k: int, value: float) -> str:
-            return self.task.tell(self._written(float(rows.theta[k]), float(value)), 7)
-
-        near = range(max(i - 2, 2), min(i + 3, len(s) - 2))
-        expected = {k: (4 * (s[k - 1] + s[k + 1]) - s[k - 2] - s[k + 2]) / 6 for k in near}
-        left = {}
-        for k in near:
-            mended = s[max(k - 6, 0) : k + 7].copy()
-            mended[k - max(k - 6, 0)] = expected[k]
-            left[k] = float(np.abs(np.diff(mended, 4)).max())
-        best = min(left, key=lambda k: left[k])
-        whole = float(np.abs(np.diff(s[max(best - 6, 0) : best + 7], 4)).max())
-        if left[best] < 0.2 * whole:
-            return TableError(
-                f"the row does not lie on a smooth curve with its neighbours: it is {there(best, s[best])}, about "
-                f"{there(best, expected[best])} is expected",
-                self.field,
-                int(rows.lines[best]),
-            )
-        step = np.diff(s)
-        local = np.arange(max(i - 3, 1), min(i + 3, len(step) - 1))
-        jump = step[local] - 0.5 * (step[local - 1] + step[local + 1])
-        k = int(local[np.argmax(np.abs(jump))]) + 1
-        return TableError(
-            f"the displacement steps from {there(k - 1, s[k - 1])} to {there(k, s[k])} here",
-            self.field,
-            int(rows.lines[k]),
         )

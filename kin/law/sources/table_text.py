@@ -10,7 +10,7 @@ import numpy as np
 
 from kin.law.programme import IntentError
 from kin.law.sources.ring import Samples
-from kin.law.sources.table import TableError
+from kin.law.sources.smoothing import TableError
 
 MM_PER_INCH = 25.4
 

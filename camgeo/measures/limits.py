@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from camgeo.checks.declared import EVERY, LIMIT, Scene
 from camgeo.checks.remedies import Missed, of_limit
+from camgeo.measures.figures import Measured, of_design, of_dynamics, of_file
 from camgeo.recipe.figures import FIGURES
-from camgeo.report.figures import Measured, of_design, of_dynamics, of_file
 from kin.judge.check import Check
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from typing import Any
 
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.figures import Limit
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
     from kin.judge.check import Sense
 

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from camgeo.checks.declared import BENT, MOTION, PRESSURE
 from camgeo.common.rounding import NOISE, downward, upward
 from camgeo.curve.support import is_sharp
+from camgeo.measures.figures import of_design
+from camgeo.measures.units import of_displacements
 from camgeo.recipe.export import NO_CONTOUR
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PITCH_RADIUS, PIVOT_CLEARANCE, RADIUS
-from camgeo.report.document import Remark, RemarkName, of_displacements
-from camgeo.report.figures import of_design
 from camgeo.synthesis.checks import hollow_radius
 from kin.law.joints import Joint
 from kin.numeric.angles import degrees
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.cams.family import Cam
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check
@@ -42,6 +42,39 @@ SHAFT = 0.02  # of the cam's size: the least radius of a shaft that drives it
 HALF = 0.5  # of the least convex radius of the pitch curve: the greatest roller by rule of thumb
 INCH, STEP, HALF_MM = 25.4, 64.0, 0.5  # sizes by the inch are whole 64ths, metric ones whole or half mm
 _SAME = 1e-6
+
+
+RemarkName = Literal[
+    "acceleration-jump",
+    "coarse-tolerance",
+    "dwell-shorter",
+    "large-cutter",
+    "large-roller",
+    "loose-motion-error",
+    "loose-output-error",
+    "metric-keyway",
+    "no-motion",
+    "pivot-clearance",
+    "pressure-angle",
+    "shaft-outside",
+    "sharp-corner",
+    "sizing",
+    "thick",
+    "thin",
+    "wide-dwell-band",
+]
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A figure beside what is usual, `rule`, None where there is no such figure; `sentence` in the recipe's unit."""
+
+    name: RemarkName
+    value: float | None
+    rule: float | None
+    unit: str
+    sentence: str
+    at_deg: float | None = None
 
 
 def remarks_of(

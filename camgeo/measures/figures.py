@@ -42,8 +42,8 @@ if TYPE_CHECKING:
 
     from camgeo.cams.disc_cams import OscillatingRoundCam
     from camgeo.curve.extremes import Extreme
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
-    from camgeo.report.document import FileResult
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check

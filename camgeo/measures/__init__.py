@@ -1,0 +1,1 @@
+"""What is measured of a design and its files: figures, limits, remarks, the follower train."""

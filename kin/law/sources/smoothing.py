@@ -1,0 +1,352 @@
+"""Splines within the reading error of a table's rows: by equal spans, or by sections between joints."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.law.programme import IntentError
+from kin.law.segment import Constant
+from kin.law.sources.closest import within
+from kin.law.sources.peaks import extremes
+from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, laid
+from kin.law.sources.sections import Flaw, Sections, sections_of
+from kin.law.sources.spline import Basis, Ends, Fitting, nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.law.segment import Stretch
+    from kin.law.sources.motion import Motion
+    from kin.numeric.arrays import Array
+
+_MOST_SPANS = 1000
+_UNITS = {1.0: " mm", 25.4: " in", math.radians(1.0): " deg"}  # as recipes may write them
+_ONE_BY_ONE = 300_000  # rows times counts that are tried one after another; beyond that the next to hold is halved
+_LEAPS = 1.3  # from one count to the next where each is dear
+_PLAIN, _FEW = 4, 30  # rows a span, at least, and spans that are not many, where no joint is looked for
+_ZERO = 2.0  # readings within which the least displacement of a table is meant to be 0
+_PINNED = 0.01  # of the reading, within which the least value is then 0
+_SCATTER, _MANY = 100.0, 60  # readings: 8 times the sixth differences of rows that err within the reading; of so many
+_SPACINGS = (6, 4, 3)  # rows a span, where joints are looked for
+_DIPS = 8  # times that a spline is made again, held up where it was below 0
+_MORE = 1.2  # spans from one trial to the next
+_LOOKS = 16  # places in a span where it is looked for
+_ROUNDING = 1e-9  # of the reading
+
+
+class TableError(IntentError):
+    """A table that is no motion; `line` is the line of the file at fault."""
+
+    def __init__(self, message: str, field: str, line: int, at: float | None = None) -> None:
+        super().__init__(f"line {line}: {message}", field, at)
+        self.line = line
+
+
+class Task(NamedTuple):
+    """Rows to smooth, how closely, over which angle."""
+
+    rows: Samples
+    reading: float
+    total: float
+    around: int | None
+
+    def tell(self, value: float, digits: int = 6) -> str:
+        """A displacement in the table's own unit, as a message has it."""
+        return f"{value / self.rows.unit:.{digits}g}{_UNITS.get(self.rows.unit, '')}"
+
+    def keeps(self, motion: Motion) -> bool:
+        """Whether the motion that is made of this one stays within the reading of every row."""
+        base = motion.range[0] if self.around == 1 else 0.0
+        if self.around is None or abs(base if self.around == 1 else float(self.rows.s[0])) > _ZERO * self.reading:
+            return True  # the table is moved as a whole
+        theta = np.mod(self.rows.theta, self.total) if self.around == 1 else self.rows.theta
+        off = motion.derivatives(theta, 0)[0] - base - self.rows.s
+        return bool(np.abs(off).max() <= self.reading * (1.0 + _ROUNDING))
+
+    def lowest(self, motion: Motion) -> Lowest:
+        """Where the displacement is to be 0, by a motion near enough."""
+        if self.around == -1:
+            return Lowest(0.0, None)
+        if any(abs(rest.level) <= self.reading for rest in motion.rests):
+            return Lowest(None, 0.0)
+        return Lowest(extremes(motion.motion, 0)[1], 0.0)
+
+
+class Lowest(NamedTuple):
+    """Angle (rad) at which a motion is 0, where that is not in a dwell; and what it nowhere is below, if anything."""
+
+    at: float | None
+    floor: float | None
+
+    def levelled(self, dwell: Dwelling, reading: float) -> Dwelling:
+        """A dwell, at 0 if it is within the reading of that."""
+        return dwell._replace(level=0.0) if self.floor is not None and abs(dwell.level) <= reading else dwell
+
+
+@dataclass
+class EqualSpans:
+    """Least squares with the fewest spans, or a given number; keeps their count and the worst row."""
+
+    task: Task
+    spans: int | None
+    count: int = 0
+    residual: float = 0.0
+    line: int = 0
+
+    def laid(self, dwells: Sequence[Dwelling]) -> Motion | None:
+        """The motion over the whole angle; None where it takes a span for less than four rows."""
+        try:
+            return laid(self.task.rows, dwells, self.task.total, self.task.around, self)
+        except _TooManyError:
+            return None
+
+    def __call__(
+        self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
+    ) -> tuple[Array, Sequence[Stretch]]:
+        """Fit one stretch."""
+        inside = rows if ends is None else rows.part(slice(1, -1))
+        step = 2 if ends is None and self.task.around == -1 else 1
+        count = self.spans or self._fewest(inside, ends, between, step)
+        basis, coefficients, off = nearest(inside.theta, inside.s, count, ends, between)
+        worst = int(np.argmax(np.abs(off))) if len(off) else 0
+        if len(off) and abs(off[worst]) > self.residual:
+            self.residual, self.line = float(abs(off[worst])), int(inside.lines[worst])
+        self.count += count
+        return basis.sites, basis.spans(coefficients)
+
+    def _fewest(self, rows: Samples, ends: Ends | None, between: tuple[float, float], step: int) -> int:
+        most = max(1, min(max(len(rows.s) // _PLAIN, min(_FEW, len(rows.s) // 2)), _MOST_SPANS) // step)
+
+        def holds(count: int) -> bool:
+            off = nearest(rows.theta, rows.s, count * step, ends, between)[2]
+            return bool(np.abs(off).max(initial=0.0) <= self.task.reading * (1 + _ROUNDING))
+
+        low = min(most, max(8, _ONE_BY_ONE // max(1, len(rows.s))))
+        for count in range(1, low + 1):
+            if holds(count):
+                return count * step
+        while low < most:
+            high = min(most, math.ceil(low * _LEAPS))
+            if not holds(high):
+                low = high
+                continue
+            while high - low > 1:
+                middle = (low + high) // 2
+                low, high = (low, middle) if holds(middle) else (middle, high)
+            return high * step
+        raise _TooManyError
+
+
+class _TooManyError(Exception):
+    """Equal spans are too many."""
+
+
+@dataclass
+class Bounded:
+    """Splines over sections, each row within its bounds; keeps the count of spans and the worst row."""
+
+    task: Task
+    field: str
+    count: int = 0
+    residual: float = 0.0
+    line: int = 0
+    _lowest: Lowest | None = None
+    _sections: dict[tuple[tuple[float, float], int], tuple[Sections, Flaw | None]] = dataclasses.field(
+        default_factory=dict
+    )
+    _done: list[tuple[Samples, Basis, Array, Array]] = dataclasses.field(default_factory=list)
+
+    def laid(self, dwells: Sequence[Dwelling], lowest: Lowest | None = None) -> Motion:
+        """The motion over the whole angle; with `lowest` it is 0 there, within the hundredth of a reading."""
+        self._lowest, self.count, self.residual, self._done = lowest, 0, 0.0, []
+        return laid(self.task.rows, dwells, self.task.total, self.task.around, self)
+
+    def __call__(
+        self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
+    ) -> tuple[Array, Sequence[Stretch]]:
+        """Fit one stretch."""
+        inside = rows if ends is None else rows.part(slice(1, -1))
+        basis, coefficients, off = self._imaged(inside, ends) or self._fitted(rows, inside, ends, between)
+        self._done.append((inside, basis, coefficients, off))
+        worst = int(np.argmax(np.abs(off))) if len(off) else 0
+        if len(off) and abs(off[worst]) > self.residual:
+            self.residual, self.line = float(abs(off[worst])), int(inside.lines[worst])
+        places = basis.places.tolist()
+        spans: list[Stretch] = [*basis.spans(coefficients)]
+        self.count += len(spans)
+        if ends is not None:  # it rests until it leaves
+            if places[0] > between[0]:
+                places, spans = [between[0], *places], [Constant(ends.start), *spans]
+            if places[-1] < between[1]:
+                places, spans = [*places, between[1]], [*spans, Constant(ends.end)]
+        return np.array(places), spans
+
+    def _imaged(self, inside: Samples, ends: Ends | None) -> tuple[Basis, Array, Array] | None:
+        """What the same rows gave half a turn before, upside down."""
+        if self.task.around != -1 or ends is None:
+            return None
+        s, half = self.task.rows.s, self.task.total
+        whole = float(s[0] + s[-1])
+        for rows, basis, coefficients, off in self._done:
+            by = round(float(inside.theta[0] - rows.theta[0]) / half) * half if len(rows.s) == len(inside.s) else 0.0
+            if (
+                by
+                and (np.abs(inside.theta - rows.theta - by) < SAME_ANGLE).all()
+                and (np.abs(inside.s + rows.s - whole) < _ROUNDING * self.task.reading).all()
+            ):
+                return Basis(basis.sites + by, periodic=False), whole - coefficients, -off
+        return None
+
+    def _fitted(
+        self, rows: Samples, inside: Samples, ends: Ends | None, between: tuple[float, float]
+    ) -> tuple[Basis, Array, Array]:
+        """The spline of fewest spans, of counts that grow by a fifth, that keeps every row within the reading."""
+        smooth = Sections.of(between, ends, None if ends is None else _feet(rows, ends))
+        most = max(1, min(len(inside.s) // 2, _MOST_SPANS))
+        if len(inside.s) > _MANY and np.median(np.abs(np.diff(inside.s, 6))) > _SCATTER * self.task.reading:
+            raise self._scatter(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
+        twin = self.task.total if self.task.around == -1 and ends is None else None
+        flaw = None
+        for spacing in _SPACINGS:
+            if (between, spacing) not in self._sections:
+                self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
+            sections, noted = self._sections[between, spacing]
+            flaw = noted or flaw
+            found = self._counted(
+                inside, replace(sections, ends=ends), most // 2
+            )  # levels may have been set to 0 since
+            if found is not None:
+                return found
+        found = self._counted(inside, smooth, most)
+        if found is not None:
+            return found
+        if flaw is None or flaw.order >= 0:  # a row that stands out could be followed by so many spans and joints
+            for spacing in _SPACINGS:
+                sections = replace(self._sections[between, spacing][0], ends=ends)
+                found = self._counted(inside, sections, most * 2 // 3)
+                if found is not None:
+                    return found
+        if flaw is not None:
+            raise self._faulty(inside, flaw)
+        raise self._scatter(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
+
+    def _counted(self, rows: Samples, sections: Sections, most: int) -> tuple[Basis, Array, Array] | None:
+        even, count = sections.ends is None and self.task.around == -1, 1
+        while count <= most:
+            found = self._held(rows, sections, count + (even and count % 2))
+            if found is not None:
+                return found
+            count = max(count + 1, math.ceil(_MORE * count))
+        return None
+
+    def _held(self, rows: Samples, sections: Sections, count: int) -> tuple[Basis, Array, Array] | None:
+        """A spline of `count` spans within the bounds, if there is one: basis, coefficients and what is left."""
+        reading, n = self.task.reading, len(rows.s)
+        fitting = sections.fitting(rows.theta, count)
+        if self._lowest is None:
+            try:
+                coefficients = fitting.nearest(rows.s)
+            except np.linalg.LinAlgError:
+                return None
+            off = rows.s - fitting.values(coefficients)
+            if np.abs(off).max(initial=0.0) <= reading * (1.0 + _ROUNDING):
+                return fitting.basis, coefficients, off
+        x, s = rows.theta, rows.s
+        bounds = np.full(n, reading * (1.0 + 0.5 * _ROUNDING))
+        if self._lowest is not None:
+            bounds *= 1.0 - 2.0 * _PINNED
+            x, s, bounds = self._pinned(sections, x, s, bounds)
+        for _ in range(_DIPS):
+            fitting = sections.fitting(x, count)
+            closest = within(fitting, s, bounds)
+            if closest is None:
+                return None
+            dips = self._dips(fitting.basis, closest)
+            if not len(dips):
+                return fitting.basis, closest, rows.s - fitting.values(closest)[:n]
+            x, s = np.concatenate([x, dips]), np.concatenate([s, np.full(len(dips), reading)])
+            bounds = np.concatenate([bounds, np.full(len(dips), reading)])
+        return None
+
+    def _pinned(self, sections: Sections, x: Array, s: Array, bounds: Array) -> tuple[Array, Array, Array]:
+        """Rows and bounds, with one that holds the motion at 0 where it is lowest."""
+        at = self._lowest.at if self._lowest is not None else None
+        if at is None:
+            return x, s, bounds
+        level, (begin, end) = 0.0, sections.between
+        rows, total = self.task.rows.s, self.task.total
+        if self.task.around == -1:
+            places = [(at + k * total, level if k % 2 == 0 else float(rows[0] + rows[-1]) - level) for k in range(4)]
+        else:
+            places = [(at + k * total, level) for k in range(-1, 3)]
+        inside = [place for place in places if begin <= place[0] <= end]
+        return (
+            np.concatenate([x, [place[0] for place in inside]]),
+            np.concatenate([s, [place[1] for place in inside]]),
+            np.concatenate([bounds, np.full(len(inside), _PINNED * self.task.reading)]),
+        )
+
+    def _dips(self, basis: Basis, coefficients: Array) -> Array:
+        """Angles at which the spline is lowest, where it goes below 0 by more than may be."""
+        if self._lowest is None or self._lowest.floor is None:
+            return np.empty(0)
+        places = basis.places
+        x = np.unique((places[:-1, None] + np.diff(places)[:, None] * (np.arange(_LOOKS) / _LOOKS)).ravel())
+        values = Fitting(basis, x, None).values(coefficients)
+        low = values < self._lowest.floor - _PINNED * self.task.reading
+        lowest = (values <= np.roll(values, 1)) & (values <= np.roll(values, -1))
+        return x[low & lowest]
+
+    def _scatter(self, rows: Samples, off: Array) -> TableError:
+        worst = int(np.argmax(np.abs(off)))
+        reached = float(np.abs(off[worst]))
+        return TableError(
+            f"the rows scatter about any smooth curve: the closest one is {self.task.tell(reached, 3)} off here, the "
+            f"reading error is {self.task.tell(self.task.reading)}; smooth the table, or give a reading error "
+            "above that",
+            self.field,
+            int(rows.lines[worst]),
+        )
+
+    def _faulty(self, rows: Samples, flaw: Flaw) -> TableError:
+        """Say which row stands out, or where the table steps or turns by a corner."""
+        s, i = rows.s, flaw.row
+
+        def there(k: int, value: float) -> str:
+            total, first = self.task.total, self.task.rows
+            if self.task.around == -1 and rows.theta[k] % (2 * total) >= total - SAME_ANGLE:
+                value = float(first.s[0] + first.s[-1]) - value
+            return self.task.tell(float(value), 7)
+
+        if flaw.order == -1:
+            expected = s[i] - flaw.jump
+            if 2 <= i < len(s) - 2:  # by the neighbours alone
+                expected = (4.0 * (s[i - 1] + s[i + 1]) - s[i - 2] - s[i + 2]) / 6.0
+            problem = (
+                f"the row does not lie on a smooth curve with its neighbours: it is {there(i, s[i])}, about "
+                f"{there(i, expected)} is expected"
+            )
+            return TableError(problem, self.field, int(rows.lines[i]))
+        if flaw.order == 1:
+            problem = "the velocity jumps here; a motion has none that does"
+            return TableError(problem, self.field, int(rows.lines[i]))
+        step = np.diff(s)
+        local = np.arange(max(i - 3, 1), min(i + 3, len(step) - 1))
+        jump = step[local] - 0.5 * (step[local - 1] + step[local + 1])
+        k = int(local[np.argmax(np.abs(jump))]) + 1
+        problem = f"the displacement steps from {there(k - 1, s[k - 1])} to {there(k, s[k])} here"
+        return TableError(problem, self.field, int(rows.lines[k]))
+
+
+def _feet(rows: Samples, ends: Ends) -> tuple[float, float]:
+    """Where a stretch leaves and reaches the dwells beside it, whose last rows are its own first ones."""
+    away = np.flatnonzero(rows.s != ends.start)
+    back = np.flatnonzero(rows.s != ends.end)
+    first = min(2, int(away[0]) - 1) if len(away) else 0
+    last = min(2, len(rows.s) - 2 - int(back[-1])) if len(back) else 0
+    return float(rows.theta[max(first, 0)]), float(rows.theta[len(rows.s) - 1 - max(last, 0)])
