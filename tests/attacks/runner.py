@@ -112,12 +112,11 @@ def _serve(pipe: Connection, seed: int, batch: list[int]) -> None:
         pipe.send(f"{number} being made")
         try:
             attack = attack_of(seed, number)
+            pipe.send(attack.name)
+            pipe.send(made(attack, number))
         except Exception:  # noqa: BLE001 - a fault of the generator is told, and is not one of camgeo
             fault = f"generator: {traceback.format_exc(limit=-3)}"
             pipe.send(Told(number, "generator", (), None, 0.0, 0.0, (fault,)))
-            continue
-        pipe.send(attack.name)
-        pipe.send(made(attack, number))
 
 
 def _imported() -> None:

@@ -245,6 +245,15 @@ def test_the_springs_force_is_given_at_the_lowest_place() -> None:
     assert run["peak_force"] == pytest.approx((150.0 + 1000.0 * 0.02) * share, rel=1e-6)
 
 
+def test_swings_without_number_are_refused_with_the_damping_that_helps() -> None:
+    stiff = TRAIN.replace("damping: 20, ", "").replace("2.0e5", "8.0e11").replace("rpm: 600", "rpm: 5.03")
+    with pytest.raises(RecipeErrors, match="the swings of a turn are too many") as refused:
+        pipeline.check(recipe(stiff))
+    damping = str(refused.value).partition("a damping of ")[2].split()[0]
+    runs = pipeline.check(recipe(stiff.replace("mass:", f"damping: {damping}, mass:"))).report["dynamics"]["runs"]
+    assert all(run["steady"]["least_force"] is not None for run in runs)
+
+
 def test_a_linkage_is_driven_as_intended() -> None:
     four_bar = """\
 name: linkage
