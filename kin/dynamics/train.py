@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 
 _LEAST_DETUNING = 1e-9  # below, the amplitude at resonance is a matter of rounding
+MOST_SWUNG = 4_000_000  # places at which the free motion of a steady state is looked at: about two seconds
+_SILENT_AFTER = 60.0  # in units of 1/fading and with room: by then a free motion counts no more (`Response.lasting`)
+_STRETCHES = 500  # of a turn that a damping is advised for: a file has more than the intent
 MOST_DAMPING = 10.0  # times critical: beyond, the damper is the drive and the mass hardly counts
 
 
@@ -175,15 +178,30 @@ def steady(train: Train, drive: Drive, rpm: float, rests: Sequence[tuple[float, 
     """Find the steady state of a train in contact, exactly; `rests` are dwells (from, to) in radians.
 
     The ends of rests should be knots of the drive (`drives(..., also=...)`). Raises DynamicsError at resonance without
-    damping, where there is no steady state.
+    damping, where there is no steady state, and for a train that is so stiff, and damped so little, that its swings are
+    too many to look at.
     """
     running = train.at(rpm)
     found = running.response(drive)
     state = periodic(running, found)
     starts = found.starts(state, 0, len(found))
+    _demand_countable(running, found, starts)
     force = running.force(found).peaks(starts, np.arange(len(found)))
     residual = tuple(_residual(running, found, starts, begin, end) for begin, end in rests)
     return Steady(force, residual, (float(state[0]), float(state[1])), found)
+
+
+def _demand_countable(running: Running, found: Response, starts: Array) -> None:
+    """Raise DynamicsError for more swings than are looked at, with the damping that makes them few enough."""
+    _, fine = found.swings(starts, np.arange(len(found)))
+    if fine.sum() <= MOST_SWUNG:
+        return
+    fading = _SILENT_AFTER * max(int(np.count_nonzero(found.slow)), _STRETCHES) / (found.step * MOST_SWUNG)
+    least = 2.0 * running.train.mass * running.speed * fading
+    raise DynamicsError(
+        f"the natural frequency is {running.train.ratio(running.rpm):.4g} times the shaft's and the damping is "
+        f"{running.train.damping:.4g}: the swings of a turn are too many; a damping of {least:.3g} leaves few enough"
+    )
 
 
 def periodic(running: Running, found: Response) -> Array:

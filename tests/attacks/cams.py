@@ -124,6 +124,6 @@ def wrong_verdict(cam: Cam, done: Done, path: Path, mm: float = 1.0) -> list[str
     limit = max((check["limit"] for check in checks), default=None)
     if report["ok"] and (limit is None or not error <= SHARE * limit + cam.margin):
         return [f"verdict: called right, limit {limit}, off by {error:.6g} by brute force"]
-    if checks and not checks[0]["ok"] and error < limit / SHARE - cam.margin:
+    if limit is not None and not checks[0]["ok"] and error < limit / SHARE - cam.margin:
         return [f"verdict: called wrong, limit {limit}, value {checks[0]['value']}, off by {error:.6g} by brute force"]
     return []

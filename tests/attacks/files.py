@@ -187,9 +187,9 @@ def made_wrong(rng: Random, raw: bytes, _: Cam) -> Spoilt:
     """Faults that no follower need feel."""
     document, outline = _opened(raw)
     space = document.modelspace()
-    way = rng.choice(["units", "bore", "no bore", "hole", "beside", "twice", "open", "line"])
+    way, mm = rng.choice(["units", "bore", "no bore", "hole", "beside", "twice", "open", "line"]), 1.0
     if way == "units":
-        document.header["$INSUNITS"] = rng.choice([1, 2, 5, 6])
+        document.header["$INSUNITS"], mm = rng.choice([(1, 25.4), (2, 304.8), (5, 10.0), (6, 1000.0)])
     elif way in {"bore", "no bore"}:
         (bore,) = space.query("CIRCLE[layer=='BORE']")
         if way == "bore":
@@ -206,7 +206,7 @@ def made_wrong(rng: Random, raw: bytes, _: Cam) -> Spoilt:
         space.add_line((100.0, 0.0), (120.0, 0.0), dxfattribs={"layer": "CUT"})
     else:
         outline.closed = False
-    return Spoilt(f"dxf {way}", _saved(document), FAILS)
+    return Spoilt(f"dxf {way}", _saved(document), FAILS, mm)
 
 
 def saved_again(rng: Random, raw: bytes, _: Cam) -> Spoilt:

@@ -202,7 +202,7 @@ def test_nothing_is_followed_that_was_not_asked_for(held: str, monkeypatch: pyte
 
 @pytest.mark.parametrize("stiffness", ["2.0e5", "1.0e12"])
 def test_all_runs_together_look_at_a_bounded_number_of_places(stiffness: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    from camgeo.synthesis import dynamics
+    from camgeo.measures import dynamics
     from kin.dynamics import impacts
 
     monkeypatch.setattr(dynamics, "MOST_PLACES", 300_000)
@@ -243,6 +243,15 @@ def test_the_springs_force_is_given_at_the_lowest_place() -> None:
     share = 2e5 / (2e5 + 1000.0)
     assert run["least_force"] == pytest.approx(150.0 * share, rel=1e-6)
     assert run["peak_force"] == pytest.approx((150.0 + 1000.0 * 0.02) * share, rel=1e-6)
+
+
+def test_swings_without_number_are_refused_with_the_damping_that_helps() -> None:
+    stiff = TRAIN.replace("damping: 20, ", "").replace("2.0e5", "8.0e11").replace("rpm: 600", "rpm: 5.03")
+    with pytest.raises(RecipeErrors, match="the swings of a turn are too many") as refused:
+        pipeline.check(recipe(stiff))
+    damping = str(refused.value).partition("a damping of ")[2].split()[0]
+    runs = pipeline.check(recipe(stiff.replace("mass:", f"damping: {damping}, mass:"))).report["dynamics"]["runs"]
+    assert all(run["steady"]["least_force"] is not None for run in runs)
 
 
 def test_a_linkage_is_driven_as_intended() -> None:
