@@ -141,7 +141,7 @@ class ExactGuided(ExactCam):
 
         return follower_of(self.follower.contacts, self.law.law(), self.cam.side)
 
-    @property
+    @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """Those that the recipe gives."""
         return self.cam.joints()
