@@ -428,11 +428,9 @@ class Line:
 
 def led(guide: contacts.Guide, away: Side = 1) -> Arm | Line:
     """Formulas of a guide whose position grows outwards, or inwards where the metal lies outside (-1)."""
-    if not isinstance(guide, Oscillating):
-        return Line(guide.offset, away)
-    if guide.length is None:
-        raise ValueError("the arm of a roller has a length")
-    return Arm(guide.length, guide.pivot, guide.side, away)
+    if isinstance(guide, Oscillating):
+        return Arm(guide.arm, guide.pivot, guide.side, away)
+    return Line(guide.offset, away)
 
 
 def polar_rows(angle: Array, length: float) -> tuple[Array, Array, Array]:
