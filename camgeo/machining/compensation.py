@@ -14,9 +14,9 @@ import numpy as np
 
 from camgeo.cams.family import GrownError
 from camgeo.curve.curvature import least_radius
+from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from camgeo.synthesis.design import is_trimmed, sound
-from camgeo.synthesis.part.shapes import EXACT
 from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
 from kin.numeric.errors import KinError
