@@ -8,7 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, overload
 
-from camgeo.curve.ring import centre_of, radius_of
+import numpy as np
+
+from camgeo.curve.ring import centre_of, radius_of, steps_along
 from camgeo.fit.pieces import ArcSpline, BSpline, Polygon
 
 if TYPE_CHECKING:
@@ -43,9 +45,7 @@ class Arc:
     @property
     def middle(self) -> Point:
         """The point half way along, for CAD programs whose arcs go through three points."""
-        (x0, y0), (x1, y1) = self.start, self.end
-        bulge = math.tan(0.25 * self.sweep)  # from the chord, so that a distant centre costs no digits
-        return 0.5 * (x0 + x1) + 0.5 * bulge * (y1 - y0), 0.5 * (y0 + y1) - 0.5 * bulge * (x1 - x0)
+        return _points(steps_along(np.array(self.start), np.array(self.end), math.tan(0.25 * self.sweep), 2))[1]
 
 
 @dataclass(frozen=True)
