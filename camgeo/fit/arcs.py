@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.common.rounding import upward
+from camgeo.fit import free_arcs
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, seen_deviation
-from camgeo.fit.free_arcs import Fitted, free_arcs
+from camgeo.fit.free_arcs import Fitted
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.parts import CONSTANT as FREE
 from camgeo.fit.parts import Part
@@ -162,7 +163,7 @@ def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float
     """Arcs with free joints of the stretches; None where some part has none, or far more are foreseen than biarcs."""
     tried = [s.whole is None and sum(part.count(aim) for part in s.parts) <= MOST_FREE * s.biarcs for s in stretches]
     parts = [part for s, worth in zip(stretches, tried, strict=True) if worth for part in s.parts]
-    found = iter(free_arcs(curve, parts, aim, limit))
+    found = iter(free_arcs.free_arcs(curve, parts, aim, limit))
     out: list[Fitted | None] = []
     for stretch, worth in zip(stretches, tried, strict=True):
         mine = [next(found) for _ in stretch.parts] if worth else []
