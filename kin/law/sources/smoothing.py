@@ -14,7 +14,7 @@ from kin.law.segment import Constant
 from kin.law.sources.closest import within
 from kin.law.sources.peaks import extremes
 from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, laid
-from kin.law.sources.sections import Flaw, Sections, sections_of
+from kin.law.sources.sections import Sections, faded, sections_of
 from kin.law.sources.spline import Basis, Ends, Fitting, nearest
 
 if TYPE_CHECKING:
@@ -33,6 +33,15 @@ _ZERO = 2.0  # readings within which the least displacement of a table is meant 
 _PINNED = 0.01  # of the reading, within which the least value is then 0
 _SCATTER, _MANY = 100.0, 60  # readings: 8 times the sixth differences of rows that err within the reading; of so many
 _SPACINGS = (6, 4, 3)  # rows a span, where joints are looked for
+_MOST_CHECKED = 3000  # rows
+_CHECKED = 3  # rows a span, of the spline with which faults are looked for
+_COLUMNS = 12  # jumps, steps and rows at most
+_SURE = 0.8  # of what a fault explains, which a joint explains at least where it is taken instead
+_CLEAR = 3.0
+_FEW_ROWS = 18
+_EDGE = 3
+_WINDOW = 8.0  # spans to each side over which a step is compared
+_ROUND = 1e-9  # of the squares of a step: what the spline follows
 _DIPS = 8  # times that a spline is made again, held up where it was below 0
 _MORE = 1.2  # spans from one trial to the next
 _LOOKS = 16  # places in a span where it is looked for
@@ -90,20 +99,25 @@ class Lowest(NamedTuple):
 
 @dataclass
 class EqualSpans:
-    """Least squares with the fewest spans, or a given number; keeps their count and the worst row."""
+    """Least squares with the fewest spans, or a given number; keeps their count and the worst row.
+
+    Where they would take a span for less than four rows, there are so many.
+    """
 
     task: Task
     spans: int | None
+    field: str
     count: int = 0
     residual: float = 0.0
     line: int = 0
+    faults: list[TableError] = dataclasses.field(default_factory=list)
 
-    def laid(self, dwells: Sequence[Dwelling]) -> Motion | None:
-        """The motion over the whole angle; None where it takes a span for less than four rows."""
-        try:
-            return laid(self.task.rows, dwells, self.task.total, self.task.around, self)
-        except _TooManyError:
-            return None
+    def laid(self, dwells: Sequence[Dwelling]) -> Motion:
+        """The motion over the whole angle. TableError for rows that stand out, and steps."""
+        motion = laid(self.task.rows, dwells, self.task.total, self.task.around, self)
+        if self.faults:
+            raise min(self.faults, key=lambda error: error.line)
+        return motion
 
     def __call__(
         self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
@@ -114,6 +128,9 @@ class EqualSpans:
         count = self.spans or self._fewest(inside, ends, between, step)
         basis, coefficients, off = nearest(inside.theta, inside.s, count, ends, between)
         worst = int(np.argmax(np.abs(off))) if len(off) else 0
+        if self.spans is None and (not len(off) or abs(off[worst]) > self.task.reading * (1 + _ROUNDING)):
+            error = fault(self.task, rows, ends, between, self.field)
+            self.faults += [error] if error else []
         if len(off) and abs(off[worst]) > self.residual:
             self.residual, self.line = float(abs(off[worst])), int(inside.lines[worst])
         self.count += count
@@ -139,11 +156,86 @@ class EqualSpans:
                 middle = (low + high) // 2
                 low, high = (low, middle) if holds(middle) else (middle, high)
             return high * step
-        raise _TooManyError
+        return most * step
 
 
-class _TooManyError(Exception):
-    """Equal spans are too many."""
+def fault(
+    task: Task, rows: Samples, ends: Ends | None, between: tuple[float, float], field: str
+) -> TableError | None:
+    """The first row of a stretch that stands out, or steps from the one before.
+
+    What a spline leaves is explained by jumps of the acceleration and the jerk, by steps and by single rows, one after
+    another, each the one that explains most (orthogonal matching pursuit; Y. C. Pati et al., Asilomar 1993). There is a
+    fault if without steps and single rows the spline would be _CLEAR times as far from the rows.
+    """
+    inside = rows if ends is None else rows.part(slice(1, -1))
+    x, s, n = inside.theta, inside.s, len(inside.theta)
+    if n > _MOST_CHECKED:
+        return None
+    if not n:
+        steps = ends is not None and abs(ends.end - ends.start) > 2 * task.reading
+        return _stepping(task, rows, 0, field) if steps else None
+    count = max(1, n // _CHECKED)
+    if ends is not None and n > _FEW_ROWS:
+        ends = replace(ends, taken=(2, 2))
+    fitting = Fitting(Basis(np.linspace(*between, count + 1), ends is None), x, ends)
+    mids = 0.5 * (rows.theta[1:] + rows.theta[:-1])
+    places = np.concatenate([x, mids]) if ends is None else np.concatenate([x[_EDGE:-_EDGE], mids[_EDGE:-_EDGE]])
+    period = between[1] - between[0] if ends is None else math.inf
+    window = _WINDOW * (between[1] - between[0]) / count
+    columns = np.concatenate(
+        [np.eye(n), faded(x, mids, 0, window, period), *(faded(x, places, order, window, period) for order in (2, 3))],
+        axis=1,
+    )
+    faults = n + len(mids)  # of the columns
+    base, _ = np.linalg.qr(fitting.matrix)
+    off = s - fitting.values(fitting.nearest(s))
+    rest = columns - base @ (base.T @ columns)
+    least, taken = _ROUND * (columns * columns).sum(axis=0), []
+    weight = np.where(np.arange(columns.shape[1]) < faults, _SURE, 1.0 if n > _FEW_ROWS else 0.0)
+    for _ in range(min(_COLUMNS, n // 3 + 1)):
+        if np.abs(off).max() <= task.reading:
+            break
+        size = (rest * rest).sum(axis=0)
+        k = int(np.argmax(weight * (off @ rest) ** 2 / np.where(size > least, size, np.inf)))
+        taken.append(k)
+        toward = rest[:, k] / math.sqrt(size[k])
+        off = off - toward * (toward @ off)
+        rest -= toward[:, None] * (toward @ rest)
+    wrong = [k for k in taken if k < faults]
+    if not wrong:
+        return None
+    joints = np.concatenate([base, columns[:, [k for k in taken if k >= faults]]], axis=1)
+    known = s - fitting.values(np.where(np.isnan(fitting.fixed), 0.0, fitting.fixed))
+    before = np.abs(known - joints @ np.linalg.lstsq(joints, known, rcond=None)[0]).max()
+    if before < _CLEAR * max(np.abs(off).max(), task.reading):
+        return None
+    everything = np.concatenate([columns[:, wrong], joints], axis=1)
+    jumps = np.linalg.lstsq(everything, known, rcond=None)[0][: len(wrong)]
+    errors = [
+        _standing(task, inside, k, float(s[k] - jump), field) if k < n else _stepping(task, rows, k - n, field)
+        for k, jump in zip(wrong, jumps, strict=True)
+        if abs(jump) >= 0.3 * np.abs(jumps).max()
+    ]
+    return min(errors, key=lambda error: error.line)
+
+
+def _there(task: Task, angle: float, value: float) -> str:
+    """A displacement on the side of the motion on which the table has it."""
+    if task.around == -1 and angle % (2 * task.total) >= task.total - SAME_ANGLE:
+        value = float(task.rows.s[0] + task.rows.s[-1]) - value
+    return task.tell(float(value), 7)
+
+
+def _standing(task: Task, rows: Samples, i: int, expected: float, field: str) -> TableError:
+    here, there = (_there(task, float(rows.theta[i]), value) for value in (float(rows.s[i]), expected))
+    problem = f"the row does not lie on a smooth curve with its neighbours: it is {here}, about {there} is expected"
+    return TableError(problem, field, int(rows.lines[i]))
+
+
+def _stepping(task: Task, rows: Samples, i: int, field: str) -> TableError:
+    before, after = (_there(task, float(rows.theta[k]), float(rows.s[k])) for k in (i, i + 1))
+    return TableError(f"the displacement steps from {before} to {after} here", field, int(rows.lines[i + 1]))
 
 
 @dataclass
@@ -156,9 +248,7 @@ class Bounded:
     residual: float = 0.0
     line: int = 0
     _lowest: Lowest | None = None
-    _sections: dict[tuple[tuple[float, float], int], tuple[Sections, Flaw | None]] = dataclasses.field(
-        default_factory=dict
-    )
+    _sections: dict[tuple[tuple[float, float], int], Sections] = dataclasses.field(default_factory=dict)
     _done: list[tuple[Samples, Basis, Array, Array]] = dataclasses.field(default_factory=list)
 
     def laid(self, dwells: Sequence[Dwelling], lowest: Lowest | None = None) -> Motion:
@@ -211,28 +301,16 @@ class Bounded:
         if len(inside.s) > _MANY and np.median(np.abs(np.diff(inside.s, 6))) > _SCATTER * self.task.reading:
             raise self._scatter(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
         twin = self.task.total if self.task.around == -1 and ends is None else None
-        flaw = None
         for spacing in _SPACINGS:
             if (between, spacing) not in self._sections:
                 self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
-            sections, noted = self._sections[between, spacing]
-            flaw = noted or flaw
-            found = self._counted(
-                inside, replace(sections, ends=ends), most // 2
-            )  # levels may have been set to 0 since
+            sections = replace(self._sections[between, spacing], ends=ends)  # levels may have been set to 0 since
+            found = self._counted(inside, sections, most * 2 // 3)
             if found is not None:
                 return found
         found = self._counted(inside, smooth, most)
         if found is not None:
             return found
-        if flaw is None or flaw.order >= 0:  # a row that stands out could be followed by so many spans and joints
-            for spacing in _SPACINGS:
-                sections = replace(self._sections[between, spacing][0], ends=ends)
-                found = self._counted(inside, sections, most * 2 // 3)
-                if found is not None:
-                    return found
-        if flaw is not None:
-            raise self._faulty(inside, flaw)
         raise self._scatter(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
 
     def _counted(self, rows: Samples, sections: Sections, most: int) -> tuple[Basis, Array, Array] | None:
@@ -256,6 +334,8 @@ class Bounded:
             off = rows.s - fitting.values(coefficients)
             if np.abs(off).max(initial=0.0) <= reading * (1.0 + _ROUNDING):
                 return fitting.basis, coefficients, off
+            if off @ off > n * reading**2:  # of any spline one row is farther off than this
+                return None
         x, s = rows.theta, rows.s
         bounds = np.full(n, reading * (1.0 + 0.5 * _ROUNDING))
         if self._lowest is not None:
@@ -312,35 +392,6 @@ class Bounded:
             self.field,
             int(rows.lines[worst]),
         )
-
-    def _faulty(self, rows: Samples, flaw: Flaw) -> TableError:
-        """Say which row stands out, or where the table steps or turns by a corner."""
-        s, i = rows.s, flaw.row
-
-        def there(k: int, value: float) -> str:
-            total, first = self.task.total, self.task.rows
-            if self.task.around == -1 and rows.theta[k] % (2 * total) >= total - SAME_ANGLE:
-                value = float(first.s[0] + first.s[-1]) - value
-            return self.task.tell(float(value), 7)
-
-        if flaw.order == -1:
-            expected = s[i] - flaw.jump
-            if 2 <= i < len(s) - 2:  # by the neighbours alone
-                expected = (4.0 * (s[i - 1] + s[i + 1]) - s[i - 2] - s[i + 2]) / 6.0
-            problem = (
-                f"the row does not lie on a smooth curve with its neighbours: it is {there(i, s[i])}, about "
-                f"{there(i, expected)} is expected"
-            )
-            return TableError(problem, self.field, int(rows.lines[i]))
-        if flaw.order == 1:
-            problem = "the velocity jumps here; a motion has none that does"
-            return TableError(problem, self.field, int(rows.lines[i]))
-        step = np.diff(s)
-        local = np.arange(max(i - 3, 1), min(i + 3, len(step) - 1))
-        jump = step[local] - 0.5 * (step[local - 1] + step[local + 1])
-        k = int(local[np.argmax(np.abs(jump))]) + 1
-        problem = f"the displacement steps from {there(k - 1, s[k - 1])} to {there(k, s[k])} here"
-        return TableError(problem, self.field, int(rows.lines[k]))
 
 
 def _feet(rows: Samples, ends: Ends) -> tuple[float, float]:

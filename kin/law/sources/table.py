@@ -69,13 +69,13 @@ def from_table(
     if event is not None:
         found = merged(sorted([*found, event]), len(rows.s))
     _demand_even(rows, found, field)
-    equal = EqualSpans(task, spans)
+    equal = EqualSpans(task, spans, field)
     motion = equal.laid(found)
-    if motion is not None and (spans is not None or task.keeps(motion)):
+    if spans is not None or (equal.residual <= reading * (1 + 1e-9) and task.keeps(motion)):
         return Smoothed(motion, equal.count, equal.residual, equal.line)
     bounded = Bounded(task, field)
     if dwells is None:
-        found = [_shortened(dwell) for dwell in found]
+        found = _shortened(found, len(rows.s), around)
     motion = bounded.laid(found)
     if not task.keeps(motion):
         lowest = task.lowest(motion)
@@ -83,10 +83,19 @@ def from_table(
     return Smoothed(motion, bounded.count, bounded.residual, bounded.line)
 
 
-def _shortened(dwell: Dwelling) -> Dwelling:
-    """The dwell without the rows at its ends: where between them it ends is found from the motion beside it."""
-    less = min(_ENDS, (dwell.last - dwell.first) // 3)
-    return Dwelling(dwell.first + less, dwell.last - less, dwell.level)
+def _shortened(dwells: Sequence[Dwelling], count: int, around: int | None) -> list[Dwelling]:
+    """Dwells without the rows at their ends: where between them one ends is found from the motion beside it.
+
+    None that stands beside a stretch of few rows: with those added it could be anything.
+    """
+    shorter = []
+    for i, dwell in enumerate(dwells):
+        before, after = dwells[i - 1], dwells[(i + 1) % len(dwells)]
+        beside = dwell.first - before.last, after.first - dwell.last
+        least = min(number % count if around == 1 else abs(number) for number in beside) if len(dwells) > 1 else count
+        less = min(_ENDS, (dwell.last - dwell.first) // 3) if least > _LEAST_ROWS else 0
+        shorter.append(Dwelling(dwell.first + less, dwell.last - less, dwell.level))
+    return shorter
 
 
 def _demand_rows(rows: Samples, total: float, field: str) -> None:
