@@ -292,4 +292,5 @@ def faded(x: Array, places: Array, order: int, window: float, period: float) -> 
     shape = fade * fade * fade * (size if order else 1.0)
     for _ in range(order - 1):
         shape *= size
-    return shape if order % 2 else shape * np.sign(z)
+    jumps: Array = shape if order % 2 else shape * np.sign(z)
+    return jumps

@@ -35,15 +35,19 @@ _SCATTER, _MANY = 100.0, 60  # readings: 8 times the sixth differences of rows t
 _SPACINGS = (6, 4, 3)  # rows a span, where joints are looked for
 _MOST_CHECKED = 3000  # rows
 _CHECKED = 3  # rows a span, of the spline with which faults are looked for
+_BESIDE, _JOINTS = 2.1, 4  # rows to each side; joints beside a fault
 _COLUMNS = 12  # jumps, steps and rows at most
 _SURE = 0.8  # of what a fault explains, which a joint explains at least where it is taken instead
 _CLEAR = 3.0
-_FEW_ROWS = 18
-_EDGE = 3
+_FEW_ROWS = 8
+_EDGE = 2
+_PAD = 4  # rows of a dwell
+_MENDED = 2.0  # readings, within which rows without a fault are met
 _WINDOW = 8.0  # spans to each side over which a step is compared
 _ROUND = 1e-9  # of the squares of a step: what the spline follows
 _DIPS = 8  # times that a spline is made again, held up where it was below 0
 _MORE = 1.2  # spans from one trial to the next
+_WILD = 2.0  # of the acceleration that the rows allow
 _LOOKS = 16  # places in a span where it is looked for
 _ROUNDING = 1e-9  # of the reading
 
@@ -53,7 +57,11 @@ class TableError(IntentError):
 
     def __init__(self, message: str, field: str, line: int, at: float | None = None) -> None:
         super().__init__(f"line {line}: {message}", field, at)
-        self.line = line
+        self.line, self.problem = line, message
+
+
+class UnmetError(TableError):
+    """A table for which no motion within its reading was found."""
 
 
 class Task(NamedTuple):
@@ -110,13 +118,15 @@ class EqualSpans:
     count: int = 0
     residual: float = 0.0
     line: int = 0
-    faults: list[TableError] = dataclasses.field(default_factory=list)
+    faults: list[Fault] = dataclasses.field(default_factory=list)
 
     def laid(self, dwells: Sequence[Dwelling]) -> Motion:
-        """The motion over the whole angle. TableError for rows that stand out, and steps."""
+        """The motion over the whole angle. TableError for rows without which it would keep the reading."""
         motion = laid(self.task.rows, dwells, self.task.total, self.task.around, self)
-        if self.faults:
-            raise min(self.faults, key=lambda error: error.line)
+        proven = [fault for fault in self.faults if fault.proven]
+        if proven:
+            fault = min(proven, key=lambda fault: fault.line)
+            raise TableError(fault.problem, self.field, fault.line)
         return motion
 
     def __call__(
@@ -129,8 +139,16 @@ class EqualSpans:
         basis, coefficients, off = nearest(inside.theta, inside.s, count, ends, between)
         worst = int(np.argmax(np.abs(off))) if len(off) else 0
         if self.spans is None and (not len(off) or abs(off[worst]) > self.task.reading * (1 + _ROUNDING)):
-            error = fault(self.task, rows, ends, between, self.field)
-            self.faults += [error] if error else []
+            fault, mended = fault_of(self.task, rows, ends, between)
+            if fault is not None and len(mended.s):
+                left = nearest(mended.theta, mended.s, count, ends, between)[2]
+                foot = (
+                    ends is not None and fault.line in {*inside.lines[:2], *inside.lines[-2:]} and len(left) > _FEW_ROWS
+                )
+                fault = fault._replace(
+                    proven=not foot and bool(np.abs(left).max() <= max(_MENDED * self.task.reading, 0.02 * fault.size))
+                )
+            self.faults += [fault] if fault else []
         if len(off) and abs(off[worst]) > self.residual:
             self.residual, self.line = float(abs(off[worst])), int(inside.lines[worst])
         self.count += count
@@ -159,65 +177,111 @@ class EqualSpans:
         return most * step
 
 
-def fault(
-    task: Task, rows: Samples, ends: Ends | None, between: tuple[float, float], field: str
-) -> TableError | None:
-    """The first row of a stretch that stands out, or steps from the one before.
+class Fault(NamedTuple):
+    """A row that stands out, or steps; `proven` if the motion keeps the reading without."""
+
+    line: int
+    problem: str
+    size: float
+    proven: bool = True
+
+
+def fault_of(
+    task: Task, rows: Samples, ends: Ends | None, between: tuple[float, float]
+) -> tuple[Fault | None, Samples]:
+    """The first row of a stretch that stands out, or steps from the one before; and the rows inside, mended.
 
     What a spline leaves is explained by jumps of the acceleration and the jerk, by steps and by single rows, one after
     another, each the one that explains most (orthogonal matching pursuit; Y. C. Pati et al., Asilomar 1993). There is a
     fault if without steps and single rows the spline would be _CLEAR times as far from the rows.
     """
     inside = rows if ends is None else rows.part(slice(1, -1))
-    x, s, n = inside.theta, inside.s, len(inside.theta)
-    if n > _MOST_CHECKED:
-        return None
-    if not n:
-        steps = ends is not None and abs(ends.end - ends.start) > 2 * task.reading
-        return _stepping(task, rows, 0, field) if steps else None
+    if len(rows.s) > _MOST_CHECKED:
+        return None, inside
+    if ends is not None and not len(inside.s):
+        before, here = (_there(task, rows.theta[i], rows.s[i]) for i in (0, 1))
+        step = Fault(int(rows.lines[1]), f"the displacement steps from {before} to {here} here", 0.0)
+        return (step if abs(ends.end - ends.start) > 2.0 * task.reading else None), inside
+    begin, end, real = between[0], between[1], np.arange(len(rows.s))
+    if ends is not None:  # some rows of the dwells, in which the motion's foot may lie
+        pad = np.arange(1, _PAD + 1) * float(np.median(np.diff(rows.theta)))
+        begin, end, real = begin - pad[-1], end + pad[-1], real[1:-1] + _PAD
+        rows = Samples(
+            np.concatenate([between[0] - pad[::-1], rows.theta, between[1] + pad]),
+            np.concatenate([np.full(_PAD, ends.start), rows.s, np.full(_PAD, ends.end)]),
+            np.pad(rows.lines, _PAD),
+            rows.unit,
+        )
+    x, s, n = rows.theta, rows.s, len(rows.s)
     count = max(1, n // _CHECKED)
-    if ends is not None and n > _FEW_ROWS:
-        ends = replace(ends, taken=(2, 2))
-    fitting = Fitting(Basis(np.linspace(*between, count + 1), ends is None), x, ends)
-    mids = 0.5 * (rows.theta[1:] + rows.theta[:-1])
-    places = np.concatenate([x, mids]) if ends is None else np.concatenate([x[_EDGE:-_EDGE], mids[_EDGE:-_EDGE]])
+    fitting = Fitting(Basis(np.linspace(begin, end, count + 1), ends is None), x, ends)
+    steps = np.append(real[0] - 1, real)
+    if ends is None:
+        steps = steps[1:-1]
+    mids = 0.5 * (x[steps] + x[steps + 1])
+    places = np.concatenate([x[_EDGE:-_EDGE], 0.5 * (x[1:] + x[:-1])[_EDGE:-_EDGE]])
     period = between[1] - between[0] if ends is None else math.inf
-    window = _WINDOW * (between[1] - between[0]) / count
+    window = _WINDOW * (end - begin) / count
     columns = np.concatenate(
-        [np.eye(n), faded(x, mids, 0, window, period), *(faded(x, places, order, window, period) for order in (2, 3))],
+        [
+            np.eye(n)[:, real],
+            faded(x, mids, 0, window, period),
+            *(faded(x, places, order, window, period) for order in (2, 3)),
+        ],
         axis=1,
     )
-    faults = n + len(mids)  # of the columns
+    single, faults = len(real), len(real) + len(mids)  # of the columns
     base, _ = np.linalg.qr(fitting.matrix)
-    off = s - fitting.values(fitting.nearest(s))
-    rest = columns - base @ (base.T @ columns)
-    least, taken = _ROUND * (columns * columns).sum(axis=0), []
-    weight = np.where(np.arange(columns.shape[1]) < faults, _SURE, 1.0 if n > _FEW_ROWS else 0.0)
-    for _ in range(min(_COLUMNS, n // 3 + 1)):
-        if np.abs(off).max() <= task.reading:
-            break
-        size = (rest * rest).sum(axis=0)
-        k = int(np.argmax(weight * (off @ rest) ** 2 / np.where(size > least, size, np.inf)))
-        taken.append(k)
-        toward = rest[:, k] / math.sqrt(size[k])
-        off = off - toward * (toward @ off)
-        rest -= toward[:, None] * (toward @ rest)
-    wrong = [k for k in taken if k < faults]
-    if not wrong:
-        return None
-    joints = np.concatenate([base, columns[:, [k for k in taken if k >= faults]]], axis=1)
+    first = s - fitting.values(fitting.nearest(s)), columns - base @ (base.T @ columns)
+    least = _ROUND * (columns * columns).sum(axis=0)
+    joint = 1.0 if len(real) >= _FEW_ROWS else 0.0
+    kind = np.arange(columns.shape[1]) < faults
+
+    def pursued(begun: Sequence[int], weight: Array, most: int) -> tuple[list[int], Array]:
+        """Columns that explain the rows, after those that are given; and what is left."""
+        chosen: list[int] = []
+        off, rest = first
+        while len(chosen) < most and (len(chosen) < len(begun) or np.abs(off).max() > task.reading):
+            size = (rest * rest).sum(axis=0)
+            score = weight * (off @ rest) ** 2 / np.where(size > least, size, np.inf)
+            k = begun[len(chosen)] if len(chosen) < len(begun) else int(np.argmax(score))
+            chosen.append(k)
+            if size[k] > least[k]:
+                toward = rest[:, k] / math.sqrt(size[k])
+                off, rest = off - toward * (toward @ off), rest - toward[:, None] * (toward @ rest)
+        return chosen, off
+
+    chosen, off = pursued([], np.where(kind, _SURE, joint), min(_COLUMNS, n // 3 + 1))
+    wrong = [k for k in chosen if kind[k]]
+    joints = np.concatenate([base, columns[:, [k for k in chosen if not kind[k]]]], axis=1)
     known = s - fitting.values(np.where(np.isnan(fitting.fixed), 0.0, fitting.fixed))
     before = np.abs(known - joints @ np.linalg.lstsq(joints, known, rcond=None)[0]).max()
-    if before < _CLEAR * max(np.abs(off).max(), task.reading):
-        return None
-    everything = np.concatenate([columns[:, wrong], joints], axis=1)
-    jumps = np.linalg.lstsq(everything, known, rcond=None)[0][: len(wrong)]
-    errors = [
-        _standing(task, inside, k, float(s[k] - jump), field) if k < n else _stepping(task, rows, k - n, field)
-        for k, jump in zip(wrong, jumps, strict=True)
-        if abs(jump) >= 0.3 * np.abs(jumps).max()
+    if not wrong or before < _CLEAR * max(np.abs(off).max(), task.reading):
+        return None, inside
+    # a fault and joints may pass for two faults: of those about the first one, that which joints complete best
+    place = np.concatenate([x[real], mids])
+    beside = _BESIDE * float(np.median(np.diff(x)))
+    far = [k for k in wrong if abs(place[k] - place[wrong[0]]) > beside]
+    trials = [
+        pursued([int(k), *far], np.where(kind, 0.0, joint), len(far) + 1 + _JOINTS)
+        for k in np.flatnonzero(abs(place - place[wrong[0]]) <= beside)
     ]
-    return min(errors, key=lambda error: error.line)
+    chosen, _ = min(trials, key=lambda trial: (len(trial[0]), trial[0][0] != wrong[0], float(trial[1] @ trial[1])))
+    wrong = chosen[: len(far) + 1]
+    rest = np.concatenate([columns[:, chosen], base], axis=1)
+    jumps = np.linalg.lstsq(rest, known, rcond=None)[0][: len(wrong)]
+    k, jump = wrong[0], jumps[0]
+    if k < single:
+        at = int(real[k])
+        here, about = (_there(task, x[at], value) for value in (s[at], s[at] - jump))
+        problem = f"the row does not lie on a smooth curve with its neighbours: it is {here}, about {about} is expected"
+    else:
+        at = int(steps[k - single]) + 1
+        before, here = (_there(task, x[i], s[i]) for i in (at - 1, at))
+        problem = f"the displacement steps from {before} to {here} here"
+    kept = np.setdiff1d(real, real[[k for k in wrong if k < single]])
+    s = s - sum(jump * columns[:, k] for k, jump in zip(wrong, jumps, strict=True) if k >= single)
+    return Fault(int(rows.lines[at]), problem, abs(jump)), Samples(x[kept], s[kept], rows.lines[kept], rows.unit)
 
 
 def _there(task: Task, angle: float, value: float) -> str:
@@ -227,23 +291,13 @@ def _there(task: Task, angle: float, value: float) -> str:
     return task.tell(float(value), 7)
 
 
-def _standing(task: Task, rows: Samples, i: int, expected: float, field: str) -> TableError:
-    here, there = (_there(task, float(rows.theta[i]), value) for value in (float(rows.s[i]), expected))
-    problem = f"the row does not lie on a smooth curve with its neighbours: it is {here}, about {there} is expected"
-    return TableError(problem, field, int(rows.lines[i]))
-
-
-def _stepping(task: Task, rows: Samples, i: int, field: str) -> TableError:
-    before, after = (_there(task, float(rows.theta[k]), float(rows.s[k])) for k in (i, i + 1))
-    return TableError(f"the displacement steps from {before} to {after} here", field, int(rows.lines[i + 1]))
-
-
 @dataclass
 class Bounded:
     """Splines over sections, each row within its bounds; keeps the count of spans and the worst row."""
 
     task: Task
     field: str
+    faults: Sequence[Fault] = ()
     count: int = 0
     residual: float = 0.0
     line: int = 0
@@ -299,7 +353,7 @@ class Bounded:
         smooth = Sections.of(between, ends, None if ends is None else _feet(rows, ends))
         most = max(1, min(len(inside.s) // 2, _MOST_SPANS))
         if len(inside.s) > _MANY and np.median(np.abs(np.diff(inside.s, 6))) > _SCATTER * self.task.reading:
-            raise self._scatter(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
+            raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
         twin = self.task.total if self.task.around == -1 and ends is None else None
         for spacing in _SPACINGS:
             if (between, spacing) not in self._sections:
@@ -311,7 +365,7 @@ class Bounded:
         found = self._counted(inside, smooth, most)
         if found is not None:
             return found
-        raise self._scatter(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
+        raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
 
     def _counted(self, rows: Samples, sections: Sections, most: int) -> tuple[Basis, Array, Array] | None:
         even, count = sections.ends is None and self.task.around == -1, 1
@@ -382,16 +436,28 @@ class Bounded:
         lowest = (values <= np.roll(values, 1)) & (values <= np.roll(values, -1))
         return x[low & lowest]
 
-    def _scatter(self, rows: Samples, off: Array) -> TableError:
+    def _unmet(self, rows: Samples, off: Array) -> UnmetError:
+        """Say how near the rows a spline of a span for two rows comes, and which of them is least like a motion's."""
         worst = int(np.argmax(np.abs(off)))
-        reached = float(np.abs(off[worst]))
-        return TableError(
-            f"the rows scatter about any smooth curve: the closest one is {self.task.tell(reached, 3)} off here, the "
-            f"reading error is {self.task.tell(self.task.reading)}; smooth the table, or give a reading error "
-            "above that",
+        lines = [fault.line for fault in self.faults if fault.line in rows.lines]
+        return UnmetError(
+            "the rows scatter about any smooth curve: the closest one is "
+            f"{self.task.tell(float(abs(off[worst])), 3)} off, the reading error is "
+            f"{self.task.tell(self.task.reading)}; this row fits its neighbours least",
             self.field,
-            int(rows.lines[worst]),
+            min(lines, default=int(rows.lines[worst])),
         )
+
+    def demand_supported(self, motion: Motion) -> None:
+        """Refuse an acceleration of more than twice what differences of the rows, each in error, allow."""
+        rows, total = self.task.rows, self.task.total
+        h = np.diff(rows.theta)
+        most = np.abs(np.diff(np.diff(rows.s) / h)) + 2.0 * self.task.reading * (1.0 / h[1:] + 1.0 / h[:-1])
+        most = (most / (0.5 * (h[1:] + h[:-1]))).max()
+        reached = np.abs(motion.derivatives(np.linspace(0.0, total, _LOOKS * len(rows.s)), 2)[2]).max()
+        if reached > _WILD * most:
+            problem = f"a motion near the rows has {reached / most:.3g} times the acceleration that they support"
+            raise UnmetError(problem, self.field, self.line)
 
 
 def _feet(rows: Samples, ends: Ends) -> tuple[float, float]:
