@@ -16,7 +16,7 @@ import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, cast
 
 import numpy as np
 
@@ -159,6 +159,10 @@ class Guide(Protocol):
         """Give the same guide at another prime circle, mm; IntentError where it does not reach that."""
         ...
 
+    def with_shaft(self, along: Array | float, across: Array | float) -> Guide:
+        """Give the same guide with the shaft elsewhere, by b and -a where the follower rests at S = 0, mm."""
+        ...
+
 
 @dataclass(frozen=True)
 class Translating:
@@ -217,6 +221,10 @@ class Translating:
     def resized(self, prime: float) -> Translating:
         """Give the same line at another prime circle."""
         return Translating.on(prime, self.offset)
+
+    def with_shaft(self, along: Array | float, across: Array | float) -> Translating:
+        """Give the line with another foot and offset."""
+        return Translating(cast("float", along), cast("float", across))
 
 
 @dataclass(frozen=True)
@@ -295,6 +303,13 @@ class Oscillating:
     def resized(self, prime: float) -> Oscillating:
         """Give the same arm and pivot at another prime circle."""
         return Oscillating.on(prime, self.pivot, self.length, self.side)
+
+    def with_shaft(self, along: Array | float, across: Array | float) -> Oscillating:
+        """Give the same arm about a pivot elsewhere."""
+        x = self.length + self.side * across
+        return Oscillating(
+            cast("float", np.hypot(x, along)), self.length, cast("float", np.arctan2(along, x)), self.side
+        )
 
 
 @dataclass(frozen=True)
