@@ -55,7 +55,9 @@ _LOOKS = 4  # at ever fewer directions, before the exact figures are asked
 _FINE = 1e-9  # rad: directions this close are told apart
 _EXCHANGES = 16
 _ROOM = 1e-10  # rad, and of a radius: so much more is kept than is given, for rounding
+_TINY = 1e-9  # rad: a face stands at some angle
 _RESTS = 256  # of a swinging face
+_LOOSE = 1e-4  # of the pivot's distance: what radii between the angles looked at may be less
 
 
 def _demand_angles(rising: float, falling: float) -> None:
@@ -279,12 +281,14 @@ def least_swing(motion: Displacement, pivot: float, nearer: float, side: int, ra
 
     Raises IntentError where there is none, or where every base radius does.
     """
-    s, v, w, _ = _looked_at(motion)
-    k = 1.0 + side * v
-    low, high = math.asin(min(max(nearer / pivot, 0.0), 1.0)), 0.5 * math.pi - motion.range[1]
+    low, high = math.asin(min(max(nearer / pivot, _TINY), 1.0)), 0.5 * math.pi - motion.range[1]
     if not low < high:
         raise IntentError("no base radius leaves the face room to swing; a smaller face does", "follower.arm.face")
-    rests = low + (high - low) * np.arange(_RESTS) / _RESTS
+    SwingingFace(motion, pivot, nearer, 0.5 * high, side)  # raises where the motion is too fast, whatever the size
+    s, v, w, _ = _looked_at(motion)
+    k = 1.0 + side * v
+    rests = high * np.arange(_RESTS) / _RESTS
+    rests = np.append(low, rests[rests > low])
     psi = rests[:, None] + s
     # that of a face through the pivot: p + dq/dt
     radii = pivot * (np.sin(psi) * (1.0 - (v / k) ** 2) + np.cos(psi) * w / k**3).min(axis=1)
@@ -302,8 +306,9 @@ def least_swing(motion: Displacement, pivot: float, nearer: float, side: int, ra
         if values[1] >= 0.0:
             rest = roots(excess, *ends, values, _PRECISE)[0]
             return SwingingFace(motion, pivot, nearer, float(rest), side)
+    less = radii.max() - radius - _LOOSE * pivot
     raise IntentError(
-        f"no base radius keeps it with this pivot and face; a face below {math.floor(1e3 * (radii.max() - radius)) / 1e3:.9g} mm does",
+        f"no base radius keeps it with this pivot and face; a face below {less:.5g} mm does",
         "sizing.radius-of-curvature",
     )
 
