@@ -79,7 +79,7 @@ class LiftPosition(_Turn):
         return value / mm
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Lift from its datum, mm, and its derivatives by the shaft angle, (order + 1, n); at breaks those of a side."""
+        """Lift from its datum, mm, and its derivatives by the shaft angle, (order + 1, n); at a break of a side."""
         found = np.array(self.law.derivatives(shaft, order, side))
         found[0] -= self.datum
         return found
