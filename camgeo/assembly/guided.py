@@ -114,7 +114,7 @@ def on_arm(view: View[Oscillating, Round], drive: Drive) -> Assembly:
     stand, lever = stood(view), view.guide
     _clear(lever.pivot, drive)
     place = swung(view.design.motion, lever.pivot, view.datum, lever.side)
-    foot = stand((lever.length or 0.0, 0.0), 0.5 * math.pi * lever.side, ("arm", place), drive)
+    foot = stand((lever.arm, 0.0), 0.5 * math.pi * lever.side, ("arm", place), drive)
     return arm(place, lever.pivot, [foot], drive, (SPRING,))
 
 

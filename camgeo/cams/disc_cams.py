@@ -104,7 +104,7 @@ class DiscCam(GuidedCam):
 
         if isinstance(self.guide, Translating):
             return moving_frame.Translating.on(self.prime, self.guide.offset)
-        return moving_frame.Oscillating.on(self.prime, self.guide.pivot, self.guide.length or 0.0, self.guide.side)
+        return moving_frame.Oscillating.on(self.prime, self.guide.pivot, self.guide.arm, self.guide.side)
 
     def face(self, motion: Displacement) -> Face:
         """The flat face over the shaft angle; raises IntentError where it cannot be driven."""

@@ -111,7 +111,7 @@ class ExactFaced(ExactCam):
 
         return follower_of(self.follower.contacts, self.law.law())
 
-    @property
+    @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """Those that the recipe gives."""
         return self.cam.joints()

@@ -246,6 +246,11 @@ class ExactCam(ABC):
         """The surface that gives the motion."""
 
     @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Every surface that a follower touches."""
+        return (self.surface,)
+
+    @property
     @abstractmethod
     def gauge(self) -> Gauge:
         """What kin judges files by: the follower with its motion, made of the same contacts by kin's own means."""

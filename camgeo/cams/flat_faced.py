@@ -122,7 +122,7 @@ class ExactLifted(ExactCam):
 
         return follower_of(self.follower.contacts, self.law.law)
 
-    @property
+    @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """Those that the recipe gives."""
         return self.cam.joints()

@@ -141,7 +141,7 @@ class ExactGuided(ExactCam):
 
         return follower_of(self.follower.contacts, self.law.law(), self.cam.side)
 
-    @property
+    @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """Those that the recipe gives."""
         return self.cam.joints()
@@ -155,7 +155,7 @@ class ExactGuided(ExactCam):
             prime = least_stem(self.law, rising, falling, guide.offset).prime
         else:
             try:
-                arm = least_arm(self.law, guide.length or 0.0, guide.side, rising - _MARGIN, falling - _MARGIN)
+                arm = least_arm(self.law, guide.arm, guide.side, rising - _MARGIN, falling - _MARGIN)
             except IntentError:
                 return None
             prime, pivot = arm.prime, f"{arm.pivot / mm:.6g}"

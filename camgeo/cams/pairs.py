@@ -229,7 +229,7 @@ class ExactPair(ExactCam):
 
         return follower_of(self.follower.contacts, self.law)
 
-    @property
+    @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """Those that the recipe gives."""
         return self.cam.joints(self.law)

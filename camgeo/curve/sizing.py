@@ -283,7 +283,8 @@ def least_swing(motion: Displacement, pivot: float, nearer: float, side: int, ra
     """
     low, high = math.asin(min(max(nearer / pivot, _TINY), 1.0)), 0.5 * math.pi - motion.range[1]
     if not low < high:
-        raise IntentError("no base radius leaves the face room to swing; a smaller face does", "follower.arm.face")
+        less, field = ("face", "follower.arm.face") if high > 0.0 else ("swing", "motion")
+        raise IntentError(f"no base radius leaves the face room to swing; a smaller {less} does", field)
     SwingingFace(motion, pivot, nearer, 0.5 * high, side)  # raises where the motion is too fast, whatever the size
     s, v, w, _ = _looked_at(motion)
     k = 1.0 + side * v

@@ -168,7 +168,7 @@ def milling_intent(recipe: Recipe, design: Design) -> Intent:
         thickness=recipe.part.thickness or 0.0,
         depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
         climb=asked.direction == "climb",
-        inside=recipe.cam.side < 0,
+        side=recipe.cam.side,
         standing=check.limit or 0.0 if lost else 0.0,
         hub=None if top is None else (0.5 * top.diameter, top.height),
     )

@@ -10,6 +10,7 @@ from ledger import Row
 
 PI = np.pi
 BETA, STROKE, BASE, BREADTH = 2 * PI / 3, 20.0, 40.0, 100.0
+DIGIT = 5e-11  # half of the twelfth digit, the last one of a table, for mm above 10
 CA = 4 * PI**2 / (PI + 4)
 
 
@@ -111,14 +112,14 @@ def test_motion_table(section_5):
     table = section_5.motion
     theta = np.radians(table["shaft_deg"][:1801])
     wanted = motion(theta)
-    assert table["lift_mm"][:1801] == pytest.approx(wanted[0], abs=1e-11)
+    assert table["lift_mm"][:1801] == pytest.approx(wanted[0], abs=1e-11 + DIGIT)
     assert table["velocity"][:1801] == pytest.approx(wanted[1], abs=1e-10)
     assert table["acceleration"][:1801] == pytest.approx(wanted[2], abs=1e-9)
 
 
 def test_equations_3_to_6_second_half_turn(section_5):
     table = section_5.motion
-    assert table["lift_mm"][1800:] == pytest.approx(STROKE - table["lift_mm"][:1801], abs=1e-12)
+    assert table["lift_mm"][1800:] == pytest.approx(STROKE - table["lift_mm"][:1801], abs=1e-12 + 2 * DIGIT)
     assert table["acceleration"][1800:3600] == pytest.approx(-table["acceleration"][:1800], abs=1e-10)
 
 

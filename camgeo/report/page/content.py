@@ -161,7 +161,7 @@ def _on_stem(view: View[Translating, Round], reach: float, size: float) -> _Draw
 
 def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
     touch, s, found, plots = _pressed(view, size)
-    return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.length or 0.0, 0.0), size), *found], plots
+    return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.arm, 0.0), size), *found], plots
 
 
 def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
