@@ -88,7 +88,7 @@ class LiftPosition(_Turn):
         """Position from the zero of the contacts, not from the datum, and its derivatives, (order + 1, n)."""
         return self.law.derivatives(shaft, order)
 
-    def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
+    def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
         """Parameters of the contour (n,) at which the first contact touches, by the label of its columns: none.
 
         `relative` is the cam's angle against the frame that carries the follower, the shaft's without one. A second
@@ -142,7 +142,7 @@ class SwingPosition(_Swing, _Turn):
         """The same as `rows`."""
         return self.rows(shaft, order)
 
-    def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
+    def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
         """Of A and B. The law repeats itself with phi - psi + delta in place of phi and -psi in place of psi (W 4.9).
 
         Done mu times, mu odd, that puts A where B is, at phi - psi + alpha.
