@@ -78,10 +78,7 @@ def least_prime_by_chance(cam: Any, looks: int, seed: int) -> float:
 def test_the_pivot_is_searched_where_the_radius_of_curvature_binds() -> None:
     cam = sized(ARM)
     assert cam.base_radius == pytest.approx(73.35116062, abs=1e-7)  # 80.915 at the pivot of the pressure angle alone
-    given = f"base_radius: {cam.base_radius!r}"
-    arm = f"{{length: 219.9, side: leading, pivot: {cam.guide.pivot!r}}}"
-    text = re.sub("arm: {.*?}", f"arm: {arm}", re.sub("sizing: .*", given, ARM))
-    assert camgeo.load(text).cam.base_radius == cam.base_radius
+    assert cam.guide.pivot == pytest.approx(198.781985, abs=1e-5)
 
 
 def test_the_offset_is_searched_where_the_radius_of_curvature_binds() -> None:
@@ -134,7 +131,8 @@ cam:
 @pytest.mark.parametrize(("face", "radius"), [(5.0, 10.0), (0.0, 3.0), (-10.0, 12.0), (40.0, 60.0)])
 def test_a_face_on_an_arm_is_sized_by_its_radius(face: float, radius: float, side: str) -> None:
     text = FACE.replace("face: 5", f"face: {face}").replace("least: 10", f"least: {radius}").replace("leading", side)
-    base = camgeo.load(text).cam.base_radius
+    cam: Any = camgeo.load(text).cam
+    base = cam.base_radius
     for share in (0.999, 1.0, 1.001):
         given = camgeo.design(camgeo.load(re.sub("sizing: .*", f"base_radius: {share * base!r}", text)))
         value = given.figures["radius-of-curvature"].value
