@@ -163,7 +163,7 @@ def accuracy() -> None:
     wanted: dict[str, list[float]] = {}
     for row in values:
         made = recipe_with(CAM_2A, tuple(PLACES), row)
-        lift = made.cam.intent()
+        lift = made.cam.exact().law
         mechanism = mechanism_of(made, lift, breadth_of(lift)[0])
         told = mechanism.figures()
         one = {

@@ -225,7 +225,7 @@ def _judged(
     from camgeo import verify as judged
 
     path, recipe = path_of("path", path), recipe_of(recipe)
-    swings = recipe.cam.unit == "deg"
+    swings = recipe.cam.arrangement.unit == "deg"
     verify = recipe.verify
     if limit is not None:
         limit = _length("limit", limit)
@@ -286,7 +286,7 @@ def assert_no_undercut(recipe: RecipeSource) -> float:
     recipe = recipe_of(recipe)
     recipe = replace(recipe, cam=recipe.cam.refusing())
     design = designed(recipe)
-    report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.joints))
+    report = document(recipe, Findings(design.checks, (), (), (), design.follower.name, joints=design.exact.joints))
     names = {*BENT, UNDERCUT_LOCAL.name, UNDERCUT_GLOBAL.name}
     checks = [check for check in report["checks"] if check["name"] in names]
     _all_hold(checks, report, recipe, recipe.name)

@@ -16,7 +16,8 @@ from kin.dynamics.response import Samples
 from kin.dynamics.separation import float_speed
 from kin.dynamics.train import Steady, Train, steady
 from kin.follower.follower import FlatFace
-from kin.law.programme import Segment, law, programme
+from kin.law.sources.laws import named
+from kin.law.sources.programme import Dwell, Move, programme
 from kin.law.support_function import lift_constant_breadth
 
 mpl.use("Agg")
@@ -38,8 +39,8 @@ def force(found: Steady, rpm: float, phi: np.ndarray) -> np.ndarray:
 
 def main() -> None:
     """Contact force over a turn, as intended and as cut, and the least force over the speed."""
-    segments = (Segment("rise", math.radians(120.0), 20.0, law("modified-sine")), Segment("dwell", math.radians(60.0)))
-    lift = lift_constant_breadth(40.0, programme(segments, math.pi))
+    segments = (Move(math.radians(120.0), named("modified-sine"), by=20.0), Dwell(math.radians(60.0)))
+    lift = lift_constant_breadth(40.0, programme(segments, math.pi, around=-1))
     follower = FlatFace(lift)
     (intended,) = drives([intended_faces(follower, None).lower])
     t = TURN / 48 * np.arange(48)

@@ -55,7 +55,7 @@ class Scene:
         """Load and design."""
         recipe = load(ROOT / "recipes" / f"{name}.yaml")
         design = designed(recipe)
-        return cls(cast("Lift", design.intent), None if design.driven is None else design.driven.mechanism)
+        return cls(cast("Lift", design.exact.law), None if design.driven is None else design.driven.mechanism)
 
     @property
     def driven(self) -> Mechanism:

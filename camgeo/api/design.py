@@ -82,7 +82,7 @@ class Design:
         from camgeo.recipe.figures import FIGURES, there
 
         given = set(self.recipe.marks)
-        offers = self.recipe.cam.offers
+        offers = self.recipe.cam.arrangement.offers
         names = [name for name, one in FIGURES.items() if one.of == "design" and there(one.needs, offers, given)]
         found = of_design(self.recipe, self.exact, self.exact.checks, names)
         return Figures({name: Figure.of(self.recipe, one) for name, one in found.items()})
@@ -93,7 +93,7 @@ class Design:
     def unit(self) -> Literal["mm", "rad"]:
         """Unit of the motion: a lift or a stroke is in mm, a swing in radians."""
         driven = self.exact.driven
-        unit = self.exact.position.unit if driven is None else driven.mechanism.unit
+        unit = self.exact.motion.unit if driven is None else driven.mechanism.unit
         return "rad" if unit == "deg" else "mm"
 
     @overload
@@ -126,7 +126,7 @@ class Design:
             mechanism = exact.driven.mechanism
             found = mechanism.at(mechanism.relative(angle), order)
             return np.asarray(found.over_shaft(found.output)[order])
-        swing: Array = exact.position.rows(angle, order)[order]
+        swing: Array = exact.motion.rows(angle, order)[order]
         return swing
 
     # --- contour ------------------------------------------------------------------------------------------------------

@@ -83,7 +83,7 @@ def shoe(radius: float, angle: Array) -> Stand:
 def on_stem(view: View[Translating, Round], drive: Drive) -> Assembly:
     """Return the mechanism of a roller or a shoe on a stem."""
     s, z, line = drive.sizes, Levels.of(drive), view.guide.offset
-    place = lifted(view.design.position, view.datum, line)
+    place = lifted(view.design.motion, view.datum, line)
     x = view.datum + view.travel(SHAFT)[0]
     foot = stood(view)((0.0, 0.0), 0.0, (STEM, place), drive)
     first = max(float(x.max()) + _beyond(foot), drive.reach) + s.space
@@ -113,8 +113,8 @@ def on_arm(view: View[Oscillating, Round], drive: Drive) -> Assembly:
     """Return the mechanism of a roller or a shoe on an arm. Raises BodyError where the cam reaches over the pivot."""
     stand, lever = stood(view), view.guide
     _clear(lever.pivot, drive)
-    place = swung(view.design.position, lever.pivot, view.datum, lever.side)
-    foot = stand((lever.length or 0.0, 0.0), 0.5 * math.pi * lever.side, ("arm", place), drive)
+    place = swung(view.design.motion, lever.pivot, view.datum, lever.side)
+    foot = stand((lever.arm, 0.0), 0.5 * math.pi * lever.side, ("arm", place), drive)
     return arm(place, lever.pivot, [foot], drive, (SPRING,))
 
 
@@ -135,7 +135,7 @@ def roller_frame(view: View[Translating, Roller], drive: Drive) -> Assembly:
     s, z, shaft = drive.sizes, Levels.of(drive), drive.shaft
     foot, radius = view.datum, view.touch.radius
     apart = foot + view.contacts[1].datum
-    place = lifted(view.design.position, foot)
+    place = lifted(view.design.motion, foot)
     x = foot + view.travel(SHAFT)[0]
     least, most = float(x.min()), float(x.max())
     # the base's boss stands through the slot, and so does a hub below the disc
@@ -196,7 +196,7 @@ def face_on_arm(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
         Plate(disc(hub), (eye(s),), low, high),
         Plate(box(inner, y0, float(view.place(SHAFT).max()) + s.bar, y1), (), low, high),
     )
-    place, pivot = swung(view.design.position, arm_of.pivot, view.datum, arm_of.side), (arm_of.pivot, 0.0)
+    place, pivot = swung(view.design.motion, arm_of.pivot, view.datum, arm_of.side), (arm_of.pivot, 0.0)
     follower = Member("follower", plates, "follower", place, ARM_COLOUR)
     width = max(2.0 * base_radius(drive), drive.reach)
     stand = bearing(drive, [bar((0.0, 0.0), pivot, width)], low + disk.bottom - s.gap)

@@ -93,7 +93,7 @@ def rolling(
 def double_roller(view: View[Oscillating, Roller], drive: Drive) -> Assembly:
     """Return the mechanism of a double roller."""
     away, alpha = view.guide.pivot, view.contacts[0].apart
-    place = swinging(view.design.position, away)
+    place = swinging(view.design.motion, away)
     ends = [(away * math.cos(side * alpha), away * math.sin(side * alpha)) for side, _ in SIDES]
     feet = [
         rolling(end, view.touch.radius, ("arm", place), drive, names=(f"roller-{name}", name))
@@ -156,7 +156,7 @@ def flat_pair(view: View[Oscillating, Flat], drive: Drive) -> Assembly:
         along = side * (half + 0.5 * math.pi)
         y0, y1 = sorted((-side * s.gap_each_side, -side * (s.gap_each_side + s.bar)))
         plates.append(Plate(moved(box(inner, y0, float(lever.max()) + s.bar, y1), 0.0, 0.0, along), (), low, high))
-    place, pivot = swinging(view.design.position, away), (away, 0.0)
+    place, pivot = swinging(view.design.motion, away), (away, 0.0)
     pair = Member("pair", tuple(plates), "pair", place, ARM_COLOUR)
     width = max(2.0 * base_radius(drive), reach)
     foot = bearing(drive, [bar((0.0, 0.0), pivot, width)], low + disk.bottom - s.gap)

@@ -53,7 +53,7 @@ def yoke(view: View[Translating, Flat], drive: Drive) -> Assembly:
     half = 0.5 * s.bar
     boxes = (box(right, -half, ends[0], half), box(ends[1], -half, left, half))
     stems = [Plate(outline, (), low, high) for outline in boxes]
-    follower = Member("yoke", (frame, *stems), "yoke", lifted(view.design.position), FOLLOWER_COLOUR)
+    follower = Member("yoke", (frame, *stems), "yoke", lifted(view.design.motion), FOLLOWER_COLOUR)
     held = [Fit("the yoke's faces about the cam", s.clearance)]
     guides = [("right", first), ("left", last - guide_length(s))]
     return guided([follower], guides, (low, high), low, drive, fits=held)
@@ -80,7 +80,7 @@ def face_on_stem(view: View[Translating, Flat], drive: Drive) -> Assembly:
     lean = half * abs(math.tan(tilt))
     begin = max(lean, s.wall / math.cos(tilt) - lean)
     plates = Plate(plate, (), low, high), Plate(box(begin, -half, end, half), (), low, high)
-    follower = Member("follower", plates, "follower", lifted(view.design.position, view.datum, line), FOLLOWER_COLOUR)
+    follower = Member("follower", plates, "follower", lifted(view.design.motion, view.datum, line), FOLLOWER_COLOUR)
     touching = frozenset({frozenset({"cam", follower.name})})
     return guided(
         [follower], [("right", first)], (low, high), low, drive, touching=touching, remarks=(LOOSE,), line=line

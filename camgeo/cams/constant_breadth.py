@@ -6,11 +6,13 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Intent, Undercut
+from camgeo.cams.faced import SizeAdvice
+from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam
 from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.cams.motion import FormulaAsked
 from camgeo.schema.fields import Table, length
+from kin.law.contacts import Arrangement, Flat, Translating
 
 if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
     from kin.law.sources.motion import Motion
+    from kin.law.support_function import Lift
 
 ROUNDED = 1e-9  # rad, by which segments may miss their angle (as in kin.law.sources.programme)
 
@@ -39,7 +42,6 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     """
 
     kind: ClassVar[str] = "constant-breadth"
-    offers: ClassVar[frozenset[str]] = frozenset({"face", "plate"})
     always_in_a_yoke: ClassVar[bool] = True
     base_radius: float
     motion: MotionAsked
@@ -47,7 +49,7 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
     swings: bool = False
     frame: SlidingFrame | None = None
 
-    def intent(self) -> Intent:
+    def lift(self) -> Lift:
         """The lift of the first face over a whole turn (SW eqs. 2 to 4)."""
         from kin.law.support_function import lift_constant_breadth
 
@@ -58,10 +60,10 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         swing = self.frame_swing()
         return super().half_turn() if swing is None else swing.half_turn
 
-    def joints(self, intent: Intent) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[Joint, ...]:
         """Those of the half turn, or of the swing over the shaft angle, rad."""
         swing = self.frame_swing()
-        return super().joints(intent) if swing is None else swing.joints
+        return super().joints() if swing is None else swing.joints
 
     @property
     def by_linkage(self) -> bool:
@@ -92,15 +94,15 @@ class ConstantBreadthCam(HalfTurnCam, FlatFacedCam):
         return frame_swing(motion, self.frame.ground, self.frame.rocker, self.frame.side)
 
     @property
-    def size_field(self) -> tuple[str, float]:
-        """The base radius."""
-        return "base radius", 1.0
+    def advice(self) -> SizeAdvice:
+        """A larger base radius."""
+        return SizeAdvice(gain=1.0)
 
     def circles(self) -> tuple[Circle, ...]:
         """The base circle as it was given, which a dwell away from it does not touch."""
         return (Circle("base circle", self.base_radius),)
 
-    def grown(self, out: float, scale: float) -> Cam:
+    def grown(self, out: float, scale: float) -> ConstantBreadthCam:
         """A larger base circle."""
         return replace(self, base_radius=scale * (self.base_radius + out))
 
@@ -129,4 +131,4 @@ def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     )
 
 
-FAMILY = Family(ConstantBreadthCam, TABLE, build, check)
+FAMILY = Family(ConstantBreadthCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check)

@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Intent, Undercut
-from camgeo.cams.guided import GuidedCam
+from camgeo.cams.family import UNDERCUT, Cam, Family, Follower, GrownError, Undercut
+from camgeo.cams.guided import LARGER_BASE, ExactGuided, GuidedCam, RoundAdvice
 from camgeo.cams.half_turn import MOTION, HalfTurnCam, check_half_turn
 from camgeo.schema.fields import Table, length
-from kin.law.contacts import Roller, opposite
+from kin.law.contacts import Arrangement, Roller, Translating, opposite
 
 if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked
@@ -29,43 +29,52 @@ class ConstantDiameterCam(HalfTurnCam, GuidedCam):
     """A cam between two opposite rollers of one frame, from the motion over one half turn."""
 
     kind: ClassVar[str] = "constant-diameter"
-    gain: ClassVar[float | None] = None
-    offers: ClassVar[frozenset[str]] = GuidedCam.offers | {"rolling"}
     base_radius: float
     roller_radius: float
     motion: MotionAsked
     undercut: Undercut
 
     @property
-    def touch_radius(self) -> float:
-        """Radius of both rollers, mm."""
-        return self.roller_radius
+    def arrangement(self) -> Arrangement:
+        """Two rollers on a line through the shaft."""
+        return Arrangement(Translating, Roller, 2)
 
     @property
-    def guide(self) -> moving_frame.Translating:
+    def touch(self) -> Roller:
+        """Both rollers."""
+        return Roller(self.roller_radius)
+
+    @property
+    def advice(self) -> RoundAdvice:
+        """In the words of the roller."""
+        return RoundAdvice(self, less_steep=LARGER_BASE)
+
+    @property
+    def led(self) -> moving_frame.Translating:
         """Through the shaft."""
         from camgeo.curve import moving_frame
 
         return moving_frame.Translating(self.base_radius + self.roller_radius)
 
-    def intent(self) -> Intent:
-        """The displacement of the first roller over a whole turn."""
+    def exact(self, *, framed: bool = False) -> ExactGuided:  # noqa: ARG002
+        """By the displacement of the first roller over a whole turn."""
         from camgeo.curve.moving_frame import Displacement
         from kin.law.sources.motion import opposed
 
-        return Displacement.of(opposed(self.half_turn()))
+        return ExactGuided(self, Displacement.of(opposed(self.half_turn())))
 
-    def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
+    def follower(self, law: Displacement) -> Follower:
         """A frame with two rollers."""
-        contacts = opposite(Roller(self.roller_radius), self.apart(intent), self.guide.foot)
+        s = law.derivatives(np.array([0.0, math.pi]), 0)[0]
+        apart = 2.0 * (self.base_radius + self.roller_radius) + float(s.sum())
+        contacts = opposite(self.touch, apart, self.led.foot)
         return Follower("roller yoke", contacts, ("constant-diameter", "pressure-angle"), "form-closure")
 
-    def apart(self, intent: Intent) -> float:
-        """Distance of the rollers' centres, mm."""
-        s = cast("Displacement", intent).derivatives(np.array([0.0, math.pi]), 0)[0]
-        return 2.0 * (self.base_radius + self.roller_radius) + float(s.sum())
+    def resized(self, base: float, pivot: float | None = None) -> ConstantDiameterCam:  # noqa: ARG002 - it has no arm
+        """With another base radius."""
+        return replace(self, base_radius=base)
 
-    def grown(self, out: float, scale: float) -> Cam:
+    def grown(self, out: float, scale: float) -> ConstantDiameterCam:
         """Smaller rollers on the same pitch curve."""
         if not self.roller_radius > out:
             raise GrownError("the roller's radius", self.roller_radius)
@@ -94,4 +103,4 @@ def build(cam: Values, mm: float) -> Cam:  # noqa: ARG001
     return ConstantDiameterCam(cam["base_radius"], cam["roller_radius"], cam["motion"], undercut)
 
 
-FAMILY = Family(ConstantDiameterCam, TABLE, build, check)
+FAMILY = Family(ConstantDiameterCam.kind, Arrangement(Translating, Roller, 2), TABLE, build, check)

@@ -5,23 +5,28 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from camgeo.cams.disc_cams import (
-    DiscCam,
-    OscillatingFaceCam,
-    OscillatingRollerCam,
-    OscillatingRoundCam,
-    TranslatingFaceCam,
-    TranslatingRollerCam,
-    TranslatingRoundCam,
-)
-from camgeo.cams.family import UNDERCUT, Cam, Family
+from camgeo.cams.disc_cams import DiscCam
+from camgeo.cams.family import UNDERCUT, Family
 from camgeo.cams.motion import check_whole_turn, motion_field
-from camgeo.cams.sizing import SIZING, Sizing, demand_kept
+from camgeo.cams.sizing import SIZING, Sizing, sized
 from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length
 from camgeo.schema.json_schema import one_of_schema
 from camgeo.schema.reader import kind_of
 from camgeo.schema.yaml_source import Mapping as Written
 from camgeo.schema.yaml_source import entries
+from kin.law.contacts import (
+    LEADING,
+    TRAILING,
+    Arrangement,
+    Flat,
+    Guide,
+    KnifeEdge,
+    Oscillating,
+    Roller,
+    Shoe,
+    Touch,
+    Translating,
+)
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
@@ -111,19 +116,14 @@ TABLE = Table(
 )
 
 
-def variant(node: Node) -> type[Cam]:
-    """Give the class of a cam as written, by its follower."""
+def variant(node: Node) -> Arrangement:
+    """Give the arrangement of a cam as written: its touch, and whether an arm leads it."""
     follower = entries(node).get("follower") if isinstance(node, Written) else None
     arm = isinstance(follower, Written) and "arm" in entries(follower)
-    return _class(kind_of(follower, FOLLOWERS), arm=arm)
+    return Arrangement(Oscillating if arm else Translating, TOUCHES.get(kind_of(follower, FOLLOWERS), Roller))
 
 
-def _class(kind: str, *, arm: bool) -> type[DiscCam]:
-    return _ARMS.get(kind, OscillatingRoundCam) if arm else _STEMS.get(kind, TranslatingRoundCam)
-
-
-_STEMS: dict[str, type[DiscCam]] = {"roller": TranslatingRollerCam, "flat": TranslatingFaceCam}
-_ARMS: dict[str, type[DiscCam]] = {"roller": OscillatingRollerCam, "flat": OscillatingFaceCam}
+TOUCHES: dict[str, type[Touch]] = {"roller": Roller, "knife-edge": KnifeEdge, "shoe": Shoe, "flat": Flat}
 
 
 def check(cam: Values, reader: Reader) -> None:
@@ -158,8 +158,7 @@ def _size(cam: Values, reader: Reader) -> None:
         return
     start = build({**cam, "base_radius": 1.0, "follower": _placed(follower)}, reader.mm)
     try:
-        found = start.sized(asked, {**follower, **follower.get("arm", {})})
-        demand_kept(found, asked)
+        found = sized(start, asked, {**follower, **follower.get("arm", {})})
     except IntentError as error:
         path = f"cam.{error.field}"
         remedy = "" if error.field.startswith("motion") else "give base_radius instead"  # no size mends a motion
@@ -182,20 +181,31 @@ def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
         sized: DiscCam = cam["sized"]
         return sized
     follower: Values = dict(cam["follower"])
-    kind, arm = follower.pop("kind"), follower.pop("arm", None)
-    common: Values = {
-        "base_radius": cam["base_radius"],
-        "motion": cam["motion"],
-        "undercut": cam.get("undercut", "refuse"),
-        "touch": {"flat": "flat face", "knife-edge": "knife edge"}.get(kind, kind),
-    }
-    if arm is not None:
-        common |= {"side": "trailing", **arm}
-    if kind != "flat":
-        common["track"] = cam.get("track", "external")
-    elif arm is not None:
-        common["nearer"] = common.pop("face", 0.0)
-    return _class(kind, arm=arm is not None)(**common, **follower)
+    arm = follower.get("arm")
+    if arm is None:
+        guide: Guide = Translating(follower.get("offset", 0.0))
+    else:
+        side = TRAILING if arm.get("side", "trailing") == "trailing" else LEADING
+        guide = Oscillating(arm["pivot"], side, arm.get("length"))
+    return DiscCam(
+        base_radius=cam["base_radius"],
+        guide=guide,
+        touch=_touch(follower, arm or {}),
+        motion=cam["motion"],
+        undercut=cam.get("undercut", "refuse"),
+        side=-1 if cam.get("track") == "internal" else 1,
+    )
 
 
-FAMILY = Family(TranslatingRoundCam, TABLE, build, check, variant)
+def _touch(follower: Values, arm: Values) -> Touch:
+    match follower["kind"]:
+        case "flat":
+            return Flat(follower.get("tilt", 0.0), follower.get("width"), arm.get("face", 0.0))
+        case "knife-edge":
+            return KnifeEdge()
+        case "shoe":
+            return Shoe(follower["radius"])
+    return Roller(follower["radius"])
+
+
+FAMILY = Family(DiscCam.kind, Arrangement(Translating, Roller), TABLE, build, check, variant)

@@ -4,91 +4,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from camgeo.cams.family import (
-    Cam,
-    Circle,
-    Family,
-    Follower,
-    GrownError,
-    Intent,
-    Profile,
-    Undercut,
-)
-from camgeo.cams.pairs import PairCam, Route, build_route, check, pair_table
-from camgeo.cams.position import Position, SwingPosition
+from camgeo.cams.family import Cam, Circle, Family, Follower, GrownError, Surface, Undercut
+from camgeo.cams.pairs import PairAdvice, PairCam, Route, build_route, check, pair_table
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
 from camgeo.schema.fields import length
-from kin.law.contacts import Roller, on_one_arm
+from kin.law.contacts import Arrangement, Oscillating, Roller, on_one_arm
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from camgeo.schema.reader import Values
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
 
+ARRANGEMENT = Arrangement(Oscillating, Roller, 2)
+
 
 @dataclass(frozen=True)
-class DoubleRollerCam(PairCam):
-    """A single disk that works two rollers on one arm (Wunderlich); pi/alpha = lam/mu in lowest terms, mu odd."""
-
-    kind: ClassVar[str] = "double-roller"
-    offers: ClassVar[frozenset[str]] = frozenset({"roller", "swings"})
-    swing_of: ClassVar[Literal["arm", "pair"]] = "arm"
-    lam: int
-    mu: int
-    arm: float
-    roller_radius: float
-    route: Route
-    undercut: Undercut
-
-    @property
-    def touch_radius(self) -> float:
-        """Radius of both rollers, mm."""
-        return self.roller_radius
-
-    def position(self, intent: Intent) -> Position:
-        """The swing psi of the first arm."""
-        return SwingPosition(cast("Transmission", intent))
-
-    def profile(self, intent: Intent) -> Profile:
-        """The pitch curve (W section 4), and the contour within it by the roller's radius."""
-        from camgeo.curve.wunderlich import PitchShape
-        from kin.law.transmission import Transmission
-
-        if not isinstance(intent, Transmission):
-            raise TypeError("a lift is no motion of a double follower")
-        pitch = PitchShape(intent)
-        return Profile(Curve.whole(pitch), Curve.whole(Parallel(pitch, self.roller_radius)), self.roller_radius)
-
-    def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
-        """Two rollers on one arm, its pivot as far from the shaft as from them."""
-        checks = ("closing-equation", "velocity-ratio", "pressure-angle")
-        alpha = cast("Transmission", intent).alpha
-        contacts = on_one_arm(self.arm, self.arm, Roller(self.roller_radius), math.pi, alpha)
-        return Follower("double roller", contacts, checks, "form-closure")
-
-    def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:
-        """Between the normal and the way of a roller's arm; each of both rollers runs round the whole pitch curve."""
-        law = cast("Transmission", intent)
-
-        def angle(t: Array) -> Array:
-            at = profile.base.sample(t)
-            phi = law.at(t, 0)[0][0]
-            arm = at.point - law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
-            arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
-            normal = at.normal
-            across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
-            found: Array = np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across)
-            return found
-
-        return angle
+class RollerPairAdvice(PairAdvice):
+    """Of two rollers: smaller ones."""
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A smaller roller."""
@@ -100,16 +38,68 @@ class DoubleRollerCam(PairCam):
         """A smaller roller."""
         return f"a roller radius below {downward(value)} {unit}" if value > 0.0 else ""
 
+
+@dataclass(frozen=True)
+class ArmPressure:
+    """Angle between the normal and the way of a roller's arm; each of both rollers runs round the whole pitch curve."""
+
+    law: Transmission
+    base: Curve
+
+    def __call__(self, t: Array) -> Array:
+        """At parameters t (n,), rad."""
+        at, phi = self.base.sample(t), self.law.at(t, 0)[0][0]
+        arm = at.point - self.law.arm * np.column_stack([np.cos(phi), np.sin(phi)])
+        arm /= np.hypot(arm[:, 0], arm[:, 1])[:, None]
+        normal = at.normal
+        across = np.abs(arm[:, 0] * normal[:, 1] - arm[:, 1] * normal[:, 0])
+        angle: Array = np.arctan2(np.abs(np.sum(arm * normal, axis=1)), across)
+        return angle
+
+
+@dataclass(frozen=True)
+class DoubleRollerCam(PairCam):
+    """A single disk that works two rollers on one arm (Wunderlich); pi/alpha = lam/mu in lowest terms, mu odd."""
+
+    kind: ClassVar[str] = "double-roller"
+    swing_of: ClassVar[Literal["arm", "pair"]] = "arm"
+    arrangement: ClassVar[Arrangement] = ARRANGEMENT
+    lam: int
+    mu: int
+    arm: float
+    roller_radius: float
+    route: Route
+    undercut: Undercut
+
     @property
-    def least_pressure_angle(self) -> float:
+    def touch(self) -> Roller:
+        """Both rollers."""
+        return Roller(self.roller_radius)
+
+    @property
+    def advice(self) -> RollerPairAdvice:
         """Without a swing the normal points to the shaft; the arm is at alpha/2 to it, alpha = 180 mu/lambda."""
-        return 90.0 * (1.0 - self.mu / self.lam)
+        return RollerPairAdvice(self, least_pressure_angle=90.0 * (1.0 - self.mu / self.lam))
+
+    def follower(self, law: Transmission, out: float) -> Follower:  # noqa: ARG002
+        """Two rollers on one arm, its pivot as far from the shaft as from them."""
+        checks = ("closing-equation", "velocity-ratio", "pressure-angle")
+        contacts = on_one_arm(self.arm, self.arm, self.touch, math.pi, law.alpha)
+        return Follower("double roller", contacts, checks, "form-closure")
+
+    def surface(self, law: Transmission, out: float) -> Surface:  # noqa: ARG002 - the rollers are smaller by it
+        """The pitch curve (W section 4), and the contour within it by the roller's radius."""
+        from camgeo.curve.wunderlich import PitchShape
+
+        pitch = PitchShape(law)
+        base, curve = Curve.whole(pitch), Curve.whole(Parallel(pitch, self.roller_radius))
+        return Surface(base, curve, self.roller_radius, pressure=ArmPressure(law, base))
 
     def circles(self) -> tuple[Circle, ...]:
         """The prime circle, and the pivot's."""
         return (Circle("prime circle"), Circle("pivot circle", self.arm))
 
-    def grown(self, out: float, scale: float) -> Cam:
+    def grown(self, out: float, scale: float) -> DoubleRollerCam:
         """A smaller roller on the same pitch curve."""
         if not self.roller_radius > out:
             raise GrownError("the roller's radius", self.roller_radius)
@@ -130,4 +120,4 @@ def build(cam: Values, mm: float) -> Cam:
     )
 
 
-FAMILY = Family(DoubleRollerCam, TABLE, build, check)
+FAMILY = Family(DoubleRollerCam.kind, ARRANGEMENT, TABLE, build, check)

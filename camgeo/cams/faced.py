@@ -5,92 +5,118 @@ The contour is the envelope of the face (`camgeo.curve.disc`); its parameter is 
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from typing import TYPE_CHECKING, ClassVar, cast
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.cams.family import Cam, Circle, Profile
+from camgeo.cams.family import Advice, ExactCam, Surface
+from camgeo.cams.position import Position, position_of
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from camgeo.cams.family import Intent
+    from camgeo.cams.disc_cams import DiscCam
+    from camgeo.cams.family import Follower
     from camgeo.curve.disc import Face
-    from camgeo.curve.extremes import Figure
-    from camgeo.curve.face import FaceShape
     from camgeo.curve.moving_frame import Displacement
-    from kin.law.piecewise import Piecewise
+    from kin.follower.follower import Follower as Gauge
+    from kin.law.joints import Joint
     from kin.numeric.arrays import Array
 
-LARGER_BASE = "a larger base radius, a smaller stroke, or the same over a wider angle"
 
+@dataclass(frozen=True)
+class SizeAdvice(Advice):
+    """Of a flat face: a larger cam. `size` is the key that makes it larger all round, by `share` per unit of radius."""
 
-class FacedCam(Cam):
-    """A cam whose follower is a flat face, led along a line or about a pivot."""
-
-    less_steep: ClassVar[str] = LARGER_BASE
-    offers: ClassVar[frozenset[str]] = frozenset({"face", "guided"})
-    base_radius: float
-
-    @abstractmethod
-    def face(self, motion: Displacement) -> Face:
-        """The face over the shaft angle; raises IntentError where it cannot be driven."""
-
-    def profile(self, intent: Intent) -> Profile:
-        """The envelope of the face."""
-        from camgeo.curve.disc import face_shape
-        from camgeo.curve.moving_frame import Displacement
-
-        if not isinstance(intent, Displacement):
-            raise TypeError("a face on a guide takes a displacement over the shaft angle")
-        whole = Curve.whole(face_shape(self.face(intent)))
-        return Profile(whole, whole, 0.0)
-
-    def law(self, intent: Intent) -> Piecewise:
-        """The displacement."""
-        return cast("Displacement", intent).law()
-
-    def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
-        """Between the face's normal and its way."""
-        from kin.numeric.elementary import Jet
-
-        face = cast("FaceShape[Face]", profile.base.shape).law
-        return lambda t: np.arctan(face.slope(Jet.variable(t, 1)).c[0])
-
-    def contact_place(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
-        """Along the face, mm, from the stem's axis or from the arm's pivot."""
-        from kin.numeric.elementary import Jet
-
-        face = cast("FaceShape[Face]", profile.base.shape).law
-        return lambda t: np.asarray(face.contact(Jet.variable(t, 1)).c[0])
-
-    def series(self, intent: Intent, profile: Profile) -> dict[str, Figure]:  # noqa: ARG002
-        """Of the pressure angle, and of the place of contact."""
-        face = cast("FaceShape[Face]", profile.base.shape).law
-        return {"slope": face.slope, "contact": face.contact}
-
-    def circles(self) -> tuple[Circle, ...]:
-        """The base circle, which the face is tangent to at displacement 0."""
-        return (Circle("base circle", self.base_radius),)
+    size: str = "base radius"
+    share: float = 1.0
+    beside: str = ""
+    free: str = "have no undercut"
 
     def larger(self, by: float, unit: str = "") -> str:
-        """Say how radii of curvature, which grow with the base radius, grow by more than `by`, in its unit."""
+        """Say how radii of curvature, which grow with the size, grow by more than `by`, in its unit."""
         if by == 0.0:  # a radius that is 0 needs no more than not to be
-            return "a larger base radius"
-        return f"a base radius larger by more than {upward(by)} {unit}".rstrip()
+            return f"a larger {self.size}{self.beside}"
+        return f"{f'a {self.size} larger by more than {upward(self.share * by)} {unit}'.rstrip()}{self.beside}"
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A larger cam."""
-        return f"{self.larger(free_at / mm)} would be free of it"
+        return f"{self.larger(free_at / mm)} would {self.free}"
 
     def rounder(self, value: float, limit: float, unit: str) -> str:
         """A larger cam."""
         return self.larger(limit - value, unit)
 
-    def grown_intent(self, intent: Intent, out: float, scale: float) -> Intent:  # noqa: ARG002
+
+@dataclass(frozen=True)
+class FacePressure:
+    """Pressure angle of a flat face."""
+
+    face: Face
+
+    def __call__(self, t: Array) -> Array:
+        """At shaft angles t (n,), rad."""
+        from kin.numeric.elementary import Jet
+
+        angle: Array = np.arctan(self.face.slope(Jet.variable(t, 1)).c[0])
+        return angle
+
+
+@dataclass(frozen=True)
+class FacePlace:
+    """Where a flat face is touched."""
+
+    face: Face
+
+    def __call__(self, t: Array) -> Array:
+        """At shaft angles t (n,), mm from the stem's axis or from the arm's pivot."""
+        from kin.numeric.elementary import Jet
+
+        return np.asarray(self.face.contact(Jet.variable(t, 1)).c[0])
+
+
+@dataclass(frozen=True, eq=False)
+class ExactFaced(ExactCam):
+    """A disc cam for a flat face by the displacement of its follower."""
+
+    cam: DiscCam
+    law: Displacement
+
+    @cached_property
+    def follower(self) -> Follower:
+        """As the family has it."""
+        return self.cam.follower(self.law)
+
+    @cached_property
+    def motion(self) -> Position:
+        """The displacement."""
+        return position_of(self.cam.guide, self.law)
+
+    @cached_property
+    def surface(self) -> Surface:
+        """The envelope of the face."""
+        from camgeo.curve.disc import face_shape
+
+        face = self.cam.face(self.law)
+        whole = Curve.whole(face_shape(face))
+        series = {"slope": face.slope, "contact": face.contact}
+        return Surface(whole, whole, pressure=FacePressure(face), place=FacePlace(face), series=series)
+
+    @cached_property
+    def gauge(self) -> Gauge:
+        """The contacts with the displacement."""
+        from kin.follower.follower import follower_of
+
+        return follower_of(self.follower.contacts, self.law.law())
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Those that the recipe gives."""
+        return self.cam.joints()
+
+    def grown(self, out: float, scale: float) -> ExactFaced:
         """The face farther out; a lift is scaled with the drawing, a swing is not."""
-        law = cast("Displacement", intent)
-        return law.scaled(scale) if self.unit == "mm" else law
+        lifts = self.cam.guide.unit == "mm"
+        return ExactFaced(self.cam.grown(out, scale), self.law.scaled(scale) if lifts else self.law)

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar, cast
+from abc import abstractmethod
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import Cam, Follower, Intent, Profile
+from camgeo.cams.family import Cam, ExactCam, Follower, Proof, Surface
 from camgeo.cams.position import LiftPosition, Position
-from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
-from kin.law.contacts import Contact, Flat, Translating, opposite
+from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
+from kin.numeric.angles import degrees
 from kin.numeric.distinct import distinct
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
-    from kin.law.piecewise import Piecewise
+    from kin.follower.follower import Follower as Gauge
+    from kin.law.contacts import Guide, Touch
+    from kin.law.joints import Joint
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
@@ -27,70 +32,122 @@ STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however shor
 
 
 class FlatFacedCam(Cam):
-    """A cam whose follower's face is pushed along its normal."""
-
-    def position(self, intent: Intent) -> Position:
-        """The lift."""
-        lift = cast("Lift", intent)
-        return LiftPosition(lift, lift.datum)
-
-    def profile(self, intent: Intent) -> Profile:
-        """The envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
-        from camgeo.curve.support import SupportShape
-        from kin.law.support_function import Lift
-
-        if not isinstance(intent, Lift):
-            raise TypeError("a motion law of an arm is no motion of a single flat face")
-        whole = Curve.whole(SupportShape(intent))
-        return Profile(whole, whole, 0.0)
-
-    def follower(self, intent: Intent, *, framed: bool) -> Follower:
-        """A yoke where two parallel faces fit the cam, else one face."""
-        mean, deviation, _ = breadth_of(cast("Lift", intent))
-        yoke = self.always_in_a_yoke or is_constant(mean, deviation)
-        name = "square frame" if framed else "yoke" if yoke else "flat face"
-        if not yoke:
-            return Follower(name, (Contact(Translating(), Flat()),), ("contact-travel",))
-        return Follower(name, opposite(Flat(), mean), ("constant-breadth", "contact-travel"), "constant-breadth")
-
-    def contact_place(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
-        """From the line through the shaft, along the face: p'."""
-        lift = cast("Lift", intent)
-        return lambda t: lift.derivatives(t, 1)[1]
+    """A cam whose follower's face is pushed along its normal; a linkage can carry it in a square frame."""
 
     always_in_a_yoke: ClassVar[bool] = False
     """Whether the motion is given for two faces, so that a breadth that varies is a fault."""
 
-    def law(self, intent: Intent) -> Piecewise:
-        """The lift."""
-        return cast("Lift", intent).law
-
-    def larger(self, by: float, unit: str = "") -> str:
-        """Say how radii of curvature grow by more than `by`, in the recipe's unit."""
-        name, share = self.size_field
-        if by == 0.0:  # a radius that is 0 needs no more than not to be
-            return f"a larger {name}"
-        return f"a {name} larger by more than {upward(share * by)} {unit}".rstrip()
+    @property
+    def arrangement(self) -> Arrangement:
+        """One face, or two where the breadth is constant."""
+        return Arrangement(Translating, Flat, 2)
 
     @property
-    def size_field(self) -> tuple[str, float]:
-        """The key that makes the cam larger all round, and how much of it per unit of radius.
+    def touch(self) -> Flat:
+        """A face as wide as it needs to be."""
+        return Flat()
 
-        A constant added to the support function adds as much to every radius (AS eq. 3).
-        """
-        raise NotImplementedError
+    @abstractmethod
+    def lift(self) -> Lift:
+        """Distance of the face from the shaft over the shaft angle."""
 
-    def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A larger cam."""
-        return f"{self.larger(free_at / mm)} would have no undercut"
+    def exact(self, *, framed: bool = False) -> ExactLifted:
+        """By its support function."""
+        return ExactLifted(self, self.lift(), framed)
 
-    def rounder(self, value: float, limit: float, unit: str) -> str:
-        """A larger cam."""
-        return self.larger(limit - value, unit)
+    def joints(self) -> tuple[Joint, ...]:
+        """Where derivatives of the motion that a recipe gives jump."""
+        return ()
 
-    def grown_intent(self, intent: Intent, out: float, scale: float) -> Intent:
+    def surface(self, whole: Curve) -> Surface:
+        """The envelope of the face as the contour; a family may have corners on it."""
+        return Surface(whole, whole)
+
+    @abstractmethod
+    def grown(self, out: float, scale: float) -> FlatFacedCam:
+        """The cam as far as its own lengths are drawn, the metal grown by `out` mm and then scaled."""
+
+
+@dataclass(frozen=True)
+class LiftPlace:
+    """Where a flat face is touched: p' from the line through the shaft, along the face."""
+
+    lift: Lift
+
+    def __call__(self, t: Array) -> Array:
+        """At shaft angles t (n,), mm."""
+        slope: Array = self.lift.derivatives(t, 1)[1]
+        return slope
+
+
+@dataclass(frozen=True, eq=False)
+class ExactLifted(ExactCam):
+    """Such a cam by its lift; `contacts` are those of the cam that this one is grown from."""
+
+    cam: FlatFacedCam
+    law: Lift
+    framed: bool = False
+    contacts: tuple[Contact[Guide, Touch], ...] = ()
+
+    @cached_property
+    def follower(self) -> Follower:
+        """A yoke where two parallel faces fit the cam, else one face."""
+        contacts = self.contacts
+        if not contacts:
+            mean, deviation, _ = breadth_of(self.law)
+            yoke = self.cam.always_in_a_yoke or is_constant(mean, deviation)
+            contacts = opposite(Flat(), mean) if yoke else (Contact(Translating(), Flat()),)
+        two = len(contacts) > 1
+        name = "square frame" if self.framed else "yoke" if two else "flat face"
+        if not two:
+            return Follower(name, contacts, ("contact-travel",))
+        return Follower(name, contacts, ("constant-breadth", "contact-travel"), "constant-breadth")
+
+    @cached_property
+    def motion(self) -> Position:
+        """The lift."""
+        return LiftPosition(self.law, self.law.datum)
+
+    @cached_property
+    def surface(self) -> Surface:
+        """The envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
+        from camgeo.curve.support import SupportShape
+
+        return replace(self.cam.surface(Curve.whole(SupportShape(self.law))), place=LiftPlace(self.law))
+
+    @cached_property
+    def gauge(self) -> Gauge:
+        """The contacts with the lift."""
+        from kin.follower.follower import follower_of
+
+        return follower_of(self.follower.contacts, self.law.law)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Those that the recipe gives."""
+        return self.cam.joints()
+
+    @property
+    def plate(self) -> Lift:
+        """The lift."""
+        return self.law
+
+    @property
+    def proofs(self) -> Mapping[str, Callable[[], Proof]]:
+        """That of a yoke's breadth."""
+        return {"constant-breadth": self._constant_breadth}
+
+    def _constant_breadth(self) -> Proof:
+        """Constancy of the breadth, for a yoke (AS eq. 4)."""
+        mean, deviation, at = breadth_of(self.law)
+        limit = SAME_BREADTH * abs(mean)
+        return Proof(deviation <= limit, deviation, limit, "mm", degrees(at))
+
+    def grown(self, out: float, scale: float) -> ExactLifted:
         """The face farther out."""
-        return cast("Lift", intent).moved(out, scale)
+        first, *second = self.follower.contacts
+        held = (first, *(replace(one, datum=scale * (one.datum + 2.0 * out)) for one in second))
+        return ExactLifted(self.cam.grown(out, scale), self.law.moved(out, scale), self.framed, held)
 
 
 def breadth_of(lift: Lift) -> tuple[float, float, float]:

@@ -4,26 +4,32 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Literal, cast
+from typing import TYPE_CHECKING, ClassVar, Literal
 
-from camgeo.cams.family import (
-    Cam,
-    Circle,
-    Family,
-    Follower,
-    Intent,
-    Profile,
-    Undercut,
-    Unit,
-)
-from camgeo.cams.pairs import PairCam, Route, build_route, check, pair_table
-from camgeo.cams.position import Position, SwingPosition
+from camgeo.cams.family import Cam, Circle, Family, Follower, Surface, Undercut
+from camgeo.cams.pairs import PairAdvice, PairCam, Route, build_route, check, pair_table
 from camgeo.curve.curve import Curve
-from kin.law.contacts import Flat, on_one_arm
+from camgeo.curve.parallel import Parallel
+from kin.law.contacts import Arrangement, Flat, Oscillating, on_one_arm
 
 if TYPE_CHECKING:
     from camgeo.schema.reader import Values
     from kin.law.transmission import Transmission
+
+ARRANGEMENT = Arrangement(Oscillating, Flat, 2)
+
+
+@dataclass(frozen=True)
+class FacePairAdvice(PairAdvice):
+    """Of two faces: a smaller swing, as r + const closes no pair, so there is no base radius to enlarge."""
+
+    def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
+        """A smaller swing."""
+        return f"{self.less_swing(mm)} would have no undercut"
+
+    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
+        """Nothing that is known to help."""
+        return ""
 
 
 @dataclass(frozen=True)
@@ -31,54 +37,43 @@ class FlatPairCam(PairCam):
     """A single disk that works a rigid pair of flat faces, its pivot at 2 arm from the shaft (Wunderlich, 5)."""
 
     kind: ClassVar[str] = "flat-pair"
-    offers: ClassVar[frozenset[str]] = frozenset({"swings"})
-    backlash_unit: ClassVar[Unit] = "deg"
     swing_of: ClassVar[Literal["arm", "pair"]] = "pair"
+    arrangement: ClassVar[Arrangement] = ARRANGEMENT
     lam: int
     mu: int
     arm: float
     route: Route
     undercut: Undercut
 
-    def position(self, intent: Intent) -> Position:
-        """The pair's own swing psi/2."""
-        return SwingPosition(cast("Transmission", intent), 0.5)
+    @property
+    def touch(self) -> Flat:
+        """Both faces."""
+        return Flat()
 
-    def profile(self, intent: Intent) -> Profile:
-        """The curve with an isoptic circle (W section 5)."""
-        from camgeo.curve.wunderlich import FlatPairShape
-        from kin.law.transmission import Transmission
+    @property
+    def advice(self) -> FacePairAdvice:
+        """In the words of the pair."""
+        return FacePairAdvice(self)
 
-        if not isinstance(intent, Transmission):
-            raise TypeError("a lift is no motion of a double follower")
-        whole = Curve.whole(FlatPairShape(intent))
-        return Profile(whole, whole, 0.0)
-
-    def follower(self, intent: Intent, *, framed: bool) -> Follower:  # noqa: ARG002
-        """Two faces whose lines pass through their pivot."""
-        half = 0.5 * cast("Transmission", intent).alpha
-        contacts = on_one_arm(2.0 * self.arm, None, Flat(), 0.5 * math.pi, half)
+    def follower(self, law: Transmission, out: float) -> Follower:
+        """Two faces whose lines pass through their pivot, or `out` beside it."""
+        contacts = on_one_arm(2.0 * self.arm, None, Flat(nearer=-out), 0.5 * math.pi, 0.5 * law.alpha)
         return Follower("flat pair", contacts, ("closing-equation", "velocity-ratio"), "form-closure")
 
-    def free_of_undercut(self, free_at: float, mm: float) -> str:  # noqa: ARG002
-        """A smaller swing: r + const closes no pair, so there is no base radius to enlarge."""
-        return f"{self.less_swing(mm)} would have no undercut"
+    def surface(self, law: Transmission, out: float) -> Surface:
+        """The curve with an isoptic circle (W section 5), or a parallel to it."""
+        from camgeo.curve.wunderlich import FlatPairShape
 
-    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """Nothing that is known to help."""
-        return ""
+        whole = Curve.whole(FlatPairShape(law))
+        return Surface(whole, Curve.whole(Parallel(whole.shape, -out)) if out else whole)
 
     def circles(self) -> tuple[Circle, ...]:
         """The pivot's."""
         return (Circle("pivot circle", 2.0 * self.arm),)
 
-    def grown(self, out: float, scale: float) -> Cam:  # noqa: ARG002
+    def grown(self, out: float, scale: float) -> FlatPairCam:  # noqa: ARG002 - the faces stand beside by it
         """The same pair farther away."""
         return replace(self, arm=scale * self.arm)
-
-    def face_beyond(self, out: float, scale: float) -> float:
-        """By what the metal has grown."""
-        return scale * out
 
 
 TABLE = pair_table("swing of the pair, psi/2, over 180/lambda degrees of shaft angle from 0", ())
@@ -90,4 +85,4 @@ def build(cam: Values, mm: float) -> Cam:
     return FlatPairCam(lam, mu, cam["arm"], build_route(cam, mm), cam.get("undercut", "refuse"))
 
 
-FAMILY = Family(FlatPairCam, TABLE, build, check)
+FAMILY = Family(FlatPairCam.kind, ARRANGEMENT, TABLE, build, check)

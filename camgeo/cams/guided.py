@@ -1,131 +1,186 @@
-"""What cams for a roller, a knife edge or a curved shoe on a guide have in common: one moving frame draws them all.
+"""What cams for a roller, shoe or knife edge on a guide have in common: the path of its centre, a parallel, advice.
 
-The pitch curve is the path of the roller's centre round the standing cam (`camgeo.curve.moving_frame`), the contour
-its parallel by the roller's radius.
+The pitch curve is `camgeo.curve.moving_frame.CentreShape`, its parameter the shaft angle.
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar, cast
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
-from camgeo.cams.family import Cam, Circle, Profile
-from camgeo.cams.position import ArmPosition, LiftPosition, Position
+from camgeo.cams.family import Advice, Cam, Circle, ExactCam, Surface
+from camgeo.cams.position import Position, position_of
 from camgeo.common.rounding import downward, upward
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
+from kin.law.contacts import Roller, Translating
 from kin.law.programme import IntentError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from camgeo.cams.family import Intent
+    from camgeo.cams.family import Follower
+    from camgeo.curve.curve import Side as Before
     from camgeo.curve.extremes import Figure
-    from camgeo.curve.moving_frame import CentreShape, Displacement, Oscillating, Translating
-    from kin.law.piecewise import Piecewise
-    from kin.numeric.arrays import Array
+    from camgeo.curve.moving_frame import CentreShape, Displacement, Guide
+    from camgeo.curve.rates import Series
+    from kin.follower.follower import Follower as Gauge
+    from kin.law.joints import Joint
 
 LARGER_BASE = "a larger base radius, a smaller stroke, or the same over a wider angle"
+_MARGIN = 1e-3  # rad: sizes are reported rounded, and where two limits meet rounding breaks one
+
+
+@dataclass(frozen=True)
+class RoundAdvice(Advice):
+    """Of a round touch: a smaller radius on the same pitch curve."""
+
+    cam: GuidedCam
+
+    def free_of_undercut(self, free_at: float, mm: float) -> str:
+        """A smaller roller on the same pitch curve."""
+        if not free_at / mm > 0.0:
+            return f"no {self.radius_field} is proved to be free of it"
+        return f"a {self.radius_field} below {downward(free_at / mm)}{self.same_pitch(mm)} would be free of it"
+
+    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
+        """A smaller roller on the same pitch curve."""
+        mm = 25.4 if unit == "in" else 1.0
+        return f"a {self.radius_field} below {downward(value)} {unit}{self.same_pitch(mm)}" if value > 0.0 else ""
+
+    def same_pitch(self, mm: float) -> str:
+        """The base radius that leaves the prime circle as it is."""
+        word = "less" if self.cam.side > 0 else "and"
+        return f" with a base radius of {self.cam.led.prime / mm:.12g} {word} that radius"
 
 
 class GuidedCam(Cam):
     """A cam whose follower's centre is led along a line or about a pivot."""
 
-    less_steep: ClassVar[str] = LARGER_BASE
-    offers: ClassVar[frozenset[str]] = frozenset({"roller", "guided"})
     base_radius: float
 
     @property
     @abstractmethod
-    def guide(self) -> Translating | Oscillating:
+    def led(self) -> Guide:
         """How the centre is led; raises IntentError where the guide does not reach the prime circle."""
 
-    def position(self, intent: Intent) -> Position:
-        """The displacement."""
-        law = cast("Displacement", intent)
-        return LiftPosition(law) if self.unit == "mm" else ArmPosition(law, arm=cast("Oscillating", self.guide).length)
+    @abstractmethod
+    def joints(self) -> tuple[Joint, ...]:
+        """Where derivatives of the motion that a recipe gives jump."""
 
-    def profile(self, intent: Intent) -> Profile:
-        """The centre's path, and the contour within it by the radius (around it, of a ring).
+    @abstractmethod
+    def follower(self, law: Displacement) -> Follower:
+        """The follower that a motion calls for."""
 
-        A knife edge's contour is the parallel at 0: it may be hollow, which a flat face's own contour may not.
-        """
-        from camgeo.curve.moving_frame import CentreShape, Displacement
+    @abstractmethod
+    def resized(self, base: float, pivot: float | None = None) -> GuidedCam:
+        """The cam with another base radius, and of an arm another distance of the pivot, mm."""
 
-        if not isinstance(intent, Displacement):
-            raise TypeError("a follower on a guide takes a displacement over the shaft angle")
-        pitch = CentreShape(intent, self.guide)
-        whole, radius = Curve.whole(pitch), self.metal * self.touch_radius
-        return Profile(whole, Curve.whole(Parallel(pitch, radius)), radius)
-
-    def law(self, intent: Intent) -> Piecewise:
-        """The displacement."""
-        return cast("Displacement", intent).law()
-
-    def pressure_angle(self, intent: Intent, profile: Profile) -> Callable[[Array], Array]:  # noqa: ARG002
-        """Between the contact's normal and the way of the centre."""
-        return cast("CentreShape", profile.base.shape).pressure_angle
-
-    def series(self, intent: Intent, profile: Profile) -> dict[str, Figure]:  # noqa: ARG002
-        """Of the pressure angle, and of the roller."""
-        pitch = cast("CentreShape", profile.base.shape)
-        if "rolling" not in self.offers:
-            return {"slope": pitch.slope}
-        # on the inner side of a ring the roller turns the other way round
-        radius, sense = self.touch_radius, float(self.metal)
-        return {"slope": pitch.slope, "spin": lambda tau, side=1: pitch.spin(tau, side, radius, sense)}
-
-    def less_pressure(self, intent: Intent, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
-        """The least base radius on this stem; a cam with an arm has words of its own."""
-        from camgeo.curve.sizing import least_stem
-
-        if self.unit != "mm":
-            return None
-        found = least_stem(cast("Displacement", intent), rising, falling, cast("Translating", self.guide).offset)
-        base = (found.prime - self.metal * self.touch_radius) / mm
-        if base <= 0.0:
-            return None
-        size = upward(base)
-        return f"a base radius of {size}", replace(self, base_radius=float(size) * mm)  # type: ignore[type-var]
-
-    def rounder_pitch(self, intent: Intent, radius: float, mm: float) -> str:  # noqa: ARG002
-        """The base radius at which the roller is half of the pitch curve's least convex radius."""
-        from camgeo.curve.moving_frame import CentreShape
-        from camgeo.curve.sizing import least_prime
-
-        if "rolling" not in self.offers:
-            return ""
-        law, guide = cast("Displacement", intent), self.guide
-        try:
-            prime = least_prime(lambda p: CentreShape(law, guide.resized(p)), 2.0 * self.touch_radius, guide.prime)
-        except IntentError:
-            return ""
-        return f"a base radius of {upward((prime - self.metal * self.touch_radius) / mm)}"
-
-    def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A smaller roller on the same pitch curve."""
-        if not free_at / mm > 0.0:
-            return f"no {self.roller_field} is proved to be free of it"
-        return f"a {self.roller_field} below {downward(free_at / mm)}{self.same_pitch(mm)} would be free of it"
-
-    def rounder(self, value: float, limit: float, unit: str) -> str:  # noqa: ARG002
-        """A smaller roller on the same pitch curve."""
-        mm = 25.4 if unit == "in" else 1.0
-        return f"a {self.roller_field} below {downward(value)} {unit}{self.same_pitch(mm)}" if value > 0.0 else ""
-
-    def same_pitch(self, mm: float) -> str:
-        """The base radius that leaves the prime circle as it is."""
-        return f" with a base radius of {self.guide.prime / mm:.12g} {'less' if self.metal > 0 else 'and'} that radius"
+    @abstractmethod
+    def grown(self, out: float, scale: float) -> GuidedCam:
+        """The cam with a smaller touch on the same pitch curve, scaled; raises GrownError where it would be nothing."""
 
     def circles(self) -> tuple[Circle, ...]:
         """The base circle, and the prime circle."""
         circles = [Circle("base circle", self.base_radius)]
-        if self.touch_radius:
-            circles.append(Circle("prime circle", self.guide.prime))
+        if self.touch.radius:
+            circles.append(Circle("prime circle", self.led.prime))
         return tuple(circles)
 
-    def grown_intent(self, intent: Intent, out: float, scale: float) -> Intent:  # noqa: ARG002
+
+@dataclass(frozen=True)
+class Spin:
+    """Turns of a roller per turn of the shaft; on the inner side of a ring it turns the other way round."""
+
+    pitch: CentreShape
+    radius: float
+    sense: float
+
+    def __call__(self, tau: Series, side: Before = 1) -> Series:
+        """Over jets of the shaft angle."""
+        return self.pitch.spin(tau, side, self.radius, self.sense)
+
+
+@dataclass(frozen=True, eq=False)
+class ExactGuided(ExactCam):
+    """Such a cam by the displacement of its follower."""
+
+    cam: GuidedCam
+    law: Displacement
+
+    @cached_property
+    def follower(self) -> Follower:
+        """As the family has it."""
+        return self.cam.follower(self.law)
+
+    @cached_property
+    def motion(self) -> Position:
+        """The displacement."""
+        return position_of(self.follower.contacts[0].guide, self.law)
+
+    @cached_property
+    def surface(self) -> Surface:
+        """The centre's path, and the contour within it by the radius (around it, of a ring).
+
+        A knife edge's contour is the parallel at 0: it may be hollow, which a flat face's own contour may not.
+        """
+        from camgeo.curve.moving_frame import CentreShape
+
+        pitch = CentreShape(self.law, self.cam.led)
+        radius, side = self.cam.touch.radius, self.cam.side
+        series: dict[str, Figure] = {"slope": pitch.slope}
+        if isinstance(self.cam.touch, Roller):
+            series["spin"] = Spin(pitch, radius, float(side))
+        curve = Curve.whole(Parallel(pitch, side * radius))
+        return Surface(Curve.whole(pitch), curve, radius, side, pitch.pressure_angle, None, series)
+
+    @cached_property
+    def gauge(self) -> Gauge:
+        """The contacts with the displacement."""
+        from kin.follower.follower import follower_of
+
+        return follower_of(self.follower.contacts, self.law.law(), self.cam.side)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Those that the recipe gives."""
+        return self.cam.joints()
+
+    def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
+        """The least base radius on this stem; for this length of arm that with the pivot's distance."""
+        from camgeo.curve.sizing import least_arm, least_stem
+
+        guide, pivot = self.follower.contacts[0].guide, ""
+        if isinstance(guide, Translating):
+            prime = least_stem(self.law, rising, falling, guide.offset).prime
+        else:
+            try:
+                arm = least_arm(self.law, guide.arm, guide.side, rising - _MARGIN, falling - _MARGIN)
+            except IntentError:
+                return None
+            prime, pivot = arm.prime, f"{arm.pivot / mm:.6g}"
+        base = (prime - self.cam.side * self.cam.touch.radius) / mm
+        if base <= 0.0:
+            return None
+        size = upward(base)
+        told = f"a base radius of {size}{pivot and f' with a pivot at {pivot}'}"
+        return told, self.cam.resized(float(size) * mm, float(pivot) * mm if pivot else None)
+
+    def rounder_pitch(self, radius: float, mm: float) -> str:  # noqa: ARG002 - the least radius is found anew
+        """The base radius at which the roller is half of the pitch curve's least convex radius."""
+        from camgeo.curve.moving_frame import CentreShape
+        from camgeo.curve.sizing import least_prime
+
+        if not isinstance(self.cam.touch, Roller):
+            return ""
+        law, guide, roller = self.law, self.cam.led, self.cam.touch.radius
+        try:
+            prime = least_prime(lambda p: CentreShape(law, guide.resized(p)), 2.0 * roller, guide.prime)
+        except IntentError:
+            return ""
+        return f"a base radius of {upward((prime - self.cam.side * roller) / mm)}"
+
+    def grown(self, out: float, scale: float) -> ExactGuided:
         """The same pitch curve; a lift is scaled with the drawing, a swing is not."""
-        law = cast("Displacement", intent)
-        return law.scaled(scale) if self.unit == "mm" else law
+        lifts = self.cam.arrangement.unit == "mm"
+        return ExactGuided(self.cam.grown(out, scale), self.law.scaled(scale) if lifts else self.law)

@@ -8,12 +8,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from camgeo.cams.family import Cam
 from camgeo.cams.motion import MotionAsked, check_filled, motion_field
 from camgeo.schema.fields import Kind
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import Intent
     from camgeo.schema.reader import Reader, Values
     from kin.law.joints import Joint
     from kin.law.sources.motion import Motion
@@ -29,7 +27,7 @@ SWING = motion_field(
 )
 
 
-class HalfTurnCam(Cam):
+class HalfTurnCam:
     """A cam whose motion is given over one half turn."""
 
     motion: MotionAsked
@@ -38,7 +36,7 @@ class HalfTurnCam(Cam):
         """The motion over the half turn, which the other half meets turned round."""
         return self.motion.motion(math.pi, "motion", -1)
 
-    def joints(self, intent: Intent) -> tuple[Joint, ...]:  # noqa: ARG002
+    def joints(self) -> tuple[Joint, ...]:
         """Those of the half turn; the other half has them too, turned round."""
         return self.half_turn().joints
 

@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, cast
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 import numpy as np
 
-from camgeo.cams.family import (
-    UNDERCUT,
-    Cam,
-    Harmonics,
-    Intent,
-    Margin,
-    Unit,
-)
+from camgeo.cams.family import UNDERCUT, Advice, Cam, ExactCam, Harmonics, Margin, Proof
+from camgeo.cams.flat_faced import spread
 from camgeo.cams.motion import MotionAsked, check_filled, motion_field
+from camgeo.cams.position import Position, SwingPosition
 from camgeo.common.rounding import downward
 from camgeo.schema.fields import Field, Kind, Table, length, mapping
+from kin.law.contacts import Flat
+from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
+    from camgeo.cams.family import Follower, Surface
     from camgeo.schema.reader import Reader, Values
+    from kin.follower.follower import Follower as Gauge
     from kin.law.joints import Joint
     from kin.law.transmission import Transmission
 
+EXACT = 1e-9  # of the arm: to this the closing equation must hold
 LOOKS = 1440  # parameters of a law at which its margins are looked at
 _OTHER_PARTS = "both sides of the follower touch the cam at once, so the motion after that follows"
 
@@ -108,15 +110,34 @@ def _greatest_share(law: Callable[[float], Transmission]) -> float:
 class PairCam(Cam):
     """A single disk that works a rigid pair of contacts about one pivot; pi/alpha = lam/mu in lowest terms, mu odd."""
 
-    unit: ClassVar[Unit] = "deg"
-    gain: ClassVar[float | None] = None
     swing_of: ClassVar[Literal["arm", "pair"]]
     lam: int
     mu: int
     arm: float
     route: Route
 
-    def intent(self) -> Intent:
+    def exact(self, *, framed: bool = False) -> ExactPair:  # noqa: ARG002
+        """By Wunderlich's law of transmission, by the route that the recipe takes."""
+        return ExactPair(self, self.transmission())
+
+    @abstractmethod
+    def follower(self, law: Transmission, out: float) -> Follower:
+        """The follower, its faces `out` mm beside the lines through their pivot."""
+
+    @abstractmethod
+    def surface(self, law: Transmission, out: float) -> Surface:
+        """The surface, of faces so far out."""
+
+    @abstractmethod
+    def grown(self, out: float, scale: float) -> PairCam:
+        """The same pair farther away; raises GrownError where a roller would be nothing."""
+
+    @property
+    def mean_distance(self) -> float:
+        """Mean distance R = 2 l cos(alpha/2) of the arms' ends, mm: an arc about the shaft at it has no swing."""
+        return 2.0 * self.arm * math.cos(0.5 * math.pi * self.mu / self.lam)
+
+    def transmission(self) -> Transmission:
         """Wunderlich's law of transmission, by the route that the recipe takes."""
         from kin.law.programme import IntentError
 
@@ -157,33 +178,105 @@ class PairCam(Cam):
         leaf = Formula(route.text, ("x",))
         return transmission.from_rosette(self.lam, self.mu, self.arm, leaf, route.scale)
 
-    def law(self, intent: Intent) -> Transmission:
-        """The transmission."""
-        return cast("Transmission", intent)
-
-    def joints(self, intent: Intent) -> tuple[Joint, ...]:
+    def joints(self, law: Transmission) -> tuple[Joint, ...]:
         """Those of the swing over 360/lambda degrees, where the recipe gives it, or D or an arc by a formula."""
         if not isinstance(self.route, LawRoute | DeltaFormulaRoute | CurveRoute):
             return ()
         share = 0.5 if self.swing_of == "pair" else 1.0
-        return tuple(joint.scaled(share) for joint in cast("Transmission", intent).joints)
+        return tuple(joint.scaled(share) for joint in law.joints)
+
+
+@dataclass(frozen=True)
+class PairAdvice(Advice):
+    """Of a pair of contacts on one arm."""
+
+    cam: PairCam
 
     def less_swing(self, mm: float) -> str:
-        """An arc about the shaft, its radius the mean distance R = 2 l cos(alpha/2), has no swing at all."""
-        if not isinstance(self.route, ArcRoute):
+        """An arc nearer to the circle about the shaft."""
+        if not isinstance(self.cam.route, ArcRoute):
             return super().less_swing(mm)
-        mean = 2.0 * self.arm * math.cos(0.5 * math.pi * self.mu / self.lam)
-        return f"an arc.radius nearer to {mean / mm:.6g}"
+        return f"an arc.radius nearer to {self.cam.mean_distance / mm:.6g}"
 
-    def grown_intent(self, intent: Intent, out: float, scale: float) -> Intent:  # noqa: ARG002
-        """The same swing about a pivot farther away."""
-        return cast("Transmission", intent).scaled(scale)
 
-    def margins(self, intent: Intent) -> list[Margin]:
+@dataclass(frozen=True, eq=False)
+class ExactPair(ExactCam):
+    """Such a cam by its law of transmission; faces of a grown one stand `out` mm beside the lines through the pivot."""
+
+    cam: PairCam
+    law: Transmission
+    out: float = 0.0
+
+    @cached_property
+    def follower(self) -> Follower:
+        """As the family has it."""
+        return self.cam.follower(self.law, self.out)
+
+    @cached_property
+    def motion(self) -> Position:
+        """The swing psi of the first arm, or the pair's own psi/2."""
+        return SwingPosition(self.law, 0.5 if self.cam.swing_of == "pair" else 1.0)
+
+    @cached_property
+    def surface(self) -> Surface:
+        """As the family has it."""
+        return self.cam.surface(self.law, self.out)
+
+    @cached_property
+    def gauge(self) -> Gauge:
+        """The contacts with the transmission."""
+        from kin.follower.follower import follower_of
+
+        return follower_of(self.follower.contacts, self.law)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Those that the recipe gives."""
+        return self.cam.joints(self.law)
+
+    def grown(self, out: float, scale: float) -> ExactPair:
+        """The same swing about a pivot farther away; of faces the metal grows before them."""
+        return ExactPair(self.cam.grown(out, scale), self.law.scaled(scale), scale * (self.out + out))
+
+    @property
+    def free(self) -> bool:
+        """Where faces stand farther out."""
+        return self.out > 0.0 and self.cam.arrangement.touch is Flat
+
+    @property
+    def proofs(self) -> Mapping[str, Callable[[], Proof]]:
+        """Those of the law."""
+        return {"closing-equation": self._closing_equation, "velocity-ratio": self._velocity_ratio}
+
+    def _closing_equation(self) -> Proof:
+        """That the second arm's end runs on the same curve (W 4.6, 7.1).
+
+        Both arms' ends are held against each other at the same polar angle, t = phi - (psi + alpha)/2 of the first and
+        phi - (psi - alpha)/2 of the second: over it |psi'| < 2, while over the shaft angle psi may rise as steeply as
+        it likes, and rounding with it.
+        """
+        law = self.law
+        tau = spread(law.breaks, 2.0 * math.pi)
+        phi, psi = law.at(tau, 0)
+        image = law.at(law.polar_parameter(law.pitch(tau, 0)[1][0] + law.alpha), 0)[1][0]
+        gap = law.arm * np.abs(image + psi[0])
+        worst = int(np.argmax(gap))
+        limit, at = EXACT * law.arm, degrees(float(phi[0, worst]))
+        return Proof(bool(gap[worst] <= limit), float(gap[worst]), limit, "mm", at)
+
+    def _velocity_ratio(self) -> Proof:
+        """How near the cam is to turning back: psi' of the shaft angle stays below 1."""
+        from kin.law.feasibility import steepest
+
+        at, value = steepest(self.law)
+        return Proof(value < 1.0, value, 1.0, "", degrees(float(self.law.at(at, 0)[0][0, 0])))
+
+    @property
+    def margins(self) -> list[Margin]:
         """Turning through, the root of the analytic route, and the arms' end at the shaft or stretched out."""
         from kin.law.feasibility import steepest
 
-        law = cast("Transmission", intent)
+        law = self.law
         tau = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
         tau = np.sort(np.concatenate([tau, law.breaks]))
         psi = law.at(tau, 0)[1]
@@ -196,8 +289,8 @@ class PairCam(Cam):
         return [
             Margin("turning-through", 1.0 - rate, "", "the cam cannot be turned through: psi' = 1"),
             edge,
-            Margin("shaft", 2.0 * self.arm * reach, "mm", "the pitch curve reaches the shaft: r = 0"),
-            Margin("stretched", 2.0 * self.arm * pivot, "mm", "the arm is stretched: r = 2 l"),
+            Margin("shaft", 2.0 * law.arm * reach, "mm", "the pitch curve reaches the shaft: r = 0"),
+            Margin("stretched", 2.0 * law.arm * pivot, "mm", "the arm is stretched: r = 2 l"),
         ]
 
 

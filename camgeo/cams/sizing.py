@@ -7,19 +7,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, TypeVar
 
+from camgeo.cams.faced import ExactFaced
+from camgeo.cams.guided import ExactGuided
 from camgeo.schema.fields import Field, Kind, length, mapping
+from kin.law.contacts import Flat, Oscillating, Translating
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from camgeo.cams.disc_cams import DiscCam, OscillatingRoundCam, RoundCam, TranslatingFaceCam, TranslatingRoundCam
-    from camgeo.cams.family import Intent
-    from camgeo.curve.curve import Shape
+    from camgeo.cams.disc_cams import DiscCam
+    from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Values
+    from kin.law.contacts import Side
 
+_GuideT = TypeVar("_GuideT", "moving_frame.Translating", "moving_frame.Oscillating")
 _SMALL = 1e-3  # of the radius of curvature that is asked for
 SLACK = 1e-9  # degrees, and of a radius: within this a limit is kept
 
@@ -55,55 +59,76 @@ class Sizing:
         return Sizing(angles, None if radius is None else radius["at_least"])
 
 
-def size_stem(cam: TranslatingRoundCam, asked: Sizing, given: Mapping[str, float]) -> TranslatingRoundCam:
-    """Size a cam for a roller, shoe or knife edge on a stem: base radius and, unless given, offset."""
+def sized(cam: DiscCam, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
+    """The cam of the least size that keeps what is asked; `given` are the follower's keys in the recipe.
+
+    Raises IntentError where there is none.
+    """
+    from kin.law.programme import IntentError
+
+    exact = cam.exact()
+    match cam.guide, exact:
+        case Translating(), ExactGuided(law=law):
+            found = _stem(cam, law, asked, given.get("offset"))
+        case Oscillating(length=float(length), side=side), ExactGuided(law=law):
+            found = _arm(cam, law, asked, (length, side, given.get("pivot")))
+        case guide, ExactFaced(law=law):
+            if isinstance(guide, Oscillating) and "pivot" not in given:
+                raise IntentError("a flat face does not find the pivot; give follower.arm.pivot", "follower.arm")
+            found = _face(cam, law, asked)
+        case _:
+            raise TypeError("a disc cam has a round touch or a flat face")
+    demand_kept(found, asked)
+    return found
+
+
+def _stem(cam: DiscCam, motion: Displacement, asked: Sizing, given: float | None) -> DiscCam:
+    """A roller, shoe or knife edge on a stem: base radius and, unless given, offset."""
     from camgeo.curve import moving_frame
     from camgeo.curve.sizing import least_stem
 
-    motion, offset, prime = _motion(cam), given.get("offset", 0.0), 0.0
+    stem = moving_frame.Translating(0.0, given or 0.0)
     if asked.angles is not None:
-        stem = least_stem(motion, *asked.angles, given.get("offset"))
-        prime, offset = stem.prime, stem.offset
-
-    def shape(size: float) -> Shape:
-        return moving_frame.CentreShape(motion, moving_frame.Translating.on(size, offset))
-
-    return replace(cam, offset=offset, base_radius=_base(cam, _rounder(cam, asked, prime, abs(offset), shape)))
+        stem = least_stem(motion, *asked.angles, given)
+    stem = _rounder(cam, motion, asked, stem, settled=given is not None)
+    return replace(cam, guide=Translating(stem.offset), base_radius=_base(cam, stem.prime))
 
 
-def size_arm(cam: OscillatingRoundCam, asked: Sizing, given: Mapping[str, float]) -> OscillatingRoundCam:
-    """Size a cam for a roller, shoe or knife edge on an arm of given length: base radius and pivot."""
+def _arm(cam: DiscCam, motion: Displacement, asked: Sizing, given: tuple[float, Side, float | None]) -> DiscCam:
+    """A roller, shoe or knife edge on an arm of given length and side, and maybe pivot: base radius and pivot."""
     from camgeo.curve import moving_frame
     from camgeo.curve.sizing import least_arm
     from kin.law.programme import IntentError
 
-    motion, pivot, prime = _motion(cam), given.get("pivot"), 0.0
+    length, side, pivot = given
     if asked.angles is not None:
         if pivot is not None:
             raise IntentError("the pivot is found with the pressure angle", "follower.arm.pivot")
-        arm = least_arm(motion, cam.length, cam.sense, *asked.angles)
-        prime, pivot = arm.prime, arm.pivot
+        arm = least_arm(motion, length, side, *asked.angles)
     elif pivot is None:
         raise IntentError("without a pressure angle the pivot must be given", "sizing")
-    place, low = pivot, abs(pivot - cam.length)
-
-    def shape(size: float) -> Shape:
-        return moving_frame.CentreShape(motion, moving_frame.Oscillating.on(size, place, cam.length, cam.sense))
-
-    prime = _rounder(cam, asked, prime, low, shape)
-    return replace(cam, pivot=place, base_radius=_base(cam, prime))
+    else:
+        arm = moving_frame.Oscillating(pivot, length, 0.0, side)
+    arm = _rounder(cam, motion, asked, arm, settled=False)
+    return replace(cam, guide=Oscillating(float(arm.pivot), side, length), base_radius=_base(cam, arm.prime))
 
 
-def size_face(cam: TranslatingFaceCam, asked: Sizing, given: Mapping[str, float]) -> TranslatingFaceCam:  # noqa: ARG001
-    """Size a cam for a flat face on a stem: its pressure angle is its tilt."""
-    from camgeo.curve.disc import StraightFace
-    from camgeo.curve.sizing import least_face
+def _face(cam: DiscCam, motion: Displacement, asked: Sizing) -> DiscCam:
+    """A flat face, on a stem or on an arm whose pivot is given."""
+    from camgeo.curve.sizing import least_face, least_swing
     from kin.law.programme import IntentError
 
-    if asked.angles is not None:
-        raise IntentError("the pressure angle of a flat face is its tilt, whatever the size", "sizing.pressure-angle")
-    face = StraightFace(_motion(cam), 1.0, cam.tilt, cam.offset)
-    base = least_face(face, cast("float", asked.radius))
+    if asked.angles is not None or asked.radius is None:
+        why = "the pressure angle of a flat face is its tilt, whatever the size"
+        if isinstance(cam.guide, Oscillating):
+            why = "a flat face on an arm is sized by its radius of curvature alone"
+        raise IntentError(why, "sizing.pressure-angle")
+    if isinstance(cam.guide, Oscillating) and isinstance(cam.touch, Flat):
+        guide = cam.guide
+        return replace(
+            cam, base_radius=least_swing(motion, guide.pivot, cam.touch.nearer, guide.side, asked.radius).base
+        )
+    base = least_face(replace(cam, base_radius=1.0).face(motion), asked.radius)
     if not base > 0.0:
         raise IntentError("any base radius keeps this radius of curvature; give one", "sizing.radius-of-curvature")
     return replace(cam, base_radius=base)
@@ -117,8 +142,8 @@ def demand_kept(cam: DiscCam, asked: Sizing) -> None:
     from camgeo.curve.rates import stretches
     from kin.law.programme import IntentError
 
-    profile = cam.profile(cam.intent())
-    shape = profile.base.shape
+    surface = cam.exact().surface
+    shape = surface.base.shape
     if asked.angles is not None and isinstance(shape, CentreShape):
         over = stretches(shape.law)
         up, down = greatest(shape.slope, over).value, -least(shape.slope, over).value
@@ -131,31 +156,39 @@ def demand_kept(cam: DiscCam, asked: Sizing) -> None:
                     "sizing",
                 )
     if asked.radius is not None:
-        found = least_radius(profile.base)[0] - cam.touch_radius
+        found = least_radius(surface.base)[0] - cam.touch.radius
         if found < asked.radius * (1.0 - SLACK):
             raise IntentError(f"the size found has a radius of curvature of {found:.9g} mm", "sizing")
 
 
-def _motion(cam: DiscCam) -> Displacement:
-    intent: Intent = cam.intent()
-    return cast("Displacement", intent)
+def _rounder(cam: DiscCam, motion: Displacement, asked: Sizing, guide: _GuideT, *, settled: bool) -> _GuideT:
+    """Guide of the least prime circle, from that of a guide on, at which the radius of curvature is kept too.
 
-
-def _rounder(cam: RoundCam, asked: Sizing, prime: float, low: float, shape: object) -> float:
-    """Prime radius from `prime` on, and above `low`, at which the radius of curvature is kept too."""
-    from camgeo.curve.sizing import least_prime
+    The offset or pivot is found with it where there are pressure angles, unless it is `settled`.
+    """
+    from camgeo.curve.curvature import least_radius
+    from camgeo.curve.curve import Curve
+    from camgeo.curve.moving_frame import CentreShape
+    from camgeo.curve.sizing import least_prime, least_round
 
     if asked.radius is None:
-        return prime
+        return guide
+    radius, prime = asked.radius + cam.touch.radius, guide.prime
     # where nothing else sets a least size there is some size below which no cam is looked for
-    start = max(prime, low * (1.0 + 1e-9), cam.touch_radius, _SMALL * asked.radius)
-    return least_prime(shape, asked.radius + cam.touch_radius, start)  # type: ignore[arg-type]
+    start = max(prime, cam.touch.radius, _SMALL * asked.radius)
+    if asked.angles is None:
+        start = max(start, prime * (1.0 + 1e-9))
+    elif start == prime and least_radius(Curve.whole(CentreShape(motion, guide)))[0] >= radius:
+        return guide
+    elif not settled:
+        return least_round(motion, guide, asked.angles, radius, start)
+    return guide.resized(least_prime(lambda size: CentreShape(motion, guide.resized(size)), radius, start))
 
 
-def _base(cam: RoundCam, prime: float) -> float:
+def _base(cam: DiscCam, prime: float) -> float:
     from kin.law.programme import IntentError
 
-    base = prime - cam.metal * cam.touch_radius
+    base = prime - cam.side * cam.touch.radius
     if not base > 0.0:
         raise IntentError(
             f"the least prime circle, {prime:.6g} mm, lies within the roller: a smaller one would do",

@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 
-from camgeo.cams.family import (
-    UNDERCUT,
-    Cam,
-    Circle,
-    Family,
-    Harmonics,
-    Intent,
-    Profile,
-    Undercut,
-)
+from camgeo.cams.faced import SizeAdvice
+from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Harmonics, Linear, Surface, Undercut
 from camgeo.cams.flat_faced import FlatFacedCam
 from camgeo.common.rounding import NOISE, upward
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
+from kin.law.contacts import Arrangement, Flat, Translating
 
 if TYPE_CHECKING:
+    from camgeo.curve.curve import Curve
     from camgeo.schema.reader import Reader, Values
     from kin.law.support_function import Lift
 
@@ -84,13 +78,11 @@ class SupportCam(FlatFacedCam):
     """A cam given by its support function; `shaft` is the camshaft's place in the axes of that function, mm."""
 
     kind: ClassVar[str] = "support"
-    offers: ClassVar[frozenset[str]] = frozenset({"face", "plate"})
-    less_steep: ClassVar[str] = ""  # a support function has no stroke of its own
     shape: Shape
     shaft: tuple[float, float]
     undercut: Undercut
 
-    def intent(self) -> Intent:
+    def lift(self) -> Lift:
         """The support function about the shaft."""
         from kin.law import support_function
 
@@ -107,60 +99,85 @@ class SupportCam(FlatFacedCam):
         found = support_function.lift_hypocycloid(shape.cusps, shape.size, shape.breadth, self.shaft)
         return _with_size(found, "hypocycloid.breadth")
 
-    def profile(self, intent: Intent) -> Profile:
-        """The envelope of the face; the sharp corners of a Reuleaux polygon are corners of the contour."""
-        made = super().profile(intent)
+    def surface(self, whole: Curve) -> Surface:
+        """The sharp corners of a Reuleaux polygon are corners of the contour."""
         if not isinstance(self.shape, ReuleauxShape):
-            return made
+            return super().surface(whole)
         from camgeo.curve.support import with_corners
 
-        return replace(made, curve=with_corners(made.base))
+        return Surface(whole, with_corners(whole))
 
     @property
-    def size_field(self) -> tuple[str, float]:
-        """The mean radius, or what stands for it."""
+    def advice(self) -> SizeAdvice:
+        """A larger mean radius, or what stands for it; a support function has no stroke of its own."""
         if isinstance(self.shape, ReuleauxShape):
-            return "reuleaux.rounding", 1.0
+            return ReuleauxAdvice(shape=self.shape, gain=1.0, less_steep="", size="reuleaux.rounding")
         if isinstance(self.shape, HypocycloidShape):
-            return "hypocycloid.breadth", 2.0
-        return ("fourier.mean" if isinstance(self.shape, FourierShape) else "p"), 1.0
+            return SizeAdvice(gain=1.0, less_steep="", size="hypocycloid.breadth", share=2.0)
+        return SizeAdvice(gain=1.0, less_steep="", size="fourier.mean" if isinstance(self.shape, FourierShape) else "p")
 
-    def free_of_undercut(self, free_at: float, mm: float) -> str:
-        """A larger cam; a Reuleaux polygon's corners are rounded, by less than half its breadth."""
-        shape, told = self.shape, super().free_of_undercut(free_at, mm)
-        if not isinstance(shape, ReuleauxShape) or shape.rounding + free_at < 0.5 * shape.breadth:
-            return told
-        breadth = 2.0 * (shape.rounding + free_at) / mm
-        return told.replace(" would", f" and a reuleaux.breadth of more than {upward(breadth)} would")
+    @property
+    def linear(self) -> LinearSupport:
+        """Harmonics of a Fourier series or a hypocycloid, and the shaft of all."""
+        return LinearSupport(self)
+
+    def grown(self, out: float, scale: float) -> SupportCam:  # noqa: ARG002
+        """The same: its lengths are not drawn."""
+        return self
 
     def circles(self) -> tuple[Circle, ...]:
         """The base circle about the shaft, where the shaft does not stand on the contour."""
         return (Circle("base circle"),)
 
-    @property
-    def shaft_at(self) -> tuple[float, float]:
-        """Where the recipe puts it."""
-        return self.shaft
 
-    def about_origin(self) -> Cam:
+@dataclass(frozen=True)
+class ReuleauxAdvice(SizeAdvice):
+    """Of a Reuleaux polygon: its corners are rounded, by less than half its breadth."""
+
+    shape: ReuleauxShape = field(kw_only=True)
+
+    def free_of_undercut(self, free_at: float, mm: float) -> str:
+        """Larger corners, and where they fill it a larger breadth."""
+        told = super().free_of_undercut(free_at, mm)
+        if self.shape.rounding + free_at < 0.5 * self.shape.breadth:
+            return told
+        breadth = 2.0 * (self.shape.rounding + free_at) / mm
+        return told.replace(" would", f" and a reuleaux.breadth of more than {upward(breadth)} would")
+
+
+@dataclass(frozen=True)
+class LinearSupport(Linear):
+    """A cam by its support function, as far as that is linear in harmonics."""
+
+    cam: SupportCam
+
+    @property
+    def shaft(self) -> tuple[float, float]:
+        """Where the recipe puts it."""
+        return self.cam.shaft
+
+    def about_origin(self) -> SupportCam:
         """The shaft at the origin of p."""
-        return replace(self, shaft=(0.0, 0.0))
+        return replace(self.cam, shaft=(0.0, 0.0))
 
     def harmonic(self, path: str) -> tuple[int, bool, float] | None:
         """Harmonics of a Fourier series or a hypocycloid: all that these are linear in."""
-        if isinstance(self.shape, HypocycloidShape):
-            own = {"cam.hypocycloid.size": (self.shape.cusps, False, 1.0), "cam.hypocycloid.breadth": (0, False, 0.5)}
+        if isinstance(self.cam.shape, HypocycloidShape):
+            own = {
+                "cam.hypocycloid.size": (self.cam.shape.cusps, False, 1.0),
+                "cam.hypocycloid.breadth": (0, False, 0.5),
+            }
             return own.get(path)
-        if not isinstance(self.shape, FourierShape):
+        if not isinstance(self.cam.shape, FourierShape):
             return None
         if path == "cam.fourier.mean":
             return 0, False, 1.0
         kind, _, order = path.removeprefix("cam.fourier.").partition(".")
         return (int(order), kind == "sin", 1.0) if kind in {"cos", "sin"} and order.isdigit() else None
 
-    def silent(self, orders: set[tuple[int, bool]]) -> Cam:
+    def silent(self, orders: set[tuple[int, bool]]) -> SupportCam:
         """Without these harmonics, but for the mean radius."""
-        shape = self.shape
+        shape = self.cam.shape
         if isinstance(shape, FourierShape):
             shape = FourierShape(
                 shape.mean,
@@ -169,7 +186,7 @@ class SupportCam(FlatFacedCam):
             )
         elif isinstance(shape, HypocycloidShape):
             shape = replace(shape, size=0.0 if (shape.cusps, False) in orders else shape.size)
-        return replace(self, shape=shape)
+        return replace(self.cam, shape=shape)
 
 
 def _with_size(lift: Lift, field: str, scale: float = 1.0) -> Lift:
@@ -327,4 +344,4 @@ def _shape(cam: Values, mm: float) -> Shape:
     return FormulaShape(cam["p"], mm)
 
 
-FAMILY = Family(SupportCam, TABLE, build, check)
+FAMILY = Family(SupportCam.kind, Arrangement(Translating, Flat, 2), TABLE, build, check)

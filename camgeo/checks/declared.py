@@ -57,7 +57,7 @@ class Scene:
     @property
     def roller(self) -> bool:
         """Whether rollers follow."""
-        return self.recipe.cam.touch_radius > 0.0
+        return self.recipe.cam.touch.radius > 0.0
 
     @property
     def yoke(self) -> bool:
@@ -67,7 +67,7 @@ class Scene:
     @property
     def swings(self) -> bool:
         """Whether the follower swings."""
-        return self.recipe.cam.unit == "deg"
+        return self.recipe.cam.arrangement.unit == "deg"
 
     @property
     def linked(self) -> bool:

@@ -43,7 +43,7 @@ def rounder(check: Entry, _report: Entry, recipe: Recipe) -> str:
     value, limit, unit = check["value"], check["limit"], check["unit"]
     if value is None or limit is None:
         return ""
-    return recipe.cam.rounder(value, limit, unit)
+    return recipe.cam.advice.rounder(value, limit, unit)
 
 
 def smaller_chamfer(check: Entry, _report: Entry, _recipe: Recipe) -> str:
@@ -146,7 +146,7 @@ def looser(check: Entry, _report: Entry, recipe: Recipe) -> str:
     given, value, limit = recipe.verify.motion_error, check["value"], check["limit"]
     if given is None or value is None or not limit:
         return ""
-    own = math.degrees(given) if recipe.cam.unit == "deg" else given / recipe.mm
+    own = math.degrees(given) if recipe.cam.arrangement.unit == "deg" else given / recipe.mm
     return f"verify.motion_error above {upward(own * value / limit)}"
 
 
@@ -159,7 +159,7 @@ def _tighter(check: Entry, report: Entry, recipe: Recipe) -> str:
 def _tolerance(recipe: Recipe, value: float, limit: float, tolerance: float | None) -> str:
     if limit <= 0.0:
         return ""
-    if recipe.cam.gain == 1.0:  # the follower is off by no more than the contour
+    if recipe.cam.advice.gain == 1.0:  # the follower is off by no more than the contour
         return f"a tolerance of {limit:.6g}, or "
     return "" if tolerance is None else f"a tolerance of about {tolerance * limit / value:.2g}, or "
 
@@ -195,10 +195,10 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
     if figure not in STEEP or recipe.linkage is not None:
         return ""
     if figure == PRESSURE_ANGLE:
-        floor = recipe.cam.least_pressure_angle
+        floor = recipe.cam.advice.least_pressure_angle
         if 0.0 < missed.bound <= floor:
             return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg), or "
-    less = recipe.cam.less_steep
+    less = recipe.cam.advice.less_steep
     if figure in {*PEAKS, *AT_SPEED}:  # the size of the cam changes none of them
         less = less.removeprefix("a larger base radius, ")
     return f"{less}, or " if less and missed.bound > 0.0 else ""
@@ -207,14 +207,15 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
 def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
     """Tell what would raise a figure by so much, in the recipe's unit."""
     unit, own = "in" if recipe.units == "inch" else "mm", ""
-    if figure in {RADIUS, HOLLOW_RADIUS} and recipe.cam.touch_radius:
+    if figure in {RADIUS, HOLLOW_RADIUS} and recipe.cam.touch.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
-        roller, hollow = recipe.cam.touch_radius / recipe.mm, figure == HOLLOW_RADIUS
-        if recipe.cam.metal > 0 if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
-            own = f"a {recipe.cam.roller_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
-            own += recipe.cam.same_pitch(recipe.mm)
+        roller, hollow = recipe.cam.touch.radius / recipe.mm, figure == HOLLOW_RADIUS
+        if recipe.cam.side > 0 if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider
+            advice = recipe.cam.advice
+            own = f"a {advice.radius_field} of {upward(roller + by) if hollow else downward(roller - by)} {unit}"
+            own += advice.same_pitch(recipe.mm)
     elif figure == RADIUS:
-        own = recipe.cam.rounder(0.0, by, unit)
+        own = recipe.cam.advice.rounder(0.0, by, unit)
     elif figure == LEAST_WALL and lone_ring(recipe):
         own = f"a part.outer larger by more than {upward(2.0 * by)} {unit}"
     elif figure == LEAST_WALL and recipe.part.plain and recipe.part.bore is not None:

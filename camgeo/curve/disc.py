@@ -114,13 +114,7 @@ class SwingingFace(_Face):
     @staticmethod
     def on(motion: Displacement, base: float, pivot: float, face: float, side: int) -> SwingingFace:
         """Give the face that stands `base` mm from the shaft at S = 0, psi acute."""
-        if not 0.0 < base + face < pivot:
-            raise IntentError(
-                f"base radius and face offset together, {base + face:.6g} mm, must lie between 0 and the pivot's "
-                f"distance, {pivot:.6g} mm",
-                "follower.arm",
-            )
-        return SwingingFace(motion, pivot, face, math.asin((base + face) / pivot), side)
+        return SwingingFace(motion, pivot, face, rest_of(base, pivot, face), side)
 
     def __post_init__(self) -> None:
         low, high = (self.rest + s for s in self.motion.range)
@@ -172,6 +166,17 @@ class SwingingFace(_Face):
     def slope(self, tau: Series, side: Side = 1) -> Series:
         """Tangent of the pressure angle: the face's offset over the place of contact."""
         return self.face / self.contact(tau, side)
+
+
+def rest_of(base: float, pivot: float, face: float) -> float:
+    """Angle, rad, to the line from pivot to shaft of a face `base` mm from the shaft; raises IntentError for none."""
+    if not 0.0 < base + face < pivot:
+        raise IntentError(
+            f"base radius and face offset together, {base + face:.6g} mm, must lie between 0 and the pivot's "
+            f"distance, {pivot:.6g} mm",
+            "follower.arm",
+        )
+    return math.asin((base + face) / pivot)
 
 
 Face = StraightFace | SwingingFace

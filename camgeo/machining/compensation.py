@@ -12,16 +12,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.cams.family import GrownError, Profile
+from camgeo.cams.family import GrownError
 from camgeo.curve.curvature import least_radius
-from camgeo.curve.curve import Curve
-from camgeo.curve.parallel import Parallel
 from camgeo.fit.pieces import ArcSpline
 from camgeo.synthesis.design import is_trimmed, sound
 from camgeo.synthesis.part.shapes import EXACT
 from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
-from kin.law.contacts import Flat
 from kin.numeric.errors import KinError
 
 if TYPE_CHECKING:
@@ -59,9 +56,8 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
     the contour cannot be proved.
     """
     out, scale = by.out, by.scale
-    cam = recipe.cam
     try:
-        grown = cam.grown(out, scale)
+        exact = design.exact.grown(out, scale)
     except GrownError as error:
         name, radius = error.args
         what = f"the metal is enlarged by {out / recipe.mm:.6g}, "
@@ -78,34 +74,20 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         part = _part(recipe.part, out, scale)
     except (TightError, NothingLeftError) as error:
         raise recipe.error(field, f"an opening cannot be made smaller by {out / recipe.mm:.6g}: {error}") from error
-    intent = cam.grown_intent(design.intent, out, scale)
     checks: list[Check] = []
     name = f"{recipe.name}, {by.told(recipe.mm)}"
-    made = replace(recipe, name=name, cam=grown, part=part)
-    face = cam.face_beyond(out, scale)
-    profile = made.cam.profile(intent)
-    if face:
-        curve = Curve.whole(Parallel(profile.curve.shape, -face))
-        profile = Profile(profile.base, curve, 0.0)
-    if face > 0.0:  # outside a convex contour nothing undercuts
-        contour = profile.curve if design.contour is not None else None
+    made = replace(recipe, name=name, cam=exact.cam, part=part)
+    if exact.free:
+        contour = exact.surface.curve if design.contour is not None else None
     else:
-        checks, contour = sound(made, profile, intent)
+        checks, contour = sound(made, exact)
     if body is not None and body.chamfer is not None and contour is not None:
         body = replace(body, least_radius=least_radius(contour)[0])
-    contacts = grown.follower(intent, framed=False).contacts
-    if design.yoke_breadth is not None:
-        contacts = contacts[0], replace(contacts[1], datum=scale * (design.yoke_breadth + 2.0 * out))
-    if face:
-        contacts = tuple(replace(one, touch=Flat(nearer=-face)) for one in contacts)
     changed = replace(
         design,
-        intent=intent,
-        profile=profile,
+        exact=exact,
         contour=contour,
-        position=made.cam.position(intent),
-        follower=replace(design.follower, contacts=contacts),
-        trimmed=is_trimmed(contour, profile),
+        trimmed=is_trimmed(contour, exact.surface),
         driven=None,
         body=body,
     )

@@ -35,12 +35,12 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
     shaft = np.linspace(0.0, TURN, count + 1)
     columns = {"shaft_deg": np.linspace(0.0, 360.0, count + 1)}
     unit = "in" if recipe.units == "inch" else "mm"
-    position, relative = design.position, shaft
+    position, relative = design.motion, shaft
     if design.driven is not None:
         relative = design.driven.mechanism.relative(shaft)
         columns["relative_deg"] = np.degrees(relative)
     columns[position.column(recipe.units)] = position.converted(position.rows(relative, 0)[0], recipe.mm)
-    for name, parameter in position.contacts(shaft, relative).items():
+    for name, parameter in position.parameters(shaft, relative).items():
         columns |= _contact(recipe, design.contour, parameter, name, unit)
     return tuple(columns), np.column_stack(list(columns.values()))
 
@@ -48,7 +48,7 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
 def _contact(recipe: Recipe, contour: Curve, parameter: Array, name: str, unit: str) -> dict[str, Array]:
     """Columns of one contact, in the drawn axes and the recipe's unit."""
     frame = contour.sample(parameter)
-    outward = recipe.cam.metal * frame.normal  # of the metal: in a ring towards the follower within
+    outward = recipe.cam.side * frame.normal  # of the metal: in a ring towards the follower within
     normal = np.where(np.abs(outward) < NOTHING, 0.0, outward)
     point = np.where(np.abs(frame.point) < NOTHING * contour.size, 0.0, frame.point)
     columns = _place(recipe, point, name, unit)

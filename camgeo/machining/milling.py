@@ -67,8 +67,8 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
     contour, asked = _milled(recipe, design)
     told = "no hollow"
     if not no_hollow(contour):
-        radius, at = hollow_radius(recipe.cam, contour)
-        told = f"least hollow radius {radius:.6g} mm at {design.position.shaft_deg(at):.6g} deg"
+        radius, at = hollow_radius(recipe.cam.side, contour)
+        told = f"least hollow radius {radius:.6g} mm at {design.motion.shaft_deg(at):.6g} deg"
     try:
         path = path_of(recipe, design)
     except UndercutError as error:
@@ -77,10 +77,10 @@ def reach_check(recipe: Recipe, design: Design) -> tuple[Check, CutterPath | Non
         return Check(REACH.name, True, 0.0, asked.unreached, "mm", detail=told), path
     deepest = max(cut.depth for cut in path.lost)
     worst = next(cut for cut in path.lost if cut.depth >= (1.0 - ALIKE) * deepest)
-    first, last = design.position.shaft_deg(worst.start), design.position.shaft_deg(worst.end)
+    first, last = design.motion.shaft_deg(worst.start), design.motion.shaft_deg(worst.end)
     free = 2.0 * min(cut.free_at for cut in path.lost)
     detail = f"{told}; not reached from {first:.6g} to {last:.6g} deg; a cutter {free:.6g} mm across would reach all"
-    at_deg = design.position.shaft_deg(worst.at)
+    at_deg = design.motion.shaft_deg(worst.at)
     return Check(
         REACH.name, worst.depth <= asked.unreached, worst.depth, asked.unreached, "mm", at_deg, detail=detail
     ), path
@@ -168,7 +168,7 @@ def milling_intent(recipe: Recipe, design: Design) -> Intent:
         thickness=recipe.part.thickness or 0.0,
         depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
         climb=asked.direction == "climb",
-        inside=recipe.cam.metal < 0,
+        side=recipe.cam.side,
         standing=check.limit or 0.0 if lost else 0.0,
         hub=None if top is None else (0.5 * top.diameter, top.height),
     )

@@ -13,6 +13,7 @@ from kin.contour.contour import Contour
 
 if TYPE_CHECKING:
     from camgeo.recipe.machining import Manufacture
+    from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
 SAME = 1e-9  # mm: a path that begins this near to a joint begins in it
@@ -74,17 +75,17 @@ def circle(centre: tuple[float, float], radius: float, direction: float) -> ArcS
     return ArcSpline(points, np.full(4, QUARTER), Bound(0.0, 0.0))
 
 
-def led(path: ArcSpline, lead: float, *, outside: bool, clockwise: bool) -> Loop:
+def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> Loop:
     """A closed counter-clockwise path, run the way asked for, with quarter turns of radius `lead` to it and from it.
 
-    Both touch the path in its first point, from without or from within.
+    Both touch the path in its first point, from without it (`side` 1) or from within (-1).
     """
     points, bulges = path.points, path.bulges
     first = float(Contour.from_bulges(points, bulges).directions[0][0])
     if clockwise:
         points, bulges = np.roll(points[::-1], 1, axis=0), -bulges[::-1]
     along = np.array([math.cos(first), math.sin(first)])
-    away = np.array([along[1], -along[0]]) * (1.0 if outside else -1.0)
+    away = np.array([along[1], -along[0]]) * side
     forward = -along if clockwise else along
     start = points[0]
     enter, leave = start + lead * (away - forward), start + lead * (away + forward)

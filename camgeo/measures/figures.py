@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import (
     BENT,
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Any
 
-    from camgeo.cams.disc_cams import OscillatingRoundCam
     from camgeo.curve.extremes import Extreme
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
@@ -118,7 +117,7 @@ def _of_check(check: Check) -> Measured:
 def _radius(_: Recipe, design: Design) -> Measured:
     """Of the metal, not of the roller's way, which is bent less by the roller's radius."""
     bent = next(check for check in design.checks if check.name in BENT)
-    value = None if bent.value is None else bent.value - abs(design.profile.roller_radius)
+    value = None if bent.value is None else bent.value - design.surface.radius
     return Measured(value, "mm", bent.at_deg, bent.detail)
 
 
@@ -127,13 +126,13 @@ def _pitch_radius(_: Recipe, design: Design) -> Measured:
     return _of_check(next(check for check in design.checks if check.name in BENT))
 
 
-def _hollow_radius(recipe: Recipe, design: Design) -> Measured:
+def _hollow_radius(_: Recipe, design: Design) -> Measured:
     if design.contour is None:
         return NO_CONTOUR
-    radius, at = hollow_radius(recipe.cam, design.contour)
+    radius, at = hollow_radius(design.surface.side, design.contour)
     if math.isinf(radius):
         return Measured(radius, "mm", detail="the contour has no concave part")
-    return Measured(radius, "mm", design.position.shaft_deg(at))
+    return Measured(radius, "mm", design.motion.shaft_deg(at))
 
 
 def _size(_: Recipe, design: Design) -> Measured:
@@ -142,7 +141,7 @@ def _size(_: Recipe, design: Design) -> Measured:
     if design.contour is None:
         return NO_CONTOUR
     far = farthest(design.contour)
-    return Measured(far.value + slack(far), "mm", design.position.shaft_deg(far.at))
+    return Measured(far.value + slack(far), "mm", design.motion.shaft_deg(far.at))
 
 
 def _pivot_clearance(recipe: Recipe, design: Design) -> Measured:
@@ -151,14 +150,14 @@ def _pivot_clearance(recipe: Recipe, design: Design) -> Measured:
 
     if design.contour is None:
         return NO_CONTOUR
-    pivot = cast("OscillatingRoundCam", recipe.cam).pivot
-    end = farthest(design.contour) if recipe.cam.metal > 0 else nearest(design.contour)
-    value = recipe.cam.metal * (pivot - end.value) - slack(end)
-    return Measured(value, "mm", design.position.shaft_deg(end.at))
+    pivot = design.follower.pivot
+    end = farthest(design.contour) if recipe.cam.side > 0 else nearest(design.contour)
+    value = recipe.cam.side * (pivot - end.value) - slack(end)
+    return Measured(value, "mm", design.motion.shaft_deg(end.at))
 
 
 def _extremes(recipe: Recipe, design: Design, name: str) -> tuple[Extreme, Extreme]:
-    found = recipe.cam.extremes(name, design.intent, design.profile)
+    found = design.surface.extremes(name)
     if found is None:
         raise TypeError(f"{recipe.name} has no {name}")
     return found
@@ -179,13 +178,13 @@ def _roller_speed(recipe: Recipe, design: Design) -> Measured:
     return Measured(abs(fastest.value) + slack(fastest), "", degrees(fastest.at))
 
 
-def _face_width(recipe: Recipe, design: Design) -> Measured:
-    value, at = needed_width(recipe.cam, design.intent, design.profile)
+def _face_width(_: Recipe, design: Design) -> Measured:
+    value, at = needed_width(design.surface)
     return Measured(value, "mm", at)
 
 
 def _jam_margin(recipe: Recipe, design: Design) -> Measured:
-    value, at = jam_angle(recipe.cam, design.intent, design.profile)
+    value, at = jam_angle(design.exact)
     guide = None if recipe.dynamics is None else recipe.dynamics.guide
     return Measured(None if guide is None else math.degrees(guide.jam) - value, "deg", at)
 
@@ -211,12 +210,12 @@ def _of_motion(design: Design, order: int) -> dict[str, Measured]:
     """Stroke or swing of the follower, and the greatest of its derivatives by the shaft angle up to an order."""
     from kin.numeric.monotone import RoughError, between, cells, pieces
 
-    position = design.position
+    position = design.motion
     unit, scale = position.unit, position.shown(1.0)
     names = [name for name, k in _ORDERS.items() if k <= order]
     try:
         made = cells(
-            lambda t: position.by_parameter(t, order), between(0.0, TURN, design.intent.breaks.tolist()), share=_SHARE
+            lambda t: position.by_parameter(t, order), between(0.0, TURN, design.exact.breaks.tolist()), share=_SHARE
         )
     except RoughError:
         why = "the motion changes too abruptly to be resolved"

@@ -90,7 +90,7 @@ def remarks_of(
         _pivot(recipe, design),
         *_motion(recipe, design),
         _implied(recipe, design, checks, files),
-        _acceleration(recipe, design.joints),
+        _acceleration(recipe, design.exact.joints),
         *_output(recipe, design),
         _shaft(recipe, design),
         _keyway(recipe),
@@ -101,7 +101,7 @@ def remarks_of(
 
 def _size_found(recipe: Recipe) -> Remark | None:
     """What `sizing` found."""
-    said = recipe.cam.found(recipe.mm)
+    said = recipe.cam.size_found(recipe.mm)
     return Remark("sizing", None, None, "", said) if said else None
 
 
@@ -110,17 +110,17 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
 
     On the return a follower that a spring holds may be steeper.
     """
-    if "roller" not in recipe.cam.offers or "cam.sizing.pressure-angle" in recipe.marks:
+    if "roller" not in recipe.cam.arrangement.offers or "cam.sizing.pressure-angle" in recipe.marks:
         return None
     bounded = (limit.figure for limit in recipe.limits if limit.at_most is not None)
     if not {PRESSURE.name, ON_RISE, ON_RETURN}.isdisjoint(bounded):
         return None
     made = next((check for check in design.checks if check.name == PRESSURE.name), None)
-    kind = "oscillating" if recipe.cam.unit == "deg" else "translating"
+    kind = "oscillating" if recipe.cam.arrangement.unit == "deg" else "translating"
     rule = PRESSURE_RULE[kind]
     if made is None or made.value is None or made.value <= rule or not made.ok:
         return None
-    proved = recipe.cam.extremes("slope", design.intent, design.profile)
+    proved = design.surface.extremes("slope")
     falling, value, at_deg, of = rule, made.value, made.at_deg, ""
     if proved is not None and not design.follower.closure:
         falling = RETURN_RULE
@@ -132,7 +132,7 @@ def _pressure(recipe: Recipe, design: Design) -> Remark | None:
         worst, value, rule, of = max(over, key=lambda row: row[1] - row[2])
         at_deg = degrees(worst.at)
     told = f"the pressure angle reaches {value:.4g} deg{of}; up to {rule:.0f} is the rule for {kind} followers"
-    found = recipe.cam.less_pressure(design.intent, math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
+    found = design.exact.less_pressure(math.radians(PRESSURE_RULE[kind]), math.radians(falling), recipe.mm)
     if found is not None:
         size, other = found
         against = _against(recipe, other, design)
@@ -149,7 +149,7 @@ def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
 
     cam = cam.refusing()
     try:
-        checks, contour = sound(replace(recipe, cam=cam), cam.profile(design.intent), design.intent)
+        checks, contour = sound(replace(recipe, cam=cam), cam.exact())
     except (CurveError, IntentError):
         return "its curve cannot be made"
     if contour is None:
@@ -158,7 +158,7 @@ def _against(recipe: Recipe, cam: Cam, design: Design) -> str:
     if part.outer is not None:
         reach = 2.0 * farthest(contour).value
         return f"needs a part.outer above {upward(reach / recipe.mm)}" if reach >= part.outer else ""
-    room = SHAFT * design.profile.curve.size if part.bore is None else 0.5 * part.bore
+    room = SHAFT * design.surface.curve.size if part.bore is None else 0.5 * part.bore
     return "leaves no metal round the shaft" if nearest(contour).value <= room else ""
 
 
@@ -167,10 +167,10 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
     if any(limit.figure in {RADIUS, PITCH_RADIUS} and limit.at_least is not None for limit in recipe.limits):
         return None
     bent = next(check for check in design.checks if check.name in BENT)
-    roller, radius = recipe.cam.touch_radius, bent.value
-    if design.contour is None or radius is None or recipe.cam.metal < 0 or not HALF * radius < roller:
+    roller, radius = recipe.cam.touch.radius, bent.value
+    if design.contour is None or radius is None or recipe.cam.side < 0 or not HALF * radius < roller:
         return None
-    size = recipe.cam.rounder_pitch(design.intent, radius, recipe.mm)
+    size = design.exact.rounder_pitch(radius, recipe.mm)
     if not size:
         return None
     told = (
@@ -194,30 +194,30 @@ def _corner(recipe: Recipe, design: Design) -> Remark | None:
         f"the contact stays on a sharp corner for {math.degrees(turns[longest]):.4g} degrees: its edge wears, the "
         "contact pressure has no bound; a reuleaux.rounding above 0 rounds it"
     )
-    at_deg = design.position.shaft_deg(runs[longest].high)
+    at_deg = design.motion.shaft_deg(runs[longest].high)
     return Remark("sharp-corner", math.degrees(turns[longest]), 0.0, "deg", told, at_deg)
 
 
 def _cutter(recipe: Recipe, design: Design) -> Remark | None:
     """A hollow that the cutter does not reach into, where no program says so by its checks."""
     made = recipe.manufacture
-    if made is None or design.contour is None or "roller" not in recipe.cam.offers:
+    if made is None or design.contour is None or "roller" not in recipe.cam.arrangement.offers:
         return None
     if made.layer or any(request.kind == "gcode" for request in recipe.export.files):
         return None
-    radius, at = hollow_radius(recipe.cam, design.contour)
+    radius, at = hollow_radius(design.surface.side, design.contour)
     if radius >= made.radius:
         return None
     told = (
         f"the contour has a hollow of radius {_length(recipe, radius)}, which a cutter of "
         f"{_length(recipe, made.cutter)} does not reach into; a cutter of {downward(2.0 * radius / recipe.mm)} does"
     )
-    return Remark("large-cutter", radius, made.radius, "mm", told, design.position.shaft_deg(at))
+    return Remark("large-cutter", radius, made.radius, "mm", told, design.motion.shaft_deg(at))
 
 
 def _pivot(recipe: Recipe, design: Design) -> Remark | None:
     """A disc that passes over its arm's pivot: it can be made, and lies in another plane than the pivot's pin."""
-    if "arm" not in recipe.cam.offers or design.contour is None:
+    if "arm" not in recipe.cam.arrangement.offers or design.contour is None:
         return None
     if any(limit.figure == PIVOT_CLEARANCE and limit.at_least is not None for limit in recipe.limits):
         return None
@@ -232,7 +232,7 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
     """A follower that stands still, and errors permitted that are a good part of its stroke."""
     stroke, arm = _stroke(design)
     length = stroke * arm
-    if length <= STILL * design.profile.curve.size:
+    if length <= STILL * design.surface.curve.size:
         return [Remark("no-motion", 0.0, None, "mm", "the follower does not move at all")]
     files = [request for request in recipe.export.files if request.kind not in NO_CONTOUR]
     tolerance = max((request.tolerance or recipe.export.tolerance for request in files), default=0.0)
@@ -282,7 +282,7 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
 def _stroke(design: Design) -> tuple[float, float]:
     """Stroke in mm, or swing in rad and the arm in mm at which it is worked: 1 for a stroke."""
     t = np.linspace(0.0, 2.0 * math.pi, LOOKS, endpoint=False)
-    return design.position.stroke(np.sort(np.concatenate([t, design.intent.breaks])))
+    return design.motion.stroke(np.sort(np.concatenate([t, design.exact.breaks])))
 
 
 def _acceleration(recipe: Recipe, joints: tuple[Joint, ...]) -> Remark | None:
@@ -354,17 +354,15 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
 
     runs = [np.linspace(run.low, run.high, LOOKS) for run in design.contour.runs]
     ring = design.contour.sample(np.concatenate(runs)).point
-    if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * design.profile.curve.size:
+    if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * design.surface.curve.size:
         return None  # by far; what is nearer is looked at closely
     distance, at = distance_inside(design.contour, (0.0, 0.0))
     if distance > 0.0:
         return None
     told = f"the shaft lies outside the contour by {_length(recipe, -distance)}"
-    if -distance <= NOISE * design.profile.curve.size:
+    if -distance <= NOISE * design.surface.curve.size:
         told = "the shaft lies on the contour"
-    shaft = getattr(design.intent, "at", None)
-    at_deg = degrees(at if shaft is None else float(shaft(at, 0)[0][0, 0]))
-    return Remark("shaft-outside", distance, 0.0, "mm", told, at_deg)
+    return Remark("shaft-outside", distance, 0.0, "mm", told, design.motion.shaft_deg(at))
 
 
 def _keyway(recipe: Recipe) -> Remark | None:
@@ -388,7 +386,7 @@ def _is_whole(value: float) -> bool:
 
 def _thickness(recipe: Recipe, design: Design) -> Remark | None:
     """A disc that is a bar or a foil: a slip of the unit, mostly."""
-    thickness, size = recipe.part.thickness, design.profile.curve.size
+    thickness, size = recipe.part.thickness, design.surface.curve.size
     if thickness is None or not size or THINNEST * size <= thickness <= THICKEST * size:
         return None
     thick = thickness > size

@@ -22,5 +22,5 @@ def in_units(recipe: Recipe, value: float | None, unit: str) -> tuple[float | No
 
 def of_displacements(recipe: Recipe) -> tuple[float, str]:
     """Factor and unit in which the follower's displacements are reported: the recipe's, or degrees."""
-    swings = recipe.cam.unit == "deg" or recipe.cam.by_linkage
+    swings = recipe.cam.arrangement.unit == "deg" or recipe.cam.by_linkage
     return (math.degrees(1.0), "deg") if swings else (1.0 / recipe.mm, UNIT_NAMES[recipe.units])

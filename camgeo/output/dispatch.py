@@ -56,8 +56,44 @@ def make(job: Job, request: FileRequest, path: Path) -> Made:
     raise ValueError(f"nothing makes {request.kind} alone")
 
 
+SURFACES: dict[tuple[str, str | None], int] = {
+    ("dxf", "arcs"): 1,
+    ("dxf", "polyline"): 1,
+    ("dxf", "spline"): 1,
+    ("dxf", "exact"): 1,
+    ("svg", "arcs"): 1,
+    ("svg", "polyline"): 1,
+    ("svg", "spline"): 1,
+    ("step", "arcs"): 1,
+    ("step", "spline"): 1,
+    ("step", "exact"): 1,
+    ("stl", None): 1,
+    ("3mf", None): 1,
+    ("glb", None): 1,
+    ("gcode", None): 1,
+    ("csv", "motion"): 1,
+    ("csv", "contacts"): 1,
+    ("csv", "polar"): 1,
+    ("csv", "inspection"): 1,
+}
+"""How many surfaces of a cam each form of a file is taught to hold; of more it would be silently wrong."""
+
+
+def demand_taught(job: Job, request: FileRequest) -> None:
+    """Raise RecipeErrors where a form of file is not taught as many surfaces as the cam has."""
+    count = len(job.design.exact.surfaces)
+    if count <= SURFACES.get((request.kind, request.as_), 1):
+        return
+    form = request.kind if request.as_ is None else f"{request.kind} as {request.as_}"
+    forms = [form for form, most in SURFACES.items() if most >= count]
+    others = ", ".join(kind if how is None else f"{kind} as {how}" for kind, how in forms)
+    remedy = f"give {others}" if others else "leave it out"
+    raise job.recipe.error(job.field(request), f"{form} does not hold a cam of {count} surfaces", None, remedy)
+
+
 def foresee(job: Job, request: FileRequest) -> None:
     """Refuse what is certain to be refused, before anything is fitted; raises as `make` does."""
+    demand_taught(job, request)
     if request.parts == "all":
         from camgeo.output.mechanism import foresee_mechanism
 

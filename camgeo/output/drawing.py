@@ -95,7 +95,7 @@ def _reference(job: Job) -> list[Reference]:
     from camgeo.fit.arcs import fit_arcs
     from camgeo.synthesis.part.walls import distance_inside
 
-    recipe, profile = job.recipe, job.design.profile
+    recipe, surface = job.recipe, job.design.surface
     cam = recipe.cam
     found: list[Reference] = [Point("shaft", (0.0, 0.0))]
     if recipe.part.hub is not None:
@@ -104,10 +104,10 @@ def _reference(job: Job) -> list[Reference]:
         if radius is not None:
             found.append(Circle(name, (0.0, 0.0), radius))
             continue
-        least = abs(distance_inside(profile.base, (0.0, 0.0))[0])
+        least = abs(distance_inside(surface.base, (0.0, 0.0))[0])
         if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
             found.append(Circle(name, (0.0, 0.0), least))
-        if profile.roller_radius:
-            pitch = fit_arcs(profile.base, COARSE)
+        if surface.radius:
+            pitch = fit_arcs(surface.base, COARSE)
             found.append(Trace("pitch curve", pitch.mirrored() if recipe.rotation == "ccw" else pitch))
     return found

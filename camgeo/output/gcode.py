@@ -80,13 +80,13 @@ def _round(job: Job, asked: Manufacture, rough: ArcSpline | None, fine: ArcSplin
     thickness = job.recipe.part.thickness
     if thickness is None:
         raise job.recipe.error("part.thickness", "gcode needs a thickness")
-    outside = job.recipe.cam.metal > 0
+    side = job.recipe.cam.side
 
     def loop(path: ArcSpline) -> Loop:
         begun = begun_at(path, asked.start)
         drawn = begun.mirrored() if job.recipe.rotation == "ccw" else begun
-        lead = asked.lead if outside else min(asked.lead, 0.5 * bend_at_begin(drawn))
-        return led(drawn, lead, outside=outside, clockwise=(asked.direction == "climb") == outside)
+        lead = asked.lead if side > 0 else min(asked.lead, 0.5 * bend_at_begin(drawn))
+        return led(drawn, lead, side=side, clockwise=(asked.direction == "climb") == (side > 0))
 
     return passes(None if rough is None else loop(rough), loop(fine), asked, thickness)
 
@@ -103,7 +103,7 @@ def _hole(job: Job, asked: Manufacture, hole: RoundHole) -> list[Pass]:
 
     def loop(radius: float) -> Loop:
         path = circle((x, sign * y), radius, sign * asked.start)
-        return led(path, min(asked.lead, 0.5 * radius), outside=False, clockwise=asked.direction != "climb")
+        return led(path, min(asked.lead, 0.5 * radius), side=-1, clockwise=asked.direction != "climb")
 
     left = reach - (asked.allowance or 0.0)
     rough = None if asked.allowance is None or left <= 0.5 * asked.allowance else loop(left)

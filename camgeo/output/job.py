@@ -62,7 +62,7 @@ class Job:
         """Begin the files of a design that has a contour; raises ValueError for one that has none."""
         if design.contour is None:
             raise ValueError(f"{recipe.name}: there is no contour to be made")
-        rounding = formula_rounding(design.intent.rounding, design.contour)
+        rounding = formula_rounding(design.exact.rounding, design.contour)
         return Job(recipe, design, Outlines(design.contour, clock or Clock(), rounding))
 
     def of_file(self, request: FileRequest) -> tuple[Job, tuple[Check, ...]]:
@@ -184,6 +184,6 @@ class Job:
         slope = next((own.value for own in self.design.checks if own.name == RATIO.name), None)
         if slope is None or slope < STEEP:
             return check
-        less = self.recipe.cam.less_swing(self.recipe.mm)
+        less = self.recipe.cam.advice.less_swing(self.recipe.mm)
         why = f"psi'(phi) reaches {slope:.9g}, so the follower moves almost along the contour; {less} would satisfy it"
         return replace(check, detail=f"{check.detail}: {why}")

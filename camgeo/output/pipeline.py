@@ -238,6 +238,6 @@ def _findings(
         linkage=linkage,
         dynamics=None if train is None else train.section,
         remarks=remarks,
-        joints=design.joints,
+        joints=design.exact.joints,
         contour=None if design.contour is None else measures(design.contour),
     )

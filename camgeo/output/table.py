@@ -40,7 +40,7 @@ def _motion(job: Job, request: FileRequest) -> Columns:
         return linkage.motion_table(told, job.design.driven.mechanism)
     from camgeo.synthesis.motion_table import motion_table
 
-    return motion_table(told, job.design.intent)
+    return motion_table(told, job.design.motion)
 
 
 def _contacts(job: Job, request: FileRequest) -> Columns:

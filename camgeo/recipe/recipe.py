@@ -298,10 +298,10 @@ def read_values(reader: Reader) -> Values:
     if isinstance(dyads, Sequence) and dyads.items:
         last = kind_of(dyads.items[-1], DYADS)
     if (family := FAMILIES.get(reader.kinds["cam"])) is not None:
-        cam = family.of(top["cam"])
-        own = ((Kind.STROKE, cam.unit), (Kind.ERROR, cam.unit), (Kind.BACKLASH, cam.backlash_unit))
+        held = family.of(top["cam"])
+        own = ((Kind.STROKE, held.unit), (Kind.ERROR, held.unit), (Kind.BACKLASH, held.backlash_unit))
         reader.angular |= {kind for kind, unit in own if unit == "deg"}
-        reader.offers = cam.offers
+        reader.offers = held.offers
     if last not in SLIDING:
         reader.angular |= {Kind.OUTPUT}
     if (Kind.OUTPUT if reader.kinds["linkage"] else Kind.ERROR) in reader.angular:

@@ -225,7 +225,7 @@ def _recipe(chosen: _Starter) -> Table:
     if linkage:
         return Table(tuple(fields))
     unfit = {*chosen.unfit, "dwell", "output_error"}
-    unfit |= set() if "plate" in FAMILIES[chosen.kind].cam.offers else {"linkage"}
+    unfit |= set() if "plate" in FAMILIES[chosen.kind].arrangement.offers else {"linkage"}
     return Table(tuple(_leave_out(item, unfit) for item in fields if item.name not in unfit))
 
 

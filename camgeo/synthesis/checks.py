@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.cams.flat_faced import SAME_BREADTH, breadth_of, spread
-from camgeo.checks.declared import BREADTH, CLOSING, DIAMETER, FACE_WIDTH, JAM, PRESSURE, RATIO, TRAVEL, WHEEL
+from camgeo.cams.flat_faced import SAME_BREADTH, spread
+from camgeo.checks.declared import DIAMETER, FACE_WIDTH, JAM, PRESSURE, TRAVEL, WHEEL
 from kin.judge.check import Check
-from kin.law.feasibility import steepest
 from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.cams.disc_cams import TranslatingFaceCam, TranslatingRoundCam
-    from camgeo.cams.family import Cam, Intent, Profile
+    from camgeo.cams.family import ExactCam, Proof, Surface
     from camgeo.curve.curve import Curve
     from camgeo.curve.extremes import Extreme
     from camgeo.recipe.recipe import Recipe
-    from kin.law.support_function import Lift
-    from kin.law.transmission import Transmission
+    from kin.law.contacts import Side
     from kin.numeric.arrays import Array
 
 ZOOMS, ZOOM = 5, 32  # about the worst of these: so often, into so many parts
@@ -30,73 +27,49 @@ EXACT = 1e-9  # of the arm: to this the closing equation must hold
 SAME = 1e-12  # of the greatest value: others within it are equal to it
 
 
-def motion_checks(cam: Cam, intent: Intent, profile: Profile, names: tuple[str, ...]) -> list[Check]:
-    """Those of the intended motion's checks that a follower names, in that order."""
-    return [MADE[name](cam, intent, profile) for name in names]
+def motion_checks(exact: ExactCam) -> list[Check]:
+    """Those of the intended motion's checks that the follower names, in that order."""
+    proofs = exact.proofs
+    return [_proved(name, proofs[name]()) if name in proofs else MADE[name](exact) for name in exact.follower.checks]
 
 
-def _constant_breadth(_: Cam, intent: Intent, __: Profile) -> Check:
-    """Constancy of the breadth, for a yoke (AS eq. 4)."""
-    mean, deviation, at = breadth_of(cast("Lift", intent))
-    limit = SAME_BREADTH * abs(mean)
-    return Check(BREADTH.name, deviation <= limit, deviation, limit, "mm", degrees(at))
+def _proved(name: str, proof: Proof) -> Check:
+    return Check(name, proof.ok, proof.value, proof.limit, proof.unit, proof.at_deg)
 
 
-def _face_length(cam: Cam, intent: Intent, profile: Profile) -> Check:
+def _face_length(exact: ExactCam) -> Check:
     """How far the contact travels along a face."""
-    if (proved := cam.extremes("contact", intent, profile)) is not None:
+    if (proved := exact.surface.extremes("contact")) is not None:
         least, most = proved
         further = max(proved, key=lambda one: abs(one.value))
         return Check(TRAVEL.name, True, most.value - least.value, None, "mm", degrees(further.at), "at_least")
-    place = cam.contact_place(intent, profile)
-    t = spread(intent.breaks, 2.0 * math.pi)
+    place = exact.surface.place
+    if place is None:
+        raise TypeError("no contact travels along a face")
+    t = spread(exact.breaks, 2.0 * math.pi)
     low = _greatest(lambda u: -place(u), t)  # continuous too
     high = _greatest(place, t)
     return Check(TRAVEL.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 
 
-def _closing_equation(_: Cam, intent: Intent, __: Profile) -> Check:
-    """That the second arm's end runs on the same curve (W 4.6, 7.1).
-
-    Both arms' ends are held against each other at the same polar angle, t = phi - (psi + alpha)/2 of the first and
-    phi - (psi - alpha)/2 of the second: over it |psi'| < 2, while over the shaft angle psi may rise as steeply as it
-    likes, and rounding with it.
-    """
-    law = cast("Transmission", intent)
-    tau = spread(law.breaks, 2.0 * math.pi)
-    phi, psi = law.at(tau, 0)
-    image = law.at(law.polar_parameter(law.pitch(tau, 0)[1][0] + law.alpha), 0)[1][0]
-    gap = law.arm * np.abs(image + psi[0])
-    worst = int(np.argmax(gap))
-    limit, at = EXACT * law.arm, degrees(float(phi[0, worst]))
-    return Check(CLOSING.name, bool(gap[worst] <= limit), float(gap[worst]), limit, "mm", at)
-
-
-def _transmission(_: Cam, intent: Intent, __: Profile) -> Check:
-    """How near the cam is to turning back: psi' of the shaft angle stays below 1."""
-    law = cast("Transmission", intent)
-    at, value = steepest(law)
-    return Check(RATIO.name, value < 1.0, value, 1.0, "", degrees(float(law.at(at, 0)[0][0, 0])))
-
-
-def _pressure_angle(cam: Cam, intent: Intent, profile: Profile) -> Check:
+def _pressure_angle(exact: ExactCam) -> Check:
     """Greatest angle between the contact normal and the direction in which the follower moves, degrees.
 
     At 90 degrees the cam cannot drive.
     """
-    if (proved := cam.extremes("slope", intent, profile)) is not None:
+    surface = exact.surface
+    if (proved := surface.extremes("slope")) is not None:
         worst = max(proved, key=lambda one: abs(one.value))
         value, at = math.degrees(math.atan(abs(worst.value) + slack(worst))), worst.at
         return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", degrees(at))
-    angle = cam.pressure_angle(intent, profile)
-    value, at = _greatest(lambda t: np.degrees(np.abs(angle(t))), spread(intent.breaks, 2.0 * math.pi))
-    return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", cam.position(intent).shaft_deg(at))
+    value, at = _greatest(lambda t: np.degrees(np.abs(surface.pressure(t))), spread(exact.breaks, 2.0 * math.pi))
+    return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", exact.motion.shaft_deg(at))
 
 
-def _constant_diameter(_: Cam, intent: Intent, profile: Profile) -> Check:
+def _constant_diameter(exact: ExactCam) -> Check:
     """Constancy of the pitch curve's diameters through the shaft, for two opposite rollers."""
-    t = spread(np.mod(intent.breaks, math.pi), math.pi)
-    near, far = (np.hypot(*profile.base.sample(t + by).point.T) for by in (0.0, math.pi))
+    t = spread(np.mod(exact.breaks, math.pi), math.pi)
+    near, far = (np.hypot(*exact.surface.base.sample(t + by).point.T) for by in (0.0, math.pi))
     diameter = near + far
     mean = 0.5 * float(diameter.max() + diameter.min())
     off = np.abs(diameter - mean)
@@ -104,57 +77,57 @@ def _constant_diameter(_: Cam, intent: Intent, profile: Profile) -> Check:
     return Check(DIAMETER.name, bool(off[worst] <= limit), float(off[worst]), limit, "mm", degrees(float(t[worst])))
 
 
-def _face_width(cam: Cam, intent: Intent, profile: Profile) -> Check:
+def _face_width(exact: ExactCam) -> Check:
     """Whether the contact stays on the face, whose width is centred on the stem's axis."""
-    value, at = needed_width(cam, intent, profile)
-    width = cast("TranslatingFaceCam", cam).width
+    value, at = needed_width(exact.surface)
+    width = exact.follower.width
     return Check(FACE_WIDTH.name, width is None or value <= width, value, width, "mm", at)
 
 
-def needed_width(cam: Cam, intent: Intent, profile: Profile) -> tuple[float, float]:
+def needed_width(surface: Surface) -> tuple[float, float]:
     """Least width of a centred face that the contact does not leave, mm, and the shaft angle in degrees."""
-    proved = cam.extremes("contact", intent, profile)
+    proved = surface.extremes("contact")
     if proved is None:
         raise TypeError("no contact travels along a face")
     worst = max(proved, key=lambda one: abs(one.value))
     return 2.0 * (abs(worst.value) + slack(worst)), degrees(worst.at)
 
 
-def jam_angle(cam: Cam, intent: Intent, profile: Profile) -> tuple[float, float]:
+def jam_angle(exact: ExactCam) -> tuple[float, float]:
     """Greatest pressure angle at which the stem is pushed on, degrees, and its shaft angle.
 
     On the rise that is the greatest of all, or where the rise begins: of an eccentric stem |e| over its foot.
     """
-    proved = cam.extremes("slope", intent, profile)
+    proved = exact.surface.extremes("slope")
     if proved is None:
         raise TypeError("no stem is led in a guide")
-    guide, most = cast("TranslatingRoundCam", cam).guide, proved[1]
-    steepest = max(most.value + slack(most), abs(guide.offset) / guide.foot)
+    most = proved[1]
+    steepest = max(most.value + slack(most), exact.follower.lean)
     return math.degrees(math.atan(steepest)), degrees(most.at)
 
 
-def guide_checks(recipe: Recipe, intent: Intent, profile: Profile, contour: Curve | None) -> list[Check]:
+def guide_checks(recipe: Recipe, exact: ExactCam, contour: Curve | None) -> list[Check]:
     """Whether the stem jams in its guide, and whether a grinding wheel reaches into the hollows."""
     found, train, made = [], recipe.dynamics, recipe.manufacture
     if train is not None and train.guide is not None:
-        value, at = jam_angle(recipe.cam, intent, profile)
+        value, at = jam_angle(exact)
         limit = math.degrees(train.guide.jam)
         found.append(Check(JAM.name, value < limit, value, limit, "deg", at))
     if made is not None and made.wheel is not None and contour is not None:
-        radius, place = hollow_radius(recipe.cam, contour)
-        at_deg = None if math.isinf(radius) else recipe.cam.position(intent).shaft_deg(place)
+        radius, place = hollow_radius(exact.surface.side, contour)
+        at_deg = None if math.isinf(radius) else exact.motion.shaft_deg(place)
         wheel = 0.5 * made.wheel
         told = "the contour has no hollow" if math.isinf(radius) else ""
         found.append(Check(WHEEL.name, radius >= wheel, radius, wheel, "mm", at_deg, "at_least", detail=told))
     return found
 
 
-def hollow_radius(cam: Cam, contour: Curve) -> tuple[float, float]:
+def hollow_radius(side: Side, contour: Curve) -> tuple[float, float]:
     """Least radius of the hollows of the metal, mm, infinite without one, and its parameter."""
     from camgeo.curve.backwards import least_hollow
     from camgeo.curve.curvature import least_radius
 
-    return least_hollow(contour) if cam.metal > 0 else least_radius(contour)
+    return least_hollow(contour) if side > 0 else least_radius(contour)
 
 
 def slack(extreme: Extreme) -> float:
@@ -182,13 +155,10 @@ def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
     return value, at
 
 
-MADE: dict[str, Callable[[Cam, Intent, Profile], Check]] = {
-    BREADTH.name: _constant_breadth,
+MADE: dict[str, Callable[[ExactCam], Check]] = {
     DIAMETER.name: _constant_diameter,
     TRAVEL.name: _face_length,
     FACE_WIDTH.name: _face_width,
-    CLOSING.name: _closing_equation,
-    RATIO.name: _transmission,
     PRESSURE.name: _pressure_angle,
 }
-"""How each check of an intended motion is made."""
+"""How each check of an intended motion is made that hangs on no law; the others are its proofs."""

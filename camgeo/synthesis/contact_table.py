@@ -38,12 +38,12 @@ def contact_table(
     shaft = np.linspace(0.0, TURN, len(rows))
     relative = shaft if design.driven is None else design.driven.mechanism.relative(shaft)
     side = np.where(np.arange(len(rows)) < len(rows) - 1, 1, -1)
-    pressure = recipe.cam.pressure_angle(design.intent, design.profile)
+    pressure = design.surface.pressure
     unit, sense = "in" if recipe.units == "inch" else "mm", -1.0 if recipe.rotation == "ccw" else 1.0
-    for name, t in design.position.contacts(shaft, relative).items():
+    for name, t in design.motion.parameters(shaft, relative).items():
         at = contour.sample(t, side)
         with np.errstate(divide="ignore"):
-            radius = recipe.cam.metal * at.speed / np.where(at.turn == 0.0, np.nan, at.turn)
+            radius = recipe.cam.side * at.speed / np.where(at.turn == 0.0, np.nan, at.turn)
         x, y = np.where(np.abs(at.point) < NOTHING * contour.size, 0.0, at.point).T / recipe.mm
         own = {
             f"{name}radius_of_curvature_{unit}": radius / recipe.mm,

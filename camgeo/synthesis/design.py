@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from kin.judge.check import Check
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.cams.family import Follower, Intent, Profile
+    from camgeo.cams.family import ExactCam, Follower, Surface
     from camgeo.cams.position import Position
     from camgeo.curve.curvature import Least
     from camgeo.curve.curve import Curve
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from camgeo.synthesis.part.body import Body
     from kin.judge.verify import Intent as Judged
     from kin.judge.verify import Limits
-    from kin.law.joints import Joint
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
@@ -43,104 +42,99 @@ TOO_MANY = "at least {} stretches of the contour run backwards; give the motion 
 
 @dataclass(frozen=True)
 class Design:
-    """The exact cam of a recipe: intent, profile, the contour to be made, and the checks that need no file.
+    """The exact cam of a recipe, the contour to be made of it, and the checks that need no file.
 
     `contour` is None where a check forbids to make it: undercut that is not to be trimmed, a bore that breaks through.
-    `driven` is the linkage, None without one; `body` the part where it has more than a round bore. `joints` are those
-    of the motion.
+    `driven` is the linkage, None without one; `body` the part where it has more than a round bore.
     """
 
-    intent: Intent
-    profile: Profile
+    exact: ExactCam
     contour: Curve | None
     checks: tuple[Check, ...]
-    position: Position
-    follower: Follower
     trimmed: bool
     driven: Driven | None = None
     body: Body | None = None
-    joints: tuple[Joint, ...] = ()
 
     @property
-    def yoke_breadth(self) -> float | None:
-        """How far the two parallel faces that hold the cam are apart, mm; None for other followers."""
-        return self.follower.breadth
+    def surface(self) -> Surface:
+        """The exact curve."""
+        return self.exact.surface
+
+    @property
+    def motion(self) -> Position:
+        """The follower's position over the shaft angle."""
+        return self.exact.motion
+
+    @property
+    def follower(self) -> Follower:
+        """What follows the cam."""
+        return self.exact.follower
 
 
 def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
-    """Intent, curve and exact checks of a recipe; raises RecipeErrors where there is no such motion or curve."""
+    """Motion, curve and exact checks of a recipe; raises RecipeErrors where there is no such motion or curve."""
     from kin.law.programme import IntentError
 
     clock = clock or Clock()
-    cam = recipe.cam
     try:
         with clock.stage("motion"):
-            intent = cam.intent()
+            exact = recipe.cam.exact(framed=recipe.linkage is not None)
+        with clock.stage("profile"):
+            surface = exact.surface
     except IntentError as error:
         raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
-        with clock.stage("profile"):
-            try:
-                profile = cam.profile(intent)
-            except IntentError as error:
-                raise recipe.error(f"cam.{error.field}", error.message) from error
         with clock.stage("undercut"):
-            checks, contour = sound(recipe, profile, intent)
+            checks, contour = sound(recipe, exact)
     except IntentError as error:  # of a guide or a face that cannot follow the motion
         raise recipe.error(f"cam.{error.field}", error.message) from error
     except CurveError as error:
-        raise recipe.error("cam", _unproved(recipe, error, intent)) from error
+        raise recipe.error("cam", _unproved(recipe, error, exact)) from error
     with clock.stage("figures"):
         from camgeo.synthesis.checks import guide_checks, motion_checks
 
-        follower = cam.follower(intent, framed=recipe.linkage is not None)
-        more = motion_checks(cam, intent, profile, follower.checks)
-        more += guide_checks(recipe, intent, profile, contour)
+        more = motion_checks(exact)
+        more += guide_checks(recipe, exact, contour)
     driven = None
     if recipe.linkage is not None:
         from camgeo.synthesis import linkage
 
         with clock.stage("linkage"):
-            driven = linkage.driven(recipe, cast("Lift", intent), follower.breadth)
+            driven = linkage.driven(recipe, _plate(exact), exact.follower.breadth)
         more += driven.checks
     body = None
     if contour is not None:
         try:
             with clock.stage("part"):
-                body, found = _part(recipe, contour, intent)
+                body, found = _part(recipe, contour, exact)
         except CurveError as error:
             raise recipe.error("part.chamfer", str(error)) from error
         more += found
         if not all(check.ok for check in found):
             contour = body = None  # without its least walls there is no part to draw
-    return Design(
-        intent,
-        profile,
-        contour,
-        (*checks, *more),
-        cam.position(intent),
-        follower,
-        is_trimmed(contour, profile),
-        driven,
-        body,
-        joints=cam.joints(intent),
-    )
+    return Design(exact, contour, (*checks, *more), is_trimmed(contour, surface), driven, body)
 
 
-def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check], Curve | None]:
+def _plate(exact: ExactCam) -> Lift:
+    if exact.plate is None:
+        raise TypeError("a linkage carries a plate")
+    return exact.plate
+
+
+def sound(recipe: Recipe, exact: ExactCam) -> tuple[list[Check], Curve | None]:
     """Checks of curvature and undercut, and the contour to be made: None where undercut refuses it."""
     from camgeo.curve.undercut.causes import UndercutError
     from camgeo.curve.undercut.undercut import MOST_TOLD, undercuts
 
-    trim = recipe.cam.undercut == "trim"
+    trim, surface = recipe.cam.undercut == "trim", exact.surface
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
-    roller = abs(profile.roller_radius)
-    if roller and len(backward := _seen_backward(profile.curve)) > MOST_TOLD * profile.curve.shape.repeats:
+    roller = surface.radius
+    if roller and len(backward := _seen_backward(surface.curve)) > MOST_TOLD * surface.curve.shape.repeats:
         raise CurveError(TOO_MANY.format(len(backward)), float(backward[0]))
-    least = _bent_most(profile)
+    least = _bent_most(surface)
     radius = least.radius + roller
-    shaft_deg = recipe.cam.position(intent).shaft_deg
+    shaft_deg = exact.motion.shaft_deg
     roomy, at_deg = radius > roller, None if math.isinf(radius) else shaft_deg(least.at)
     bent = Check((PITCH if roller else CURVATURE).name, roomy, radius, roller, "mm", at_deg, "at_least")
     if math.isinf(radius):
@@ -149,37 +143,37 @@ def sound(recipe: Recipe, profile: Profile, intent: Intent) -> tuple[list[Check]
         lower = f"nearly a circle over a long way; proved to be no less than {(radius - least.room) / recipe.mm:.12g}"
         bent = replace(bent, detail=lower)
     try:
-        found = undercuts(profile.curve)
+        found = undercuts(surface.curve)
     except UndercutError as error:
         kind = "global" if roomy else "local"
-        free = "" if error.free_at is None else f"; {recipe.cam.free_of_undercut(error.free_at, recipe.mm)}"
+        free = "" if error.free_at is None else f"; {recipe.cam.advice.free_of_undercut(error.free_at, recipe.mm)}"
         return [bent, Check(of_kind[kind].name, False, None, 0.0, "mm", None, detail=f"{error}{free}")], None
-    outcome, contour = "", None if found else profile.curve
+    outcome, contour = "", None if found else surface.curve
     if trim and found:
         try:
-            outcome, contour = "; trimmed", _trimmed(profile.curve)
+            outcome, contour = "; trimmed", _trimmed(surface.curve)
         except UndercutError as error:
             outcome = f"; trimming is not possible: {error}"
     if not (roomy or found):
         contour = None  # a radius that just reaches the limit loses no contact, and leaves an edge
-    if not profile.curve.closed:
-        bent = _sharp(profile, shaft_deg)
+    if not surface.curve.closed:
+        bent = _sharp(surface, shaft_deg)
     # of a trimmed contour the radius that was asked for is reported, and held against nothing
     cut_off = bool(found and contour)
     checks = [replace(bent, ok=True, limit=None, detail="trimmed") if cut_off else bent]
     # what frees the worst place frees all: the smallest of the rollers, the largest of the base radii
-    free_at = (min if profile.roller_radius else max)((cut.free_at for cut in found), default=0.0)
-    free = recipe.cam.free_of_undercut(free_at, recipe.mm)
+    free_at = (min if surface.radius else max)((cut.free_at for cut in found), default=0.0)
+    free = recipe.cam.advice.free_of_undercut(free_at, recipe.mm)
     for kind in ("local", "global"):
         cuts = [cut for cut in found if cut.kind == kind]
-        if kind == "global" and profile.roller_radius == 0.0 and not cuts:
+        if kind == "global" and surface.radius == 0.0 and not cuts:
             continue
         if not cuts:
             checks.append(Check(of_kind[kind].name, True, 0.0, 0.0, "mm"))
             continue
         worst = max(cuts, key=lambda cut: cut.depth)
-        detail = f"{_extent(profile, shaft_deg, worst)}; {free}{outcome}"
-        if not trim and worst.depth <= SMALL * profile.curve.size and _can_be_trimmed(profile.curve):
+        detail = f"{_extent(surface, shaft_deg, worst)}; {free}{outcome}"
+        if not trim and worst.depth <= SMALL * surface.curve.size and _can_be_trimmed(surface.curve):
             detail += "; or let what is lost be cut off: undercut: trim"
         depth = worst.depth if math.isfinite(worst.depth) else None
         ok, at_deg, limit = contour is not None, shaft_deg(worst.at), None if cut_off else 0.0
@@ -205,19 +199,19 @@ def _can_be_trimmed(curve: Curve) -> bool:
     return True
 
 
-def is_trimmed(contour: Curve | None, profile: Profile) -> bool:
+def is_trimmed(contour: Curve | None, surface: Surface) -> bool:
     """Whether undercut was cut off a contour: corners that it has by design lose no motion."""
-    return contour is not None and contour is not profile.curve
+    return contour is not None and contour is not surface.curve
 
 
-def _sharp(profile: Profile, shaft_deg: Callable[[float], float]) -> Check:
+def _sharp(surface: Surface, shaft_deg: Callable[[float], float]) -> Check:
     """The check of curvature of a contour whose corners are asked for: reported, and held against nothing."""
-    runs = profile.curve.runs
+    runs = surface.curve.runs
     detail = f"{len(runs)} sharp corners, as the recipe asks"
     return Check(CURVATURE.name, True, 0.0, None, "mm", shaft_deg(runs[0].high), "at_least", detail=detail)
 
 
-def _bent_most(profile: Profile) -> Least:
+def _bent_most(surface: Surface) -> Least:
     """Where the contour bends most on the side where it may undercut: least radius there, and the place.
 
     In a ring that is a hollow of the pitch curve, where the metal bulges inward; the opening's own hollows are wider
@@ -225,33 +219,33 @@ def _bent_most(profile: Profile) -> Least:
     """
     from camgeo.curve.curvature import enclosed_least_radius
 
-    if profile.roller_radius >= 0.0:
-        return enclosed_least_radius(profile.curve)
+    if surface.side > 0:
+        return enclosed_least_radius(surface.curve)
     from camgeo.curve.backwards import backwards
 
-    least = enclosed_least_radius(backwards(profile.curve))
-    return replace(least, at=-least.at % profile.curve.shape.period)
+    least = enclosed_least_radius(backwards(surface.curve))
+    return replace(least, at=-least.at % surface.curve.shape.period)
 
 
-def _extent(profile: Profile, shaft_deg: Callable[[float], float], cut: Undercut) -> str:
+def _extent(surface: Surface, shaft_deg: Callable[[float], float], cut: Undercut) -> str:
     """Say from where to where contact is lost, in shaft angles."""
-    if cut.end - cut.start >= profile.curve.shape.period:
+    if cut.end - cut.start >= surface.curve.shape.period:
         return "all round"
     return f"from {shaft_deg(cut.start):.6g} to {shaft_deg(cut.end):.6g} deg"
 
 
-def _unproved(recipe: Recipe, error: CurveError, intent: Intent) -> str:
+def _unproved(recipe: Recipe, error: CurveError, exact: ExactCam) -> str:
     """Say what could not be proved of a curve, and what would do."""
     from camgeo.curve.undercut.bottleneck import OpenNeckError
 
     if not isinstance(error, OpenNeckError):
         return str(error)
-    first, second = map(recipe.cam.position(intent).shaft_deg, error.pair)
+    first, second = map(exact.motion.shaft_deg, error.pair)
     most, least = error.most / recipe.mm, error.least / recipe.mm
     half = f"lies between {least:.9g} and {most:.9g}" if error.seen else f"is at least {least:.9g}"
     return (
-        f"whether a {recipe.cam.roller_field} of {most:.9g} has no undercut between {first:.6g} and {second:.6g} deg "
-        f"cannot be proved: half the width of the neck there {half}; "
+        f"whether a {recipe.cam.advice.radius_field} of {most:.9g} has no undercut between {first:.6g} and "
+        f"{second:.6g} deg cannot be proved: half the width of the neck there {half}; "
         f"{f'one below {downward(least)}' if least > 0.0 else 'none'} is proved to have no undercut"
     )
 
@@ -262,7 +256,7 @@ def _trimmed(curve: Curve) -> Curve:
     return trimmed(curve)
 
 
-def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, list[Check]]:
+def _part(recipe: Recipe, contour: Curve, exact: ExactCam) -> tuple[Body | None, list[Check]]:
     """The body of a part that has more than a bore, and the checks of the walls."""
     part = recipe.part
     if part.plain:
@@ -280,7 +274,7 @@ def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, 
                 wall,
                 part.wall or 0.0,
                 "mm",
-                recipe.cam.position(intent).shaft_deg(at),
+                exact.motion.shaft_deg(at),
                 "at_least",
                 detail=told,
             )
@@ -289,19 +283,18 @@ def _part(recipe: Recipe, contour: Curve, intent: Intent) -> tuple[Body | None, 
     from camgeo.synthesis.part.checks import part_checks
 
     body = body_of(part, contour)
-    return body, part_checks(body, contour, part.wall, recipe.cam.position(intent).shaft_deg)
+    return body, part_checks(body, contour, part.wall, exact.motion.shaft_deg)
 
 
 def intended(recipe: Recipe, design: Design) -> Judged:
     """What kin is given of the part: the follower with its law, and how the part is drawn."""
-    from kin.follower.follower import follower_of
     from kin.judge.contour_checks import DwellAsked
     from kin.judge.verify import Intent
 
     driven, asked = design.driven, recipe.dwell
     turns = driven is not None and driven.turns
     intent = Intent(
-        follower=follower_of(design.follower.contacts, recipe.cam.law(design.intent), recipe.cam.metal),
+        follower=design.exact.gauge,
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,
@@ -327,6 +320,6 @@ def permitted(recipe: Recipe, tolerance: float) -> Limits:
     motion, output = recipe.verify.motion_error, recipe.verify.output_error
     if output is not None and recipe.linkage is not None and not output_slides(recipe.linkage):
         output = math.degrees(output)
-    if motion is not None and recipe.cam.unit == "deg":
+    if motion is not None and recipe.cam.arrangement.unit == "deg":
         motion = math.degrees(motion)
     return Limits(tolerance, motion, output=output)

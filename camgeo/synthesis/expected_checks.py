@@ -42,4 +42,4 @@ def foreseen(recipe: Recipe, *, second_opinion: bool = False) -> tuple[Foreseen,
 
 def _follower(recipe: Recipe) -> Follower:
     """The follower; the motion is built, so that one that cannot be is reported first."""
-    return recipe.cam.follower(recipe.cam.intent(), framed=recipe.linkage is not None)
+    return recipe.cam.exact(framed=recipe.linkage is not None).follower

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import Intent
+    from camgeo.cams.position import Position
     from camgeo.recipe.recipe import Recipe
     from kin.numeric.arrays import Array
 
 ORDER = 3
 
 
-def motion_table(recipe: Recipe, intent: Intent) -> tuple[tuple[str, ...], Array]:
+def motion_table(recipe: Recipe, position: Position) -> tuple[tuple[str, ...], Array]:
     """Column names, and rows (angles + 1, 5): shaft angle, position and its derivatives by radian of shaft.
 
     A plate's lift is in the recipe's unit, the distance from the shaft less its datum; a follower that swings is in
@@ -23,7 +23,6 @@ def motion_table(recipe: Recipe, intent: Intent) -> tuple[tuple[str, ...], Array
     """
     count = recipe.verify.angles
     phi = np.linspace(0.0, 2.0 * np.pi, count + 1)
-    position = recipe.cam.position(intent)
     rows = position.turn(phi, ORDER)
     name, scale = position.column(recipe.units), position.shown(recipe.mm)
     table = np.column_stack([np.linspace(0.0, 360.0, count + 1), *(rows * scale)])

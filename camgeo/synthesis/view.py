@@ -66,21 +66,24 @@ class View(Generic[G_co, T_co]):
 
     def travel(self, shaft: Array, order: int = 0) -> Array:
         """Position of the follower from the zero of its contacts, mm or rad, and derivatives, (order + 1, n)."""
-        return self.design.position.travel(shaft, order)
+        return self.design.motion.travel(shaft, order)
 
     def pressure(self, shaft: Array) -> Array:
         """Pressure angle, rad (n,), above 0 where the cam drives a rise."""
-        return self.recipe.cam.pressure_angle(self.design.intent, self.design.profile)(shaft)
+        return self.design.surface.pressure(shaft)
 
     def place(self, shaft: Array) -> Array:
         """Where a flat face is touched, mm along it (n,), from the axis of its stem or the pivot of its arm."""
-        return self.recipe.cam.contact_place(self.design.intent, self.design.profile)(shaft)
+        place = self.design.surface.place
+        if place is None:
+            raise TypeError("no flat face is touched")
+        return place(shaft)
 
     def touched(self, shaft: Array) -> list[Array]:
         """Where each contact touches in the frame of the ground, mm, as complex numbers (n,)."""
         found = []
-        for t in self.design.position.contacts(shaft, shaft).values():
-            point = self.design.profile.curve.sample(np.mod(t, TURN)).point
+        for t in self.design.motion.parameters(shaft, shaft).values():
+            point = self.design.surface.curve.sample(np.mod(t, TURN)).point
             found.append((point[:, 0] + 1j * point[:, 1]) * np.exp(-1j * shaft))
         return found
 

@@ -1,7 +1,8 @@
-"""Distance from many points to a chain of many pieces, by bounding discs over runs of pieces."""
+"""Distance from many points to a chain of many pieces, by chords of runs of pieces and how far these rise over them."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,39 +10,57 @@ import numpy as np
 from kin.contour.arcs import dot, nearest_on, radial, right
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from kin.contour.arcs import Arcs
     from kin.numeric.arrays import Array, Indices
 
-RUN = 8  # pieces under one disc, discs under the next
+    Places = NDArray[np.complex128]
+
+RUN = 8  # pieces under one chord, chords under the next
+BLOCK = 1024  # points at a time
+MOST_PAIRS = 200_000  # of a point and a run; where more remain, fewer points are taken at a time
+ROUNDING = 1e-13  # of the greatest coordinate: bounds are widened by it, so that every piece equally near is looked at
 
 
 def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:
     """Return the piece nearest to each of the points (m, 2), and the distance, (m,) each; exact.
 
-    `arcs` is best in the order of a chain, where neighbours lie together. Cost grows as m log n.
+    Of pieces equally near it is the first. `arcs` is best in the order of a chain, where neighbours lie together. Cost
+    grows as m log n.
     """
-    levels = _discs(arcs)
-    query = np.repeat(np.arange(len(points)), len(levels[-1][0]))
-    block = np.tile(np.arange(len(levels[-1][0])), len(points))
+    size = max(float(np.abs(arcs.start).max()), float(np.abs(points).max(initial=0.0)))
+    levels = _levels(arcs, ROUNDING * size)
+    blocks = [_nearest(arcs, levels, points[first : first + BLOCK]) for first in range(0, len(points), BLOCK)]
+    return _joined(blocks)
+
+
+def _nearest(arcs: Arcs, levels: list[_Chords], points: Array) -> tuple[Indices, Array]:
+    count = len(levels[-1].start)
+    query, run = np.repeat(np.arange(len(points)), count), np.tile(np.arange(count), len(points))
+    place, best = _places(points), np.full(len(points), np.inf)
     for depth in range(len(levels) - 1, -1, -1):
-        centre, radius = levels[depth]
-        gap = points[query] - centre[block]
-        # each disc's centre lies on the chain, so the distance to it is a distance to the chain
-        reach = np.sqrt(dot(gap, gap))
-        best = np.minimum.reduceat(reach, _first_of_each(query))
-        near = reach - radius[block] <= best[query]
-        query, block = query[near], block[near]
+        nearer, reach = levels[depth].bounds(run, place[query])
+        best = np.minimum(best, np.minimum.reduceat(reach, _first_of_each(query)))
+        near = nearer <= best[query]
+        query, run = query[near], run[near]
+        if len(query) > MOST_PAIRS // RUN and len(points) > 1:
+            half = len(points) // 2
+            return _joined([_nearest(arcs, levels, part) for part in (points[:half], points[half:])])
         if depth:
-            count = len(levels[depth - 1][0])
-            block = (block[:, None] * RUN + np.arange(RUN)).ravel()
+            run = (run[:, None] * RUN + np.arange(RUN)).ravel()
             query = np.repeat(query, RUN)
-            real = block < count
-            query, block = query[real], block[real]
-    _, distance = nearest_on(arcs.take(block), points[query])
+            real = run < len(levels[depth - 1].start)
+            query, run = query[real], run[real]
+    _, distance = nearest_on(arcs.take(run), points[query])
     best = np.minimum.reduceat(distance, _first_of_each(query))
     chosen = np.flatnonzero(distance == best[query])
     chosen = chosen[_first_of_each(query[chosen])]
-    return block[chosen], distance[chosen]
+    return run[chosen], distance[chosen]
+
+
+def _joined(blocks: list[tuple[Indices, Array]]) -> tuple[Indices, Array]:
+    return np.concatenate([piece for piece, _ in blocks]), np.concatenate([distance for _, distance in blocks])
 
 
 def signed_distance(chain: Arcs, points: Array) -> Array:
@@ -64,16 +83,53 @@ def _first_of_each(sorted_index: Indices) -> Indices:
     return np.flatnonzero(np.concatenate([[True], sorted_index[1:] != sorted_index[:-1]]))
 
 
-def _discs(arcs: Arcs) -> list[tuple[Array, Array]]:
-    """Discs that hold runs of 1, RUN, RUN^2, ... pieces, their centres on the chain: finest level first."""
-    centre = arcs.points(0.5 * arcs.length)
-    radius = 0.5 * arcs.length
-    levels = [(centre, radius)]
-    while len(centre) > 2 * RUN:
-        heads = np.arange(0, len(centre), RUN)
-        middle = np.minimum(heads + RUN // 2, len(centre) - 1)
-        gap = centre - np.repeat(centre[middle], RUN, axis=0)[: len(centre)]
-        radius = np.maximum.reduceat(np.hypot(gap[:, 0], gap[:, 1]) + radius, heads)
-        centre = centre[middle]
-        levels.append((centre, radius))
+@dataclass(frozen=True)
+class _Chords:
+    """Chords of n runs of pieces from `start` over `length` along `heading`, all (n,), places as complex numbers.
+
+    No point of a run is farther than `sagitta` (n,) from its chord.
+    """
+
+    start: Places
+    heading: Places
+    length: Array
+    sagitta: Array
+
+    @staticmethod
+    def between(start: Places, end: Places, sagitta: Array) -> _Chords:
+        """Chords by their ends."""
+        length = np.abs(end - start)
+        return _Chords(start, (end - start) / np.maximum(length, np.finfo(np.float64).tiny), length, sagitta)
+
+    def bounds(self, run: Indices, place: Places) -> tuple[Array, Array]:
+        """Least distance that places (m,) can have from runs (m,), and one that they have from a point of them."""
+        length = self.length[run]
+        offset = (place - self.start[run]) * self.heading[run].conj()
+        along, across = offset.real, offset.imag**2
+        beyond = along - length
+        outside = np.maximum(np.maximum(-along, beyond), 0.0)
+        # the ends of a chord lie on its run
+        reach = np.sqrt(np.minimum(along**2, beyond**2) + across)
+        return np.sqrt(outside**2 + across) - self.sagitta[run], reach
+
+
+def _places(points: Array) -> Places:
+    return points[:, 0] + 1j * points[:, 1]
+
+
+def _levels(arcs: Arcs, rounding: float) -> list[_Chords]:
+    """Chords of runs of 1, RUN, RUN^2, ... pieces, finest level first, their sagittas widened by `rounding`."""
+    start, end = _places(arcs.start), _places(arcs.ends)
+    quarter = 0.25 * np.abs(arcs.curvature) * arcs.length
+    sagitta = 0.5 * arcs.length * np.sin(quarter) * np.sinc(quarter / np.pi) + rounding
+    levels = [_Chords.between(start, end, sagitta)]
+    while len(start) > 2 * RUN:
+        heads = np.arange(0, len(start), RUN)
+        owner = np.arange(len(start)) // RUN
+        whole = _Chords.between(start[heads], end[np.append(heads[1:], len(end)) - 1], np.zeros(len(heads)))
+        # what lies along a chord is farthest from a longer one at an end
+        off = np.maximum(whole.bounds(owner, start)[0], whole.bounds(owner, end)[0])
+        sagitta = np.maximum.reduceat(off + sagitta, heads)
+        levels.append(replace(whole, sagitta=sagitta))
+        start, end = start[heads], end[np.append(heads[1:], len(end)) - 1]
     return levels

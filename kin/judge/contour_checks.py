@@ -173,7 +173,7 @@ def _contour_check(found: Deviation, intent: Intent, tolerance: float, slack: fl
     worst, parameter = found.worst
     milling, follower = intent.milling, intent.follower
     if milling is not None and milling.standing:
-        worst = max(worst - milling.standing, found.outside if milling.inside else found.inside)
+        worst = max(worst - milling.standing, found.inside if milling.side > 0 else found.outside)
     detail = f"{found.outside:.3g} mm outside, {found.inside:.3g} mm inside the exact contour"
     if found.rounds != 1:
         detail = f"the contour goes {found.rounds} times round the exact one; {detail}"

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from kin.contour.arcs import Arcs
     from kin.contour.contour import Contour
+    from kin.law.contacts import Side
     from kin.numeric.arrays import Array
     from kin.read.gcode import Move, Program
 
@@ -50,7 +51,7 @@ class Milling:
     climb         a right-handed cutter meets the metal climbing
     standing      how far metal may stand outside the contour where the cutter does not reach
     hub           radius and height of the metal about the shaft that stands on the stock; None without
-    inside        the contour is the opening of a ring about the shaft; no path runs round its outline
+    side          on which the metal lies: 1 within the contour; -1 round it, as of a ring, whose outline is not milled
     """
 
     radius: float
@@ -59,7 +60,7 @@ class Milling:
     climb: bool = True
     standing: float = 0.0
     hub: tuple[float, float] | None = None
-    inside: bool = False
+    side: Side = 1
 
 
 class Cut(NamedTuple):
@@ -91,7 +92,7 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
     last = [feature[-1] for feature in features]
     loops = [arcs_of(cut.loop) for cut in last]
     sizes = [abs(_area(loop)) for loop in loops]
-    outer = None if milling.inside else int(np.argmax(sizes))
+    outer = int(np.argmax(sizes)) if milling.side > 0 else None
     edges = []
     for k, (cut, loop) in enumerate(zip(last, loops, strict=True)):
         inward = 1.0 if (_area(loop) > 0.0) == (k == outer) else -1.0

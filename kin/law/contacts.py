@@ -43,6 +43,13 @@ class Oscillating:
     unit: ClassVar[Unit] = "deg"
     word: ClassVar[str] = "oscillating"
 
+    @property
+    def arm(self) -> float:
+        """Length of the arm of a round touch, mm; raises ValueError for that of a flat face, which has none."""
+        if self.length is None:
+            raise ValueError("the arm of a round touch has a length")
+        return self.length
+
 
 @dataclass(frozen=True)
 class Roller:

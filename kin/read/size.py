@@ -1,4 +1,4 @@
-"""How much of a file is read: of each kind so many bytes that any is judged in seconds and in 2 GB of memory."""
+"""How much of a file is read: of each kind so many bytes that any is read in 2 GB of memory, and in seconds."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 __all__ = ["MOST_BYTES", "MOST_PIECES", "contents", "demand_few_pieces", "oversize"]
 
 MOST_BYTES = {
-    "dxf": 8_000_000,
-    "svg": 12_000_000,
-    "stl": 64_000_000,
-    "3mf": 32_000_000,
-    "step": 8_000_000,
-    "gcode": 8_000_000,
+    "dxf": 64_000_000,
+    "svg": 48_000_000,
+    "stl": 256_000_000,
+    "3mf": 64_000_000,
+    "step": 16_000_000,
+    "gcode": 32_000_000,
 }
-MOST_PIECES = 250_000  # of the contours of a drawing: more than a polygon within a millionth of a millimetre has
+MOST_PIECES = 1_000_000  # of the contours of a drawing: a polygon within 1e-9 mm may have more than half of that
 
 
 def oversize(path: Path, kind: str) -> str:

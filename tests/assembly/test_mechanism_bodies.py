@@ -235,7 +235,7 @@ def test_the_faces_of_a_yoke_stand_at_the_breadth_and_the_clearance() -> None:
     _, design, assembly = made("yoke")
     frame = assembly.member("yoke").plates[0]
     x0, _, x1, _ = frame.holes[0].box()
-    assert design.yoke_breadth == pytest.approx(50.0)
+    assert design.follower.breadth == pytest.approx(50.0)
     assert x1 - x0 == pytest.approx(50.0 + assembly.sizes.clearance, abs=1e-12)
     assert x1 == pytest.approx(assembly.sizes.gap_each_side)  # face 1 is at the intended place, half the clearance out
 

@@ -15,13 +15,14 @@ import tempfile
 import time
 import traceback
 from collections import Counter
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from attacks.outcome import MOST_MEGABYTES, Attack, Done, findings
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable
     from multiprocessing.connection import Connection
 
 KILLED = 90.0  # s of processor time after which a call is ended
@@ -45,12 +46,8 @@ def run(seed: int, numbers: Iterable[int], told: Callable[[Told], None]) -> None
     """Make the attacks of a seed one after another; `told` hears of each."""
     waiting = iter(numbers)
     left: list[int] = []
-    while batch := [*left, *_next(waiting, MANY - len(left))]:
-        left = list(_worked(seed, batch, told))
-
-
-def _next(numbers: Iterator[int], count: int) -> list[int]:
-    return [number for number, _ in zip(numbers, range(count), strict=False)] if count > 0 else []
+    while batch := [*left, *islice(waiting, MANY - len(left))]:
+        left = _worked(seed, batch, told)
 
 
 def _worked(seed: int, batch: list[int], told: Callable[[Told], None]) -> list[int]:

@@ -40,8 +40,9 @@ def test_attacks_find_nothing(number: int) -> None:
 
 
 @pytest.mark.slow
-def test_many_attacks_in_processes_that_are_watched_find_nothing() -> None:
+def test_many_attacks_in_processes_that_are_watched_find_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     every: list[runner.Told] = []
+    monkeypatch.setattr(runner, "MANY", 64)  # so that several workers share them
     runner.run(SEED, range(QUICK, QUICK + SLOW), every.append)
     assert [one.number for one in every] == list(range(QUICK, QUICK + SLOW))
     assert [text for one in every for text in wrong(one)] == []

@@ -22,7 +22,7 @@ def recipe(motion, follower, folder, *, units="mm"):
 
 
 def stroke(made):
-    return made.cam.intent().derivatives(np.radians(np.arange(0.0, 360.0, 2.0)), 0)[0].max()
+    return made.cam.exact().law.derivatives(np.radians(np.arange(0.0, 360.0, 2.0)), 0)[0].max()
 
 
 @pytest.fixture
@@ -66,7 +66,7 @@ HEART = (
 
 def test_a_knife_edge_goes_into_hollows(tmp_path):
     made = recipe(HEART, "{kind: knife-edge}", tmp_path)
-    assert designed(made).profile.curve.cells.rows[3].min() < 0.0  # somewhere the tangent turns back
+    assert designed(made).surface.curve.cells.rows[3].min() < 0.0  # somewhere the tangent turns back
     assert pipeline.check(made).ok
 
 

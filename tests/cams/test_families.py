@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from support.places import ROOT
 
@@ -24,9 +26,10 @@ SHIPPED = sorted((ROOT / "recipes").glob("*.yaml"))
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_follower_is_drawn_and_its_checks_are_made(path: Path) -> None:
     recipe = load(path)
-    follower = recipe.cam.follower(recipe.cam.intent(), framed=recipe.linkage is not None)
+    exact = recipe.cam.exact(framed=recipe.linkage is not None)
+    follower = exact.follower
     assert follower.arrangement in DRAWN
-    assert set(follower.checks) <= set(CHECKED) <= set(CHECKS)
+    assert set(follower.checks) <= {*CHECKED, *exact.proofs} <= set(CHECKS)
     assert follower.closure in {"", *CHECKS}
     assert follower.arrangement in BODIES
 
@@ -36,3 +39,17 @@ def test_a_family_is_told_of(kind: str) -> None:
     assert FAMILIES[kind].kind == kind
     assert f"({kind}" in SAID or f", {kind})" in SAID
     assert f"`{kind}`" in (ROOT / "docs" / "which-cam.md").read_text(encoding="utf-8")
+
+
+EACH = "as-figure-1 print-constant-diameter disc-arm-flat disc-flat disc-ring disc-roller w-ellipse w-booth shu-wu"
+
+
+@pytest.mark.parametrize("name", EACH.split())
+def test_an_exact_cam_goes_to_another_process(name: str) -> None:
+    exact = load(ROOT / "recipes" / f"{name}.yaml").cam.exact()
+    same = pickle.loads(pickle.dumps(exact))
+    t = np.linspace(0.0, 1.0, 7)
+    assert (same.surface.pressure(t) == exact.surface.pressure(t)).all()
+    assert same.surface.curve.sample(t).point == pytest.approx(exact.surface.curve.sample(t).point, abs=0.0)
+    assert same.follower == exact.follower
+    assert pickle.dumps(exact.surface)

@@ -40,7 +40,7 @@ def recipe(motion, folder, head=BREADTH, key="motion", units="mm"):
 
 
 def lift(made, degrees, order=0):
-    intent = made.cam.intent()
+    intent = made.cam.exact().law
     found = intent.derivatives(np.radians(degrees), order)
     found[0] -= intent.datum
     return found
@@ -96,7 +96,7 @@ def test_a_formula_is_in_radians_and_in_the_recipe_s_unit(tmp_path):
     made = recipe("{formula: 0.2*(1 - cos(t))}", tmp_path, "kind: constant-breadth, base_radius: 1.5", units="inch")
     theta = np.arange(0.0, 180.0, 15.0)
     assert lift(made, theta)[0] == pytest.approx(5.08 * (1 - np.cos(np.radians(theta))), abs=1e-13)
-    swing = recipe("{formula: 3*sin(2*t)**3}", tmp_path, ROLLER, "law").cam.intent()
+    swing = recipe("{formula: 3*sin(2*t)**3}", tmp_path, ROLLER, "law").cam.exact().law
     assert np.degrees(swing.psi_of_shaft(rad(30), 0)[0]) == pytest.approx([3 * math.sin(rad(60)) ** 3], abs=1e-12)
 
 
@@ -340,7 +340,7 @@ def test_a_reading_that_the_rows_keep_mends_scatter(tmp_path):
     rows, _ = with_noise(written(tmp_path, HALF, sampled(HALF)))
     (tmp_path / "lift.csv").write_text("\n".join(rows), encoding="utf-8")
     assert "give a reading error above that" in str(fault("{table: lift.csv, reading: 0.001}", tmp_path))
-    recipe("{table: lift.csv, reading: 0.06}", tmp_path).cam.intent()
+    recipe("{table: lift.csv, reading: 0.06}", tmp_path).cam.exact()
 
 
 @pytest.mark.parametrize(
@@ -394,11 +394,11 @@ def test_scatter_is_told_in_the_unit_in_which_a_reading_is_given(units, stem, un
     base = f"units: {units}\ncam: {{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 8{guide}}}, motion: "
     (tmp_path / "c.yaml").write_text(base + "{table: lift.csv}}\n", encoding="utf-8")
     with pytest.raises(IntentError, match=rf"is \S+ {unit} off here, the reading error is 0\.001 {unit}; ") as caught:
-        load(tmp_path / "c.yaml").cam.intent()
+        load(tmp_path / "c.yaml").cam.exact()
     asked = float(re.search(r"is (\S+) \w+ off here", caught.value.message)[1]) * 1.01
     for reading in (f"{asked:.6f}", f"{asked:.6f} {unit}"):
         (tmp_path / "c.yaml").write_text(f"{base}{{table: lift.csv, reading: {reading}}}}}\n", encoding="utf-8")
-        load(tmp_path / "c.yaml").cam.intent()
+        load(tmp_path / "c.yaml").cam.exact()
 
 
 def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):
@@ -416,7 +416,7 @@ def test_a_table_that_is_no_file_is_one_error_at_the_recipe_s_line(tmp_path):
     }
     assert "empty.csv, the table is empty" in str(fault("{table: empty.csv}", tmp_path))
     (tmp_path / "none.csv").write_text("\n".join(written(tmp_path, HALF, sampled(HALF))))
-    recipe("{table: none.csv}", tmp_path).cam.intent()
+    recipe("{table: none.csv}", tmp_path).cam.exact()
 
 
 # --- what is refused, with a remedy that does -------------------------------------------------------------------------
@@ -473,7 +473,7 @@ def test_what_no_plate_can_do_is_refused_at_its_field(motion, path, message, men
     error = fault(motion, tmp_path)
     assert error.path == path
     assert message in str(error)
-    recipe(mended, tmp_path).cam.intent()
+    recipe(mended, tmp_path).cam.exact()
 
 
 @pytest.mark.thin(2)
@@ -491,7 +491,7 @@ def test_a_rise_over_a_hundredth_of_a_degree_is_exact_or_fails_its_check(stroke,
 
 def test_kin_s_own_error_keeps_its_angle(tmp_path):
     with pytest.raises(IntentError) as caught:
-        recipe("{formula: 5*sin(t/2)}", tmp_path).cam.intent()
+        recipe("{formula: 5*sin(t/2)}", tmp_path).cam.exact()
     assert caught.value.at_deg == 180
 
 

@@ -152,7 +152,7 @@ def test_the_corner_points_stay_where_they_are_while_the_face_turns():
     design = designed(recipe)
     corner = points_of(FIVE)[0]
     t = np.radians(np.linspace(-24.9, 24.9, 101))  # the first corner bears for 50 degrees about +x
-    p = design.intent.derivatives(t, 2)
+    p = design.exact.law.derivatives(t, 2)
     assert p[0] == pytest.approx(corner[0] * np.cos(t) + corner[1] * np.sin(t), abs=1e-12)
     assert np.abs(p[0] + p[2]).max() < 1e-12
 

@@ -78,7 +78,7 @@ def test_the_bound_itself_is_a_stroke(motion: str, units: str, tmp_path: Path) -
     path = tmp_path / "cam.yaml"
     path.write_text(f"units: {units}\ncam: {{{CAMS['disc']}, motion: {motion}}}\n")
     recipe = camgeo.load(path)
-    motion_made = recipe.cam.intent()
+    motion_made = recipe.cam.exact().law
     assert motion_made.range[1] - motion_made.range[0] == pytest.approx(MOST * recipe.mm, rel=3e-4)
 
 

@@ -161,7 +161,7 @@ def test_what_a_figure_is_against_the_motion_itself() -> None:
     limits = wide(FLAT)
     values = {check["name"].removeprefix(LIMIT): check for check in held(FLAT, limits)}
     t = np.linspace(0, 2 * math.pi, 100_001)
-    p = loaded(FLAT).cam.intent().derivatives(t, 3)
+    p = loaded(FLAT).cam.exact().law.derivatives(t, 3)
     wanted = {
         "swing": np.ptp(p[0]),
         "peak-velocity": np.abs(p[1]).max(),
@@ -187,7 +187,7 @@ def test_a_roller_s_figures_against_the_pitch_curve() -> None:
     for name in ("pressure-angle", "velocity-ratio"):
         assert values[name] == checks[name]
     assert values["backlash"] == pytest.approx(checks["form-closure"], rel=1e-9)
-    profile = designed(loaded(ROLLER)).profile
+    profile = designed(loaded(ROLLER)).surface
     at = profile.curve.sample(np.linspace(0, profile.curve.shape.period, 40_001)[:-1])
     radii = at.speed / at.turn
     assert values["hollow-radius"] == pytest.approx(-radii[radii < 0].max(), rel=1e-4)
@@ -200,7 +200,7 @@ def test_a_roller_s_motion_is_that_of_the_table() -> None:
     from camgeo.synthesis.motion_table import motion_table
 
     recipe = loaded(ROLLER.replace("angles: 120", "angles: 20000"))
-    _, table = motion_table(recipe, recipe.cam.intent())
+    _, table = motion_table(recipe, recipe.cam.exact().motion)
     said = (
         "{swing: {at_most: 1}, peak-velocity: {at_most: 1}, peak-acceleration: {at_most: 1}, peak-jerk: {at_most: 1}}"
     )
@@ -434,7 +434,7 @@ def test_any_cam_s_figures_are_those_of_its_motion(cos: list[int], sin: list[int
     recipe = loaded(text)
     design = designed(recipe)
     t = np.linspace(0, 2 * math.pi, 20_001)
-    p = recipe.cam.intent().derivatives(t, 3)
+    p = recipe.cam.exact().law.derivatives(t, 3)
     peaks = np.abs(p[1:]).max(axis=1)
     wanted = [np.ptp(p[0]), *peaks, np.ptp(p[1]), (p[0] + p[2]).min(), np.hypot(p[0], p[1]).max()]
     figures = of_design(recipe, design, design.checks, names)

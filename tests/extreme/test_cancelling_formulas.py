@@ -74,7 +74,7 @@ def refusal(text, words, why):
 def case(text, oracle, why):
     asked = recipe(f"kind: support\np: {text}", files="{dxf: {as: arcs}}, {dxf: {as: polyline}}")
     what = f"`p: {text}`"
-    lift = designed(asked).intent
+    lift = designed(asked).exact.law
     found, exact = lift.derivatives(ANGLES, 1), [oracle.derivatives(mp.mpf(float(t))) for t in ANGLES]
     off = max(worst(found[k], [[row[k]] for row in exact]) for k in (0, 1))
     yield Row(what, "p and p' as a share of the rounding that is reported", off / lift.rounding, 1.0, why)

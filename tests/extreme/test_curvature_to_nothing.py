@@ -50,7 +50,7 @@ def free(share):
     asked, oracle = recipe(harmonic(3, a), files=FORMS, thickness=10), fourier(25, {3: a}, {})
     what = f"p = 25 + a cos 3t, least radius {share:g} of the breadth"
     files = made(asked)
-    profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+    profile = max(off_profile(asked, oracle), off_motion(designed(asked).exact.law, oracle))
     yield Row(what, "profile, p to p'''", profile, 2e-15, "trigonometric sums, no quotient: nothing cancels")
     most = max(off_file(contour, oracle, 1e-3) for contour in files.contours.values())
     yield Row(what, "files within 0.001 mm", max(most, files.used()), 1.0, "share of the tolerance, proved and judged")
@@ -91,7 +91,7 @@ def corners(sides, rounding):
     cam = f"kind: support\nreuleaux: {{sides: {sides}, breadth: 50, rounding: {rounding!r}}}"
     asked, oracle = recipe(cam, files=FORMS, thickness=10), reuleaux(sides, 50, rounding)
     what = f"Reuleaux polygon of {sides} sides, breadth 50, rounded by {rounding:g} mm"
-    profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+    profile = max(off_profile(asked, oracle), off_motion(designed(asked).exact.law, oracle))
     yield Row(what, "profile, p to p'''", profile, 1e-15 * sides, "circles; p' is small beside p")
     files = made(asked)
     most = max(off_file(contour, oracle, 1e-3) for contour in files.contours.values())

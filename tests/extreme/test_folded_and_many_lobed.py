@@ -108,7 +108,7 @@ def small_rise(ratio, rise, over, radius):
     off = max(0.0 if check.ok else 1.0 for check in design.checks)
     what = f"law of {rise:g} degrees over {over:g}, lambda/mu = {ratio}, roller of {radius:g} mm"
     yield Row(what, "checks that fail", off, 0.0, "directions by cell: a rise hardly turns the tangent, however bent")
-    yield law_row(what, design.intent, rise, over, rest)
+    yield law_row(what, design.exact.law, rise, over, rest)
 
 
 def crosses_itself():
@@ -120,7 +120,7 @@ def undercut_by_small_rise(radius):
     """A rise of a thousandth of a degree in a hundredth, on rollers that pass over it: where contact is lost."""
     cam, _ = to_and_fro("double-roller", "7/5", 1e-3, 0.01, f"roller_radius: {radius}")
     with in_time(20):
-        curve = (asked := recipe(cam, files=ARCS).cam).profile(asked.intent()).curve
+        curve = recipe(cam, files=ARCS).cam.exact().surface.curve
         lost = remains(curve, causes(curve)).lost
     corners = np.concatenate([one.corners for one in lost])
     ends = PitchCurve.of(curve).at(np.array([[one.start, one.end] for one in lost]).ravel()).point
@@ -172,7 +172,7 @@ def flat_pair(ratio, rise, over):
     files = made(recipe(cam, files=ARCS))
     what = f"flat pair, law of {rise:g} degrees over {over:g}, lambda/mu = {ratio}"
     yield Row(what, "file within 0.001 mm", files.used(), 1.0, "share of the tolerance")
-    yield law_row(what, designed(recipe(cam, files=ARCS)).intent, 2.0 * rise, over, rest)
+    yield law_row(what, designed(recipe(cam, files=ARCS)).exact.law, 2.0 * rise, over, rest)
 
 
 def needle(thin):
@@ -233,7 +233,7 @@ def many_lobes(lam, mu, share):
     what = f"lambda/mu = {lam}/{mu}, m^2/l^2 = {share:g}"
     profile = off_profile(asked, oracle, ANGLES)
     yield Row(what, "profile", profile, 2e-14 * lam, "the angle lambda t is rounded, and r small beside l")
-    law = designed(asked).intent
+    law = designed(asked).exact.law
     yield Row(what, "phi and psi, rad", max(motion_off(law, oracle, ANGLES)), 2e-16 * lam, "the same")
     files = made(asked)
     yield Row(what, "file within 0.001 mm", files.used(), 1.0, "share of the tolerance")

@@ -38,7 +38,7 @@ def harmonics(k, share):
     asked = recipe(f"kind: support\nfourier: {{mean: 25, cos: {{{k}: {a!r}}}}}", files=FORMS, thickness=10)
     oracle = fourier(25, {k: a}, {})
     what = f"p = 25 + a cos {k}t, least radius {1 - share:.6g} of the mean"
-    profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+    profile = max(off_profile(asked, oracle), off_motion(designed(asked).exact.law, oracle))
     yield Row(what, "profile, p to p'''", profile, 2e-16 * 7 * k, "the angle k t is rounded: k t eps, t up to 2 pi")
     files = made(asked)
     most = max(off_file(contour, oracle, 1e-3) for contour in files.contours.values())
@@ -55,7 +55,7 @@ def sizes(breadth, unit):
         asked = recipe(cam, files=form, units=unit, thickness=breadth / 5, tolerance=share * breadth)
         files = made(asked)
         if share == 1e-6:
-            profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+            profile = max(off_profile(asked, oracle), off_motion(designed(asked).exact.law, oracle))
             yield Row(
                 what, "profile, p to p'''", profile, 2e-15, "everything scales; no length is compared with a constant"
             )
@@ -73,7 +73,7 @@ def shaft(x):
     asked = recipe(cam, files=f"{FORMS}, {SPLINE}", thickness=10)
     oracle = fourier(25, {3: 1}, {}, pivot=(x, 0.0))
     what = f"shaft {x - 26.0:.2g} mm outside the contour" if x != 26.0 else "shaft on the contour"
-    profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+    profile = max(off_profile(asked, oracle), off_motion(designed(asked).exact.law, oracle))
     yield Row(
         what, "profile, p to p'''", profile, 2e-15, "as a share of the size; the place of the shaft is added last"
     )

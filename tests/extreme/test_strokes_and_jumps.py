@@ -66,7 +66,7 @@ def case(what, base_radius, segments, *, near=None, width=None, tolerance=1e-3):
     profile = off_profile(asked, oracle, angles)
     times = 1.0 if width is None else 180.0 / width
     yield Row(what, "profile", profile, 1e-14 * times, "angles are doubles: their rounding over the width of the rise")
-    motion = off_motion(designed(asked).intent, oracle, angles)
+    motion = off_motion(designed(asked).exact.law, oracle, angles)
     yield Row(what, "p to p'''", motion, 2e-14 * times, "the same")
     most = max(off_file(contour, oracle, tolerance, angles) for contour in files.contours.values())
     yield Row(what, f"files within {tolerance:g} mm", max(most, files.used()), 1.0, "share of the tolerance")
@@ -86,11 +86,11 @@ def eccentric():
     asked = recipe(cam(40.0, [(20.0, 180, "harmonic")]), files=FORMS, thickness=10, tolerance=1e-3)
     oracle = constant_breadth(40.0, [(20.0, 180, "harmonic")])
     files = made(asked)
-    (function,) = designed(asked).intent.law.functions
+    (function,) = designed(asked).exact.law.law.functions
     assert isinstance(function, Circle)
     assert files.report["files"][0]["pieces"] == 2
     what = "harmonic rise of 20 mm over 180 degrees: an eccentric"
-    profile = max(off_profile(asked, oracle), off_motion(designed(asked).intent, oracle))
+    profile = max(off_profile(asked, oracle), off_motion(designed(asked).exact.law, oracle))
     yield Row(what, "profile, p to p'''", profile, 2e-15, "known for a circle")
     off = max(files.report["files"][0][name] for name in ("geometry_error", "measured_error"))
     yield Row(what, "two arcs, mm", off, 1e-12, "rounding of the file's coordinates")

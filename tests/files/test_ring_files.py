@@ -97,7 +97,7 @@ def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
     recipe = ring(files="{dxf: {kerf: 0.4}}")
     design, _ = found(recipe)
     made = compensated(recipe, design, Compensation(kerf=0.4), "export.files[0]")
-    assert made.design.profile.base.size == pytest.approx(design.profile.base.size)
+    assert made.design.surface.base.size == pytest.approx(design.surface.base.size)
     point, inner = (one.sample(np.linspace(0.0, 6.0, 9)).point for one in (design.contour, made.design.contour))
     assert np.hypot(*(point - inner).T) == pytest.approx(np.full(9, 0.2))
     path, checks = files_of(recipe, tmp_path)[1]["dxf"]
@@ -141,7 +141,7 @@ def test_a_spoilt_ring_is_caught(tmp_path, fault):
     recipe = ring("{outer: 130}")
     design, _ = found(recipe)
     distance, degrees, outer = FAULTS[fault]
-    outline = turned(fit_arcs(Curve.whole(Parallel(design.profile.base.shape, distance)), 2e-5), degrees)
+    outline = turned(fit_arcs(Curve.whole(Parallel(design.surface.base.shape, distance)), 2e-5), degrees)
     path = tmp_path / "ring.dxf"
     write_dxf(path, outline, cutouts=[Cutout("CUT", Circle("outline", (0.0, 0.0), 0.5 * outer))])
     verdict = verify(path, intended(recipe, design), 180, Limits(1e-4))

@@ -317,7 +317,7 @@ BARE = '<svg xmlns="http://www.w3.org/2000/svg" '
         (HEAD, '<path d="M0 0 1 1z 3"/>', "syntax", "the number 3 where a letter belongs"),
         (HEAD, '<path d="M0 0 # 1"/>', "syntax", "'#'"),
         (HEAD, '<path d="M0 0L1e9 0 0 1z"/>', "range", "a value of 1e+09"),
-        (HEAD, '<path d="M0 0C0 1 1e400 1 1 0z"/>', "range", "a value of inf"),
+        (HEAD, '<path d="M0 0C0 1 1e400 1 1 0z"/>', "range", "its path has 1e400, beyond all numbers"),
         (HEAD, '<circle r="-1"/>', "range", "its radius is -1"),
         (HEAD, '<circle r="10mm"/>', "syntax", "'10mm' is not a number of the drawing's own unit"),
         (HEAD, '<g transform="scale(1 2)"><circle r="2"/></g>', "unsupported", "makes ellipses of its circles"),

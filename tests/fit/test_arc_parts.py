@@ -14,7 +14,7 @@ from camgeo.recipe.loading import load
 
 def curve_of(name):
     cam = load(RECIPES / f"{name}.yaml").cam
-    return cam.profile(cam.intent()).curve
+    return cam.exact().surface.curve
 
 
 class Counted:

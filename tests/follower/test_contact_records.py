@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from camgeo.curve.moving_frame import Displacement
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
@@ -22,6 +23,7 @@ from kin.contour.contour import Contour
 from kin.follower.follower import follower_of
 from kin.follower.motion_error import ContactError
 from kin.law.contacts import Arrangement, Contact, Flat, Oscillating, Roller, Shoe, Translating
+from kin.law.transmission_law import Transmission
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -71,8 +73,9 @@ def held(name: str) -> tuple[Any, ...]:
     design = designed(recipe)
     assert design.contour is not None
     arcs = fit_arcs(design.contour, 1e-6)
-    law = recipe.cam.law(design.intent)
-    return design.follower.contacts, law, recipe.cam.metal, Contour.from_bulges(arcs.points, arcs.bulges)
+    law: Any = design.exact.law
+    law = law if isinstance(law, Transmission) else law.law() if isinstance(law, Displacement) else law.law
+    return design.follower.contacts, law, recipe.cam.side, Contour.from_bulges(arcs.points, arcs.bulges)
 
 
 def off(name: str, contacts: tuple[Contact[Any, Any], ...], side: int = 0) -> float:

@@ -94,7 +94,7 @@ FAULTS = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_the_cam_of_another_swing_is_caught(tmp_path, intent, fault):
-    wrong = designed_of(*FAULTS[fault])[1].intent
+    wrong = designed_of(*FAULTS[fault])[1].exact.law
     assert failures(file_of(tmp_path, wrong), intent) >= {"contour", "motion", "linkage-error"}
 
 
@@ -128,7 +128,7 @@ def test_the_judge_holds_the_file_against_the_law_over_the_shaft_angle(tmp_path)
     path = next(Path(tmp_path).rglob("*.dxf"))
     vertices = read_drawing(path).contour.vertices
     law = recipe.cam.frame_swing()
-    lift = recipe.cam.intent()
+    lift = recipe.cam.exact().law
     breadth = float(lift.derivatives(np.array([0.0, math.pi]), 0)[0].sum())
     bars = Bars("inverted", 80.0, rocker=15.0, aside=6.0)
     bench = Bench(bars, breadth, cache(lambda x: float(lift.derivatives(x, 0)[0, 0])))

@@ -9,11 +9,8 @@ import pytest
 from support.programmes import Segment, law, programme
 
 from camgeo.cams.double_roller import DoubleRollerCam
-from camgeo.cams.family import Profile
-from camgeo.cams.pairs import DeltaRoute
+from camgeo.cams.pairs import DeltaRoute, ExactPair
 from camgeo.checks.declared import CLOSING, PRESSURE, RATIO
-from camgeo.curve.curve import Curve
-from camgeo.curve.wunderlich import PitchShape
 from camgeo.synthesis.checks import motion_checks
 from kin.law.transmission import from_delta, from_law
 
@@ -30,15 +27,14 @@ def test_a_rise_between_two_looks_is_not_overlooked():
         for way in ("rise", "dwell", "return", "dwell")
     ]
     motion = from_law(7, 5, 60.0, programme(steps, math.pi / 7.0))
-    pitch = Curve.whole(PitchShape(motion))
-    closing, steep = motion_checks(CAM, motion, Profile(pitch, pitch, 1.0), (CLOSING.name, RATIO.name))
+    closing, steep, pressed = motion_checks(ExactPair(CAM, motion))
+    assert [closing.name, steep.name, pressed.name] == [CLOSING.name, RATIO.name, PRESSURE.name]
     assert steep.value == pytest.approx(2e-3, rel=2e-3)
     assert 0.0 < closing.value < 1e-13
     flat = from_law(7, 5, 60.0, programme([Segment("dwell", math.pi / 7.0)], math.pi / 7.0))
     worst = []
     for one in (motion, flat):
-        pitch = Curve.whole(PitchShape(one))
-        worst += [check.value for check in motion_checks(CAM, one, Profile(pitch, pitch, 1.0), (PRESSURE.name,))]
+        worst += [check.value for check in motion_checks(ExactPair(CAM, one)) if check.name == PRESSURE.name]
     assert worst[0] > worst[1] + 0.1
 
 
@@ -46,8 +42,7 @@ def test_a_rise_between_two_looks_is_not_overlooked():
 def test_pressure_angle_at_its_very_maximum(lam, mu, arm, wave):
     """Against a fine grid of r and r' written out: the normal's slope to the ray, less the arm's."""
     motion = from_delta(lam, mu, arm, {1: wave}, {})
-    pitch = Curve.whole(PitchShape(motion))
-    (found,) = (check.value for check in motion_checks(CAM, motion, Profile(pitch, pitch, 1.0), (PRESSURE.name,)))
+    *_, found = (check.value for check in motion_checks(ExactPair(CAM, motion)))
     t = np.linspace(0.0, 2.0 * np.pi / lam, 400_001)
     d, slope = wave * np.cos(lam * t), -lam * wave * np.sin(lam * t)
     psi, psi1 = -np.arcsin(d / arm**2), -slope / np.sqrt(arm**4 - d**2)

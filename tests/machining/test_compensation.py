@@ -230,7 +230,7 @@ def test_a_set_of_bodies_has_a_clearance_of_its_own():
 
 def test_laws_of_longer_arms():
     for cam in (ROLLER, ARC, PAIR):
-        law_of = designed(recipe_of("dxf", cam=cam)).intent
+        law_of = designed(recipe_of("dxf", cam=cam)).exact.law
         tau = np.linspace(0.0, 6.0, 31)
         (r, t), (longer, same) = law_of.pitch(tau, 2), law_of.scaled(1.5).pitch(tau, 2)
         assert longer == pytest.approx(1.5 * r, rel=1e-12, abs=1e-10)

@@ -70,7 +70,7 @@ def test_a_flat_face_to_thirty_digits():
 def test_each_roller_touches_where_it_stands():
     _, design, table = table_of(ROLLER + "manufacture: {cutter: 10}\n")
     phi, psi = np.radians(table["shaft_deg"]), np.radians(table["follower_deg"])
-    envelope = RollerEnvelope(TransmissionPitch(design.intent), 8.0)
+    envelope = RollerEnvelope(TransmissionPitch(design.exact.law), 8.0)
     alpha = np.pi * 3 / 4
     assert np.ptp(psi) > 0.1
     for name, sense in (("a_", -1), ("b_", 1)):

@@ -202,13 +202,13 @@ def test_the_path_on_a_layer_of_its_own(tmp_path, top):
 # --- planted faults ---------------------------------------------------------------------------------------------------
 
 
-def program(path, recipe, *, inward, turned=0.0, outside=False, lead=3.0):
+def program(path, recipe, *, inward, turned=0.0, side=-1, lead=3.0):
     """One pass along the parallel of the contour `inward` of it, with ways in and out from one side."""
-    pitch = designed(recipe).profile.base.shape
+    pitch = designed(recipe).surface.base.shape
     along = fit_arcs(Curve.whole(Parallel(pitch, inward - 9.0)), 2e-5)
     c, s = math.cos(math.radians(turned)), math.sin(math.radians(turned))
     along = replace(along, points=along.points @ np.array([[c, s], [-s, c]]))
-    loop = led(begun_at(along, 0.0), lead, outside=outside, clockwise=False)
+    loop = led(begun_at(along, 0.0), lead, side=side, clockwise=False)
     write_gcode(path, [("contour", [Pass(-8.0, loop)])], Cutting(600, 120, 8000, 5), remarks=["c"], count=7, mm=1.0)
 
 
@@ -229,7 +229,7 @@ MADE = {
     "no radius at all": ({"inward": 0.0}, {"contour", "motion"}),
     "a cutter one micrometre wider": ({"inward": 3.001}, {"contour", "motion"}),
     "turned": ({"inward": 3.0, "turned": 0.02}, {"contour", "motion"}),
-    "a way in through the metal": ({"inward": 3.0, "outside": True}, {"gouge"}),
+    "a way in through the metal": ({"inward": 3.0, "side": 1}, {"gouge"}),
 }
 
 

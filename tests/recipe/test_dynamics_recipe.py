@@ -202,7 +202,7 @@ def test_nothing_is_followed_that_was_not_asked_for(held: str, monkeypatch: pyte
 
 @pytest.mark.parametrize("stiffness", ["2.0e5", "1.0e12"])
 def test_all_runs_together_look_at_a_bounded_number_of_places(stiffness: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    from camgeo.synthesis import dynamics
+    from camgeo.measures import dynamics
     from kin.dynamics import impacts
 
     monkeypatch.setattr(dynamics, "MOST_PLACES", 300_000)

@@ -15,7 +15,7 @@ rad = math.radians
 
 
 def intent(motion, head="kind: constant-breadth, base_radius: 60", units="mm"):
-    return read(f"units: {units}\ncam: {{{head}, motion: {motion}}}\n".encode(), "case.yaml").cam.intent()
+    return read(f"units: {units}\ncam: {{{head}, motion: {motion}}}\n".encode(), "case.yaml").cam.exact().law
 
 
 def displacement(lift, degrees):
@@ -37,7 +37,7 @@ verify: {angles: 360}
 """
     recipe = read(body.encode(), "window.yaml")
     assert pipeline.check(recipe).ok
-    lift = recipe.cam.intent()
+    lift = recipe.cam.exact().law
     rows = lift.derivatives(np.radians([41.0, 60.0, 79.0]), 2)
     assert rows[1] == pytest.approx([6 / rad(40)] * 3, rel=1e-13)
     assert rows[2] == pytest.approx([0, 0, 0], abs=1e-13)
@@ -84,7 +84,7 @@ cam:
   arm: 60
   law: [{to: 4, over: 40, law: freudenstein-13}, {dwell: 10}, {to: 0, over: 40, law: double-harmonic}]
 """
-    law = read(text.encode(), "swing.yaml").cam.intent()
+    law = read(text.encode(), "swing.yaml").cam.exact().law
     at = law.psi.derivatives(np.radians([20.0, 40.0, 45.0, 60.0]), 0)[0]
     back = float(named("double-harmonic").motion.derivatives(0.75, 0)[0, 0])
     assert np.degrees(at) / 2 == pytest.approx([2, 4, 4, 4 * back], abs=1e-12)

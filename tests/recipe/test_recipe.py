@@ -18,14 +18,7 @@ from support.places import SHIPPED
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
 from camgeo.cams.constant_diameter import ConstantDiameterCam
-from camgeo.cams.disc_cams import (
-    DiscCam,
-    OscillatingFaceCam,
-    OscillatingRollerCam,
-    TranslatingFaceCam,
-    TranslatingRollerCam,
-    TranslatingRoundCam,
-)
+from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.families import FAMILIES
 from camgeo.cams.flat_pair import FlatPairCam
@@ -44,6 +37,7 @@ from camgeo.recipe.starter import KINDS, starter
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
 from camgeo.schema.scalars import Complaint, read_number
+from kin.law.contacts import Flat, Oscillating, Roller, Shoe, Translating
 from kin.law.programme import IntentError
 from kin.law.sources.laws import named as named_law
 from kin.law.sources.programme import Dwell, Matched, RiseAndFall, State
@@ -451,8 +445,9 @@ FIGURES = {
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> None:
     recipe = load(path)
-    intent = recipe.cam.intent()
-    assert recipe.cam.profile(intent).curve is not None
+    exact = recipe.cam.exact()
+    intent = exact.law
+    assert exact.surface.curve is not None
     bore = (recipe.part.bore or 0) / 2
     if isinstance(intent, Lift):
         theta = np.linspace(0, 2 * np.pi, 7201)
@@ -463,12 +458,11 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
         assert low - bore > (THIN if papers else WALL)
     elif isinstance(intent, Displacement):
         theta = np.linspace(0, 2 * np.pi, 72001)
-        position = recipe.cam.position(intent)
         low, high = 0.0, intent.derivatives(theta, 0)[0].max()
-        high = np.degrees(high) if position.unit == "deg" else high
-        frame = recipe.cam.profile(intent).base.shape.sample(theta)
+        high = np.degrees(high) if exact.motion.unit == "deg" else high
+        frame = exact.surface.base.shape.sample(theta)
         radius = 1 / (frame.turn / frame.speed).max()
-        assert radius > recipe.cam.touch_radius
+        assert radius > recipe.cam.touch.radius
         assert isinstance(recipe.cam, DiscCam | ConstantDiameterCam)
         assert recipe.cam.base_radius - bore > WALL
     else:
@@ -486,8 +480,8 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
             z2 = r[2] - r[0] * t[1] ** 2 + 1j * (2 * r[1] * t[1] + r[0] * t[2])
             curvature = (z1.conj() * z2).imag / np.abs(z1) ** 3
             radius = 1 / curvature.max()
-            assert radius > recipe.cam.touch_radius
-            assert r[0].min() - recipe.cam.touch_radius - bore > WALL
+            assert radius > recipe.cam.touch.radius
+            assert r[0].min() - recipe.cam.touch.radius - bore > WALL
     if path.stem in FIGURES:
         least, greatest, sharpest = FIGURES[path.stem]
         assert (low, high) == pytest.approx((least, greatest), abs=6e-4)
@@ -501,22 +495,20 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
 def test_a_starter_is_a_cam_as_it_stands(kind: str) -> None:
     recipe = text(starter(kind))
     assert recipe.cam is not None
-    assert recipe.cam.intent() is not None
+    assert recipe.cam.exact().law is not None
     assert {file.kind for file in recipe.export.files} == {"dxf", "svg", "stl", "csv", "html"}
 
 
 def test_starters_show_every_kind_of_cam() -> None:
-    assert {type(text(starter(kind)).cam) for kind in KINDS} == {
-        SupportCam,
-        ConstantBreadthCam,
-        ConstantDiameterCam,
-        DoubleRollerCam,
-        FlatPairCam,
-        TranslatingRollerCam,
-        OscillatingRollerCam,
-        TranslatingRoundCam,
-        TranslatingFaceCam,
-        OscillatingFaceCam,
+    cams = [text(starter(kind)).cam for kind in KINDS]
+    kinds = {SupportCam, ConstantBreadthCam, ConstantDiameterCam, DoubleRollerCam, FlatPairCam, DiscCam}
+    assert {type(cam) for cam in cams} == kinds
+    assert {(cam.arrangement.guide, cam.arrangement.touch) for cam in cams if isinstance(cam, DiscCam)} >= {
+        (Translating, Roller),
+        (Oscillating, Roller),
+        (Translating, Shoe),
+        (Translating, Flat),
+        (Oscillating, Flat),
     }
     assert {text(starter(kind)).cam.kind for kind in KINDS} == set(CAMS)
 

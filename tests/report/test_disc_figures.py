@@ -21,7 +21,7 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 
 if TYPE_CHECKING:
-    from camgeo.cams.disc_cams import RoundCam
+    from camgeo.cams.disc_cams import DiscCam
     from camgeo.curve.moving_frame import Displacement
     from camgeo.measures.figures import Measured
     from camgeo.measures.remarks import Remark
@@ -160,8 +160,8 @@ def test_d06_width_of_a_shoe() -> None:
 def sampled(text: str) -> tuple[Array, Array, Recipe]:
     """Pressure angles and roller speeds from differences of the centre's place, at many shaft angles."""
     recipe = load_text(text, "cam.yaml")
-    cam = cast("RoundCam", recipe.cam)
-    law, guide = cast("Displacement", cam.intent()), cam.guide
+    cam = cast("DiscCam", recipe.cam)
+    law, guide = cast("Displacement", cam.exact().law), cam.led
     theta = np.linspace(0.0, 2.0 * math.pi, 20_001)
     step = 1e-6
     near, far = (guide.place(theta + by, law.derivatives(theta + by, 0)[0])[0] for by in (-step, step))
@@ -172,7 +172,7 @@ def sampled(text: str) -> tuple[Array, Array, Recipe]:
     angle = np.angle(np.exp(1j * travel) / normal)
     # turn of the direction of travel by the shaft angle, and the centre's way rolled off
     turned = np.unwrap(travel)
-    spin = cam.metal * np.abs(velocity) / cam.touch_radius - np.gradient(turned, theta)
+    spin = cam.side * np.abs(velocity) / cam.touch.radius - np.gradient(turned, theta)
     return np.degrees(angle), spin, recipe
 
 
@@ -228,7 +228,7 @@ def test_a_disc_that_passes_over_the_pivot_is_remarked() -> None:
 
 def test_a_ring_s_metal_is_bent_the_other_way() -> None:
     found = figures(disc("kind: roller, radius: 9;"), "radius-of-curvature", "hollow-radius", "pitch-radius")
-    curve = designed(load_text(disc("kind: roller, radius: 9;"), "cam.yaml")).profile.curve
+    curve = designed(load_text(disc("kind: roller, radius: 9;"), "cam.yaml")).surface.curve
     at = curve.sample(np.linspace(0.0, 2.0 * math.pi, 100_001))
     assert found["radius-of-curvature"].value == pytest.approx(-(at.speed / at.turn)[at.turn < 0].max(), rel=1e-6)
     assert found["hollow-radius"].value == pytest.approx((at.speed / at.turn)[at.turn > 0].min(), rel=1e-6)

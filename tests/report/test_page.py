@@ -212,7 +212,7 @@ def test_packed_rows_come_back_within_a_hundred_thousandth(values: np.ndarray, k
 
 def test_a_yoke_moves_by_its_lift() -> None:
     made = of("shu-wu")
-    lift = designed(made.recipe).intent.derivatives(SHAFT, 3)
+    lift = designed(made.recipe).exact.law.derivatives(SHAFT, 3)
     stroke = np.ptp(lift[0])
     x, y, angle = made.pose("yoke")
     assert np.abs(x - lift[0]).max() < 1e-4 * stroke
@@ -344,7 +344,7 @@ def test_lengths_are_in_the_recipes_unit() -> None:
 def test_two_rollers_keep_their_distance_from_the_cam() -> None:
     made = of("w-law")
     cam = made.recipe.cam
-    law = designed(made.recipe).intent
+    law = designed(made.recipe).exact.law
     x, y, angle = made.pose("arm")
     assert (x[0], y[0]) == (40.0, 0.0)
     psi = law.psi_of_shaft(SHAFT, 0)[0]
@@ -356,7 +356,7 @@ def test_two_rollers_keep_their_distance_from_the_cam() -> None:
         centre = np.column_stack([40.0 + 40.0 * np.cos(along), 40.0 * np.sin(along)])
         c, s = np.cos(-turned), np.sin(-turned)
         in_cam = np.column_stack([centre[:, 0] * c - centre[:, 1] * s, centre[:, 0] * s + centre[:, 1] * c])
-        assert np.abs(contour.distance(in_cam) - cam.touch_radius).max() < 2.5e-3
+        assert np.abs(contour.distance(in_cam) - cam.touch.radius).max() < 2.5e-3
     (check,) = (c for c in made.outcome.report["checks"] if c["name"] == "pressure-angle")
     worst = max(made.plot("Pressure angle", i).max() for i in (0, 1))
     assert worst <= check["value"] + 1e-3

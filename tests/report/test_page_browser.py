@@ -71,13 +71,13 @@ def test_the_slider_moves_the_follower_by_the_right_amount(browser: Browser, tmp
             got = output_of(page_, made)
         elif made.recipe.name in {"w-law", "w-ellipse"}:
             half = 0.5 if made.recipe.name == "w-ellipse" else 1.0
-            wanted = half * design.intent.psi_of_shaft(shaft, 0)[0, 0]
-            stroke = half * np.ptp(design.intent.psi_of_shaft(SHAFT, 0)[0])
+            wanted = half * design.exact.law.psi_of_shaft(shaft, 0)[0, 0]
+            stroke = half * np.ptp(design.exact.law.psi_of_shaft(SHAFT, 0)[0])
             sense = 1.0 if made.recipe.rotation == "ccw" else -1.0
             got = sense * math.radians(page_.ask(PLACE.format("arm" if half == 1.0 else "pair of faces"))[2])
         else:
-            wanted = design.intent.derivatives(shaft, 0)[0, 0]
-            stroke = np.ptp(design.intent.derivatives(SHAFT, 0)[0])
+            wanted = design.exact.law.derivatives(shaft, 0)[0, 0]
+            stroke = np.ptp(design.exact.law.derivatives(SHAFT, 0)[0])
             got = page_.ask(PLACE.format("yoke"))[0]
         assert got == pytest.approx(wanted, abs=1e-3 * stroke), degrees
     assert page_.problems == []

@@ -131,7 +131,7 @@ def test_margins_of_an_ellipse_under_a_flat_pair() -> None:
 
 def test_margins_of_a_roller_to_the_shaft_and_to_a_stretched_arm() -> None:
     recipe = load(RECIPES / "w-figure-9.yaml")
-    base = designed(recipe).profile.base
+    base = designed(recipe).surface.base
     distance = np.hypot(*base.sample(np.linspace(0.0, 2.0 * math.pi, 20_001)).point.T)
     found = named("w-figure-9")
     assert found["shaft"].value == pytest.approx(distance.min(), rel=1e-5)

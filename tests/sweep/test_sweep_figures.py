@@ -45,7 +45,7 @@ def recipe(shape=CAM_2A, linkage=FOUR_BAR, *, more="", assembly="open", pivot="[
 
 def exact(recipe):
     """Figures by kin, of a mechanism that turns."""
-    lift = recipe.cam.intent()
+    lift = recipe.cam.exact().law
     mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])
     mobility = mechanism.mobility()
     if not mobility.turns:
@@ -71,7 +71,7 @@ def exact(recipe):
 
 def dwells(recipe, over):
     """Lengths of all dwells by kin, degrees."""
-    lift = recipe.cam.intent()
+    lift = recipe.cam.exact().law
     mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])
     return [math.degrees(dwell.length) for dwell in mechanism.dwells(recipe.dwell.band, over)]
 
@@ -130,7 +130,7 @@ def test_designs_anywhere_have_the_figures_of_their_mechanism_or_none(linkage, x
     given = {**dict(zip(PIVOT, (x, y), strict=True)), **sizes}
     found = evaluate(one, tuple(given), np.array([list(given.values())]), samples=720)
     made = recipe_with(one, tuple(given), list(given.values()))
-    p = made.cam.intent().derivatives(angles(720), 0)[0]
+    p = made.cam.exact().law.derivatives(angles(720), 0)[0]
     if abs(p.min()) < 1e-6:
         return
     if p.min() < 0:
@@ -323,7 +323,7 @@ def test_a_recipe_without_a_linkage():
     assert set(found.figures) == {"radius-of-curvature", "size", *own}
     assert (found.figures["pressure-angle"] == 0).all()
     t = np.linspace(0, 2 * math.pi, 20_001)
-    p = one.cam.intent().derivatives(t, 3)
+    p = one.cam.exact().law.derivatives(t, 3)
     for row, name in ((1, "peak-velocity"), (2, "peak-acceleration"), (3, "peak-jerk")):
         assert found.figures[name][0] == pytest.approx(np.abs(p[row]).max(), rel=1e-6)
     assert found.figures["swing"][0] == pytest.approx(np.ptp(p[0]), rel=1e-6)

@@ -162,7 +162,7 @@ def test_a_tolerance_that_leaves_nothing_of_the_band_is_refused_with_one_that_do
 
 
 def exact(recipe):
-    lift = recipe.cam.intent()
+    lift = recipe.cam.exact().law
     mechanism = mechanism_of(recipe, lift, breadth_of(lift)[0])
     both = (mechanism.dwells(math.radians(0.1), over)[0].length for over in ("shaft", "relative"))
     return mechanism, [math.degrees(length) for length in both]

@@ -27,7 +27,7 @@ def checks(recipe):
 
 def pitch(recipe, count=40_000):
     """Points of the pitch curve as complex numbers, and its radius of curvature there, by differences alone."""
-    law = designed(recipe).intent
+    law = designed(recipe).exact.law
     theta = TURN * np.arange(count) / count
     z = (recipe.cam.prime + law.derivatives(theta, 0)[0]) * np.exp(-1j * theta)
     step = TURN / count
@@ -72,7 +72,7 @@ def test_the_opening_is_wider_than_its_roller():
     design = designed(recipe)
     _, _, radius = pitch(recipe)
     widest = -radius[radius < 0].max()
-    assert hollow_radius(recipe.cam, design.contour)[0] == pytest.approx(widest + 9.0, rel=1e-5)
+    assert hollow_radius(recipe.cam.side, design.contour)[0] == pytest.approx(widest + 9.0, rel=1e-5)
 
 
 def test_a_ring_without_hollows_has_no_limit():

@@ -64,7 +64,7 @@ def made(cam: str, more: str = "") -> tuple[Any, Design]:
 
 
 def pitch_of(design):
-    return design.profile.base.shape
+    return design.surface.base.shape
 
 
 def contour_of(design):
@@ -309,7 +309,7 @@ def test_d13_matched():
     motion = "[{rise: 6, over: 40, law: match}, {rise: 18, over: 60, law: constant-velocity}, "
     motion += "{rise: 6, over: 40, law: match}, {dwell: 40}, {return: 30, over: 120, law: polynomial-345}, {dwell: 60}]"
     recipe, design = made(f"base_radius: 50, follower: {{kind: roller, radius: 10}}, motion: {motion}")
-    s, pitch = design.intent, pitch_of(design)
+    s, pitch = design.exact.law, pitch_of(design)
     rows = {
         10: (0.164062500, 2.685739665, 27.698678578),
         20: (1.125, 8.594366927, 36.931571438),
@@ -339,7 +339,7 @@ def test_d14_valve_flat():
         (-1.872427984, 1.872427984, -1.604938272, 0.748971193, -0.144032922), abs=NINE
     )
     recipe, design = made(f"base_radius: 18, follower: {{kind: flat, width: 25.0763171}}, motion: {LOBE}")
-    s, shape = design.intent, contour_of(design)
+    s, shape = design.exact.law, contour_of(design)
     for degrees, value in {0: 8.0, 20: 6.705040433, 45: 1.952853268}.items():
         assert lift(s, degrees * DEGREE) == pytest.approx(value, abs=NINE)
     for height, crank in {0.1524: 231.385517089, 1.27: 194.148296112}.items():
@@ -406,7 +406,7 @@ def test_d15_undercut():
     ends = ends[np.argsort(ends[:, 0])]
     cuts = np.array([[32.610239345, 59.535503075], [70.464496925, 97.389760655]])
     assert ends == pytest.approx(cuts, abs=NINE)
-    s = design.intent
+    s = design.exact.law
     corners = {0: (14.188473171, 24.138848564), 1: (9.371256051, 26.385153798)}
     for row, place in corners.items():
         assert at(kept, cuts[row, 0]) == pytest.approx(place, abs=1e-8)  # the angle is printed with nine digits
@@ -446,10 +446,10 @@ def sized(up: int, down: int, follower: str, motion: str) -> tuple[Any, Design]:
 def test_d16_sizing_of_a_stem():
     recipe, design = sized(30, 45, "", M02)
     limits = (30 * DEGREE, 45 * DEGREE)
-    assert stem_needs(design.intent, *limits) == pytest.approx((31.499209525, 9.603238312), abs=NINE)
-    assert least_stem(design.intent, *limits).foot == pytest.approx(17.617720017, abs=NINE)
+    assert stem_needs(design.exact.law, *limits) == pytest.approx((31.499209525, 9.603238312), abs=NINE)
+    assert least_stem(design.exact.law, *limits).foot == pytest.approx(17.617720017, abs=NINE)
     cam = recipe.cam
-    assert (cam.base_radius, cam.offset) == pytest.approx((19.354998723, 8.014481704), abs=NINE)
+    assert (cam.base_radius, cam.guide.offset) == pytest.approx((19.354998723, 8.014481704), abs=NINE)
     leans_of(pitch_of(design), 30.0, -45.0, NINE)
     proved(recipe, design)
     inline, _ = sized(30, 45, ", offset: 0", M02)
@@ -464,7 +464,7 @@ D16 = {"trailing": (16.727263336, 72.169575733, 12.668363853), "leading": (16.27
 def test_d16_sizing_of_an_arm(side):
     recipe, design = sized(35, 45, f", arm: {{length: 65, side: {side}}}", M07)
     cam = recipe.cam
-    found = (cam.base_radius, cam.pivot, math.degrees(cam.guide.rest))
+    found = (cam.base_radius, cam.guide.pivot, math.degrees(cam.led.rest))
     assert found == pytest.approx(D16[side], abs=1e-6)
     leans_of(pitch_of(design), 35.0, -45.0, 1e-6)
     proved(recipe, design)
@@ -479,7 +479,7 @@ def test_d19_table(tmp_path: Path):
     """A lift read to a micrometre by degrees: the table's reading, the true lift and the file's motion are all held."""
     _, true = made(f"base_radius: 18, follower: {{kind: roller, radius: 9}}, motion: {LOBE}")
     theta = np.arange(360)
-    rows = np.round(true.intent.derivatives(theta * DEGREE, 0)[0], 3)
+    rows = np.round(true.exact.law.derivatives(theta * DEGREE, 0)[0], 3)
     (tmp_path / "lift.csv").write_text("\n".join(f"{a},{s:.3f}" for a, s in zip(theta, rows, strict=True)))
     (tmp_path / "valve.yaml").write_text(
         "cam: {kind: disc, base_radius: 18, follower: {kind: roller, radius: 9}, motion: {table: lift.csv}}\n" + FILES
@@ -487,13 +487,13 @@ def test_d19_table(tmp_path: Path):
     recipe: Any = load(tmp_path / "valve.yaml")
     design = designed(recipe)
     dense = np.linspace(0.0, 360.0, 36_001) * DEGREE
-    off = np.abs(design.intent.derivatives(dense, 2) - true.intent.derivatives(dense, 2)).max(axis=1)
-    residual = np.abs(design.intent.derivatives(theta * DEGREE, 0)[0] - rows).max()
+    off = np.abs(design.exact.law.derivatives(dense, 2) - true.exact.law.derivatives(dense, 2)).max(axis=1)
+    residual = np.abs(design.exact.law.derivatives(theta * DEGREE, 0)[0] - rows).max()
     assert recipe.cam.motion.reading == pytest.approx(0.001)
     assert residual <= 0.001
     # 32 even spans leave 0.000314, 0.0075 and 0.28; second differences of the table itself are wrong by 5.1
     assert off[0] < 0.001
     assert off[1] < 0.05
     assert off[2] < 2.5
-    assert not design.intent.derivatives(np.linspace(68.0, 292.0, 225) * DEGREE, 2).any()  # the base circle is exact
+    assert not design.exact.law.derivatives(np.linspace(68.0, 292.0, 225) * DEGREE, 2).any()  # the base circle is exact
     proved(recipe, design)

@@ -10,6 +10,7 @@ from ledger import Row
 
 PI = np.pi
 BETA, STROKE, BASE, BREADTH = 2 * PI / 3, 20.0, 40.0, 100.0
+DIGIT = 5e-11  # half of the twelfth digit, the last one of a table, for mm above 10
 CA = 4 * PI**2 / (PI + 4)
 
 
@@ -111,19 +112,19 @@ def test_motion_table(section_5):
     table = section_5.motion
     theta = np.radians(table["shaft_deg"][:1801])
     wanted = motion(theta)
-    assert table["lift_mm"][:1801] == pytest.approx(wanted[0], abs=1e-11)
+    assert table["lift_mm"][:1801] == pytest.approx(wanted[0], abs=1e-11 + DIGIT)
     assert table["velocity"][:1801] == pytest.approx(wanted[1], abs=1e-10)
     assert table["acceleration"][:1801] == pytest.approx(wanted[2], abs=1e-9)
 
 
 def test_equations_3_to_6_second_half_turn(section_5):
     table = section_5.motion
-    assert table["lift_mm"][1800:] == pytest.approx(STROKE - table["lift_mm"][:1801], abs=1e-12)
+    assert table["lift_mm"][1800:] == pytest.approx(STROKE - table["lift_mm"][:1801], abs=1e-12 + 2 * DIGIT)
     assert table["acceleration"][1800:3600] == pytest.approx(-table["acceleration"][:1800], abs=1e-10)
 
 
 def test_equation_32_radii_of_opposite_points_make_the_breadth(section_5):
-    curve = section_5.design.profile.curve
+    curve = section_5.design.surface.curve
     t = np.linspace(0.001, PI - 0.001, 1001)
     rho = curve.sample(t).speed
     assert rho + curve.sample(t + PI).speed == pytest.approx(np.full(1001, BREADTH), abs=1e-10)

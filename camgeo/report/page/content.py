@@ -93,7 +93,7 @@ def _exact_rings(recipe: Recipe, design: Design) -> tuple[Ring, ...]:
     holes = (disc(0.0, 0.0, 0.5 * bore),) if bore else ()
     rim = (disc(0.0, 0.0, 0.5 * recipe.part.outer),) if recipe.part.outer else ()
     if design.contour is None:
-        return (*rim, outline.exact(design.profile.curve, whole=True), *holes)
+        return (*rim, outline.exact(design.surface.curve, whole=True), *holes)
     return (*rim, outline.exact(design.contour), *holes)
 
 
@@ -105,7 +105,7 @@ def _mechanism(
     size, bore = JOINT * reach, recipe.part.bore
     note = "" if design.contour is not None else "The cam is not made: a check of the exact contour fails."
     if recipe.part.outer:
-        bore = 2.0 * float(np.hypot(*design.profile.curve.sample(np.zeros(1)).point[0]))
+        bore = 2.0 * float(np.hypot(*design.surface.curve.sample(np.zeros(1)).point[0]))
     on_it = _on_face(design)
     disk = cam(drawn, bore, size, -SHAFT, on_it)
     if design.driven is not None and design.driven.turns:
@@ -151,7 +151,7 @@ def _pressed(view: View[Guide, Round], size: float) -> tuple[guided.Touch, Array
     angle = view.pressure(SHAFT)
     touch = guided.touch_of(view.touch, angle, size)
     plots = [curves.pressure(view.recipe, {view.touch.word: angle}, SIGN)]
-    return touch, view.travel(SHAFT)[0], [guided.touched(view.design.profile, size, touch.within)], plots
+    return touch, view.travel(SHAFT)[0], [guided.touched(view.design.surface, size, touch.within)], plots
 
 
 def _on_stem(view: View[Translating, Round], reach: float, size: float) -> _Drawing:
@@ -161,7 +161,7 @@ def _on_stem(view: View[Translating, Round], reach: float, size: float) -> _Draw
 
 def _on_arm(view: View[Oscillating, Round], _: float, size: float) -> _Drawing:
     touch, s, found, plots = _pressed(view, size)
-    return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.length or 0.0, 0.0), size), *found], plots
+    return [*guided.on_arm(touch, view.contacts[0], s, (view.guide.arm, 0.0), size), *found], plots
 
 
 def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, list[Body], list[curves.Plot]]:
@@ -169,7 +169,7 @@ def _faced(view: View[Guide, Flat], size: float) -> tuple[Array, float, float, l
     place, angle = view.place(SHAFT), view.pressure(SHAFT)
     plots = [curves.pressure(view.recipe, {view.touch.word: angle}), curves.along(view.recipe, place)]
     margin = guided.MARGIN * size
-    found = [guided.touched(view.design.profile, size)]
+    found = [guided.touched(view.design.surface, size)]
     return view.travel(SHAFT)[0], float(place.min()) - margin, float(place.max()) + margin, found, plots
 
 
@@ -198,7 +198,7 @@ def _roller_frame(view: View[Translating, Roller], _: float, size: float) -> _Dr
     bodies = guided.roller_frame(x, first.datum + second.datum, radius, hole, size)
     found, angles = [], {}
     for name, on in (("roller A", 0.0), ("roller B", 0.5 * TURN)):
-        found.append(guided.touched(view.design.profile, size, radius, on=on, name=f"contact of {name}"))
+        found.append(guided.touched(view.design.surface, size, radius, on=on, name=f"contact of {name}"))
         angles[name] = view.pressure(SHAFT + on)
     return [*bodies, *found], [curves.pressure(view.recipe, angles, SIGN)]
 

@@ -82,7 +82,7 @@ def per(recipe: Recipe, order: int) -> tuple[float, str, str]:
 
 def motion(recipe: Recipe, design: Design) -> list[Plot]:
     """Return plots of the follower's motion: what the motion table holds, at the page's steps."""
-    position = design.position
+    position = design.motion
     unit = "°" if position.unit == "deg" else length_unit(recipe)
     rows = position.turn(SHAFT, ORDER) * position.shown(recipe.mm)
     return derivatives(recipe, position.title.capitalize(), unit, rows)
@@ -152,7 +152,7 @@ def curvature(recipe: Recipe, design: Design, exact: Exact) -> Plot:
     """
     over: Literal["shaft", "relative"] = "relative" if design.driven is not None else "shaft"
     found = next((check for check in design.checks if check.name in BENT), None)
-    unit, radius = length_unit(recipe), design.profile.roller_radius
+    unit, radius = length_unit(recipe), design.surface.side * design.surface.radius
     margin = ""
     if found is not None and found.value is not None and math.isfinite(found.value) and radius >= 0.0:
         room = (found.value - radius) / recipe.mm

@@ -19,7 +19,7 @@ from kin.law.contacts import Roller, Shoe
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from camgeo.cams.family import Profile
+    from camgeo.cams.family import Surface
     from camgeo.synthesis.view import Round
     from kin.law import contacts
     from kin.law.contacts import Contact, Oscillating
@@ -131,16 +131,16 @@ def on_arm(
     ]
 
 
-def touched(profile: Profile, size: float, within: float = 0.0, *, on: float = 0.0, name: str = "contact") -> Body:
+def touched(surface: Surface, size: float, within: float = 0.0, *, on: float = 0.0, name: str = "contact") -> Body:
     """Return the contact at each shaft angle, with the direction in which the cam pushes.
 
     The follower stands `on` rad ahead of the x axis; the arrow is longer by what it runs `within` it. A ring pushes
     inwards.
     """
-    frame = profile.curve.sample(np.mod(SHAFT + on, TURN))
+    frame = surface.curve.sample(np.mod(SHAFT + on, TURN))
     back = np.exp(-1j * SHAFT)
     point, normal = ((row[:, 0] + 1j * row[:, 1]) * back for row in (frame.point, frame.normal))
-    push = normal if profile.roller_radius >= 0.0 else -normal
+    push = normal if surface.side > 0 else -normal
     direction = np.unwrap(np.angle(push))
     return contact(name, point.real, point.imag, direction, size, within=within)
 

@@ -114,10 +114,9 @@ class Exact:
     def of(design: Design, per: int) -> Exact:
         """Sample the contour of a design."""
         shaft = TURN * np.arange(STEPS * per) / (STEPS * per)
-        curve = design.profile.curve
-        at = getattr(design.intent, "parameter", None)
-        t = shaft if at is None else at(shaft)
-        frame, base = curve.sample(t), design.profile.base.sample(t)
+        curve = design.surface.curve
+        t = next(iter(design.motion.parameters(shaft, shaft).values()))
+        frame, base = curve.sample(t), design.surface.base.sample(t)
         with np.errstate(divide="ignore", invalid="ignore"):
             radius = base.speed / base.turn
         kept = np.ones(len(t), dtype=np.bool_)

@@ -116,7 +116,7 @@ class Ask:
     def units(self, figures: Iterable[str]) -> dict[str, Unit]:
         """Unit of each figure, lengths in that of the recipe."""
         length = Unit(_LENGTH[self.recipe.units], self.recipe.mm)
-        linkage, swings = self.recipe.linkage, self.recipe.cam.unit == "deg"
+        linkage, swings = self.recipe.linkage, self.recipe.cam.arrangement.unit == "deg"
         slides = not swings if linkage is None else output_slides(linkage)
         by_kind = {
             Kind.ANGLE: Unit("deg"),

@@ -67,13 +67,14 @@ class Cams:
     def of(recipe: Recipe, paths: Sequence[str], count: int) -> Cams:
         """Sort the fields that vary; `paths` are those of all columns, `count` is that of the angles."""
         cam, mm = recipe.cam, recipe.mm
-        place = cam.shaft_at
+        linear = cam.linear
+        place = linear.shaft if linear is not None else (0.0, 0.0)
         of_cam = ("cam.", "linkage.") if cam.by_linkage else "cam."
         columns = {recipe.present(path): column for column, path in enumerate(paths) if path.startswith(of_cam)}
         shaft = tuple((columns.pop(f"cam.shaft[{i}]", None), place[i]) for i in (0, 1))
         terms = []
         for path in list(columns):
-            found = cam.harmonic(path)
+            found = linear.harmonic(path) if linear is not None else None
             if found is not None:
                 order, is_sine, scale = found
                 terms.append((order, is_sine, columns.pop(path), scale * mm))
@@ -157,9 +158,10 @@ class Cams:
 
 def _silent(recipe: Recipe, terms: Sequence[tuple[int, bool, int, float]]) -> Recipe:
     """The recipe without the harmonics that vary, but for the mean radius."""
-    if not terms:
+    linear = recipe.cam.linear
+    if not terms or linear is None:
         return recipe
-    return replace(recipe, cam=recipe.cam.silent({(order, is_sine) for order, is_sine, _, _ in terms}))
+    return replace(recipe, cam=linear.silent({(order, is_sine) for order, is_sine, _, _ in terms}))
 
 
 def _base(recipe: Recipe, count: int) -> _Base:
@@ -167,15 +169,16 @@ def _base(recipe: Recipe, count: int) -> _Base:
     from camgeo.curve.curvature import least_radius
     from camgeo.curve.curve import CurveError
     from kin.law.programme import IntentError
-    from kin.law.support_function import Lift
 
-    cam = recipe.cam.about_origin()
+    linear = recipe.cam.linear
+    cam = linear.about_origin() if linear is not None else recipe.cam
     nothing = _Base(np.nan, np.nan, np.full((3, count), np.nan), smooth=False, fault=IMPOSSIBLE)
     try:
-        lift = cam.intent()
-        if not isinstance(lift, Lift):
+        exact = cam.exact()
+        lift = exact.plate
+        if lift is None:
             return nothing
-        radius, _ = least_radius(cam.profile(lift).curve)
+        radius, _ = least_radius(exact.surface.curve)
     except (IntentError, CurveError):
         return nothing
     fault = FINE if is_constant_breadth(lift) else IMPOSSIBLE

@@ -13,12 +13,12 @@ from camgeo.recipe.part import Part
 from camgeo.schema.errors import RecipeErrors
 from camgeo.sweep.search.cams import EDGE, FINE, IMPOSSIBLE, OUTSIDE, UNDERCUT
 from camgeo.sweep.search.linkages import angles
-from kin.law.support_function import Lift
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.recipe.recipe import Recipe
+    from kin.law.support_function import Lift
     from kin.linkage.mechanism import Mechanism
 
 Array: TypeAlias = NDArray[np.float64]
@@ -67,7 +67,8 @@ def plain(recipe: Recipe, paths: Sequence[str], values: Array, names: Sequence[s
             design = designed(made)
         except RecipeErrors:
             continue
-        if isinstance(design.intent, Lift) and _outside(design.intent):
+        lift = design.exact.plate
+        if lift is not None and _outside(lift):
             fault[i] = OUTSIDE
             continue
         if design.contour is None:
@@ -100,8 +101,8 @@ def mechanism_in(recipe: Recipe) -> Mechanism:
     from camgeo.cams.flat_faced import breadth_of
     from camgeo.synthesis.linkage import mechanism_of
 
-    lift = recipe.cam.intent()
-    if not isinstance(lift, Lift):
+    lift = recipe.cam.exact().plate
+    if lift is None:
         raise TypeError("a linkage is driven by the lift of a frame")
     return mechanism_of(recipe, lift, breadth_of(lift)[0])
 

@@ -108,7 +108,7 @@ def curve_of(recipe: Recipe, label: str) -> tuple[Curve, str]:
         from camgeo.synthesis.motion_table import motion_table
 
         sampled = replace(recipe, verify=replace(recipe.verify, angles=_POINTS))
-        (_, name, *_), rows = motion_table(sampled, recipe.cam.intent())
+        (_, name, *_), rows = motion_table(sampled, recipe.cam.exact().motion)
         word, _, unit = name.partition("_")
         return Curve(label, rows[:, 0], rows[:, 1]), f"{word} ({unit})"
     mechanism = mechanism_in(recipe)

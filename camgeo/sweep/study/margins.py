@@ -38,7 +38,7 @@ class Margin:
 def margins(recipe: Recipe, design: Design) -> list[Margin]:
     """Everything that applies to the scene, in mm and degrees."""
     found = _undercut(design)
-    found += [Margin(*margin) for margin in recipe.cam.margins(design.intent)]
+    found += [Margin(*margin) for margin in design.exact.margins]
     for check in design.checks:
         if check.name == PRESSURE.name and check.value is not None:
             found.append(Margin(PRESSURE.name, 90.0 - check.value, "deg", "the cam cannot drive the roller"))
@@ -54,10 +54,10 @@ def _undercut(design: Design) -> list[Margin]:
     check = next(check for check in design.checks if check.name in BENT)
     if check.value is None:
         return []
-    roller = design.profile.roller_radius
+    roller = design.surface.side * design.surface.radius
     what = "the roller undercuts" if roller else "the flat face loses contact"
     found = [Margin("undercut", check.value - roller, "mm", f"{what} (least radius of curvature)")]
-    base = roller or design.profile.curve.size
+    base = roller or design.surface.curve.size
     return [*found, Margin("undercut-relative", (check.value - roller) / base, "", f"{what}, as a part of the size")]
 
 

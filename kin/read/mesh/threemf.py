@@ -32,7 +32,7 @@ CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02 "
 LINK = "http://schemas.openxmlformats.org/package/2006/relationships Relationship"
 MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 UNIT_MM = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
-MOST_BYTES = 1 << 26  # of a member of the archive when unpacked
+MOST_BYTES = 1 << 28  # of a member of the archive when unpacked
 # Models pack to a fifth or a tenth. What packs to next to nothing says the same over and over: so many times its packed
 # size, and a free allowance, are unpacked.
 MOST_UNPACKED, FREE_BYTES = 50, 1 << 18
