@@ -438,14 +438,15 @@ class Bounded:
 
     def _unmet(self, rows: Samples, off: Array) -> UnmetError:
         """Say how near the rows a spline of a span for two rows comes, and which of them is least like a motion's."""
-        worst = int(np.argmax(np.abs(off)))
-        lines = [fault.line for fault in self.faults if fault.line in rows.lines]
+        i = int(np.argmax(np.abs(off)))
+        worst, reached = int(rows.lines[i]), self.task.tell(float(abs(off[i])), 3)
+        line = min((fault.line for fault in self.faults if fault.line in rows.lines), default=worst)
+        where, least = ("here", "") if line == worst else (f"at line {worst}", "; this row fits its neighbours least")
         return UnmetError(
-            "the rows scatter about any smooth curve: the closest one is "
-            f"{self.task.tell(float(abs(off[worst])), 3)} off, the reading error is "
-            f"{self.task.tell(self.task.reading)}; this row fits its neighbours least",
+            f"the rows scatter about any smooth curve: the closest one is {reached} off {where}, the reading error is "
+            f"{self.task.tell(self.task.reading)}{least}",
             self.field,
-            min(lines, default=int(rows.lines[worst])),
+            line,
         )
 
     def demand_supported(self, motion: Motion) -> None:
