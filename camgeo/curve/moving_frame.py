@@ -16,7 +16,7 @@ import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
@@ -184,6 +184,10 @@ class Translating:
         """Give the same line at another prime circle."""
         return Translating.on(prime, self.offset)
 
+    def with_shaft(self, along: Array | float, across: Array | float) -> Translating:
+        """Give the line with the shaft elsewhere, by b and -a where the follower rests at S = 0, mm."""
+        return Translating(cast("float", along), cast("float", across))
+
 
 @dataclass(frozen=True)
 class Oscillating:
@@ -261,6 +265,13 @@ class Oscillating:
     def resized(self, prime: float) -> Oscillating:
         """Give the same arm and pivot at another prime circle."""
         return Oscillating.on(prime, self.pivot, self.length, self.side)
+
+    def with_shaft(self, along: Array | float, across: Array | float) -> Oscillating:
+        """Give the same arm with the shaft elsewhere, by b and -a where the follower rests at S = 0, mm."""
+        x = self.length + self.side * across
+        return Oscillating(
+            cast("float", np.hypot(x, along)), self.length, cast("float", np.arctan2(along, x)), self.side
+        )
 
 
 Guide: TypeAlias = Translating | Oscillating
