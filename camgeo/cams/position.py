@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, TypeAlias
 
 import numpy as np
 
@@ -16,63 +16,6 @@ if TYPE_CHECKING:
     from kin.law.contacts import Guide
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
-
-
-class Position(Protocol):
-    """Where the follower stands, from its datum: mm, or radians of its own swing."""
-
-    @property
-    def unit(self) -> str:
-        """Of the position: `mm` or `deg`."""
-        ...
-
-    @property
-    def title(self) -> str:
-        """What it is called: `lift` or `swing`."""
-        ...
-
-    def column(self, units: str) -> str:
-        """Name of its column in a table, in a recipe's unit of length."""
-        ...
-
-    def shown(self, mm: float) -> float:
-        """Factor from `rows` to what tables and plots show: lengths in units of `mm` mm, or degrees."""
-        ...
-
-    def converted(self, value: Array, mm: float) -> Array:
-        """Positions (n,) in units of `mm` mm, or in degrees; `shown` may differ from it by a last digit."""
-        ...
-
-    def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Position and its derivatives by the shaft angle, (order + 1, n); at a break those of a side."""
-        ...
-
-    def turn(self, shaft: Array, order: int) -> Array:
-        """The same over one turn whose last angle is its end: there the derivatives are those that precede."""
-        ...
-
-    def travel(self, shaft: Array, order: int) -> Array:
-        """Position from the zero of the contacts, not from the datum, and its derivatives, (order + 1, n)."""
-        ...
-
-    def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:
-        """Parameters of the contour (n,) at which each contact touches, by the label of its columns.
-
-        `relative` is the cam's angle against the frame that carries the follower, the shaft's without one.
-        """
-        ...
-
-    def shaft_deg(self, parameter: float) -> float:
-        """Shaft angle in degrees, from 0 to less than 360, at which the contour is touched at a parameter of it."""
-        ...
-
-    def stroke(self, parameter: Array) -> tuple[float, float]:
-        """Stroke in mm, or swing in rad and the arm in mm that works it (1 for a stroke), looked at at parameters."""
-        ...
-
-    def by_parameter(self, parameter: Array, order: int) -> Array:
-        """Position, without datum, and its derivatives by the shaft angle at parameters of the law, (order + 1, n)."""
-        ...
 
 
 class Law(Protocol):
@@ -91,7 +34,7 @@ class _Turn(ABC):
         """Position and its derivatives by the shaft angle."""
 
     def turn(self, shaft: Array, order: int) -> Array:
-        """The same over one turn."""
+        """The same over one turn whose last angle is its end: there the derivatives are those that precede."""
         return np.concatenate([self.rows(shaft[:-1], order), self.rows(shaft[-1:], order, -1)], axis=1)
 
 
@@ -124,41 +67,45 @@ class LiftPosition(_Turn):
     unit: ClassVar[str] = "mm"
 
     def column(self, units: str) -> str:
-        """Name of its column."""
+        """Name of its column in a table, in a recipe's unit of length."""
         return "lift_in" if units == "inch" else "lift_mm"
 
     def shown(self, mm: float) -> float:
-        """Lengths in units of `mm` mm."""
+        """Factor from `rows` to what tables and plots show: lengths in units of `mm` mm."""
         return 1.0 / mm
 
     def converted(self, value: Array, mm: float) -> Array:
-        """Lengths in units of `mm` mm."""
+        """Positions (n,) in units of `mm` mm; `shown` may differ from it by a last digit."""
         return value / mm
 
     def rows(self, shaft: Array, order: int, side: Literal[-1, 1] = 1) -> Array:
-        """Lift from its datum, mm, and its derivatives."""
+        """Lift from its datum, mm, and its derivatives by the shaft angle, (order + 1, n); at a break of a side."""
         found = np.array(self.law.derivatives(shaft, order, side))
         found[0] -= self.datum
         return found
 
     def travel(self, shaft: Array, order: int) -> Array:
-        """As the law has it."""
+        """Position from the zero of the contacts, not from the datum, and its derivatives, (order + 1, n)."""
         return self.law.derivatives(shaft, order)
 
-    def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
-        """Of the first contact; a second one, opposite, is not tabled."""
+    def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
+        """Parameters of the contour (n,) at which the first contact touches, by the label of its columns: none.
+
+        `relative` is the cam's angle against the frame that carries the follower, the shaft's without one. A second
+        contact, opposite, is not tabled.
+        """
         return {"": relative}
 
     def shaft_deg(self, parameter: float) -> float:
-        """The parameter is the shaft angle."""
+        """Shaft angle in degrees, from 0 to less than 360, at which the contour is touched at a parameter: the same."""
         return degrees(parameter)
 
     def stroke(self, parameter: Array) -> tuple[float, float]:
-        """Stroke in mm."""
+        """Stroke in mm, looked at at parameters, and what works it: 1."""
         return float(np.ptp(self.law.derivatives(parameter, 0)[0])), 1.0
 
     def by_parameter(self, parameter: Array, order: int) -> Array:
-        """Lift, mm."""
+        """Lift, mm, without datum, and its derivatives by the shaft angle at parameters of the law, (order + 1, n)."""
         return self.law.derivatives(parameter, order)
 
 
@@ -195,7 +142,7 @@ class SwingPosition(_Swing, _Turn):
         """The same as `rows`."""
         return self.rows(shaft, order)
 
-    def contacts(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
+    def parameters(self, shaft: Array, relative: Array) -> dict[str, Array]:  # noqa: ARG002
         """Of A and B. The law repeats itself with phi - psi + delta in place of phi and -psi in place of psi (W 4.9).
 
         Done mu times, mu odd, that puts A where B is, at phi - psi + alpha.
@@ -221,3 +168,7 @@ class SwingPosition(_Swing, _Turn):
             psi = psi.derivative() / Jet(shaft.derivative().c[: order + 1 - k])
             found.append(psi.c[0])
         return self.share * np.array(found)
+
+
+Position: TypeAlias = LiftPosition | SwingPosition
+"""Where the follower stands, from its datum: mm, or radians of its own swing."""

@@ -7,22 +7,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from camgeo.cams.faced import ExactFaced
 from camgeo.cams.guided import ExactGuided
 from camgeo.schema.fields import Field, Kind, length, mapping
-from kin.law.contacts import Oscillating, Translating
+from kin.law.contacts import Flat, Oscillating, Translating
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from camgeo.cams.disc_cams import DiscCam
-    from camgeo.curve.curve import Shape
+    from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Values
     from kin.law.contacts import Side
 
+_GuideT = TypeVar("_GuideT", "moving_frame.Translating", "moving_frame.Oscillating")
 _SMALL = 1e-3  # of the radius of curvature that is asked for
 SLACK = 1e-9  # degrees, and of a radius: within this a limit is kept
 
@@ -71,10 +72,12 @@ def sized(cam: DiscCam, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
             found = _stem(cam, law, asked, given.get("offset"))
         case Oscillating(length=float(length), side=side), ExactGuided(law=law):
             found = _arm(cam, law, asked, (length, side, given.get("pivot")))
-        case Translating(), ExactFaced(law=law):
+        case guide, ExactFaced(law=law):
+            if isinstance(guide, Oscillating) and "pivot" not in given:
+                raise IntentError("a flat face does not find the pivot; give follower.arm.pivot", "follower.arm")
             found = _face(cam, law, asked)
         case _:
-            raise IntentError("the size of a cam for a flat face on an arm is not found", "sizing")
+            raise TypeError("a disc cam has a round touch or a flat face")
     demand_kept(found, asked)
     return found
 
@@ -84,16 +87,11 @@ def _stem(cam: DiscCam, motion: Displacement, asked: Sizing, given: float | None
     from camgeo.curve import moving_frame
     from camgeo.curve.sizing import least_stem
 
-    offset, prime = given or 0.0, 0.0
+    stem = moving_frame.Translating(0.0, given or 0.0)
     if asked.angles is not None:
         stem = least_stem(motion, *asked.angles, given)
-        prime, offset = stem.prime, stem.offset
-
-    def shape(size: float) -> Shape:
-        return moving_frame.CentreShape(motion, moving_frame.Translating.on(size, offset))
-
-    base = _base(cam, _rounder(cam, asked, prime, abs(offset), shape))
-    return replace(cam, guide=Translating(offset), base_radius=base)
+    stem = _rounder(cam, motion, asked, stem, settled=given is not None)
+    return replace(cam, guide=Translating(stem.offset), base_radius=_base(cam, stem.prime))
 
 
 def _arm(cam: DiscCam, motion: Displacement, asked: Sizing, given: tuple[float, Side, float | None]) -> DiscCam:
@@ -102,32 +100,34 @@ def _arm(cam: DiscCam, motion: Displacement, asked: Sizing, given: tuple[float, 
     from camgeo.curve.sizing import least_arm
     from kin.law.programme import IntentError
 
-    (length, side, pivot), prime = given, 0.0
+    length, side, pivot = given
     if asked.angles is not None:
         if pivot is not None:
             raise IntentError("the pivot is found with the pressure angle", "follower.arm.pivot")
         arm = least_arm(motion, length, side, *asked.angles)
-        prime, pivot = arm.prime, arm.pivot
     elif pivot is None:
         raise IntentError("without a pressure angle the pivot must be given", "sizing")
-    place, low = pivot, abs(pivot - length)
-
-    def shape(size: float) -> Shape:
-        return moving_frame.CentreShape(motion, moving_frame.Oscillating.on(size, place, length, side))
-
-    prime = _rounder(cam, asked, prime, low, shape)
-    return replace(cam, guide=Oscillating(place, side, length), base_radius=_base(cam, prime))
+    else:
+        arm = moving_frame.Oscillating(pivot, length, 0.0, side)
+    arm = _rounder(cam, motion, asked, arm, settled=False)
+    return replace(cam, guide=Oscillating(float(arm.pivot), side, length), base_radius=_base(cam, arm.prime))
 
 
 def _face(cam: DiscCam, motion: Displacement, asked: Sizing) -> DiscCam:
-    """A flat face on a stem: its pressure angle is its tilt."""
-    from camgeo.curve.sizing import least_face
+    """A flat face, on a stem or on an arm whose pivot is given."""
+    from camgeo.curve.sizing import least_face, least_swing
     from kin.law.programme import IntentError
 
-    if asked.angles is not None:
-        raise IntentError("the pressure angle of a flat face is its tilt, whatever the size", "sizing.pressure-angle")
-    if asked.radius is None:
-        raise TypeError("a size is found from a limit")
+    if asked.angles is not None or asked.radius is None:
+        why = "the pressure angle of a flat face is its tilt, whatever the size"
+        if isinstance(cam.guide, Oscillating):
+            why = "a flat face on an arm is sized by its radius of curvature alone"
+        raise IntentError(why, "sizing.pressure-angle")
+    if isinstance(cam.guide, Oscillating) and isinstance(cam.touch, Flat):
+        guide = cam.guide
+        return replace(
+            cam, base_radius=least_swing(motion, guide.pivot, cam.touch.nearer, guide.side, asked.radius).base
+        )
     base = least_face(replace(cam, base_radius=1.0).face(motion), asked.radius)
     if not base > 0.0:
         raise IntentError("any base radius keeps this radius of curvature; give one", "sizing.radius-of-curvature")
@@ -161,15 +161,28 @@ def demand_kept(cam: DiscCam, asked: Sizing) -> None:
             raise IntentError(f"the size found has a radius of curvature of {found:.9g} mm", "sizing")
 
 
-def _rounder(cam: DiscCam, asked: Sizing, prime: float, low: float, shape: object) -> float:
-    """Prime radius from `prime` on, and above `low`, at which the radius of curvature is kept too."""
-    from camgeo.curve.sizing import least_prime
+def _rounder(cam: DiscCam, motion: Displacement, asked: Sizing, guide: _GuideT, *, settled: bool) -> _GuideT:
+    """Guide of the least prime circle, from that of a guide on, at which the radius of curvature is kept too.
+
+    The offset or pivot is found with it where there are pressure angles, unless it is `settled`.
+    """
+    from camgeo.curve.curvature import least_radius
+    from camgeo.curve.curve import Curve
+    from camgeo.curve.moving_frame import CentreShape
+    from camgeo.curve.sizing import least_prime, least_round
 
     if asked.radius is None:
-        return prime
+        return guide
+    radius, prime = asked.radius + cam.touch.radius, guide.prime
     # where nothing else sets a least size there is some size below which no cam is looked for
-    start = max(prime, low * (1.0 + 1e-9), cam.touch.radius, _SMALL * asked.radius)
-    return least_prime(shape, asked.radius + cam.touch.radius, start)  # type: ignore[arg-type]
+    start = max(prime, cam.touch.radius, _SMALL * asked.radius)
+    if asked.angles is None:
+        start = max(start, prime * (1.0 + 1e-9))
+    elif start == prime and least_radius(Curve.whole(CentreShape(motion, guide)))[0] >= radius:
+        return guide
+    elif not settled:
+        return least_round(motion, guide, asked.angles, radius, start)
+    return guide.resized(least_prime(lambda size: CentreShape(motion, guide.resized(size)), radius, start))
 
 
 def _base(cam: DiscCam, prime: float) -> float:

@@ -16,7 +16,7 @@ import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
@@ -126,40 +126,6 @@ def _moved(function: Stretch, offset: float, scale: float, start: float) -> Stre
     return Affine.of(function, offset=offset, scale=scale, start=start)
 
 
-class Guide(Protocol):
-    """How a roller's centre is led: its place, its direction of travel, and the frame's b, a and tau'."""
-
-    @property
-    def prime(self) -> float:
-        """Radius of the prime circle, mm: the centre's distance from the shaft at S = 0."""
-        ...
-
-    @property
-    def datum(self) -> float:
-        """Position on the guide at S = 0: foot, mm, or rest, rad."""
-        ...
-
-    def demand(self, least: float, greatest: float) -> None:
-        """Raise IntentError where the frame breaks down between two displacements."""
-        ...
-
-    def place(self, theta: Array, s: Array) -> tuple[Array, Array]:
-        """Give the centre as complex numbers (n,) and the direction of travel, rad (n,)."""
-        ...
-
-    def rows(self, s: Array) -> tuple[Array, Array, Array]:
-        """Give b and a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""
-        ...
-
-    def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
-        """Give b, a and tau' as series: of the order of S, one fewer, one fewer."""
-        ...
-
-    def resized(self, prime: float) -> Guide:
-        """Give the same guide at another prime circle, mm; IntentError where it does not reach that."""
-        ...
-
-
 @dataclass(frozen=True)
 class Translating:
     """A stem whose line passes the shaft at `offset`, e > 0 on the side from which the surface comes; `foot` is d.
@@ -182,12 +148,12 @@ class Translating:
 
     @property
     def prime(self) -> float:
-        """Radius of the prime circle, mm."""
+        """Radius of the prime circle, mm: the centre's distance from the shaft at S = 0."""
         return math.hypot(self.foot, self.offset)
 
     @property
     def datum(self) -> float:
-        """The foot."""
+        """Position on the line at S = 0, mm."""
         return self.foot
 
     def demand(self, least: float, greatest: float) -> None:  # noqa: ARG002
@@ -203,7 +169,7 @@ class Translating:
         return np.exp(1j * theta) * (self.foot + s + 1j * self.offset), theta
 
     def rows(self, s: Array) -> tuple[Array, Array, Array]:
-        """Give b, a (3, n) and tau' (2, n) with their derivatives."""
+        """Give b, a (3, n) and tau' (2, n) with their derivatives, from S and three derivatives (4, n)."""
         b, a, rate = s[:3].copy(), s[1:].copy(), np.zeros_like(s[:2])
         b[0] += self.foot
         a[0] -= self.offset
@@ -211,12 +177,16 @@ class Translating:
         return b, a, rate
 
     def frame(self, s: Series) -> tuple[Series, Series, Series | float]:
-        """Give b, a and tau' as series."""
+        """Give b, a and tau' as series: of the order of S, one fewer, one fewer."""
         return s + self.foot, s.derivative() - self.offset, 1.0
 
     def resized(self, prime: float) -> Translating:
         """Give the same line at another prime circle."""
         return Translating.on(prime, self.offset)
+
+    def with_shaft(self, along: Array | float, across: Array | float) -> Translating:
+        """Give the line with the shaft elsewhere, by b and -a where the follower rests at S = 0, mm."""
+        return Translating(cast("float", along), cast("float", across))
 
 
 @dataclass(frozen=True)
@@ -252,7 +222,7 @@ class Oscillating:
 
     @property
     def datum(self) -> float:
-        """The rest."""
+        """Position of the arm at S = 0, rad."""
         return self.rest
 
     def demand(self, least: float, greatest: float) -> None:
@@ -295,6 +265,17 @@ class Oscillating:
     def resized(self, prime: float) -> Oscillating:
         """Give the same arm and pivot at another prime circle."""
         return Oscillating.on(prime, self.pivot, self.length, self.side)
+
+    def with_shaft(self, along: Array | float, across: Array | float) -> Oscillating:
+        """Give the same arm with the shaft elsewhere, by b and -a where the follower rests at S = 0, mm."""
+        x = self.length + self.side * across
+        return Oscillating(
+            cast("float", np.hypot(x, along)), self.length, cast("float", np.arctan2(along, x)), self.side
+        )
+
+
+Guide: TypeAlias = Translating | Oscillating
+"""How a roller's centre is led: its place, its direction of travel, and the frame's b, a and tau'."""
 
 
 @dataclass(frozen=True)

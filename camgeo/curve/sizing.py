@@ -4,39 +4,60 @@ A pressure angle bounds where the shaft may lie, seen from the follower: half pl
 stem the worst of each kind is one number; for an arm the nearest point to the roller's lowest place is sought, and the
 worst half planes are added until none is broken by more than rounding (cutting planes; J. E. Kelley, SIAM J. 8, 1960).
 Each size found is a lower bound of what would do, and does, up to rounding.
+
+A radius of curvature bounds the shaft's place by no convex set. Where it is to be kept too, each direction from the
+shaft to the roller's lowest place has its least prime circle, and the best direction is sought over shaft angles that
+stand for all; those at which its cam breaks a limit are added until there are none (an exchange method; R. Hettich and
+K. O. Kortanek, SIAM Review 35, 1993).
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from camgeo.curve.curvature import least_radius, roots
 from camgeo.curve.curve import Curve
-from camgeo.curve.disc import face_shape
-from camgeo.curve.extremes import greatest, least
-from camgeo.curve.moving_frame import Oscillating, Translating
+from camgeo.curve.disc import SwingingFace, face_shape
+from camgeo.curve.extremes import divided, greatest, least
+from camgeo.curve.moving_frame import CentreShape, Oscillating, Translating
 from camgeo.curve.rates import cut, stretches
 from kin.law.programme import IntentError
 from kin.numeric import elementary
 from kin.numeric.elementary import Jet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from camgeo.curve.curve import Shape, Side
     from camgeo.curve.disc import Face
     from camgeo.curve.moving_frame import Displacement
     from camgeo.curve.rates import Series
-    from kin.numeric.arrays import Array
+    from kin.numeric.arrays import Array, Mask
 
+    _Kept = Callable[[Array, Array | float], Mask]
+
+_GuideT = TypeVar("_GuideT", Translating, Oscillating)
 _CUTS = 60  # pairs of cutting planes
 _BROKEN = 1e-12  # of the arm's length: what is left of a broken half plane
 _FEASIBLE = 1e-11  # likewise, of the corners that are tried
 _DOUBLINGS = 30  # of a size, before it is given up
 _PRECISE = 1e-13  # of a size
+_ANGLES = 480  # of the shaft, that stand for all at first
+_DIRECTIONS = 65  # looked at together, and twice as many at first
+_GROWTH = 1.1  # from prime circle to prime circle, as long as none is known that keeps the limits
+_SIZES = 145  # of these: up to a million times the first
+_PARTS = 32  # of the range of prime circles below the first that does
+_NARROWER = 8.0  # times, the directions from one look to the next
+_LOOKS = 4  # at ever fewer directions, before the exact figures are asked
+_FINE = 1e-9  # rad: directions this close are told apart
+_EXCHANGES = 16
+_ROOM = 1e-10  # rad, and of a radius: so much more is kept than is given, for rounding
+_TINY = 1e-9  # rad: a face stands at some angle
+_RESTS = 256  # of a swinging face
+_LOOSE = 1e-4  # of the pivot's distance: what radii between the angles looked at may be less
 
 
 def _demand_angles(rising: float, falling: float) -> None:
@@ -157,12 +178,140 @@ def _nearest(rows: Array, to: Array, slack: float) -> Array:
     return nearest
 
 
-def least_face(face: Face, radius: float) -> float:
-    """Least base radius, mm, at which a flat face's cam has no radius of curvature below the one given.
+def least_round(
+    motion: Displacement, guide: _GuideT, angles: tuple[float, float], radius: float, start: float
+) -> _GuideT:
+    """Guide of the least prime circle from `start` on, mm, that keeps pressure angles (rad) and radius of curvature.
 
-    The radius of curvature grows as the base does; an oscillating face keeps its place and moves its offset.
+    It is `guide` with the shaft elsewhere. The radius, mm, is the least one of the pitch curve's convex stretches.
+    Raises IntentError where none is found.
+    """
+    rising, falling = angles
+    _demand_angles(rising, falling)
+    steep = math.tan(rising - _ROOM), math.tan(falling - _ROOM)
+    looked: Array = _looked_at(motion)
+
+    def kept(direction: Array, prime: Array | float) -> Mask:
+        """Whether the limits are kept in directions (n,), the shaft on prime circles (n,)."""
+        along, across = prime * np.cos(direction), prime * np.sin(direction)
+        s = np.broadcast_to(looked[:, None], (4, len(direction), looked.shape[1]))
+        b, a, rate = guide.with_shaft(along[:, None], across[:, None]).rows(s)
+        speed = np.hypot(a[0], b[0])
+        turn = rate[0] + (b[1] * a[0] - a[1] * b[0]) / speed**2
+        gentle = (b[0] > 0.0) & (a[0] <= b[0] * steep[0]) & (-a[0] <= b[0] * steep[1])
+        held: Mask = (gentle & (speed >= radius * (1.0 + _ROOM) * turn)).all(axis=1)
+        return held
+
+    # at rest, where the motion is lowest, the pressure angle is that of the direction, turned round
+    middle, half = 0.5 * (falling - rising), 0.5 * (falling + rising)
+    directions = middle + half * np.linspace(-1.0, 1.0, 2 * _DIRECTIONS - 1)
+    prime = _first(kept, directions, (start * _GROWTH**k for k in range(_SIZES)))
+    prime = _first(kept, directions, np.linspace(start, prime, _PARTS + 1).tolist())
+    for _ in range(_EXCHANGES):
+        for _ in range(_LOOKS):
+            prime = _first(kept, directions, (prime * (1.0 + half) ** k for k in range(_SIZES)))
+            middle, prime = _best_direction(
+                kept, directions, prime, max(start, prime * (1.0 - _NARROWER * half)), start
+            )
+            half /= _NARROWER
+            directions = middle + half * np.linspace(-1.0, 1.0, _DIRECTIONS)
+        best: _GuideT = guide.with_shaft(prime * math.cos(middle), prime * math.sin(middle))
+        worst, at = _broken(CentreShape(motion, best), angles, radius)
+        if worst <= 0.0 and half < _FINE:
+            return best
+        looked = np.hstack([looked, motion.derivatives(at, 3, 1), motion.derivatives(at, 3, -1)])
+        half = max(half, _NARROWER * math.sqrt(max(worst, 0.0)))
+        directions = middle + half * np.linspace(-1.0, 1.0, _DIRECTIONS)
+    raise IntentError("the least cam within both limits was not found", "sizing")
+
+
+def _looked_at(motion: Displacement) -> Array:
+    """S with three derivatives (4, m) at shaft angles that stand for all, the ends of stretches from inside."""
+    over = stretches(motion)[: max(1, len(motion.breaks) // motion.repeats)]
+    low, _ = divided(over[:, 0], over[:, 1], max(6, math.ceil(_ANGLES / len(over))))
+    return np.concatenate([motion.derivatives(low, 3, 1), motion.derivatives(over[:, 1], 3, -1)], axis=1)
+
+
+def _first(kept: _Kept, directions: Array, sizes: Iterable[float]) -> float:
+    """First prime circle that keeps the limits in some direction; IntentError where none does."""
+    for size in sizes:
+        if kept(directions, size).any():
+            return size
+    raise IntentError(
+        "no cam was found that keeps the pressure angles and the radius of curvature together; wider limits, a smaller "
+        "stroke or a longer rise and return do",
+        "sizing",
+    )
+
+
+def _best_direction(kept: _Kept, directions: Array, high: float, low: float, start: float) -> tuple[float, float]:
+    """Direction of the least prime circle, and that, up to one that keeps the limits in some direction."""
+    directions = directions[kept(directions, high)]
+    if kept(directions, low).any():
+        low = start
+    below, above = np.full((2, len(directions)), [[low], [high]])
+    above[kept(directions, below)] = low
+    while ((above - below) > _PRECISE * high).any():
+        between = 0.5 * (below + above)
+        good = kept(directions, between)
+        below, above = np.where(good, below, between), np.where(good, between, above)
+    best = int(np.argmin(above))
+    return float(directions[best]), float(above[best])
+
+
+def _broken(pitch: CentreShape, angles: tuple[float, float], radius: float) -> tuple[float, Array]:
+    """By how much the worst limit is broken, rad or a share of the radius, and the shaft angles (3,) to look at."""
+    over = stretches(pitch.law)
+    rise, fall = greatest(pitch.slope, over), least(pitch.slope, over)
+    bent, at = least_radius(Curve.whole(pitch))
+    broken = (math.atan(rise.value) - angles[0], -math.atan(fall.value) - angles[1], 1.0 - bent / radius)
+    return max(broken), np.array([rise.at, fall.at, at])
+
+
+def least_face(face: Face, radius: float) -> float:
+    """Least base radius, mm, at which the cam of a face on a stem has no radius of curvature below the one given.
+
+    The radius of curvature grows as the base does.
     """
     return face.base + radius - least_radius(Curve.whole(face_shape(face)))[0]
+
+
+def least_swing(motion: Displacement, pivot: float, nearer: float, side: int, radius: float) -> SwingingFace:
+    """Face on an arm at the least base radius at which no radius of curvature, mm, is below the one given.
+
+    Raises IntentError where there is none, or where every base radius does.
+    """
+    low, high = math.asin(min(max(nearer / pivot, _TINY), 1.0)), 0.5 * math.pi - motion.range[1]
+    if not low < high:
+        less, field = ("face", "follower.arm.face") if high > 0.0 else ("swing", "motion")
+        raise IntentError(f"no base radius leaves the face room to swing; a smaller {less} does", field)
+    SwingingFace(motion, pivot, nearer, 0.5 * high, side)  # raises where the motion is too fast, whatever the size
+    s, v, w, _ = _looked_at(motion)
+    k = 1.0 + side * v
+    rests = high * np.arange(_RESTS) / _RESTS
+    rests = np.append(low, rests[rests > low])
+    psi = rests[:, None] + s
+    # that of a face through the pivot: p + dq/dt
+    radii = pivot * (np.sin(psi) * (1.0 - (v / k) ** 2) + np.cos(psi) * w / k**3).min(axis=1)
+    enough = radii - nearer >= radius
+    if enough[0]:
+        raise IntentError("any base radius keeps this radius of curvature; give one", "sizing.radius-of-curvature")
+
+    def excess(at: Array) -> Array:
+        faces = [SwingingFace(motion, pivot, nearer, rest, side) for rest in at.tolist()]
+        return np.array([least_radius(Curve.whole(face_shape(face)))[0] for face in faces]) - radius
+
+    for i in np.flatnonzero(enough):
+        ends = rests[i - 1 : i], rests[i : i + 1]
+        values = excess(ends[0]), excess(ends[1])
+        if values[1] >= 0.0:
+            rest = roots(excess, *ends, values, _PRECISE)[0]
+            return SwingingFace(motion, pivot, nearer, float(rest), side)
+    less = radii.max() - radius - _LOOSE * pivot
+    raise IntentError(
+        f"no base radius keeps it with this pivot and face; a face below {less:.5g} mm does",
+        "sizing.radius-of-curvature",
+    )
 
 
 def least_prime(shape: Callable[[float], Shape], radius: float, start: float) -> float:

@@ -40,7 +40,7 @@ def inspection_table(recipe: Recipe, design: Design) -> tuple[tuple[str, ...], A
         relative = design.driven.mechanism.relative(shaft)
         columns["relative_deg"] = np.degrees(relative)
     columns[position.column(recipe.units)] = position.converted(position.rows(relative, 0)[0], recipe.mm)
-    for name, parameter in position.contacts(shaft, relative).items():
+    for name, parameter in position.parameters(shaft, relative).items():
         columns |= _contact(recipe, design.contour, parameter, name, unit)
     return tuple(columns), np.column_stack(list(columns.values()))
 

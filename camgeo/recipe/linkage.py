@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 from camgeo.schema.fields import MOST, MOST_DYADS, Field, Form, Kind, Table, coordinate, length
 from camgeo.schema.json_schema import one_of_schema
 from camgeo.schema.yaml_source import join
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
     import kin.linkage.dyad
     import kin.linkage.four_bar
@@ -20,156 +20,25 @@ if TYPE_CHECKING:
     from camgeo.schema.yaml_source import Node
 
 
-Assembly: TypeAlias = Literal["open", "crossed"]
+Part = TypeVar("Part", bound="kin.linkage.four_bar.Linkage | kin.linkage.dyad.Dyad")
 
 
-Carrier: TypeAlias = Literal["output", "coupler", "previous"]
+class Linkage(NamedTuple):
+    """The links of a recipe: the kind, the loop that the frame drives, and the dyads hung on it, the output's last."""
 
-
-Pair: TypeAlias = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class RRRDyad:
-    """Two links, mm: the first from `point` on the link `on`, the second from there to the fixed pivot `ground`."""
-
-    on: Carrier
-    point: Pair
-    ground: Pair
-    links: Pair
-    assembly: Assembly
-
-    lengths: ClassVar[tuple[str, ...]] = ("links[0]", "links[1]")
-    slides: ClassVar[bool] = False
-
-    def made(self) -> kin.linkage.dyad.RRR:
-        """Make the dyad of the recipe."""
-        from kin.linkage.dyad import RRR
-
-        return RRR(self.on, self.point, self.ground, self.links, self.assembly)
-
-
-@dataclass(frozen=True)
-class RRPDyad:
-    """A link from `point` on the link `on` to a slide on the line through `through` in `direction` (rad); mm."""
-
-    on: Carrier
-    point: Pair
-    link: float
-    through: Pair
-    direction: float
-    assembly: Assembly
-
-    lengths: ClassVar[tuple[str, ...]] = ("link",)
-    slides: ClassVar[bool] = True
-
-    def made(self) -> kin.linkage.dyad.RRP:
-        """Make the dyad of the recipe."""
-        from kin.linkage.dyad import RRP
-
-        return RRP(self.on, self.point, self.link, self.through, self.direction, self.assembly)
-
-
-@dataclass(frozen=True)
-class RPRDyad:
-    """A block at `point` of the link `on`, in a slot that passes the fixed pivot `ground` at `offset`; mm."""
-
-    on: Carrier
-    point: Pair
-    ground: Pair
-    offset: float
-
-    lengths: ClassVar[tuple[str, ...]] = ()
-    slides: ClassVar[bool] = False
-
-    def made(self) -> kin.linkage.dyad.RPR:
-        """Make the dyad of the recipe."""
-        from kin.linkage.dyad import RPR
-
-        return RPR(self.on, self.point, self.ground, self.offset)
-
-
-Dyad: TypeAlias = RRRDyad | RRPDyad | RPRDyad
-
-
-@dataclass(frozen=True)
-class FourBarLinkage:
-    """The frame as the coupler of a four-bar (AS 2023, Figure 7), mm; its output is an angle."""
-
-    ground: float
-    coupler: float
-    rocker: float
-    assembly: Assembly
-    dyads: tuple[Dyad, ...] = ()
-    joint_offset: float = 0.0
-
-    kind: ClassVar[str] = "four-bar"
-    lengths: ClassVar[tuple[str, ...]] = ("coupler", "rocker", "ground")
-    slides: ClassVar[bool] = False
-
-    def made(self) -> kin.linkage.four_bar.FourBar:
-        """Make the linkage of the recipe."""
-        from kin.linkage.four_bar import FourBar
-
-        return FourBar(self.ground, self.coupler, self.rocker, self.assembly, self.joint_offset)
+    kind: str
+    loop: kin.linkage.four_bar.Linkage
+    dyads: tuple[kin.linkage.dyad.Dyad, ...] = ()
 
     def shaped(self, cam: Cam) -> Cam:
-        """The cam, which these links do not shape."""
-        return cam
-
-
-@dataclass(frozen=True)
-class InvertedSliderCrankLinkage:
-    """The frame sliding on a rocker (AS 2023, Figure 4b), mm; a rocker of 0 makes an oscillating yoke."""
-
-    ground: float
-    rocker: float
-    assembly: Assembly
-    dyads: tuple[Dyad, ...] = ()
-    joint_offset: float = 0.0
-
-    kind: ClassVar[str] = "inverted-slider-crank"
-    lengths: ClassVar[tuple[str, ...]] = ("rocker", "ground")
-    slides: ClassVar[bool] = False
-
-    def made(self) -> kin.linkage.four_bar.InvertedSliderCrank:
-        """Make the linkage of the recipe."""
+        """The cam, told of the links that shape it where a recipe gives the swing of the frame."""
         from kin.linkage.four_bar import InvertedSliderCrank
+        from kin.linkage.loop import side_of
 
-        return InvertedSliderCrank(self.ground, self.rocker, self.assembly, self.joint_offset)
-
-    def shaped(self, cam: Cam) -> Cam:
-        """The cam told of these links, which shape it where a recipe gives the swing of the frame."""
-        return cam.in_frame(self.ground, self.rocker - self.joint_offset, 1.0 if self.assembly == "open" else -1.0)
-
-
-@dataclass(frozen=True)
-class SliderCrankLinkage:
-    """The frame as the coupler of a slide on the line y = offset, mm; its output is a length."""
-
-    coupler: float
-    offset: float
-    assembly: Assembly
-    dyads: tuple[Dyad, ...] = ()
-    joint_offset: float = 0.0
-
-    kind: ClassVar[str] = "slider-crank"
-    lengths: ClassVar[tuple[str, ...]] = ("coupler",)
-    slides: ClassVar[bool] = True
-
-    def made(self) -> kin.linkage.four_bar.SliderCrank:
-        """Make the linkage of the recipe."""
-        from kin.linkage.four_bar import SliderCrank
-
-        return SliderCrank(self.coupler, self.offset, self.assembly, self.joint_offset)
-
-    def shaped(self, cam: Cam) -> Cam:
-        """The cam, which these links do not shape."""
-        return cam
-
-
-Linkage: TypeAlias = FourBarLinkage | InvertedSliderCrankLinkage | SliderCrankLinkage
-Part = TypeVar("Part", bound="Linkage | Dyad")
+        loop = self.loop
+        if not isinstance(loop, InvertedSliderCrank):
+            return cam
+        return cam.in_frame(loop.ground, loop.rocker - loop.joint_offset, side_of(loop.assembly))
 
 
 def with_other_lengths(linkage: Linkage, loop: int, factor: float) -> Iterator[tuple[str, float, Linkage]]:
@@ -178,12 +47,13 @@ def with_other_lengths(linkage: Linkage, loop: int, factor: float) -> Iterator[t
     Loop 0 is the linkage's own, k that of its k-th dyad.
     """
     if loop == 0:
-        yield from _with_other(linkage, factor)
+        for name, size, changed in _with_other(linkage.loop, factor):
+            yield name, size, linkage._replace(loop=changed)
         return
     dyads = linkage.dyads
     for name, size, dyad in _with_other(dyads[loop - 1], factor):
-        changed = (*dyads[: loop - 1], dyad, *dyads[loop:])
-        yield f"dyads[{loop - 1}].{name}", size, replace(linkage, dyads=changed)
+        others = (*dyads[: loop - 1], dyad, *dyads[loop:])
+        yield f"dyads[{loop - 1}].{name}", size, linkage._replace(dyads=others)
 
 
 def _with_other(part: Part, factor: float) -> Iterator[tuple[str, float, Part]]:
@@ -199,7 +69,7 @@ def _with_other(part: Part, factor: float) -> Iterator[tuple[str, float, Part]]:
 
 def output_slides(linkage: Linkage) -> bool:
     """Tell whether the output of a linkage, that of its last dyad if it has any, is a length and not an angle."""
-    return (linkage.dyads[-1] if linkage.dyads else linkage).slides
+    return (linkage.dyads[-1] if linkage.dyads else linkage.loop).unit == "mm"
 
 
 @dataclass(frozen=True)
@@ -418,23 +288,15 @@ def check_linkage(values: Values, reader: Reader) -> None:
 
 def build_linkage(linkage: Values) -> Linkage:
     """Make the linkage of values in which there is no fault."""
-    given = {"assembly": "open", **{key: value for key, value in linkage.items() if key != "kind"}}
-    given["dyads"] = tuple(map(_dyad, given.get("dyads", [])))
-    match linkage["kind"]:
-        case "four-bar":
-            return FourBarLinkage(**given)
-        case "inverted-slider-crank":
-            return InvertedSliderCrankLinkage(**given)
-        case _:
-            return SliderCrankLinkage(**given)
+    from kin.linkage.dyad import RPR, RRP, RRR
+    from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
+
+    loops = {"four-bar": FourBar, "inverted-slider-crank": InvertedSliderCrank, "slider-crank": SliderCrank}
+    dyads = {"rrr": RRR, "rrp": RRP, "rpr": RPR}
+    kind, first = linkage["kind"], {key: value for key, value in linkage.items() if key != "dyads"}
+    hung = ({"on": "output", **dyad} for dyad in linkage.get("dyads", []))
+    return Linkage(kind, _of_kind(loops, first), tuple(_of_kind(dyads, dyad) for dyad in hung))
 
 
-def _dyad(dyad: Values) -> Dyad:
-    given = {"on": "output", **{key: value for key, value in dyad.items() if key != "kind"}}
-    match dyad["kind"]:
-        case "rrr":
-            return RRRDyad(**{"assembly": "open", **given})
-        case "rrp":
-            return RRPDyad(**{"assembly": "open", **given})
-        case _:
-            return RPRDyad(**{"offset": 0.0, **given})
+def _of_kind(classes: Mapping[str, Callable[..., Part]], values: Values) -> Part:
+    return classes[values["kind"]](**{key: value for key, value in values.items() if key != "kind"})

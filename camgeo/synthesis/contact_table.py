@@ -40,7 +40,7 @@ def contact_table(
     side = np.where(np.arange(len(rows)) < len(rows) - 1, 1, -1)
     pressure = design.surface.pressure
     unit, sense = "in" if recipe.units == "inch" else "mm", -1.0 if recipe.rotation == "ccw" else 1.0
-    for name, t in design.motion.contacts(shaft, relative).items():
+    for name, t in design.motion.parameters(shaft, relative).items():
         at = contour.sample(t, side)
         with np.errstate(divide="ignore"):
             radius = recipe.cam.side * at.speed / np.where(at.turn == 0.0, np.nan, at.turn)

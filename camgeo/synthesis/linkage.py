@@ -51,7 +51,7 @@ def mechanism_of(recipe: Recipe, lift: Lift, breadth: float) -> Mechanism:
     if asked is None:
         raise ValueError(f"{recipe.name}: there is no linkage")
     try:
-        return Mechanism(asked.made(), lift, breadth, tuple(dyad.made() for dyad in asked.dyads))
+        return Mechanism(asked.loop, lift, breadth, asked.dyads)
     except OutsideError as error:
         raise _outside(recipe, error) from error
     except IntentError as error:
@@ -118,7 +118,7 @@ def _turns(linkage: Linkage, like: Mechanism) -> bool:
     from kin.linkage.mechanism import Mechanism
 
     try:
-        made = Mechanism(linkage.made(), like.lift, like.breadth, tuple(dyad.made() for dyad in linkage.dyads))
+        made = Mechanism(linkage.loop, like.lift, like.breadth, linkage.dyads)
         rate = made.at(np.linspace(0.0, TURN, LOOKS, endpoint=False), 1).shaft[1]  # at few places: most fail there
         return bool(rate.min() > 0.0) and made.mobility().turns
     except (KinError, ValueError):

@@ -82,7 +82,7 @@ class View(Generic[G_co, T_co]):
     def touched(self, shaft: Array) -> list[Array]:
         """Where each contact touches in the frame of the ground, mm, as complex numbers (n,)."""
         found = []
-        for t in self.design.motion.contacts(shaft, shaft).values():
+        for t in self.design.motion.parameters(shaft, shaft).values():
             point = self.design.surface.curve.sample(np.mod(t, TURN)).point
             found.append((point[:, 0] + 1j * point[:, 1]) * np.exp(-1j * shaft))
         return found

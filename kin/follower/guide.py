@@ -15,7 +15,7 @@ S^2 = 4 (u - e^2), m = e.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -32,86 +32,6 @@ if TYPE_CHECKING:
 METRE = 1e-3  # a millimetre in metres
 SLACK = 1e-12  # of the guide's reach, by which neighbouring pieces may overlap, against rounding at their joints
 MOST_SHARE = 0.1  # of the arm, or of the cam: pieces that are searched for contact are shorter
-
-
-class Guide(Protocol):
-    """How a roller's centre moves; `unit` is its position's as reported, radians being reported as degrees."""
-
-    @property
-    def unit(self) -> Unit:
-        """Unit of the position: mm, or deg for radians."""
-
-    @property
-    def away(self) -> Side:
-        """1 if the position grows outwards, -1 if it grows inwards, towards the shaft."""
-
-    @property
-    def si(self) -> float:
-        """Metres or radians in one of position."""
-
-    @property
-    def lever(self) -> float:
-        """Length of an arm, mm; infinite on a line."""
-
-    def slack(self, extent: float) -> float:
-        """Length, mm, that rounding may make of nothing on a cam of that extent."""
-
-    def step(self, extent: float) -> float:
-        """Greatest length, mm, of the pieces in which a cam of that extent is searched."""
-
-    def reach(self) -> tuple[float, float]:
-        """Least and greatest distance of the centre from the shaft, mm."""
-
-    def shaft_angle(self, points: Array) -> Array:
-        """Shaft angle at which the centre comes to points (n, 2): (n,); nan out of reach."""
-
-    def lead(self, r: Array) -> Array:
-        """Polar angle of the centre less the shaft angle, at its distance r (n,); beyond the reach its end."""
-
-    def lead_slope(self, least: Array, most: Array) -> Array:
-        """Greatest change of the lead with r, rad/mm, for r between least and most (n,); infinite beyond the reach."""
-
-    @property
-    def turning(self) -> float:
-        """Distance of the centre from the shaft, mm, on either side of which the lead rises or falls all the way."""
-
-    def position(self, r: Array) -> Array:
-        """Position at distance r (n,) of the centre from the shaft, mm or radians; beyond the reach its end."""
-
-    def centre(self, phi: Array, position: Array) -> Array:
-        """Centre (n, 2) at shaft angles phi and positions (n,)."""
-
-    def path(self, phi: Array, position: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives by a parameter, (n, 2) each, from the rows (3, n) of phi and of the position."""
-
-    def along(self, phi: Array, position: Array) -> tuple[Array, Array]:
-        """First and second derivative (n, 2) of the centre by its position."""
-
-    def rates(self, phi: Array, centre: Array, tangent: Array, curvature: Array) -> tuple[Array, Array]:
-        """Two derivatives of the position by phi (n,), where the centre (n, 2) runs on pieces of that shape."""
-
-    def crossings(self, pieces: Arcs, phi: Array, slack: float) -> Array:
-        """Both places (2, n, 2), seen from the starts of pieces, where the centre meets their circles; else nan."""
-
-    def on_side(self, phi: Array, points: Array, slack: float) -> NDArray[np.bool_]:
-        """Whether points (n, 2) on the centre's path at phi (n,) are on the side where it runs."""
-
-    def square(self, u: Array) -> Array:
-        """S^2 at u (n,)."""
-
-    def square_slope(self, u: Array) -> Array:
-        """Derivative of S^2 by u at u (n,)."""
-
-    @property
-    def square_bend(self) -> float:
-        """Second derivative of S^2 by u, at most 0."""
-
-    def moment(self, u: Array) -> Array:
-        """The term m at u (n,)."""
-
-    @property
-    def moment_slope(self) -> float:
-        """Derivative of m by u."""
 
 
 @dataclass(frozen=True)
@@ -163,14 +83,14 @@ class Arm:
         return angle
 
     def lead(self, r: Array) -> Array:
-        """Polar angle of the roller's centre less the shaft angle, at its distance r (n,)."""
+        """Polar angle of the roller's centre less the shaft angle, at its distance r (n,); beyond the reach its end."""
         with np.errstate(invalid="ignore", divide="ignore"):
             w = (r * r + (self.pivot**2 - self.length**2)) / (2.0 * r * self.pivot)
         lead: Array = -self.side * np.arccos(np.clip(w, -1.0, 1.0))
         return lead
 
     def lead_slope(self, least: Array, most: Array) -> Array:
-        """Greatest change of the lead with r, rad/mm, between distances least and most (n,)."""
+        """Greatest change of the lead with r, rad/mm, between two distances (n,); infinite beyond the reach."""
         # w = cos(phi - t) = (r^2 + L^2 - l^2)/(2 r L); its slope is steepest, and sqrt(1 - w^2) least, at an end
         excess = self.pivot**2 - self.length**2
 
@@ -187,7 +107,7 @@ class Arm:
 
     @property
     def turning(self) -> float:
-        """Where the cosine of the lead is least, if at all."""
+        """Distance of the centre from the shaft, mm, on either side of which the lead rises or falls all the way."""
         return float(np.sqrt(max(self.pivot**2 - self.length**2, 0.0)))
 
     def position(self, r: Array) -> Array:
@@ -431,6 +351,10 @@ def led(guide: contacts.Guide, away: Side = 1) -> Arm | Line:
     if isinstance(guide, Oscillating):
         return Arm(guide.arm, guide.pivot, guide.side, away)
     return Line(guide.offset, away)
+
+
+Guide: TypeAlias = Arm | Line
+"""How a roller's centre moves; `unit` is its position's as reported, radians being reported as degrees."""
 
 
 def polar_rows(angle: Array, length: float) -> tuple[Array, Array, Array]:

@@ -4,9 +4,10 @@ A point P of the earlier link drives each dyad: RRR (two bars to a ground pivot 
 line) and RPR (a block at P in a slotted rocker about G). All are triangles or right triangles, solved and
 differentiated as in `kin.linkage.loop`. Angles are counter-clockwise from the x axis.
 
-What a dyad reaches it also gives: `output_link` is the link that it drives, `driven` its name; `joints` are P, Q and
-G. For P on the closed path x, y (n,), the direction of GP is taken about the `middle` of its range, so that the output
-is continuous on it, and `turned` is the angle by which that direction turns once round the path: there must be none.
+What a dyad reaches it also gives: `output_link` is the link that it drives, `driven` its name; `joints` are P, Q and G;
+`lengths` name its links' lengths, by field. For P on the closed path x, y (n,), the direction of GP is taken about the
+`middle` of its range, so that the output is continuous on it, and `turned` is the angle by which that direction turns
+once round the path: there must be none.
 """
 
 from __future__ import annotations
@@ -61,8 +62,9 @@ class RRR:
     point: Point
     ground: Point
     links: tuple[float, float]
-    assembly: Assembly
+    assembly: Assembly = "open"
     unit: ClassVar[str] = "deg"
+    lengths: ClassVar[tuple[str, ...]] = ("links[0]", "links[1]")
     driven: ClassVar[str] = "rocker"
 
     def __post_init__(self) -> None:
@@ -118,8 +120,9 @@ class RRP:
     link: float
     through: Point
     direction: float
-    assembly: Assembly
+    assembly: Assembly = "open"
     unit: ClassVar[str] = "mm"
+    lengths: ClassVar[tuple[str, ...]] = ("link",)
     driven: ClassVar[str] = "slide"
 
     def __post_init__(self) -> None:
@@ -173,8 +176,9 @@ class RPR:
     on: On
     point: Point
     ground: Point
-    offset: float
+    offset: float = 0.0
     unit: ClassVar[str] = "deg"
+    lengths: ClassVar[tuple[str, ...]] = ()
     driven: ClassVar[str] = "rocker"
 
     def __post_init__(self) -> None:

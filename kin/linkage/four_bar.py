@@ -9,12 +9,12 @@ to BD, clockwise as in AS Figure 7. Each loop is a triangle or a right triangle,
 differentiated implicitly (`kin.linkage.loop`); AS 34 is 0/0 at theta_3 = theta_4 and theta_4 + pi, the forms here are
 not.
 
-A linkage gives all that others ask of it, at positions that it has solved: `output_link` is the link that it drives,
-`driven` its name, and `joined` the name of the link that D is fixed in and whose axes are the frame's: the frame, or a
-block in it. `joints` are D and the pivot B. `transmission` is the sine and cosine (n,) of the angle from the frame's
-line u to the rocker BD, or to the slide's normal; `force` those of the force angle, the sine of the sign of phi'
-(`kin.linkage.forces`), for the slopes S' and S1' (n,), the sine 0 where there is no line of force.
-`force_line` is that line.
+A linkage gives all that others ask of it; `lengths` name its links' lengths, by field. At positions that it has solved,
+`output_link` is the link that it drives, `driven` its name, and `joined` the name of the link that D is fixed in and
+whose axes are the frame's: the frame, or a block in it. `joints` are D and the pivot B. `transmission` is the sine and
+cosine (n,) of the angle from the frame's line u to the rocker BD, or to the slide's normal; `force` those of the force
+angle, the sine of the sign of phi' (`kin.linkage.forces`), for the slopes S' and S1' (n,), the sine 0 where there is no
+line of force. `force_line` is that line.
 """
 
 from __future__ import annotations
@@ -95,6 +95,7 @@ class FourBar:
     assembly: Assembly = "open"
     joint_offset: float = 0.0
     unit: ClassVar[str] = "deg"
+    lengths: ClassVar[tuple[str, ...]] = ("coupler", "rocker", "ground")
     driven: ClassVar[str] = "rocker"
     joined: ClassVar[str] = "frame"
 
@@ -164,6 +165,7 @@ class InvertedSliderCrank:
     assembly: Assembly = "open"
     joint_offset: float = 0.0
     unit: ClassVar[str] = "deg"
+    lengths: ClassVar[tuple[str, ...]] = ("rocker", "ground")
     driven: ClassVar[str] = "rocker"
     joined: ClassVar[str] = "block"
 
@@ -243,6 +245,7 @@ class SliderCrank:
     assembly: Assembly = "open"
     joint_offset: float = 0.0
     unit: ClassVar[str] = "mm"
+    lengths: ClassVar[tuple[str, ...]] = ("coupler",)
     driven: ClassVar[str] = "slide"
     joined: ClassVar[str] = "frame"
 

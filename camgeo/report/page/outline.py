@@ -115,7 +115,7 @@ class Exact:
         """Sample the contour of a design."""
         shaft = TURN * np.arange(STEPS * per) / (STEPS * per)
         curve = design.surface.curve
-        t = next(iter(design.motion.contacts(shaft, shaft).values()))
+        t = next(iter(design.motion.parameters(shaft, shaft).values()))
         frame, base = curve.sample(t), design.surface.base.sample(t)
         with np.errstate(divide="ignore", invalid="ignore"):
             radius = base.speed / base.turn

@@ -24,13 +24,14 @@ from camgeo.sweep.search.cams import BINDS, BROKEN, FINE, REVERSES, Cams
 from camgeo.sweep.search.ends import Ends, cell_bounds, ends, greatest, least, lengths
 from camgeo.sweep.search.linkages import Lengths, angles, engine
 from camgeo.sweep.search.windows import Samples, longest
+from kin.linkage.loop import side_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.recipe.figures import Limit
-    from camgeo.recipe.linkage import Linkage
     from camgeo.recipe.recipe import Recipe
+    from kin.linkage.four_bar import Linkage
 
 __all__ = ["REASONS", "Evaluator", "Found", "Scene", "asked_of", "compute", "evaluate"]
 
@@ -238,8 +239,8 @@ class Evaluator:
             margin, motion = rebuilt.chains(self.recipe, self.paths, values[index], self.count)
         else:
             support = cams.support if alive.all() else cams.support.part(alive)
-            kind, side = engine(linkage.made()), -1.0 if linkage.assembly == "crossed" else 1.0
-            loop = kind.of(side, support, self._lengths(linkage, kind.dimensions, values[index]))
+            kind, side = engine(linkage.loop), side_of(linkage.loop.assembly)
+            loop = kind.of(side, support, self._lengths(linkage.loop, kind.dimensions, values[index]))
             smooth = cams.smooth[index]
             margin, motion = loop.margin(lambda rows: least(rows, smooth)), loop
         if "margin" in figures:

@@ -1,0 +1,165 @@
+"""Sizes that `sizing` finds: they keep their limits, and no other guide keeps them with a smaller cam."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+import camgeo
+from camgeo.curve.curvature import least_radius
+
+DEGREE = math.pi / 180.0
+LAWS = ("cycloidal", "harmonic", "modified-sine", "modified-trapezoid", "parabolic", "cubic", "polynomial-345")
+ARM = """
+cam:
+  kind: disc
+  sizing: {pressure-angle: {at_most: 27.6, on_return: 40.4}, radius-of-curvature: {at_least: 48.9}}
+  follower: {kind: roller, radius: 15, arm: {length: 219.9, side: leading}}
+  motion:
+    - {rise: 4.392, over: 83.64, law: scca-33}
+    - {dwell: 128.29}
+    - {return: 4.392, over: 88.38, law: cubic}
+    - {dwell: 59.69}
+"""
+
+
+def sized(text: str) -> Any:
+    """Cam of a recipe, held against its own limits by the exact figures."""
+    recipe = camgeo.load(text)
+    cam: Any = recipe.cam
+    exact = cam.exact()
+    rising, falling = cam.sizing.angles
+    low, high = exact.surface.extremes("slope")
+    assert math.atan(high.value) <= rising + 1e-9 * DEGREE
+    assert -math.atan(low.value) <= falling + 1e-9 * DEGREE
+    radius = least_radius(exact.surface.base)[0] - cam.touch.radius
+    assert radius >= cam.sizing.radius * (1.0 - 1e-9)
+    return cam
+
+
+def least_prime_by_chance(cam: Any, looks: int, seed: int) -> float:
+    """Least prime circle of random places of the shaft; limits are taken at angles alone, a hair too lax."""
+    motion, guide, rng = cam.exact().law, cam.led, np.random.default_rng(seed)
+    ends = np.append(motion.breaks, motion.breaks[0] + 2.0 * math.pi)
+    shares = np.linspace(0.0, 1.0, 300)
+    tau = ends[:-1, None] * (1.0 - shares) + ends[1:, None] * shares
+    s, v, w = np.hstack([motion.derivatives(tau[:, :-1].ravel(), 2, 1), motion.derivatives(tau[:, 1:].ravel(), 2, -1)])
+    rising, falling = (math.tan(angle) for angle in cam.sizing.angles)
+    radius, best, at, most = cam.sizing.radius + cam.touch.radius, math.inf, 0.0, 1.05 * guide.prime
+    for look in range(looks):
+        if look % 2 and best < math.inf:
+            prime = best * (1.0 - np.abs(rng.normal(0.0, 10.0 ** rng.uniform(-5, -1), 300)))
+            turn = rng.normal(at, 10.0 ** rng.uniform(-4, -1), 300)
+        else:
+            prime = rng.uniform(cam.touch.radius, min(best, most), 300)
+            turn = rng.uniform(-cam.sizing.angles[0], cam.sizing.angles[1], 300)
+        d, e = (prime * np.cos(turn))[:, None], (prime * np.sin(turn))[:, None]
+        if cam.guide.unit == "mm":
+            b, a, b1, a1, rate = d + s, v - e, v, w, 1.0
+        else:
+            side, length = guide.side, guide.length
+            x = length + side * e
+            b, c = x * np.sin(s) + d * np.cos(s), x * np.cos(s) - d * np.sin(s)
+            a, b1, a1, rate = length * v - side * (c - length), c * v, length * w + side * b * v, 1.0 + side * v
+        speed = np.hypot(a, b)
+        turned = rate + (b1 * a - a1 * b) / speed**2
+        kept = (b > 0.0) & (a <= b * rising) & (-a <= b * falling) & (speed >= radius * turned)
+        good = np.flatnonzero(kept.all(axis=1))
+        if good.size and prime[good].min() < best:
+            first = good[np.argmin(prime[good])]
+            best, at = float(prime[first]), float(turn[first])
+    return best
+
+
+def test_the_pivot_is_searched_where_the_radius_of_curvature_binds() -> None:
+    cam = sized(ARM)
+    assert cam.base_radius == pytest.approx(73.35116062, abs=1e-7)  # 80.915 at the pivot of the pressure angle alone
+    assert cam.guide.pivot == pytest.approx(198.781985, abs=1e-5)
+
+
+def test_the_offset_is_searched_where_the_radius_of_curvature_binds() -> None:
+    text = re.sub(", arm: {.*?}", "", ARM).replace("roller, radius: 15", "roller, radius: 8")
+    cam = sized(text)
+    assert least_prime_by_chance(cam, 60, 3) >= (1.0 - 1e-4) * cam.prime
+    for offset in (cam.guide.offset - 0.5, cam.guide.offset + 0.5):
+        held = sized(text.replace("radius: 8", f"radius: 8, offset: {offset!r}"))
+        assert held.base_radius > cam.base_radius
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(16))
+def test_no_random_search_does_better(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rise, dwell, back = (round(value, 2) for value in rng.uniform((50, 5, 50), (130, 60, 130)))
+    stroke, radius = rng.uniform((3, 2), (25, 20))
+    first, second = rng.choice(LAWS, 2)
+    arm = f", arm: {{length: {rng.uniform(60, 250)}, side: {rng.choice(['leading', 'trailing'])}}}"
+    angles = f"{{at_most: {rng.uniform(25, 40)}, on_return: {rng.uniform(30, 55)}}}"
+    text = f"""
+cam:
+  kind: disc
+  sizing: {{pressure-angle: {angles}, radius-of-curvature: {{at_least: {rng.uniform(0.3, 4.0) * radius + 20.0}}}}}
+  follower: {{kind: roller, radius: {radius}{arm if seed % 4 else ""}}}
+  motion:
+    - {{rise: {stroke}, over: {rise}, law: {first}}}
+    - {{dwell: {dwell}}}
+    - {{return: {stroke}, over: {back}, law: {second}}}
+    - {{dwell: {360.0 - rise - dwell - back}}}
+"""
+    cam = sized(text)
+    assert least_prime_by_chance(cam, 150, seed) >= (1.0 - 1e-4) * cam.prime
+
+
+FACE = """
+cam:
+  kind: disc
+  sizing: {radius-of-curvature: {at_least: 10}}
+  follower: {kind: flat, arm: {pivot: 120, face: 5, side: leading}}
+  motion:
+    - {rise: 12, over: 120, law: modified-sine}
+    - {dwell: 60}
+    - {return: 12, over: 120, law: polynomial-345}
+    - {dwell: 60}
+"""
+
+
+@pytest.mark.parametrize("side", ["leading", "trailing"])
+@pytest.mark.parametrize(("face", "radius"), [(5.0, 10.0), (0.0, 3.0), (-10.0, 12.0), (40.0, 60.0)])
+def test_a_face_on_an_arm_is_sized_by_its_radius(face: float, radius: float, side: str) -> None:
+    text = FACE.replace("face: 5", f"face: {face}").replace("least: 10", f"least: {radius}").replace("leading", side)
+    cam: Any = camgeo.load(text).cam
+    base = cam.base_radius
+    for share in (0.999, 1.0, 1.001):
+        given = camgeo.design(camgeo.load(re.sub("sizing: .*", f"base_radius: {share * base!r}", text)))
+        value = given.figures["radius-of-curvature"].value
+        assert value is not None
+        if share == 1.0:
+            assert value == pytest.approx(radius, rel=1e-9)
+        else:
+            assert (value > radius) == (share > 1.0)
+
+
+def fault(text: str) -> str:
+    with pytest.raises(camgeo.RecipeErrors) as caught:
+        camgeo.load(text)
+    (error,) = caught.value.errors
+    return str(error)
+
+
+def test_a_face_on_an_arm_that_no_size_rounds_is_told_which_face_does() -> None:
+    text = FACE.replace("least: 10", "least: 114").replace("face: 5", "face: 5.5")
+    told = re.search(r"a face below (\S+) mm does", fault(text))
+    assert told
+    assert camgeo.load(text.replace("face: 5.5", f"face: {float(told[1]) - 0.001}"))
+
+
+def test_what_a_face_on_an_arm_needs_is_told() -> None:
+    assert "give follower.arm.pivot" in fault(FACE.replace("pivot: 120, ", ""))
+    assert "any base radius keeps this" in fault(FACE.replace("face: 5", "face: -110"))
+    asked = FACE.replace("sizing: {", "sizing: {pressure-angle: {at_most: 30}, ")
+    assert "a flat face on an arm is sized by its radius of curvature alone" in fault(asked)
+    assert "leaves the face room to swing" in fault(FACE.replace("face: 5", "face: 119"))
