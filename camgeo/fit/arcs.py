@@ -118,11 +118,11 @@ def _between_extrema(curve: Curve, tolerance: float, limit: float) -> list[_Stre
     ends = np.cumsum([density.t.size - 2 for density in densities])
     found = {}
     for stretch, density, end in zip(bent, densities, ends, strict=True):
-        whole = None
+        whole, inner = None, slice(end + 2 - density.t.size, end)
         if density.total <= ROUND * math.cbrt(tolerance):
-            whole = _round(curve, density, limit)
+            whole = _round(curve, density, at.tangent[inner], limit)
         if whole is None:
-            found[stretch] = _divided(density, slope[end + 2 - density.t.size : end], tolerance)
+            found[stretch] = _divided(density, slope[inner], tolerance)
         else:
             found[stretch] = [_Stretch(*stretch, whole=whole)]
     return [part for stretch in stretches for part in found.get(stretch, [_Stretch(*stretch)])]
@@ -287,12 +287,12 @@ def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> Fitt
     return Fitted(points, np.full(count, math.tan(0.25 * sweep / count)), 0.0, 0.0)
 
 
-def _round(curve: Curve, density: Density, limit: float) -> Fitted | None:
+def _round(curve: Curve, density: Density, inner: Array, limit: float) -> Fitted | None:
     """Fewest arcs, a half turn each, of a stretch of constant curvature that is not known to be; None where it is none.
 
     That is one whose arcs leave in the curve's direction and arrive in it to within rounding, and are proved to hold.
+    `inner` (m - 2, 2) are the curve's tangents on the inner grid.
     """
-    inner = curve.sample(density.t[1:-1]).tangent
     first, last = curve.span(density.t[:1], density.t[-1:])
     along = np.concatenate([first.tangent, inner, last.tangent])
     step = np.arctan2(_cross(along[:-1], along[1:]), np.sum(along[:-1] * along[1:], axis=1))
@@ -303,7 +303,7 @@ def _round(curve: Curve, density: Density, limit: float) -> Fitted | None:
         return None
     nodes = np.interp(np.linspace(0.0, order * turned[-1], count + 1), order * turned, density.t)
     nodes[0], nodes[-1] = density.t[0], density.t[-1]
-    a, b = curve.span(nodes[:-1], nodes[1:])
+    a, b = (first, last) if count == 1 else curve.span(nodes[:-1], nodes[1:])
     curvature, bulges, arrived = _arc_from(a.point, a.tangent, b.point)
     miss = np.abs(_cross(arrived, b.tangent)) / np.abs(curvature)
     if float(miss.max()) > rounding(curve.size):
