@@ -358,8 +358,13 @@ class Cam(ABC):
         """The law by which a recipe lets the frame swing over the shaft angle, if it gives one."""
         return None
 
-    def size_found(self, mm: float) -> str:  # noqa: ARG002
-        """What was found in place of a size that the recipe leaves open, in words; `mm` is the recipe's unit."""
+    @property
+    def sizes(self) -> Mapping[str, float]:
+        """What was found in place of a size that the recipe leaves open, mm, by the keys below `cam` that take it."""
+        return {}
+
+    def size_found(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
+        """That and what bounds it, in words; `mm` is the recipe's unit."""
         return ""
 
     def circles(self) -> tuple[Circle, ...]:

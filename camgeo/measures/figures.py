@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from camgeo.checks.declared import (
     BENT,
@@ -19,15 +19,18 @@ from camgeo.checks.declared import (
 )
 from camgeo.recipe.figures import (
     AT_SPEED,
+    BASE_RADIUS,
     DWELL,
     FACE_WIDTH,
     FIGURES,
     HOLLOW_RADIUS,
     JAM_MARGIN,
+    OFFSET,
     ON_RETURN,
     ON_RISE,
     PEAKS,
     PITCH_RADIUS,
+    PIVOT,
     PIVOT_CLEARANCE,
     RADIUS,
     ROLLER_SPEED,
@@ -40,12 +43,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Any
 
+    from camgeo.cams.guided import GuidedCam
     from camgeo.curve.extremes import Extreme
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check
+    from kin.law.contacts import Translating
     from kin.linkage.extremes import Place
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
@@ -189,11 +194,26 @@ def _jam_margin(recipe: Recipe, design: Design) -> Measured:
     return Measured(None if guide is None else math.degrees(guide.jam) - value, "deg", at)
 
 
+def _base_radius(recipe: Recipe, _: Design) -> Measured:
+    return Measured(cast("GuidedCam", recipe.cam).base_radius, "mm")
+
+
+def _offset(_: Recipe, design: Design) -> Measured:
+    return Measured(cast("Translating", design.follower.contacts[0].guide).offset, "mm")
+
+
+def _pivot(_: Recipe, design: Design) -> Measured:
+    return Measured(design.follower.pivot, "mm")
+
+
 _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     RADIUS: _radius,
     PITCH_RADIUS: _pitch_radius,
     HOLLOW_RADIUS: _hollow_radius,
     SIZE: _size,
+    BASE_RADIUS: _base_radius,
+    OFFSET: _offset,
+    PIVOT: _pivot,
     ON_RISE: _on_rise,
     ON_RETURN: _on_return,
     PIVOT_CLEARANCE: _pivot_clearance,
