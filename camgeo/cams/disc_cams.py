@@ -133,12 +133,6 @@ class DiscCam(GuidedCam):
                 found["follower.arm.pivot"] = self.guide.pivot
         return found
 
-    def size_found(self, exact: ExactCam, mm: float) -> str:
-        """What sizing found."""
-        from camgeo.cams.sizing import size_found
-
-        return size_found(self, exact, mm)
-
     def circles(self) -> tuple[Circle, ...]:
         """The base circle, which a face is tangent to at displacement 0, and the prime circle of a round touch."""
         return super().circles() if self.touch.radius else (Circle("base circle", self.base_radius),)

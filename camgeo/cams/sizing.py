@@ -94,29 +94,28 @@ class SizedAdvice(Advice):
             return f"a {self.radius_field} below {downward(value)} {unit}" if value > 0.0 else ""
         return _at_least(limit)
 
+    def size_found(self, exact: ExactCam, mm: float) -> str:
+        """Base radius, offset or pivot, what bounds them, and the size with the usual pressure angle on the return."""
+        from kin.law.programme import IntentError
+
+        cam, asked = self.cam, self.sizing
+        more = "".join(
+            f" with {path.rpartition('.')[2]} {_shown(x / mm)}" for path, x in cam.sizes.items() if "." in path
+        )
+        bounds = [f"{name} at {at:.4g} deg" for name, at in _binding(cam, asked, exact).items()]
+        told = f"base radius {_shown(cam.base_radius / mm)}{more}, bound by {' and '.join(bounds)}"
+        if asked.angles is not None and asked.angles[1] < RETURN and ON_RETURN in _binding(cam, asked, exact):
+            try:
+                other = sized(cam, replace(asked, angles=(asked.angles[0], RETURN)))
+            except IntentError:
+                return told
+            if other.base_radius < _LESS * cam.base_radius:
+                told += f"; {_shown(other.base_radius / mm)} with on_return: {math.degrees(RETURN):.0f}"
+        return told
+
 
 def _at_least(radius: float) -> str:
     return f"radius-of-curvature: {{at_least: {upward(radius)}}} under sizing"
-
-
-def size_found(cam: DiscCam, exact: ExactCam, mm: float) -> str:
-    """What `sizing` found and what bounds it, in words, and the size with the usual pressure angle on the return."""
-    from kin.law.programme import IntentError
-
-    asked = cam.sizing
-    if asked is None:
-        return ""
-    more = "".join(f" with {path.rpartition('.')[2]} {_shown(x / mm)}" for path, x in cam.sizes.items() if "." in path)
-    bounds = [f"{name} at {at:.4g} deg" for name, at in _binding(cam, asked, exact).items()]
-    told = f"base radius {_shown(cam.base_radius / mm)}{more}, bound by {' and '.join(bounds)}"
-    if asked.angles is not None and asked.angles[1] < RETURN and ON_RETURN in _binding(cam, asked, exact):
-        try:
-            other = sized(cam, replace(asked, angles=(asked.angles[0], RETURN)))
-        except IntentError:
-            return told
-        if other.base_radius < _LESS * cam.base_radius:
-            told += f"; {_shown(other.base_radius / mm)} with on_return: {math.degrees(RETURN):.0f}"
-    return told
 
 
 def _shown(size: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.checks.declared import (
     BENT,
@@ -43,14 +43,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from typing import Any
 
-    from camgeo.cams.guided import GuidedCam
     from camgeo.curve.extremes import Extreme
     from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from camgeo.synthesis.linkage import Driven
     from kin.judge.check import Check
-    from kin.law.contacts import Translating
     from kin.linkage.extremes import Place
 
 _SHARE = 1e-12  # of the greatest value, to which a motion is followed
@@ -195,11 +193,12 @@ def _jam_margin(recipe: Recipe, design: Design) -> Measured:
 
 
 def _base_radius(recipe: Recipe, _: Design) -> Measured:
-    return Measured(cast("GuidedCam", recipe.cam).base_radius, "mm")
+    base, *_ = recipe.cam.circles()
+    return Measured(base.radius, "mm")
 
 
 def _offset(_: Recipe, design: Design) -> Measured:
-    return Measured(cast("Translating", design.follower.contacts[0].guide).offset, "mm")
+    return Measured(design.follower.offset, "mm")
 
 
 def _pivot(_: Recipe, design: Design) -> Measured:

@@ -101,7 +101,7 @@ def remarks_of(
 
 def _size_found(recipe: Recipe, design: Design) -> Remark | None:
     """What `sizing` found, and what bounds it."""
-    said = recipe.cam.size_found(design.exact, recipe.mm)
+    said = recipe.cam.advice.size_found(design.exact, recipe.mm)
     return Remark("sizing", None, None, "", said) if said else None
 
 
