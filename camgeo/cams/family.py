@@ -195,7 +195,7 @@ class Advice(ABC):
         return ""
 
     def size_found(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
-        """Say what was found in place of a size that the recipe leaves open, and what bounds it; empty where none was."""
+        """Say what was found in place of a size that the recipe leaves open, and what bounds it; empty for none."""
         return ""
 
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit

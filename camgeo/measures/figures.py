@@ -193,7 +193,7 @@ def _jam_margin(recipe: Recipe, design: Design) -> Measured:
 
 
 def _base_radius(recipe: Recipe, _: Design) -> Measured:
-    base, *_ = recipe.cam.circles()
+    base, *_others = recipe.cam.circles()
     return Measured(base.radius, "mm")
 
 
