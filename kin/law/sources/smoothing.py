@@ -450,7 +450,7 @@ class Bounded:
         )
 
     def demand_supported(self, motion: Motion) -> None:
-        """Refuse a motion that leaves the rows by the value taken off it, or accelerates twice as much as they allow."""
+        """Refuse a motion that leaves the rows once its least value is off, or accelerates more than they allow."""
         rows, total = self.task.rows, self.task.total
         if not self.task.keeps(motion):
             problem = "no motion that begins at its least value keeps the reading of the rows; this row leaves it first"
