@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, overload
 
+import numpy as np
+
+from camgeo.curve.ring import centre_of, radius_of, steps_along
 from camgeo.fit.pieces import ArcSpline, BSpline, Polygon
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from camgeo.fit.pieces import Outline
+    from kin.numeric.arrays import Array
 
 Form: TypeAlias = Literal["arcs", "spline", "polyline"]
 FORMS = ("arcs", "spline", "polyline")
@@ -38,9 +45,7 @@ class Arc:
     @property
     def middle(self) -> Point:
         """The point half way along, for CAD programs whose arcs go through three points."""
-        (x0, y0), (x1, y1) = self.start, self.end
-        bulge = math.tan(0.25 * self.sweep)  # from the chord, so that a distant centre costs no digits
-        return 0.5 * (x0 + x1) + 0.5 * bulge * (y1 - y0), 0.5 * (y0 + y1) - 0.5 * bulge * (x1 - x0)
+        return _points(steps_along(np.array(self.start), np.array(self.end), math.tan(0.25 * self.sweep), 2))[1]
 
 
 @dataclass(frozen=True)
@@ -94,35 +99,26 @@ class Edges(Sequence[Edge]):
     def of(outline: Outline) -> Edges:
         """Tell a fitted outline in plain numbers; a rational spline is not among them."""
         if isinstance(outline, Polygon):
-            edges: tuple[Edge, ...] = tuple(Line(a, b) for a, b in _around(_points(outline.vertices.tolist())))
+            at = _points(outline.vertices)
+            edges: tuple[Edge, ...] = tuple(itertools.starmap(Line, zip(at, (*at[1:], at[0]), strict=True)))
         elif isinstance(outline, ArcSpline):
-            ends = _around(_points(outline.points.tolist()))
-            edges = tuple(_piece(a, b, t) for (a, b), t in zip(ends, outline.bulges.tolist(), strict=True))
+            edges = tuple(itertools.starmap(_piece, outline.pieces()))
         elif isinstance(outline, BSpline):
-            start = _points(outline.beziers()[:1, 0].tolist())[0]
+            start = _points(outline.beziers()[:1, 0])[0]
             knots = tuple(outline.knots.tolist())
-            edges = (Spline(start, start, outline.degree, _points(outline.control.tolist()), knots),)
+            edges = (Spline(start, start, outline.degree, _points(outline.control), knots),)
         else:
             raise TypeError("a rational spline has weights, which no edge has")
         return Edges(edges, outline.bound.outward, outline.bound.inward, outline.area)
 
 
-def _points(rows: list[list[float]]) -> tuple[Point, ...]:
-    return tuple((x, y) for x, y in rows)
+def _points(rows: Iterable[Iterable[float]]) -> tuple[Point, ...]:
+    return tuple((float(x), float(y)) for x, y in rows)
 
 
-def _around(points: tuple[Point, ...]) -> list[tuple[Point, Point]]:
-    return list(zip(points, (*points[1:], points[0]), strict=True))
-
-
-def _piece(start: Point, end: Point, bulge: float) -> Edge:
-    """An arc from its bulge, the tangent of a quarter of its sweep; a line where that is 0."""
+def _piece(start: Array, end: Array, bulge: float) -> Edge:
+    """An arc from its bulge, or a line."""
     if bulge == 0.0:
-        return Line(start, end)
-    (x0, y0), (x1, y1) = start, end
-    dx, dy = x1 - x0, y1 - y0
-    # the centre lies on the left of the chord's middle where the arc turns left by less than half a turn
-    off = 0.25 * (1.0 / bulge - bulge)
-    center = (0.5 * (x0 + x1) - off * dy, 0.5 * (y0 + y1) + off * dx)
-    radius = 0.25 * math.hypot(dx, dy) * (abs(bulge) + 1.0 / abs(bulge))
-    return Arc(start, end, center, radius, 4.0 * math.atan(bulge))
+        return Line(*_points((start, end)))
+    a, b, centre = _points((start, end, centre_of(start, end, bulge)))
+    return Arc(a, b, centre, radius_of(math.dist(a, b), bulge), 4.0 * math.atan(bulge))

@@ -18,9 +18,10 @@ from camgeo.assembly.guide import guide_length
 from camgeo.assembly.poses import Turning, lifted, swung
 from camgeo.assembly.roller import ARM_COLOUR, Foot, Levels, arm, covered, roller_fits, rolling
 from camgeo.assembly.shaft import CLIP_COLOUR, base, base_radius, bearing, shaft_fits, turned
-from camgeo.assembly.shapes import EXACT, bar, box, disc, eye, moved, pin, retainer
+from camgeo.assembly.shapes import bar, box, disc, eye, moved, pin, retainer
 from camgeo.assembly.sizes import THIN, BodyError
 from camgeo.assembly.yoke import SHAFT, guided
+from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from kin.law.contacts import Roller, Shoe
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from camgeo.assembly.body import Plate
 from camgeo.curve import ring
-from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.fit.bound import EXACT
+from camgeo.fit.pieces import ArcSpline
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from camgeo.assembly.sizes import Sizes
 
-EXACT = Bound(0.0, 0.0)
 Point = tuple[float, float]
 
 

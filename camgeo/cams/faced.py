@@ -11,18 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.cams.family import Advice, ExactCam, Surface
-from camgeo.cams.position import Position, position_of
+from camgeo.cams.family import Advice, Surface
+from camgeo.cams.guided import ExactLed
 from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 
 if TYPE_CHECKING:
     from camgeo.cams.disc_cams import DiscCam
-    from camgeo.cams.family import Follower
     from camgeo.curve.disc import Face
-    from camgeo.curve.moving_frame import Displacement
-    from kin.follower.follower import Follower as Gauge
-    from kin.law.joints import Joint
     from kin.numeric.arrays import Array
 
 
@@ -78,21 +74,10 @@ class FacePlace:
 
 
 @dataclass(frozen=True, eq=False)
-class ExactFaced(ExactCam):
+class ExactFaced(ExactLed):
     """A disc cam for a flat face by the displacement of its follower."""
 
     cam: DiscCam
-    law: Displacement
-
-    @cached_property
-    def follower(self) -> Follower:
-        """As the family has it."""
-        return self.cam.follower(self.law)
-
-    @cached_property
-    def motion(self) -> Position:
-        """The displacement."""
-        return position_of(self.cam.guide, self.law)
 
     @cached_property
     def surface(self) -> Surface:
@@ -103,20 +88,3 @@ class ExactFaced(ExactCam):
         whole = Curve.whole(face_shape(face))
         series = {"slope": face.slope, "contact": face.contact}
         return Surface(whole, whole, pressure=FacePressure(face), place=FacePlace(face), series=series)
-
-    @cached_property
-    def gauge(self) -> Gauge:
-        """The contacts with the displacement."""
-        from kin.follower.follower import follower_of
-
-        return follower_of(self.follower.contacts, self.law.law())
-
-    @cached_property
-    def joints(self) -> tuple[Joint, ...]:
-        """Those that the recipe gives."""
-        return self.cam.joints()
-
-    def grown(self, out: float, scale: float) -> ExactFaced:
-        """The face farther out; a lift is scaled with the drawing, a swing is not."""
-        lifts = self.cam.guide.unit == "mm"
-        return ExactFaced(self.cam.grown(out, scale), self.law.scaled(scale) if lifts else self.law)

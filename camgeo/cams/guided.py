@@ -6,7 +6,7 @@ The pitch curve is `camgeo.curve.moving_frame.CentreShape`, its parameter the sh
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -102,8 +102,8 @@ class Spin:
 
 
 @dataclass(frozen=True, eq=False)
-class ExactGuided(ExactCam):
-    """Such a cam by the displacement of its follower."""
+class ExactLed(ExactCam):
+    """Such a cam by the displacement of its follower, whatever touches it."""
 
     cam: GuidedCam
     law: Displacement
@@ -117,6 +117,28 @@ class ExactGuided(ExactCam):
     def motion(self) -> Position:
         """The displacement."""
         return position_of(self.follower.contacts[0].guide, self.law)
+
+    @cached_property
+    def gauge(self) -> Gauge:
+        """The contacts with the displacement."""
+        from kin.follower.follower import follower_of
+
+        return follower_of(self.follower.contacts, self.law.law(), self.cam.side)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Those that the recipe gives."""
+        return self.cam.joints()
+
+    def grown(self, out: float, scale: float) -> ExactCam:
+        """The same pitch curve, or a face farther out; a lift is scaled with the drawing, a swing is not."""
+        law = self.law.scaled(scale) if self.cam.arrangement.unit == "mm" else self.law
+        return replace(self, cam=self.cam.grown(out, scale), law=law)
+
+
+@dataclass(frozen=True, eq=False)
+class ExactGuided(ExactLed):
+    """Under a touch that is round about a centre."""
 
     @cached_property
     def surface(self) -> Surface:
@@ -133,18 +155,6 @@ class ExactGuided(ExactCam):
             series["spin"] = Spin(pitch, radius, float(side))
         curve = Curve.whole(Parallel(pitch, side * radius))
         return Surface(Curve.whole(pitch), curve, radius, side, pitch.pressure_angle, None, series)
-
-    @cached_property
-    def gauge(self) -> Gauge:
-        """The contacts with the displacement."""
-        from kin.follower.follower import follower_of
-
-        return follower_of(self.follower.contacts, self.law.law(), self.cam.side)
-
-    @cached_property
-    def joints(self) -> tuple[Joint, ...]:
-        """Those that the recipe gives."""
-        return self.cam.joints()
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius on this stem; for this length of arm that with the pivot's distance."""
@@ -179,8 +189,3 @@ class ExactGuided(ExactCam):
         except IntentError:
             return ""
         return f"a base radius of {upward((prime - self.cam.side * roller) / mm)}"
-
-    def grown(self, out: float, scale: float) -> ExactGuided:
-        """The same pitch curve; a lift is scaled with the drawing, a swing is not."""
-        lifts = self.cam.arrangement.unit == "mm"
-        return ExactGuided(self.cam.grown(out, scale), self.law.scaled(scale) if lifts else self.law)

@@ -1,15 +1,19 @@
-"""Plane outlines of lines and arcs: discs, boxes, bars."""
+"""Chains of lines and arcs, the arithmetic of a bulge, and plane outlines: discs, boxes, bars.
+
+The bulge of a piece is the tangent of a quarter of the angle that it turns through, positive counter-clockwise, 0 of a
+line.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from kin.numeric.arrays import Array
 
@@ -18,14 +22,64 @@ FLAT = 0.02  # rad: an arc is measured and flattened in steps of about this
 
 
 MIRROR = np.array([1.0, -1.0])
+Number = TypeVar("Number", float, "Array")
+
+
+def radius_of(length: Number, bulge: Number) -> Number:
+    """Radius of arcs, by their chords' lengths."""
+    return length * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
+
+
+def centre_of(start: Array, end: Array, bulge: float) -> Array:
+    """Centre (2,) of an arc; left of its chord where it turns left by less than half a turn."""
+    chord = end - start
+    centre: Array = 0.5 * (start + end) + np.array([-chord[1], chord[0]]) * ((1.0 - bulge * bulge) / (4.0 * bulge))
+    return centre
+
+
+def steps_along(start: Array, end: Array, bulge: float, count: int) -> Array:
+    """Points (count, 2) of a piece in equal steps, the start first, the end left out.
+
+    They lie along chords from the start: nothing is lost where the centre is far away.
+    """
+    chord, sweep, share = end - start, 4.0 * math.atan(bulge), np.arange(count) / count
+    part = sweep * share
+    heading = math.atan2(chord[1], chord[0]) - 0.5 * sweep + 0.5 * part
+    length = math.hypot(*chord.tolist()) * (np.sin(0.5 * part) / math.sin(0.5 * sweep) if sweep else share)
+    points: Array = start + length[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
+    return points
 
 
 @dataclass(frozen=True, eq=False)
-class Ring:
-    """Lines and arcs through points (n, 2); bulge (n,) = tan(sweep/4) of the piece that follows each point."""
+class ArcChain:
+    """Lines and arcs through points (n, 2) and back to the first; bulge (n,) of the piece that follows each."""
 
     points: Array
     bulges: Array
+
+    @property
+    def chords(self) -> Array:
+        """From the start of each piece to its end (n, 2)."""
+        chords: Array = np.roll(self.points, -1, axis=0) - self.points
+        return chords
+
+    @property
+    def circle(self) -> tuple[tuple[float, float], float] | None:
+        """Centre and radius of two halves of a circle, None of any other chain."""
+        if len(self.points) != 2 or not bool((self.bulges == 1.0).all()):
+            return None
+        x, y = (0.5 * (self.points[0] + self.points[1])).tolist()
+        return (x, y), 0.5 * math.hypot(*(self.points[1] - self.points[0]).tolist())
+
+    def pieces(self) -> Iterator[tuple[Array, Array, float]]:
+        """Start and end (2,) of each piece, and its bulge."""
+        return zip(self.points, np.roll(self.points, -1, axis=0), self.bulges.tolist(), strict=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Ring(ArcChain):
+    """A chain that is drawn; one that is not closed has no last piece."""
+
     closed: bool = True
 
     @staticmethod
@@ -44,11 +98,9 @@ class Ring:
 
     def flattened(self) -> Array:
         """Return points (m, 2) along it, arcs in steps of `FLAT`; the first is repeated at the end if it is closed."""
-        end = np.roll(self.points, -1, axis=0)
-        pieces = list(zip(self.points, end, self.bulges, strict=True))
-        pieces = pieces if self.closed else pieces[:-1]
-        found = [_along(a, b, float(bulge)) for a, b, bulge in pieces]
-        return np.concatenate([*found, self.points[:1] if self.closed else self.points[-1:]])
+        counts = [max(1, math.ceil(abs(4.0 * math.atan(bulge)) / FLAT)) for bulge in self.bulges.tolist()]
+        found = [steps_along(*piece, count) for piece, count in zip(self.pieces(), counts, strict=True)]
+        return np.concatenate([*found, self.points[:1]] if self.closed else [*found[:-1], self.points[-1:]])
 
     def path(self, digits: int) -> str:
         """Return the ring as the data of an SVG path, coordinates rounded to so many digits."""
@@ -58,28 +110,12 @@ class Ring:
         for i in range(count if self.closed else count - 1):
             j, bulge = (i + 1) % count, float(self.bulges[i])
             if bulge:
-                chord = math.hypot(*(self.points[j] - self.points[i]))
-                radius = f"{chord * (1.0 + bulge * bulge) / (4.0 * abs(bulge)):.{digits}f}"
+                radius = f"{radius_of(math.hypot(*(self.points[j] - self.points[i])), bulge):.{digits}f}"
                 flags = f"{int(abs(bulge) > 1.0)} {int(bulge > 0.0)}"
                 text.append(f"A{radius} {radius} 0 {flags} {x[j]} {y[j]}")
             elif j:
                 text.append(f"L{x[j]} {y[j]}")
         return "".join([*text, "Z"] if self.closed else text)
-
-
-def _along(a: Array, b: Array, bulge: float) -> Array:
-    """Points (m, 2) of a piece without its end."""
-    sweep = 4.0 * math.atan(bulge)
-    share = np.arange(max(1, math.ceil(abs(sweep) / FLAT))) / max(1, math.ceil(abs(sweep) / FLAT))
-    if not bulge:
-        return a[None, :]
-    half, middle = 0.5 * (b - a), 0.5 * (a + b)
-    centre = middle + np.array([-half[1], half[0]]) * (1.0 - bulge * bulge) / (2.0 * bulge)
-    angle = sweep * share
-    ray = a - centre
-    c, s = np.cos(angle), np.sin(angle)
-    points: Array = centre + np.column_stack([ray[0] * c - ray[1] * s, ray[0] * s + ray[1] * c])
-    return points
 
 
 def _text(values: Array, digits: int) -> list[str]:

@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from camgeo.files.curves import CONFUSION, centre_of, circle_of, curves_of, inset, measures, point
+from camgeo.curve.ring import centre_of
+from camgeo.files.curves import CONFUSION, curves_of, inset, measures, point
 from camgeo.files.errors import MissingExtraError, demand_uninterrupted, install
 from camgeo.files.triangulate import RegionError
-from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.fit.bound import EXACT
+from camgeo.fit.pieces import ArcSpline
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,7 +108,7 @@ def _contour(stack: _Stack, outline: Outline, solid: Solid) -> tuple[Loop, Loop]
     if not isinstance(outline, ArcSpline):
         raise TypeError("the chamfer of a spline is not a spline")
     c = solid.chamfer
-    if (circle := circle_of(outline)) is not None:
+    if (circle := outline.circle) is not None:
         outline = _quartered(*circle)  # a whole circle's cone would have a seam, and no edge to be laid along it
     foot, head = stack.wall(outline, c, solid.thickness - c)
     inner = inset(outline, c)
@@ -257,13 +259,13 @@ def _sloping(k: int, inner: tuple[ArcSpline, float], outer: tuple[ArcSpline, flo
 
 
 def _disc(radius: float) -> ArcSpline:
-    return ArcSpline(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2), Bound(0.0, 0.0))
+    return ArcSpline(np.array([[radius, 0.0], [-radius, 0.0]]), np.ones(2), EXACT)
 
 
 def _quartered(centre: tuple[float, float], radius: float) -> ArcSpline:
     """A circle as four arcs."""
     across = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
-    return ArcSpline(np.array(centre) + radius * across, np.full(4, math.tan(math.pi / 8.0)), Bound(0.0, 0.0))
+    return ArcSpline(np.array(centre) + radius * across, np.full(4, math.tan(math.pi / 8.0)), EXACT)
 
 
 def _is_within(outline: ArcSpline, diameter: float) -> bool:

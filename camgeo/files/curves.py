@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camgeo.curve.ring import centre_of, radius_of
 from camgeo.files.triangulate import RegionError
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon, RationalSpline
 
@@ -45,7 +46,7 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
     if isinstance(outline, Polygon):
         raise TypeError("a solid has no polygons")
     up = gp_Dir(0.0, 0.0, 1.0)
-    whole = circle_of(outline)
+    whole = outline.circle
     if whole is not None:
         (x, y), radius = whole
         circle = gp_Circ(gp_Ax2(point((x, y), z), up, gp_Dir(1.0, 0.0, 0.0)), radius)
@@ -56,15 +57,14 @@ def curves_of(outline: Outline, z: float) -> list[tuple[Shape, tuple[float, floa
             f"a piece of the contour is {float(length.min()):.3g} mm long, and Open CASCADE takes points within "
             f"{CONFUSION:g} mm as one: give a larger tolerance"
         )
-    ends = np.roll(outline.points, -1, axis=0)
     found = []
-    for k, (start, end) in enumerate(zip(outline.points, ends, strict=True)):
+    for k, (start, end, bulge) in enumerate(outline.pieces()):
         place = (float(start[0]), float(start[1]))
         if flat[k]:
             found.append((_line(start, end, z), place))
             continue
-        centre = centre_of(start, end, float(outline.bulges[k]))
-        axis = up if outline.bulges[k] > 0.0 else up.Reversed()
+        centre = centre_of(start, end, bulge)
+        axis = up if bulge > 0.0 else up.Reversed()
         towards = gp_Dir(*((start - centre) / radii[k]).tolist(), 0.0)
         found.append((gp_Circ(gp_Ax2(point(centre.tolist(), z), axis, towards), float(radii[k])), place))
     return found
@@ -115,11 +115,10 @@ def _splines(outline: BSpline | RationalSpline, z: float) -> list[tuple[Shape, t
 def inset(outline: ArcSpline, distance: float) -> ArcSpline:
     """Parallel inside a smooth outline: of each arc an arc about the same centre."""
     length, radius, flat = measures(outline)
-    chord = np.roll(outline.points, -1, axis=0) - outline.points
     half = 2.0 * np.arctan(np.where(flat, 0.0, outline.bulges))
     c, s = np.cos(half), np.sin(half)
     # tangents at both ends lie half the sweep to either side of the chord
-    along = chord / length[:, None]
+    along = outline.chords / length[:, None]
     first = np.column_stack([along[:, 0] * c + along[:, 1] * s, along[:, 1] * c - along[:, 0] * s])
     last = np.column_stack([along[:, 0] * c - along[:, 1] * s, along[:, 1] * c + along[:, 0] * s])
     corner = np.hypot(*(first - np.roll(last, 1, axis=0)).T)
@@ -137,27 +136,11 @@ def inset(outline: ArcSpline, distance: float) -> ArcSpline:
 
 def measures(outline: ArcSpline) -> tuple[Array, Array, Any]:
     """Chord, radius and whether it is taken as a line, of each piece (n,)."""
-    chord = np.roll(outline.points, -1, axis=0) - outline.points
-    length = np.hypot(chord[:, 0], chord[:, 1])
+    length = np.hypot(*outline.chords.T)
     flat = 4.0 * np.abs(outline.bulges) < FLATTEST
     bulge = np.where(flat, 1.0, np.abs(outline.bulges))
-    radius = np.where(flat, 0.0, length * (1.0 + bulge * bulge) / (4.0 * bulge))
+    radius = np.where(flat, 0.0, radius_of(length, bulge))
     return length, radius, flat
-
-
-def centre_of(start: Array, end: Array, bulge: float) -> Array:
-    """Centre (2,) of an arc between two points."""
-    chord = end - start
-    centre: Array = 0.5 * (start + end) + np.array([-chord[1], chord[0]]) * ((1.0 - bulge * bulge) / (4.0 * bulge))
-    return centre
-
-
-def circle_of(outline: ArcSpline) -> tuple[tuple[float, float], float] | None:
-    """Centre and radius of an outline of two halves of a circle."""
-    if outline.count != 2 or not bool((outline.bulges == 1.0).all()):
-        return None
-    x, y = (0.5 * (outline.points[0] + outline.points[1])).tolist()
-    return (x, y), 0.5 * math.hypot(*(outline.points[1] - outline.points[0]).tolist())
 
 
 def point(at: Sequence[float], z: float) -> Shape:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.curve.ring import radius_of, steps_along
 from camgeo.files.mesh import Mesh, MeshFacts
 from camgeo.files.triangulate import disc, region, ring
 from camgeo.fit.pieces import Bound, Polygon
@@ -135,28 +136,18 @@ def loop_polygon(outline: ArcSpline, tolerance: float) -> tuple[Array, float]:
 
     A full circle, two halves, is straddled; any other keeps its points, and its arcs are chords between points of them.
     """
-    points, bulges = outline.points, outline.bulges
-    ends = np.roll(points, -1, axis=0)
-    if len(points) == 2 and bool((bulges == 1.0).all()):
-        chord = ends[0] - points[0]
-        polygon, off = bore_polygon(float(np.hypot(*chord)), tolerance)
-        return polygon + 0.5 * (points[0] + points[1]), off
+    if (circle := outline.circle) is not None:
+        polygon, off = bore_polygon(2.0 * circle[1], tolerance)
+        return polygon + circle[0], off
     rows, worst = [], 0.0
-    for start, end, bulge in zip(points, ends, bulges.tolist(), strict=True):
-        sweep = 4.0 * math.atan(bulge)
-        chord = end - start
-        length = float(np.hypot(*chord))
+    for start, end, bulge in outline.pieces():
         count = 1
         if bulge != 0.0:
-            radius = 0.5 * length / abs(math.sin(0.5 * sweep))
+            sweep, radius = 4.0 * math.atan(bulge), radius_of(math.dist(start, end), bulge)
             # the sagitta of a chord over the angle a is 2 r sin(a/4)^2
             count = math.ceil(abs(sweep) / (4.0 * math.asin(min(math.sqrt(0.5 * tolerance / radius), 0.5))))
             worst = max(worst, 2.0 * radius * math.sin(0.25 * sweep / count) ** 2)
-        # from the start along chords of the arc: nothing is lost where the centre is far away
-        part = sweep * np.arange(count) / count
-        heading = math.atan2(chord[1], chord[0]) - 0.5 * sweep + 0.5 * part
-        share = np.sin(0.5 * part) / math.sin(0.5 * sweep) if sweep else np.zeros(1)
-        rows.append(start + (length * share)[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]))
+        rows.append(steps_along(start, end, bulge, count))
     return np.concatenate(rows), worst
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.curve.ring import ArcChain, radius_of, steps_along
 from camgeo.files.dxf import UNITS, Circle
 from camgeo.files.markup import number, one_line
 from camgeo.fit.pieces import ArcSpline, BSpline, Outline, Polygon
@@ -111,7 +112,7 @@ def _path(outline: Outline, mm: float) -> str:
             first = outline.vertices[0] / mm
             pieces = [f"L{_numbers(point)}" for point in outline.vertices[1:] / mm]
         case ArcSpline():
-            first, pieces = outline.points[0] / mm, _arcs(outline.points / mm, outline.bulges)
+            first, pieces = outline.points[0] / mm, _arcs(ArcChain(outline.points / mm, outline.bulges))
         case BSpline(degree=3):
             beziers = outline.beziers() / mm
             beziers[-1, -1] = beziers[0, 0]
@@ -122,25 +123,17 @@ def _path(outline: Outline, mm: float) -> str:
     return f'<path d="{data}"/>'
 
 
-def _arcs(points: Array, bulges: Array) -> list[str]:
-    """Lines and arcs from point to point and back to the first (n, 2), arcs of at most a quarter turn each."""
+def _arcs(chain: ArcChain) -> list[str]:
+    """Lines and arcs of a chain, arcs of at most a quarter turn each."""
     found = []
-    ends = np.roll(points, -1, axis=0)
-    for start, end, bulge in zip(points, ends, bulges.tolist(), strict=True):
+    for start, end, bulge in chain.pieces():
         if bulge == 0.0:
             found.append(f"L{_numbers(end)}")
             continue
-        chord = end - start
-        length, sweep = math.hypot(*chord.tolist()), 4.0 * math.atan(bulge)
-        radius = length * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
+        radius = radius_of(math.dist(start, end), bulge)
         head = f"A{_numbers(np.array([radius, radius]))} 0 0 {int(bulge > 0.0)} "
-        count = max(math.ceil(abs(sweep) / _QUARTER), 1)
-        # from the start along chords of the arc: nothing is lost where the centre is far away
-        part = sweep * np.arange(1, count) / count
-        heading = math.atan2(chord[1], chord[0]) - 0.5 * sweep + 0.5 * part
-        share = length * np.sin(0.5 * part) / math.sin(0.5 * sweep)
-        between = start + share[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
-        found += [head + _numbers(point) for point in (*between, end)]
+        count = max(math.ceil(abs(4.0 * math.atan(bulge)) / _QUARTER), 1)
+        found += [head + _numbers(point) for point in (*steps_along(start, end, bulge, count)[1:], end)]
     return found
 
 

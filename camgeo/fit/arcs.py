@@ -17,6 +17,7 @@ import numpy as np
 from camgeo.common.rounding import upward
 from camgeo.fit import free_arcs
 from camgeo.fit.deviation import Chain, Deviation, chain_deviation, foot, seen_deviation
+from camgeo.fit.free_arcs import Fitted
 from camgeo.fit.nodes import TRIES, Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.parts import CONSTANT as FREE
 from camgeo.fit.parts import Part
@@ -50,9 +51,6 @@ def arc_density(frame: Frame) -> Array:
     return density
 
 
-_Fit = tuple["Array", "Array", float, float]  # points, bulges, outward and inward bound of a stretch
-
-
 @dataclass(frozen=True)
 class _Biarcs:
     """Both arcs of each biarc, in order: points where each begins (2n, 2), bulges and chain (2n,)."""
@@ -74,7 +72,7 @@ class _Stretch:
     high: float
     parts: tuple[Part, ...] = ()
     biarcs: int = 0
-    whole: _Fit | None = None
+    whole: Fitted | None = None
 
 
 def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
@@ -95,17 +93,13 @@ def fit_arcs(curve: Curve, tolerance: float) -> ArcSpline:
     rest = [
         i
         for i, (s, fit) in enumerate(zip(stretches, fits, strict=True))
-        if fit is None or (s.whole is None and fit[1].size > s.biarcs)
+        if fit is None or (s.whole is None and fit.bulges.size > s.biarcs)
     ]
     biarcs = _fit_stretches(curve, [(stretches[i].low, stretches[i].high) for i in rest], aim, limit)
     for i, biarc in zip(rest, biarcs, strict=True):
         free = fits[i]
-        fits[i] = biarc if free is None or biarc[1].size <= free[1].size else free
-    chosen = [fit for fit in fits if fit is not None]
-    points = np.concatenate([fit[0] for fit in chosen])
-    bulges = np.concatenate([fit[1] for fit in chosen])
-    outward = max(fit[2] for fit in chosen)
-    inward = max(fit[3] for fit in chosen)
+        fits[i] = biarc if free is None or biarc.bulges.size <= free.bulges.size else free
+    points, bulges, outward, inward = Fitted.joined(fit for fit in fits if fit is not None)
     return ArcSpline(points, bulges, Bound(outward, inward).widened(rounding(size)))
 
 
@@ -165,25 +159,23 @@ def _sign_changes(t: Array, value: Array) -> list[float]:
     return changes
 
 
-def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float) -> list[_Fit | None]:
+def _free_fits(curve: Curve, stretches: list[_Stretch], aim: float, limit: float) -> list[Fitted | None]:
     """Arcs with free joints of the stretches; None where some part has none, or far more are foreseen than biarcs."""
     tried = [s.whole is None and sum(part.count(aim) for part in s.parts) <= MOST_FREE * s.biarcs for s in stretches]
     parts = [part for s, worth in zip(stretches, tried, strict=True) if worth for part in s.parts]
     found = iter(free_arcs.free_arcs(curve, parts, aim, limit))
-    out: list[_Fit | None] = []
+    out: list[Fitted | None] = []
     for stretch, worth in zip(stretches, tried, strict=True):
         mine = [next(found) for _ in stretch.parts] if worth else []
         whole = [part for part in mine if part is not None]
         if not whole or len(whole) < len(mine):
             out.append(stretch.whole)
             continue
-        points = np.concatenate([part.points for part in whole])
-        bulges = np.concatenate([part.bulges for part in whole])
-        out.append((points, bulges, max(part.outward for part in whole), max(part.inward for part in whole)))
+        out.append(Fitted.joined(whole))
     return out
 
 
-def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float) -> list[_Fit]:
+def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: float, limit: float) -> list[Fitted]:
     """Circular arcs and biarcs of each stretch: errors seen up to `aim`, proved up to `limit`."""
     slip = _slip(curve, aim)
     # what rounding takes of the tolerance that was asked for
@@ -196,7 +188,7 @@ def _fit_stretches(curve: Curve, stretches: list[tuple[float, float]], aim: floa
             2.0 * cover,
         )
     tolerance = min(aim, limit)
-    done: dict[int, _Fit] = {}
+    done: dict[int, Fitted] = {}
     best: dict[int, float] = {}
     for i, stretch in enumerate(stretches):
         radius = curve.radius(stretch)
@@ -251,12 +243,12 @@ def _strayed(curve: Curve, chain: Chain, tolerance: float) -> tuple[Array, Devia
     return deviation.worst.reshape(-1, 2).max(axis=1), deviation
 
 
-def _fitted(biarcs: _Biarcs, deviation: Deviation, rows: slice, slip: float) -> _Fit:
+def _fitted(biarcs: _Biarcs, deviation: Deviation, rows: slice, slip: float) -> Fitted:
     """Some of the arcs, their outward and inward bound widened by what feet were off along the curve."""
     # f is the curve's distance outside the arc: where it is positive the file lies inward
     inward = max(float(deviation.outside[rows].max()), 0.0) + 2.0 * slip
     outward = max(-float(deviation.inside[rows].min()), 0.0) + 2.0 * slip
-    return biarcs.points[rows], biarcs.bulges[rows], outward, inward
+    return Fitted(biarcs.points[rows], biarcs.bulges[rows], outward, inward)
 
 
 def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[Array, int]:
@@ -275,7 +267,7 @@ def _denser(nodes: Array, worst: Array, tolerance: float, tried: int) -> tuple[A
     return spread, 0
 
 
-def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> _Fit:
+def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> Fitted:
     """One arc for a stretch that is a circular arc, two for more than a half turn."""
     steady = curve.steady(stretch)
     ends = curve.span(np.array([stretch[0]]), np.array([stretch[1]]))
@@ -292,10 +284,10 @@ def _circular(curve: Curve, stretch: tuple[float, float], radius: float) -> _Fit
         sine, versine = math.sin(half), 1.0 - math.cos(half)
         turned = np.array([cx * sine - cy * versine, cy * sine + cx * versine])
         points = np.vstack([points, points + radius * turned])
-    return points, np.full(count, math.tan(0.25 * sweep / count)), 0.0, 0.0
+    return Fitted(points, np.full(count, math.tan(0.25 * sweep / count)), 0.0, 0.0)
 
 
-def _round(curve: Curve, density: Density, limit: float) -> _Fit | None:
+def _round(curve: Curve, density: Density, limit: float) -> Fitted | None:
     """Fewest arcs, a half turn each, of a stretch of constant curvature that is not known to be; None where it is none.
 
     That is one whose arcs leave in the curve's direction and arrive in it to within rounding, and are proved to hold.
@@ -319,7 +311,7 @@ def _round(curve: Curve, density: Density, limit: float) -> _Fit | None:
     chain = Chain(a.point, a.tangent, curvature, nodes[:-1], nodes[1:])
     found = chain_deviation(curve, chain, limit, 2 * LOOKS)
     outward, inward = max(-float(found.inside.min()), 0.0), max(float(found.outside.max()), 0.0)
-    return (a.point, bulges, outward, inward) if max(outward, inward) <= limit else None
+    return Fitted(a.point, bulges, outward, inward) if max(outward, inward) <= limit else None
 
 
 def _slip(curve: Curve, tolerance: float) -> float:

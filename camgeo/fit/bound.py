@@ -41,3 +41,6 @@ class Bound:
     def widened(self, margin: float) -> Bound:
         """Return the bound after every point may have moved by `margin` mm more (rounding to a file's precision)."""
         return Bound(self.outward + margin, self.inward + margin)
+
+
+EXACT = Bound(0.0, 0.0)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from camgeo.fit.parts import ENDS, refined
 from camgeo.fit.staircase import solve_chains
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
@@ -47,14 +47,19 @@ CLOSING = 12  # steps that bring it there
 PROOF_LOOKS = 16  # steps of an arc at which its deviation is first proved
 
 
-@dataclass(frozen=True)
-class Fitted:
-    """Arcs of one part, proved: points where each begins (n, 2), bulges (n,), greatest distance outward and inward."""
+class Fitted(NamedTuple):
+    """Arcs of a part, proved: points where each begins (n, 2), bulges (n,), farthest outward and inward, mm."""
 
     points: Array
     bulges: Array
     outward: float
     inward: float
+
+    @staticmethod
+    def joined(parts: Iterable[Fitted]) -> Fitted:
+        """Arcs of parts that follow one another."""
+        points, bulges, outward, inward = zip(*parts, strict=True)
+        return Fitted(np.concatenate(points), np.concatenate(bulges), max(outward), max(inward))
 
 
 @dataclass(frozen=True)

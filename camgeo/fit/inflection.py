@@ -13,24 +13,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.fit.nodes import rounding
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from camgeo.curve.curve import Curve
+    from camgeo.curve.curve import Curve, Frame
     from camgeo.fit.nodes import Density
     from kin.numeric.arrays import Array
 
 REACH = math.sqrt(24.0) / 6.0
-_ROOT_STEPS = 4  # of Newton's method; a crossing edge is far wider than what is left
-_STEPS = 8
+_ROOT_STEPS = 4  # of Newton's method at least
+_MOST_ROOT_STEPS = 60
+_NEAR = 0.15  # of an edge's reach: how far a root may be off
+_CLEAR = 0.05  # of its reach: how near to the inflection an extreme is looked for
+_STEPS = 16
 _SETTLED = 1e-4  # of the tolerance
 _MOST_STEP = 0.3  # of an edge's reach, in one step
 
 
-def inflections(curve: Curve, densities: Sequence[Density]) -> tuple[Array, float]:
+def inflections(curve: Curve, densities: Sequence[Density], tolerance: float) -> tuple[Array, float]:
     """Parameters (n,) at which the sampled turn changes its sign, rising, and its sign (1 or -1) before the first.
 
     They lie inside the stretches or at the breaks between them; a change where a closed run ends is not among them.
+    They are as exact as edges across them within `tolerance`, mm, need.
     """
     if float(curve.cells.rows[2].min()) >= 0.0:
         return np.zeros(0), 1.0
@@ -46,15 +52,25 @@ def inflections(curve: Curve, densities: Sequence[Density]) -> tuple[Array, floa
     found = np.flatnonzero(change)
     low, high, sense = inner[found], inner[found + 1], np.where(positive[found], 1.0, -1.0)
     root = 0.5 * (low + high)
-    for _ in range(_ROOT_STEPS if found.size else 0):
+    for step in range(_MOST_ROOT_STEPS if found.size else 0):
         at = curve.sample(root)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            move = at.turn / at.turn_slope
+        if step >= _ROOT_STEPS and (np.abs(move) <= _NEAR * reach(at, tolerance)).all():
+            break
         before = at.turn * sense >= 0.0
         low, high = np.where(before, root, low), np.where(before, high, root)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            better = root - at.turn / at.turn_slope
+        better = root - move
         root = np.where((better > low) & (better < high), better, 0.5 * (low + high))
     roots: Array = np.sort(np.concatenate([at_break, root]))
     return roots, 1.0 if positive[0] else -1.0
+
+
+def reach(at: Frame, tolerance: float) -> Array:
+    """How far in parameter (n,) edges within a tolerance reach to each side of inflections: ``k' a^3 = 24 e``."""
+    with np.errstate(divide="ignore"):
+        far: Array = np.cbrt(24.0 * tolerance / (np.abs(at.turn_slope) * at.speed))
+    return far
 
 
 @dataclass(frozen=True)
@@ -77,6 +93,7 @@ def crossings(curve: Curve, at: Array, low: Array, high: Array, tolerance: float
     first_low, first_high = low, high
     near, far = 0.5 * (at + low), 0.5 * (at + high)
     settled = np.zeros(count, dtype=bool)
+    enough = max(_SETTLED * tolerance, rounding(curve.size))
     for _ in range(_STEPS):
         frame = curve.sample(np.concatenate([low, high, near, far]))
         point, tangent = frame.point.reshape(4, count, 2), frame.tangent.reshape(4, count, 2)
@@ -103,7 +120,7 @@ def crossings(curve: Curve, at: Array, low: Array, high: Array, tolerance: float
             determinant = a[0] * b[1] - a[1] * b[0]
             step_low = (miss[0] * b[1] - miss[1] * b[0]) / determinant
             step_high = (a[0] * miss[1] - a[1] * miss[0]) / determinant
-        settled = (np.abs(miss) <= _SETTLED * tolerance).all(axis=0) & (np.abs(move[0]) < at - low)
+        settled = (np.abs(miss) <= enough).all(axis=0) & (np.abs(move[0]) < at - low)
         if settled.all():
             break
         usable = np.isfinite(step_low) & np.isfinite(step_high) & ~settled
@@ -111,6 +128,7 @@ def crossings(curve: Curve, at: Array, low: Array, high: Array, tolerance: float
         low = low + np.where(usable, np.clip(step_low, -limit_low, limit_low), 0.0)
         high = high + np.where(usable, np.clip(step_high, -limit_high, limit_high), 0.0)
         moved = np.where(np.isfinite(move), move, 0.0)
-        near = np.clip(near + moved[0], low, at)
-        far = np.clip(far + moved[1], at, high)
+        # at the inflection itself there is no bend to follow an extreme by
+        near = np.clip(near + moved[0], low, at - _CLEAR * (at - low))
+        far = np.clip(far + moved[1], at + _CLEAR * (high - at), high)
     return Crossings(np.where(settled, low, first_low), np.where(settled, high, first_high))

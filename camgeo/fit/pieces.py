@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.curve.ring import ArcChain
 from camgeo.fit.bound import Bound
 from camgeo.fit.rational import RationalSpline
 
@@ -63,16 +64,12 @@ class Polygon:
 
 
 @dataclass(frozen=True, eq=False)
-class ArcSpline:
-    """A closed chain of arcs and lines: points (n, 2), bulges (n,), n >= 2.
+class ArcSpline(ArcChain):
+    """A closed chain of arcs and lines, two at least.
 
-    Piece i runs from point i to point i + 1 (the last one to point 0); its bulge is the tangent of a quarter of the
-    angle it turns through, positive counter-clockwise, 0 for a line. Raises ValueError where a shape is wrong, a number
-    is not finite, or a piece has no length.
+    Raises ValueError where a shape is wrong, a number is not finite, or a piece has no length.
     """
 
-    points: Array
-    bulges: Array
     bound: Bound
 
     def __post_init__(self) -> None:
@@ -88,7 +85,7 @@ class ArcSpline:
     @property
     def area(self) -> float:
         """Enclosed area in mm^2: that of the chords' polygon and of the segments beyond it."""
-        chord = np.roll(self.points, -1, axis=0) - self.points
+        chord = self.chords
         half = 2.0 * np.arctan(self.bulges)  # half the angle turned through
         segment = np.einsum("ij,ij->i", chord, chord) * _segment_ratio(half)
         return _polygon_area(self.points) + float(segment.sum())
@@ -111,9 +108,8 @@ class ArcSpline:
         written with the sagitta, so that a nearly straight arc loses nothing to its distant centre.
         """
         curved = self.bulges != 0.0
-        start, end = self.points[curved], np.roll(self.points, -1, axis=0)[curved]
-        bulge = self.bulges[curved]
-        chord = end - start
+        start, bulge, chord = self.points[curved], self.bulges[curved], self.chords[curved]
+        end = np.roll(self.points, -1, axis=0)[curved]
         length = np.hypot(chord[:, 0], chord[:, 1])
         lowest, highest = self.points.min(axis=0), self.points.max(axis=0)
         # outward normal at the middle of the arc: to the right of the chord for a counter-clockwise arc

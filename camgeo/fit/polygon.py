@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.edges import Edges, frames, look, placed, proved
-from camgeo.fit.inflection import REACH, crossings, inflections
+from camgeo.fit.edges import Edges, Seen, frames, look, placed, proved
+from camgeo.fit.inflection import REACH, crossings, inflections, reach
 from camgeo.fit.nodes import Density, ToleranceError, check_count, check_precision, reshared, rounding
 from camgeo.fit.pieces import Bound, Polygon
 
@@ -32,6 +32,7 @@ LEVELLINGS = 16  # steps for each
 FULL = 0.93  # of the tolerance used is enough; below it fewer edges are looked for
 SLIGHT = 1.0  # shares: what bends the other way for less than this is not worth two crossings
 CROSSING = 0.9995  # of the tolerance: what an edge across an inflection aims at, the rest covers its proof
+GRID = 2.0  # times what the density says: an edge across an inflection that reaches farther is begun with by its cubic
 ROOM = 0.45  # of a part between two inflections that one crossing may take
 EXACT = 1.0 + 1e-9
 SEEN = 1.03  # how much a look at an edge across an inflection may overrate it
@@ -93,7 +94,7 @@ def _fit_run(curve: Curve, run: Run, tolerance: float, asked: float) -> Edges:
     densities = Density.of(curve, run.stretches, polygon_density)
     needed = sum(density.total for density in densities) / math.sqrt(tolerance)
     check_count(needed, "straight edges", asked, 2.0, lost=asked - tolerance)
-    bends, sense = inflections(curve, densities)
+    bends, sense = inflections(curve, densities, tolerance)
     best = math.inf
     for aim in AIMS:
         goal = aim * tolerance
@@ -133,6 +134,11 @@ def _parts(
     room = ROOM * np.diff(np.concatenate([[0.0], share, [whole.total / root]]))
     low = whole.at(root * (share - np.minimum(REACH, room[:-1])))
     high = whole.at(root * (share + np.minimum(REACH, room[1:])))
+    if bends.size:
+        # the grid of the density may be far wider than an edge
+        far = reach(curve.sample(bends), tolerance)
+        low = np.where(far > GRID * (bends - low), np.maximum(bends - far, whole.at(root * (share - room[:-1]))), low)
+        high = np.where(far > GRID * (high - bends), np.minimum(bends + far, whole.at(root * (share + room[1:]))), high)
     edge = crossings(curve, bends, low, high, CROSSING * tolerance)
     # an edge that would reach beyond the run's own end keeps to the guess, which leaves room
     low = np.where(edge.low > run.low, edge.low, low)
@@ -198,6 +204,7 @@ def _chained(parts: list[_Part]) -> tuple[Array, Array, Array]:
 def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tuple[list[_Part], float]:
     """Parts with the fewest edges found whose sagittas keep within twice the tolerance, and half the greatest."""
     allowed = 2.0 * tolerance
+    noise = 0.5 * rounding(curve.size)
     height = math.inf
     for _ in range(TRIES):
         nodes, owner, sides = _chained(parts)
@@ -206,7 +213,7 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
         busy = False
         for i, part in enumerate(parts):
             mine = owner == i
-            busy |= _improve(part, seen.load[mine], seen.by_low[mine], seen.by_high[mine], allowed)
+            busy |= _improve(part, Seen(seen.load[mine], seen.by_low[mine], seen.by_high[mine]), allowed, noise)
         for first, second in pairwise(parts):
             if first.crossed:
                 over = float(seen.load[(owner < 0) & (nodes[:-1] == first.nodes[-1])].max(initial=0.0)) / allowed
@@ -218,8 +225,12 @@ def _settled(curve: Curve, run: Run, parts: list[_Part], tolerance: float) -> tu
     return parts, tolerance if crossed else min(height, tolerance)
 
 
-def _improve(part: _Part, load: Array, by_low: Array, by_high: Array, allowed: float) -> bool:
-    """Give a part better nodes; False where it has the fewest edges and none is too high."""
+def _improve(part: _Part, seen: Seen, allowed: float, noise: float) -> bool:
+    """Give a part better nodes; False where it has the fewest edges and none is too high.
+
+    Loads are seen with a rounding of `noise`, which no levelling takes off.
+    """
+    load = seen.load
     shares = float(np.sqrt(np.maximum(load, 0.0) / allowed).sum())
     best = max(part.least, math.ceil(shares - 1e-9))
     fits = float(load.max()) <= allowed * EXACT
@@ -230,11 +241,11 @@ def _improve(part: _Part, load: Array, by_low: Array, by_high: Array, allowed: f
         part.tried = 1
     elif fits:
         return False
-    elif best == part.count and part.tried < ROUNDS:
-        part.nodes = levelled(part.nodes, load, by_low, by_high)
+    elif best == part.count and part.tried < ROUNDS and float(load.max() - load.mean()) > noise:
+        part.nodes = levelled(part.nodes, load, seen.by_low, seen.by_high)
         part.tried += 1
     else:
-        part.least = max(part.count + 1, best)
+        part.least = max(part.count + 1, math.ceil(shares * (1.0 + 0.5 * noise / allowed) - 1e-9))
         part.nodes = reshared(part.nodes, load, 2.0, part.least)
         part.tried = 1
     return True

@@ -14,10 +14,9 @@ import numpy as np
 
 from camgeo.cams.family import GrownError
 from camgeo.curve.curvature import least_radius
+from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from camgeo.synthesis.design import is_trimmed, sound
-from camgeo.synthesis.part.shapes import EXACT
-from kin.contour.contour import ARC
 from kin.contour.offset import TightError, chain_of, parallel
 from kin.numeric.errors import KinError
 
@@ -146,6 +145,5 @@ def _opening(opening: Opening, out: float, scale: float) -> Opening:
     outline = opening.outline
     if out:
         edge = parallel(chain_of(outline.points, outline.bulges), out, FINE)
-        bulges = np.where(edge.kind == ARC, np.tan(0.25 * edge.sweep), 0.0)
-        outline = ArcSpline(edge.start.copy(), bulges, EXACT)
+        outline = ArcSpline(edge.start.copy(), np.tan(0.25 * edge.sweep), EXACT)
     return replace(opening, outline=outline.scaled(scale), depth=depth)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camgeo.curve.ring import centre_of
 from kin.read.gcode import ARC_MM
 
 if TYPE_CHECKING:
@@ -123,10 +124,8 @@ def _cut(start: Array, end: Array, bulge: float, place: tuple[str, str], count: 
     chord = end - start
     if abs(bulge) * math.hypot(*chord.tolist()) * 0.5 <= STRAIGHT * 10.0**-count:
         return f"G1 X{x} Y{y}"
-    # the centre lies on the chord's bisector, (1 - b^2)/(4 b) of the chord to its left
-    aside = (1.0 - bulge * bulge) / (4.0 * bulge)
-    i, j = 0.5 * chord[0] - aside * chord[1], 0.5 * chord[1] + aside * chord[0]
-    return f"G{3 if bulge > 0.0 else 2} X{x} Y{y} I{_plain(float(i), count)} J{_plain(float(j), count)}"
+    i, j = centre_of(np.zeros(2), chord, bulge).tolist()
+    return f"G{3 if bulge > 0.0 else 2} X{x} Y{y} I{_plain(i, count)} J{_plain(j, count)}"
 
 
 def plain(value: float) -> str:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.curve.ring import radius_of
+from camgeo.fit.bound import EXACT
+from camgeo.fit.pieces import ArcSpline
 from kin.contour.contour import Contour
 
 if TYPE_CHECKING:
@@ -65,14 +67,14 @@ def bend_at_begin(path: ArcSpline) -> float:
     ends = np.stack([points[1 % len(points)] - points[0], points[0] - points[-1]])
     chords, at = np.hypot(*ends.T), np.abs(bulges[[0, -1]])
     with np.errstate(divide="ignore"):
-        return float((0.25 * chords * (1.0 + at**2) / at).min())
+        return float(radius_of(chords, at).min())
 
 
 def circle(centre: tuple[float, float], radius: float, direction: float) -> ArcSpline:
     """A circle in four arcs, begun in a direction (rad)."""
     angle = direction + 0.5 * math.pi * np.arange(4)
     points = np.array(centre) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
-    return ArcSpline(points, np.full(4, QUARTER), Bound(0.0, 0.0))
+    return ArcSpline(points, np.full(4, QUARTER), EXACT)
 
 
 def led(path: ArcSpline, lead: float, *, side: Side, clockwise: bool) -> Loop:

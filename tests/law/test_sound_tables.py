@@ -87,3 +87,55 @@ def test_a_row_that_stands_out_of_a_law_with_jumps_is_refused(row):
     with pytest.raises(TableError) as caught:
         from_table(rows, 0.0005)
     assert caught.value.line == row + 1
+
+
+PLATE = ("modified-sine", "modified-sine", 20.0, 100, 60, 140)
+SHORT = ("cycloidal", "cycloidal", 12.0, 60, 14, 90)
+MIXED = ("polynomial-345", "modified-trapezoid", 14.933, 70, 37, 83)
+
+
+@pytest.mark.parametrize(
+    ("shape", "step", "row"),
+    [
+        *((PLATE, 1, row) for row in (1, 33, 70, 98, 102, 103, 115, 130, 157, 161, 200, 299, 303, 330, 357)),
+        *((MIXED, 2, row) for row in (17, 34, 36, 40, 44, 49, 60, 96, 100, 140, 178)),
+        *((SHORT, 2, row) for row in (12, 31, 33, 35, 50, 83, 130)),
+    ],
+    ids=str,
+)
+def test_a_row_that_stands_out_is_refused_wherever_it_is(shape, step, row):
+    """In strokes, at the ends of dwells and inside them; twenty readings off."""
+    rows = table(law(shape), step, 3)
+    rows.s[row] += 20 * 0.0005
+    with pytest.raises(TableError) as caught:
+        from_table(rows, 0.0005)
+    assert caught.value.line == row + 1
+
+
+@pytest.mark.parametrize(
+    ("shape", "step", "row", "last"),
+    [
+        (PLATE, 1, 30, 80),
+        (PLATE, 1, 99, 130),
+        (PLATE, 1, 115, 130),
+        (PLATE, 1, 157, 200),
+        (PLATE, 1, 320, 340),
+        (MIXED, 2, 44, 84),
+        (MIXED, 2, 20, 60),
+        (SHORT, 2, 34, 60),
+    ],
+    ids=str,
+)
+def test_a_step_is_refused_wherever_it_is(shape, step, row, last):
+    rows = table(law(shape), step, 3)
+    rows.s[row:last] += 60 * 0.0005
+    with pytest.raises(TableError) as caught:
+        from_table(rows, 0.0005)
+    assert caught.value.line in {row + 1, last + 1}
+
+
+def test_two_levels_that_no_row_joins_are_a_step():
+    rows = table(law(PLATE), 1, 3)
+    rows.s[130:161] += 60 * 0.0005
+    with pytest.raises(TableError, match=r"line 131: the displacement steps from 20 mm to 20\.03 mm here"):
+        from_table(rows, 0.0005)

@@ -11,9 +11,10 @@ from support.heavy import shapely
 
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
+from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from camgeo.recipe.din6885 import TABLE, key_for
-from camgeo.synthesis.part.shapes import EXACT, Opening, disc, flattened, keyed, polar, polygonal, slot
+from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
 from camgeo.synthesis.part.walls import contour_gap, distance_inside, inside_gap, least_wall, outside_gap
 from kin.contour.contour import Contour
 from kin.law.support_function import lift_from_fourier, lift_reuleaux

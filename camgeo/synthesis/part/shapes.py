@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from camgeo.fit.pieces import ArcSpline, Bound
+from camgeo.fit.bound import EXACT
+from camgeo.fit.pieces import ArcSpline
 from kin.contour.contour import Contour
 
 if TYPE_CHECKING:
     from kin.contour.arcs import Arcs
     from kin.numeric.arrays import Array
 
-EXACT = Bound(0.0, 0.0)
 QUARTER = 1e-14  # rad: an angle this near to a quarter turn is one, rounded
 Layer = Literal["BORE", "HOLES", "MARK", "ENGRAVE"]
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 ACCELERATION, JERK = 2, 3  # orders of derivatives that a joint lets jump
 _MOST_ROWS = 1500  # of more, some are left out in the search
-_MOST_JOINTS = 24
+_MOST_JOINTS = 10
 _ROWS_A_JOINT = 6  # at least
 _GAIN = 12.0  # squares of the reading by which a joint must lessen the sum of squares: six standard deviations
 _PARTS = 4  # places looked at between two rows
@@ -32,9 +32,10 @@ _APART, _FAR_APART = 3, 6  # rows between two joints; and where the acceleration
 _MERGED = 8  # rows, within which two joints may be one at which the acceleration jumps
 _BETWEEN = (0.5, 0.75, 0.25, 1.0, 0.0)  # where between them it is looked for
 _THREE = 10  # rows between the first of three joints and the last
+_ROUND = 1e-9  # of the squares of a jump: what the spline follows
+_SHARES = (1.0, 0.4)  # of such a step, the second where the first does not lessen it
 _MOVES = 6  # of the joints, each by Newton's method
 _BETTER = 0.97  # of the sum of squares, where a joint has been moved
-_CLEAR = 0.8  # of what a fault of the table would explain, which a joint explains at least
 
 
 class Kink(NamedTuple):
@@ -42,14 +43,6 @@ class Kink(NamedTuple):
 
     at: float
     order: int
-
-
-class Flaw(NamedTuple):
-    """What no motion does: order 0 or 1 of the derivative that jumps, -1 for a row that stands out; row and jump."""
-
-    order: int
-    row: int
-    jump: float
 
 
 @dataclass(frozen=True)
@@ -107,13 +100,13 @@ class Sections:
         best, left = self, self.left(x, s, count)
         step = float(np.median(np.diff(x)))
         for _ in range(_MOVES):
-            trials = [best._stepped(x, s, count, step, share) for share in (1.0, 0.4)]
-            after, trial = min(
-                ((trial.left(x, s, count), trial) for trial in trials if trial is not None),
-                key=lambda pair: pair[0],
-                default=(math.inf, None),
-            )
-            if trial is None or not after < _BETTER * left:
+            trial, after = best, math.inf
+            for share in _SHARES:
+                trial = best._stepped(x, s, count, step, share) or best
+                after = trial.left(x, s, count) if trial is not best else math.inf
+                if after < _BETTER * left:
+                    break
+            if not after < _BETTER * left:
                 break
             best, left = trial, after
         return best
@@ -192,10 +185,8 @@ def _shifted(row: Array, by: float) -> Array:
     return out
 
 
-def sections_of(
-    rows: Samples, start: Sections, reading: float, spacing: int, twin: float | None = None
-) -> tuple[Sections, Flaw | None]:
-    """Find the joints of rows, and feet between rows; and what in the table is no motion, where the search ended there.
+def sections_of(rows: Samples, start: Sections, reading: float, spacing: int, twin: float | None = None) -> Sections:
+    """Find the joints of rows, and feet between rows.
 
     They are looked for from a spline of a span for `spacing` rows. Of rows that are laid twice, the second time upside
     down, `twin` is the angle of the half.
@@ -203,23 +194,18 @@ def sections_of(
     every = -(-len(rows.theta) // _MOST_ROWS)
     x, s = rows.theta[::every], rows.s[::every]
     count, step = max(8, len(x) // spacing), float(np.median(np.diff(x)))
-    found, flaw = start.moved(x, s, count), None
+    found = start.moved(x, s, count)
+    left = found.left(x, s, count)
     while len(found.kinks) < min(_MOST_JOINTS, len(x) // _ROWS_A_JOINT):
-        before = found.left(x, s, count)
-        flaw, score, places = _next(found, x, s, count)
-        trials = [found.with_kink(Kink(place, order), _APART * step, twin) for place, order in places]
+        trials = [found.with_kink(kink, _APART * step, twin) for kink in _next(found, x, s, count)]
         trials = [trial.moved(x, s, count) for trial in (*trials, *_feet(found, x, s)) if trial.sparse(step)]
-        left, trial = min(
-            ((trial.left(x, s, count), trial) for trial in trials), key=lambda pair: pair[0], default=(before, found)
+        after, trial = min(
+            ((trial.left(x, s, count), trial) for trial in trials), key=lambda pair: pair[0], default=(left, found)
         )
-        if max(before - left, score) < _GAIN * reading**2:
-            flaw = None
+        if left - after < _GAIN * reading**2:
             break
-        if before - left < _CLEAR * score and flaw is not None:
-            flaw = flaw._replace(row=flaw.row * every)
-            break
-        found, flaw = trial, None
-    return _plain(found, x, s, count, reading), flaw
+        found, left = trial, after
+    return _plain(found, x, s, count, reading)
 
 
 def _feet(found: Sections, x: Array, s: Array) -> list[Sections]:
@@ -275,43 +261,37 @@ def _plain(found: Sections, x: Array, s: Array, count: int, reading: float) -> S
     return found
 
 
-def _next(found: Sections, x: Array, s: Array, count: int) -> tuple[Flaw | None, float, list[tuple[float, int]]]:
-    """What else than a joint explains most, how much of the sum of squares, and the best place for each joint."""
+def _next(found: Sections, x: Array, s: Array, count: int) -> list[Kink]:
+    """The best place for a joint of each order: where it would lessen the sum of squares most."""
     fitting = found.fitting(x, count)
     try:
         off = s - fitting.values(fitting.nearest(s))
     except np.linalg.LinAlgError:
-        return None, 0.0, []
+        return []
     base, _ = np.linalg.qr(fitting.matrix)
-    step = float(np.median(np.diff(x)))
-    window = _WINDOW * (found.between[1] - found.between[0]) / count
     inner = x[_APART:-_APART] if found.ends is not None else x
-    places = (inner[:, None] + step * np.arange(_PARTS) / _PARTS).ravel()
+    places = (inner[:, None] + np.median(np.diff(x)) * np.arange(_PARTS) / _PARTS).ravel()
+    period = found.between[1] - found.between[0]
+    window, kinks = _WINDOW * period / count, []
+    for order in (ACCELERATION, JERK):
+        shape = faded(x, places, order, window, period if found.ends is None else math.inf)
+        whole = (shape * shape).sum(axis=0)
+        rest = whole - ((base.T @ shape) ** 2).sum(axis=0)
+        rest[rest <= _ROUND * whole] = np.inf
+        kinks.append(Kink(float(places[int(np.argmax((off @ shape) ** 2 / rest))]), order))
+    return kinks
+
+
+def faded(x: Array, places: Array, order: int, window: float, period: float) -> Array:
+    """Jumps of a derivative at places (m,), seen at x (n,), that fade out over a window to each side: (n, m)."""
     z = x[:, None] - places
-    if found.ends is None:
-        period = found.between[1] - found.between[0]
+    if period < math.inf:
         z = np.mod(z + 0.5 * period, period) - 0.5 * period
     z /= window
-    fade = np.maximum(1.0 - z * z, 0.0) ** 6
-    scores = {}
-    for order in (0, 1, ACCELERATION, JERK):
-        shape = (np.sign(z) if order % 2 == 0 else 1.0) * np.abs(z) ** order * fade
-        rest = shape - base @ (base.T @ shape)
-        size = (rest * rest).sum(axis=0)
-        size[size <= 1e-9 * (shape * shape).sum(axis=0)] = np.inf
-        product = off @ rest
-        score = product**2 / size
-        best = int(np.argmax(score))
-        scores[order] = float(score[best]), best, float(product[best] / size[best])
-    free = 1.0 - (base * base).sum(axis=1)
-    free[free < 1e-6] = np.inf
-    single = off**2 / free
-    worst = int(np.argmax(single))
-    scores[-1] = float(single[worst]), worst, float(off[worst] / free[worst])
-    fault = max((-1, 0, 1), key=lambda order: scores[order][0])
-    score, place, jump = scores[fault]
-    if fault == -1:
-        flaw = Flaw(-1, place, jump)
-    else:
-        flaw = Flaw(fault, int(np.argmin(np.where(z[:, place] >= 0.0, z[:, place], np.inf))), 2.0 * jump)
-    return flaw, score, [(float(places[scores[order][1]]), order) for order in (ACCELERATION, JERK)]
+    size = np.abs(z)
+    fade = np.maximum(1.0 - z * z, 0.0) ** 2
+    shape = fade * fade * fade * (size if order else 1.0)
+    for _ in range(order - 1):
+        shape *= size
+    jumps: Array = shape if order % 2 else shape * np.sign(z)
+    return jumps

@@ -14,7 +14,7 @@ from kin.law.segment import Constant
 from kin.law.sources.closest import within
 from kin.law.sources.peaks import extremes
 from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, laid
-from kin.law.sources.sections import Flaw, Sections, sections_of
+from kin.law.sources.sections import Sections, faded, sections_of
 from kin.law.sources.spline import Basis, Ends, Fitting, nearest
 
 if TYPE_CHECKING:
@@ -33,8 +33,21 @@ _ZERO = 2.0  # readings within which the least displacement of a table is meant 
 _PINNED = 0.01  # of the reading, within which the least value is then 0
 _SCATTER, _MANY = 100.0, 60  # readings: 8 times the sixth differences of rows that err within the reading; of so many
 _SPACINGS = (6, 4, 3)  # rows a span, where joints are looked for
+_MOST_CHECKED = 3000  # rows
+_CHECKED = 3  # rows a span, of the spline with which faults are looked for
+_BESIDE, _JOINTS = 2.1, 4  # rows to each side; joints beside a fault
+_COLUMNS = 12  # jumps, steps and rows at most
+_SURE = 0.8  # of what a fault explains, which a joint explains at least where it is taken instead
+_CLEAR = 3.0
+_FEW_ROWS = 8
+_EDGE = 2
+_PAD = 4  # rows of a dwell
+_MENDED = 2.0  # readings, within which rows without a fault are met
+_WINDOW = 8.0  # spans to each side over which a step is compared
+_ROUND = 1e-9  # of the squares of a step: what the spline follows
 _DIPS = 8  # times that a spline is made again, held up where it was below 0
 _MORE = 1.2  # spans from one trial to the next
+_WILD = 2.0  # of the acceleration that the rows allow
 _LOOKS = 16  # places in a span where it is looked for
 _ROUNDING = 1e-9  # of the reading
 
@@ -44,7 +57,11 @@ class TableError(IntentError):
 
     def __init__(self, message: str, field: str, line: int, at: float | None = None) -> None:
         super().__init__(f"line {line}: {message}", field, at)
-        self.line = line
+        self.line, self.problem = line, message
+
+
+class UnmetError(TableError):
+    """A table for which no motion within its reading was found."""
 
 
 class Task(NamedTuple):
@@ -90,20 +107,27 @@ class Lowest(NamedTuple):
 
 @dataclass
 class EqualSpans:
-    """Least squares with the fewest spans, or a given number; keeps their count and the worst row."""
+    """Least squares with the fewest spans, or a given number; keeps their count and the worst row.
+
+    Where they would take a span for less than four rows, there are so many.
+    """
 
     task: Task
     spans: int | None
+    field: str
     count: int = 0
     residual: float = 0.0
     line: int = 0
+    faults: list[Fault] = dataclasses.field(default_factory=list)
 
-    def laid(self, dwells: Sequence[Dwelling]) -> Motion | None:
-        """The motion over the whole angle; None where it takes a span for less than four rows."""
-        try:
-            return laid(self.task.rows, dwells, self.task.total, self.task.around, self)
-        except _TooManyError:
-            return None
+    def laid(self, dwells: Sequence[Dwelling]) -> Motion:
+        """The motion over the whole angle. TableError for rows without which it would keep the reading."""
+        motion = laid(self.task.rows, dwells, self.task.total, self.task.around, self)
+        proven = [fault for fault in self.faults if fault.proven]
+        if proven:
+            fault = min(proven, key=lambda fault: fault.line)
+            raise TableError(fault.problem, self.field, fault.line)
+        return motion
 
     def __call__(
         self, rows: Samples, ends: Ends | None, between: tuple[float, float], /
@@ -114,6 +138,17 @@ class EqualSpans:
         count = self.spans or self._fewest(inside, ends, between, step)
         basis, coefficients, off = nearest(inside.theta, inside.s, count, ends, between)
         worst = int(np.argmax(np.abs(off))) if len(off) else 0
+        if self.spans is None and (not len(off) or abs(off[worst]) > self.task.reading * (1 + _ROUNDING)):
+            fault, mended = fault_of(self.task, rows, ends, between)
+            if fault is not None and len(mended.s):
+                left = nearest(mended.theta, mended.s, count, ends, between)[2]
+                foot = (
+                    ends is not None and fault.line in {*inside.lines[:2], *inside.lines[-2:]} and len(left) > _FEW_ROWS
+                )
+                fault = fault._replace(
+                    proven=not foot and bool(np.abs(left).max() <= max(_MENDED * self.task.reading, 0.02 * fault.size))
+                )
+            self.faults += [fault] if fault else []
         if len(off) and abs(off[worst]) > self.residual:
             self.residual, self.line = float(abs(off[worst])), int(inside.lines[worst])
         self.count += count
@@ -139,11 +174,121 @@ class EqualSpans:
                 middle = (low + high) // 2
                 low, high = (low, middle) if holds(middle) else (middle, high)
             return high * step
-        raise _TooManyError
+        return most * step
 
 
-class _TooManyError(Exception):
-    """Equal spans are too many."""
+class Fault(NamedTuple):
+    """A row that stands out, or steps; `proven` if the motion keeps the reading without."""
+
+    line: int
+    problem: str
+    size: float
+    proven: bool = True
+
+
+def fault_of(
+    task: Task, rows: Samples, ends: Ends | None, between: tuple[float, float]
+) -> tuple[Fault | None, Samples]:
+    """The first row of a stretch that stands out, or steps from the one before; and the rows inside, mended.
+
+    What a spline leaves is explained by jumps of the acceleration and the jerk, by steps and by single rows, one after
+    another, each the one that explains most (orthogonal matching pursuit; Y. C. Pati et al., Asilomar 1993). There is a
+    fault if without steps and single rows the spline would be _CLEAR times as far from the rows.
+    """
+    inside = rows if ends is None else rows.part(slice(1, -1))
+    if len(rows.s) > _MOST_CHECKED:
+        return None, inside
+    if ends is not None and not len(inside.s):
+        before, here = (_there(task, rows.theta[i], rows.s[i]) for i in (0, 1))
+        step = Fault(int(rows.lines[1]), f"the displacement steps from {before} to {here} here", 0.0)
+        return (step if abs(ends.end - ends.start) > 2.0 * task.reading else None), inside
+    begin, end, real = between[0], between[1], np.arange(len(rows.s))
+    if ends is not None:  # some rows of the dwells, in which the motion's foot may lie
+        pad = np.arange(1, _PAD + 1) * float(np.median(np.diff(rows.theta)))
+        begin, end, real = begin - pad[-1], end + pad[-1], real[1:-1] + _PAD
+        rows = Samples(
+            np.concatenate([between[0] - pad[::-1], rows.theta, between[1] + pad]),
+            np.concatenate([np.full(_PAD, ends.start), rows.s, np.full(_PAD, ends.end)]),
+            np.pad(rows.lines, _PAD),
+            rows.unit,
+        )
+    x, s, n = rows.theta, rows.s, len(rows.s)
+    count = max(1, n // _CHECKED)
+    fitting = Fitting(Basis(np.linspace(begin, end, count + 1), ends is None), x, ends)
+    steps = np.append(real[0] - 1, real)
+    if ends is None:
+        steps = steps[1:-1]
+    mids = 0.5 * (x[steps] + x[steps + 1])
+    places = np.concatenate([x[_EDGE:-_EDGE], 0.5 * (x[1:] + x[:-1])[_EDGE:-_EDGE]])
+    period = between[1] - between[0] if ends is None else math.inf
+    window = _WINDOW * (end - begin) / count
+    columns = np.concatenate(
+        [
+            np.eye(n)[:, real],
+            faded(x, mids, 0, window, period),
+            *(faded(x, places, order, window, period) for order in (2, 3)),
+        ],
+        axis=1,
+    )
+    single, faults = len(real), len(real) + len(mids)  # of the columns
+    base, _ = np.linalg.qr(fitting.matrix)
+    first = s - fitting.values(fitting.nearest(s)), columns - base @ (base.T @ columns)
+    least = _ROUND * (columns * columns).sum(axis=0)
+    joint = 1.0 if len(real) >= _FEW_ROWS else 0.0
+    kind = np.arange(columns.shape[1]) < faults
+
+    def pursued(begun: Sequence[int], weight: Array, most: int) -> tuple[list[int], Array]:
+        """Columns that explain the rows, after those that are given; and what is left."""
+        chosen: list[int] = []
+        off, rest = first
+        while len(chosen) < most and (len(chosen) < len(begun) or np.abs(off).max() > task.reading):
+            size = (rest * rest).sum(axis=0)
+            score = weight * (off @ rest) ** 2 / np.where(size > least, size, np.inf)
+            k = begun[len(chosen)] if len(chosen) < len(begun) else int(np.argmax(score))
+            chosen.append(k)
+            if size[k] > least[k]:
+                toward = rest[:, k] / math.sqrt(size[k])
+                off, rest = off - toward * (toward @ off), rest - toward[:, None] * (toward @ rest)
+        return chosen, off
+
+    chosen, off = pursued([], np.where(kind, _SURE, joint), min(_COLUMNS, n // 3 + 1))
+    wrong = [k for k in chosen if kind[k]]
+    joints = np.concatenate([base, columns[:, [k for k in chosen if not kind[k]]]], axis=1)
+    known = s - fitting.values(np.where(np.isnan(fitting.fixed), 0.0, fitting.fixed))
+    before = np.abs(known - joints @ np.linalg.lstsq(joints, known, rcond=None)[0]).max()
+    if not wrong or before < _CLEAR * max(np.abs(off).max(), task.reading):
+        return None, inside
+    # a fault and joints may pass for two faults: of those about the first one, that which joints complete best
+    place = np.concatenate([x[real], mids])
+    beside = _BESIDE * float(np.median(np.diff(x)))
+    far = [k for k in wrong if abs(place[k] - place[wrong[0]]) > beside]
+    trials = [
+        pursued([int(k), *far], np.where(kind, 0.0, joint), len(far) + 1 + _JOINTS)
+        for k in np.flatnonzero(abs(place - place[wrong[0]]) <= beside)
+    ]
+    chosen, _ = min(trials, key=lambda trial: (len(trial[0]), trial[0][0] != wrong[0], float(trial[1] @ trial[1])))
+    wrong = chosen[: len(far) + 1]
+    rest = np.concatenate([columns[:, chosen], base], axis=1)
+    jumps = np.linalg.lstsq(rest, known, rcond=None)[0][: len(wrong)]
+    k, jump = wrong[0], jumps[0]
+    if k < single:
+        at = int(real[k])
+        here, about = (_there(task, x[at], value) for value in (s[at], s[at] - jump))
+        problem = f"the row does not lie on a smooth curve with its neighbours: it is {here}, about {about} is expected"
+    else:
+        at = int(steps[k - single]) + 1
+        before, here = (_there(task, x[i], s[i]) for i in (at - 1, at))
+        problem = f"the displacement steps from {before} to {here} here"
+    kept = np.setdiff1d(real, real[[k for k in wrong if k < single]])
+    s = s - sum(jump * columns[:, k] for k, jump in zip(wrong, jumps, strict=True) if k >= single)
+    return Fault(int(rows.lines[at]), problem, abs(jump)), Samples(x[kept], s[kept], rows.lines[kept], rows.unit)
+
+
+def _there(task: Task, angle: float, value: float) -> str:
+    """A displacement on the side of the motion on which the table has it."""
+    if task.around == -1 and angle % (2 * task.total) >= task.total - SAME_ANGLE:
+        value = float(task.rows.s[0] + task.rows.s[-1]) - value
+    return task.tell(float(value), 7)
 
 
 @dataclass
@@ -152,13 +297,12 @@ class Bounded:
 
     task: Task
     field: str
+    faults: Sequence[Fault] = ()
     count: int = 0
     residual: float = 0.0
     line: int = 0
     _lowest: Lowest | None = None
-    _sections: dict[tuple[tuple[float, float], int], tuple[Sections, Flaw | None]] = dataclasses.field(
-        default_factory=dict
-    )
+    _sections: dict[tuple[tuple[float, float], int], Sections] = dataclasses.field(default_factory=dict)
     _done: list[tuple[Samples, Basis, Array, Array]] = dataclasses.field(default_factory=list)
 
     def laid(self, dwells: Sequence[Dwelling], lowest: Lowest | None = None) -> Motion:
@@ -209,31 +353,19 @@ class Bounded:
         smooth = Sections.of(between, ends, None if ends is None else _feet(rows, ends))
         most = max(1, min(len(inside.s) // 2, _MOST_SPANS))
         if len(inside.s) > _MANY and np.median(np.abs(np.diff(inside.s, 6))) > _SCATTER * self.task.reading:
-            raise self._scatter(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
+            raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
         twin = self.task.total if self.task.around == -1 and ends is None else None
-        flaw = None
         for spacing in _SPACINGS:
             if (between, spacing) not in self._sections:
                 self._sections[between, spacing] = sections_of(inside, smooth, self.task.reading, spacing, twin)
-            sections, noted = self._sections[between, spacing]
-            flaw = noted or flaw
-            found = self._counted(
-                inside, replace(sections, ends=ends), most // 2
-            )  # levels may have been set to 0 since
+            sections = replace(self._sections[between, spacing], ends=ends)  # levels may have been set to 0 since
+            found = self._counted(inside, sections, most * 2 // 3)
             if found is not None:
                 return found
         found = self._counted(inside, smooth, most)
         if found is not None:
             return found
-        if flaw is None or flaw.order >= 0:  # a row that stands out could be followed by so many spans and joints
-            for spacing in _SPACINGS:
-                sections = replace(self._sections[between, spacing][0], ends=ends)
-                found = self._counted(inside, sections, most * 2 // 3)
-                if found is not None:
-                    return found
-        if flaw is not None:
-            raise self._faulty(inside, flaw)
-        raise self._scatter(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
+        raise self._unmet(inside, nearest(inside.theta, inside.s, most, ends, between)[2])
 
     def _counted(self, rows: Samples, sections: Sections, most: int) -> tuple[Basis, Array, Array] | None:
         even, count = sections.ends is None and self.task.around == -1, 1
@@ -256,6 +388,8 @@ class Bounded:
             off = rows.s - fitting.values(coefficients)
             if np.abs(off).max(initial=0.0) <= reading * (1.0 + _ROUNDING):
                 return fitting.basis, coefficients, off
+            if off @ off > n * reading**2:  # of any spline one row is farther off than this
+                return None
         x, s = rows.theta, rows.s
         bounds = np.full(n, reading * (1.0 + 0.5 * _ROUNDING))
         if self._lowest is not None:
@@ -302,45 +436,32 @@ class Bounded:
         lowest = (values <= np.roll(values, 1)) & (values <= np.roll(values, -1))
         return x[low & lowest]
 
-    def _scatter(self, rows: Samples, off: Array) -> TableError:
-        worst = int(np.argmax(np.abs(off)))
-        reached = float(np.abs(off[worst]))
-        return TableError(
-            f"the rows scatter about any smooth curve: the closest one is {self.task.tell(reached, 3)} off here, the "
-            f"reading error is {self.task.tell(self.task.reading)}; smooth the table, or give a reading error "
-            "above that",
+    def _unmet(self, rows: Samples, off: Array) -> UnmetError:
+        """Say how near the rows a spline of a span for two rows comes, and which of them is least like a motion's."""
+        i = int(np.argmax(np.abs(off)))
+        worst, reached = int(rows.lines[i]), self.task.tell(float(abs(off[i])), 3)
+        line = min((fault.line for fault in self.faults if fault.line in rows.lines), default=worst)
+        where, least = ("here", "") if line == worst else (f"at line {worst}", "; this row fits its neighbours least")
+        return UnmetError(
+            f"the rows scatter about any smooth curve: the closest one is {reached} off {where}, the reading error is "
+            f"{self.task.tell(self.task.reading)}{least}",
             self.field,
-            int(rows.lines[worst]),
+            line,
         )
 
-    def _faulty(self, rows: Samples, flaw: Flaw) -> TableError:
-        """Say which row stands out, or where the table steps or turns by a corner."""
-        s, i = rows.s, flaw.row
-
-        def there(k: int, value: float) -> str:
-            total, first = self.task.total, self.task.rows
-            if self.task.around == -1 and rows.theta[k] % (2 * total) >= total - SAME_ANGLE:
-                value = float(first.s[0] + first.s[-1]) - value
-            return self.task.tell(float(value), 7)
-
-        if flaw.order == -1:
-            expected = s[i] - flaw.jump
-            if 2 <= i < len(s) - 2:  # by the neighbours alone
-                expected = (4.0 * (s[i - 1] + s[i + 1]) - s[i - 2] - s[i + 2]) / 6.0
-            problem = (
-                f"the row does not lie on a smooth curve with its neighbours: it is {there(i, s[i])}, about "
-                f"{there(i, expected)} is expected"
-            )
-            return TableError(problem, self.field, int(rows.lines[i]))
-        if flaw.order == 1:
-            problem = "the velocity jumps here; a motion has none that does"
-            return TableError(problem, self.field, int(rows.lines[i]))
-        step = np.diff(s)
-        local = np.arange(max(i - 3, 1), min(i + 3, len(step) - 1))
-        jump = step[local] - 0.5 * (step[local - 1] + step[local + 1])
-        k = int(local[np.argmax(np.abs(jump))]) + 1
-        problem = f"the displacement steps from {there(k - 1, s[k - 1])} to {there(k, s[k])} here"
-        return TableError(problem, self.field, int(rows.lines[k]))
+    def demand_supported(self, motion: Motion) -> None:
+        """Refuse a motion that leaves the rows once its least value is off, or accelerates more than they allow."""
+        rows, total = self.task.rows, self.task.total
+        if not self.task.keeps(motion):
+            problem = "no motion that begins at its least value keeps the reading of the rows; this row leaves it first"
+            raise UnmetError(problem, self.field, self.line)
+        h = np.diff(rows.theta)
+        most = np.abs(np.diff(np.diff(rows.s) / h)) + 2.0 * self.task.reading * (1.0 / h[1:] + 1.0 / h[:-1])
+        most = (most / (0.5 * (h[1:] + h[:-1]))).max()
+        reached = np.abs(motion.derivatives(np.linspace(0.0, total, _LOOKS * len(rows.s)), 2)[2]).max()
+        if reached > _WILD * most:
+            problem = f"a motion near the rows has {reached / most:.3g} times the acceleration that they support"
+            raise UnmetError(problem, self.field, self.line)
 
 
 def _feet(rows: Samples, ends: Ends) -> tuple[float, float]:

@@ -179,12 +179,11 @@ class Fitting:
         span, rows = self._rows
         spans = len(self.basis.sites) - 1
         taken, matrix = self.basis.columns(np.arange(spans)), np.zeros((self.basis.size, self.basis.size))
-        for i in range(DEGREE + 1):
-            for j in range(i, DEGREE + 1):
-                product = np.bincount(span, rows[i] * rows[j] * weights, spans)
-                np.add.at(matrix, (taken[i], taken[j]), product)
-                if i != j:
-                    np.add.at(matrix, (taken[j], taken[i]), product)
+        i, j = np.triu_indices(DEGREE + 1)
+        products = np.array([np.bincount(span, rows[a] * rows[b] * weights, spans) for a, b in zip(i, j, strict=True)])
+        np.add.at(matrix, (taken[i], taken[j]), products)
+        other = i != j
+        np.add.at(matrix, (taken[j[other]], taken[i[other]]), products[other])
         return matrix[np.ix_(self.free, self.free)]
 
     def nearest(self, s: Array) -> Array:

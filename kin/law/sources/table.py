@@ -10,10 +10,10 @@ import numpy as np
 
 from kin.law.programme import IntentError
 from kin.law.sources.ring import SAME_ANGLE, Dwelling, Samples, demand_whole, merged
-from kin.law.sources.smoothing import Bounded, EqualSpans, TableError, Task
+from kin.law.sources.smoothing import Bounded, EqualSpans, TableError, Task, UnmetError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kin.law.sources.motion import Motion
 
@@ -22,6 +22,8 @@ _LEAST_ROWS = 8
 _GAP = 1.5  # of the median of the five steps about it
 _LEAST_DWELL = math.radians(10)  # equal rows over less than that may be the top of a nose, rounded
 _FOOT, _ANKLE = 3.0, 60.0  # readings above a dwell between which the motion's foot is looked for
+_TRIALS, _RAISED = 8, 1.3  # of the reading error that a refused table would need
+_LEVELLED = 3  # times that a motion is made again, 0 where the last one was lowest
 _ENDS = 2  # rows at each end of a dwell between which it may end
 
 
@@ -65,28 +67,63 @@ def from_table(
     if around is None and abs(rows.s[0]) <= reading:
         rows = rows._replace(s=np.append(0.0, rows.s[1:]))  # where the motion begins
     task = Task(rows, reading, total, around)
-    found = _found(task) if dwells is None else _given(task, dwells, field)
-    if event is not None:
-        found = merged(sorted([*found, event]), len(rows.s))
-    _demand_even(rows, found, field)
-    equal = EqualSpans(task, spans)
-    motion = equal.laid(found)
-    if motion is not None and (spans is not None or task.keeps(motion)):
-        return Smoothed(motion, equal.count, equal.residual, equal.line)
-    bounded = Bounded(task, field)
+
+    def equal(task: Task) -> tuple[list[Dwelling], EqualSpans, Motion, bool]:
+        found = _found(task) if dwells is None else _given(task, dwells, field)
+        if event is not None:
+            found = merged(sorted([*found, event]), len(rows.s))
+        _demand_even(rows, found, field)
+        fit = EqualSpans(task, spans, field)
+        motion = fit.laid(found)
+        return found, fit, motion, fit.residual <= task.reading * (1 + 1e-9) and task.keeps(motion)
+
+    found, fit, motion, kept = equal(task)
+    if spans is not None or kept:
+        return Smoothed(motion, fit.count, fit.residual, fit.line)
+    bounded = Bounded(task, field, fit.faults)
     if dwells is None:
-        found = [_shortened(dwell) for dwell in found]
-    motion = bounded.laid(found)
-    if not task.keeps(motion):
-        lowest = task.lowest(motion)
-        motion = bounded.laid([lowest.levelled(dwell, reading) for dwell in found], lowest)
+        found = _shortened(found, len(rows.s), around)
+    try:
+        motion = bounded.laid(found)
+        for _ in range(_LEVELLED):
+            if not task.keeps(motion):
+                lowest = task.lowest(motion)
+                motion = bounded.laid([lowest.levelled(dwell, reading) for dwell in found], lowest)
+        bounded.demand_supported(motion)
+    except UnmetError as error:
+        raise TableError(error.problem + _remedy(task, fit.residual, equal), field, error.line) from None
     return Smoothed(motion, bounded.count, bounded.residual, bounded.line)
 
 
-def _shortened(dwell: Dwelling) -> Dwelling:
-    """The dwell without the rows at its ends: where between them it ends is found from the motion beside it."""
-    less = min(_ENDS, (dwell.last - dwell.first) // 3)
-    return Dwelling(dwell.first + less, dwell.last - less, dwell.level)
+def _remedy(
+    task: Task, reached: float, equal: Callable[[Task], tuple[Sequence[Dwelling], EqualSpans, Motion, bool]]
+) -> str:
+    """A reading error with which the table is smoothed, tried."""
+    for k in range(_TRIALS):
+        reading = max(reached, task.reading) * _RAISED**k / task.rows.unit
+        digit = 10.0 ** (math.floor(math.log10(reading)) - 1)
+        trial = task._replace(reading=math.ceil(reading / digit) * digit * task.rows.unit)
+        try:
+            if equal(trial)[-1]:
+                return f"; mend it, or give reading: {task.tell(trial.reading)}, which a motion keeps"
+        except TableError:
+            continue
+    return "; mend it, or give a greater reading"
+
+
+def _shortened(dwells: Sequence[Dwelling], count: int, around: int | None) -> list[Dwelling]:
+    """Dwells without the rows at their ends: where between them one ends is found from the motion beside it.
+
+    None that stands beside a stretch of few rows: with those added it could be anything.
+    """
+    shorter = []
+    for i, dwell in enumerate(dwells):
+        before, after = dwells[i - 1], dwells[(i + 1) % len(dwells)]
+        beside = dwell.first - before.last, after.first - dwell.last
+        least = min(number % count if around == 1 else abs(number) for number in beside) if len(dwells) > 1 else count
+        less = min(_ENDS, (dwell.last - dwell.first) // 3) if least > _LEAST_ROWS else 0
+        shorter.append(Dwelling(dwell.first + less, dwell.last - less, dwell.level))
+    return shorter
 
 
 def _demand_rows(rows: Samples, total: float, field: str) -> None:
