@@ -87,6 +87,14 @@ class Design:
         found = of_design(self.recipe, self.exact, self.exact.checks, names)
         return Figures({name: Figure.of(self.recipe, one) for name, one in found.items()})
 
+    @property
+    def sized(self) -> Recipe:
+        """The recipe with what `sizing` found in the place of it, the recipe itself where nothing was found.
+
+        Comments within `sizing` go with it, all other text stays.
+        """
+        return self.recipe.sized()
+
     # --- motion -------------------------------------------------------------------------------------------------------
 
     @property

@@ -152,13 +152,14 @@ def _size(cam: Values, reader: Reader) -> None:
     """Find the least size and put it among the values."""
     from kin.law.programme import IntentError
 
-    asked, follower = Sizing.of(cam["sizing"]), cam["follower"]
-    if asked == Sizing():
+    follower = cam["follower"]
+    asked = Sizing.of(cam["sizing"], follower)
+    if asked.angles is None and asked.radius is None:
         reader.fault_at("cam.sizing", "no limit is given", None, "give pressure-angle, radius-of-curvature or both")
         return
     start = build({**cam, "base_radius": 1.0, "follower": _placed(follower)}, reader.mm)
     try:
-        found = sized(start, asked, {**follower, **follower.get("arm", {})})
+        found = sized(start, asked)
     except IntentError as error:
         path = f"cam.{error.field}"
         remedy = "" if error.field.startswith("motion") else "give base_radius instead"  # no size mends a motion

@@ -76,6 +76,10 @@ class DiscCam(GuidedCam):
     @property
     def advice(self) -> Advice:
         """In the words of the touch."""
+        if self.sizing is not None:
+            from camgeo.cams.sizing import SizedAdvice
+
+            return SizedAdvice(self, self.sizing, less_steep=LARGER_BASE, radius_field=self._radius_field)
         if isinstance(self.touch, Flat):
             beside = " with arm.face smaller by as much" if isinstance(self.guide, Oscillating) else ""
             return SizeAdvice(beside=beside, free="be free of it", less_steep=LARGER_BASE)
@@ -116,18 +120,18 @@ class DiscCam(GuidedCam):
             return StraightFace(motion, self.base_radius, self.touch.tilt, self.guide.offset)
         return SwingingFace.on(motion, self.base_radius, self.guide.pivot, self.touch.nearer, self.guide.side)
 
-    def size_found(self, mm: float) -> str:
-        """What sizing found, in words; empty where a base radius was given."""
-        if self.sizing is None:
-            return ""
-        match self.guide, self.touch:
-            case _, Flat():
-                more = ""
-            case Translating(offset=offset), _:
-                more = f", with offset {offset / mm:.9g}"
-            case Oscillating(pivot=pivot), _:
-                more = f", with pivot {pivot / mm:.9g}"
-        return f"the base radius found is {self.base_radius / mm:.9g}{more}"
+    @property
+    def sizes(self) -> dict[str, float]:
+        """What sizing found."""
+        asked, found = self.sizing, {"base_radius": self.base_radius}
+        if asked is None:
+            return {}
+        if asked.place is None and asked.angles is not None:
+            if isinstance(self.guide, Translating):
+                found["follower.offset"] = self.guide.offset
+            else:
+                found["follower.arm.pivot"] = self.guide.pivot
+        return found
 
     def circles(self) -> tuple[Circle, ...]:
         """The base circle, which a face is tangent to at displacement 0, and the prime circle of a round touch."""

@@ -124,6 +124,12 @@ class Follower:
         return math.inf if isinstance(guide, Translating) else guide.pivot
 
     @property
+    def offset(self) -> float:
+        """Eccentricity of a stem's line, mm; 0 on an arm."""
+        guide = self.contacts[0].guide
+        return guide.offset if isinstance(guide, Translating) else 0.0
+
+    @property
     def breadth(self) -> float | None:
         """How far two opposite faces are apart, mm; None for other followers."""
         *_, last = self.contacts
@@ -186,6 +192,10 @@ class Advice(ABC):
 
     def same_pitch(self, mm: float) -> str:  # noqa: ARG002
         """Say what else changes with the roller's radius, so that the pitch curve stays; empty where nothing does."""
+        return ""
+
+    def size_found(self, exact: ExactCam, mm: float) -> str:  # noqa: ARG002
+        """Say what was found in place of a size that the recipe leaves open, and what bounds it; empty for none."""
         return ""
 
     def less_swing(self, mm: float) -> str:  # noqa: ARG002 - one family's words hang on the unit
@@ -358,9 +368,10 @@ class Cam(ABC):
         """The law by which a recipe lets the frame swing over the shaft angle, if it gives one."""
         return None
 
-    def size_found(self, mm: float) -> str:  # noqa: ARG002
-        """What was found in place of a size that the recipe leaves open, in words; `mm` is the recipe's unit."""
-        return ""
+    @property
+    def sizes(self) -> Mapping[str, float]:
+        """What was found in place of a size that the recipe leaves open, mm, by the keys below `cam` that take it."""
+        return {}
 
     def circles(self) -> tuple[Circle, ...]:
         """Circles about the shaft for a drawing to show."""

@@ -10,20 +10,26 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
 from camgeo.cams.faced import ExactFaced
+from camgeo.cams.family import Advice
 from camgeo.cams.guided import ExactGuided
+from camgeo.common.rounding import downward, upward
 from camgeo.schema.fields import Field, Kind, length, mapping
 from kin.law.contacts import Flat, Oscillating, Translating
+from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from camgeo.cams.disc_cams import DiscCam
+    from camgeo.cams.family import ExactCam
     from camgeo.curve import moving_frame
     from camgeo.curve.moving_frame import Displacement
     from camgeo.schema.reader import Values
     from kin.law.contacts import Side
 
 _GuideT = TypeVar("_GuideT", "moving_frame.Translating", "moving_frame.Oscillating")
+ON_RETURN = "pressure-angle-return"
+RETURN = math.radians(45.0)  # that of a follower which a spring holds
+_LESS = 0.99  # of a base radius: a size that is worth telling
+_NEAR = 1e-7  # rad, and of a radius: a limit so near bounds the size
 _SMALL = 1e-3  # of the radius of curvature that is asked for
 SLACK = 1e-9  # degrees, and of a radius: within this a limit is kept
 
@@ -46,21 +52,99 @@ SIZING = mapping(
 
 @dataclass(frozen=True)
 class Sizing:
-    """Greatest pressure angles on the rise and the return, rad, and least convex radius of the metal, mm; or None."""
+    """Greatest pressure angles on the rise and the return, rad, and least convex radius of the metal, mm; or None.
+
+    `place` is the offset or the pivot that is given, mm, None where it is found or none is.
+    """
 
     angles: tuple[float, float] | None = None
     radius: float | None = None
+    place: float | None = None
 
     @staticmethod
-    def of(values: Values) -> Sizing:
+    def of(values: Values, follower: Values) -> Sizing:
         """Take the values of a recipe."""
         angle, radius = values.get("pressure-angle"), values.get("radius-of-curvature")
         angles = None if angle is None else (angle["at_most"], angle.get("on_return", angle["at_most"]))
-        return Sizing(angles, None if radius is None else radius["at_least"])
+        place = follower["arm"].get("pivot") if "arm" in follower else follower.get("offset")
+        return Sizing(angles, None if radius is None else radius["at_least"], place)
 
 
-def sized(cam: DiscCam, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
-    """The cam of the least size that keeps what is asked; `given` are the follower's keys in the recipe.
+@dataclass(frozen=True)
+class SizedAdvice(Advice):
+    """Of a cam whose size is found: a limit in the words of `sizing`; a smaller roller in a ring, which none sizes.
+
+    The pitch curve that pressure angles alone size stays with another roller.
+    """
+
+    cam: DiscCam
+    sizing: Sizing
+
+    def free_of_undercut(self, free_at: float, mm: float) -> str:
+        """A radius of curvature as large as the roller, which makes it half of the pitch curve's."""
+        if self.cam.side < 0:
+            less = free_at / mm
+            return f"a {self.radius_field} below {downward(less)} would be free of it" if less > 0.0 else ""
+        radius = max(self.cam.touch.radius, 2.0 * (self.sizing.radius or 0.0)) / mm
+        return f"{_at_least(radius)} would be free of it"
+
+    def rounder(self, value: float, limit: float, unit: str) -> str:
+        """A radius of curvature; in a ring a smaller roller."""
+        if self.cam.side < 0:
+            return f"a {self.radius_field} below {downward(value)} {unit}" if value > 0.0 else ""
+        return _at_least(limit)
+
+    def size_found(self, exact: ExactCam, mm: float) -> str:
+        """Base radius, offset or pivot, what bounds them, and the size with the usual pressure angle on the return."""
+        from kin.law.programme import IntentError
+
+        cam, asked = self.cam, self.sizing
+        more = "".join(
+            f" with {path.rpartition('.')[2]} {_shown(x / mm)}" for path, x in cam.sizes.items() if "." in path
+        )
+        bounds = [f"{name} at {at:.4g} deg" for name, at in _binding(cam, asked, exact).items()]
+        told = f"base radius {_shown(cam.base_radius / mm)}{more}, bound by {' and '.join(bounds)}"
+        if asked.angles is not None and asked.angles[1] < RETURN and ON_RETURN in _binding(cam, asked, exact):
+            try:
+                other = sized(cam, replace(asked, angles=(asked.angles[0], RETURN)))
+            except IntentError:
+                return told
+            if other.base_radius < _LESS * cam.base_radius:
+                told += f"; {_shown(other.base_radius / mm)} with on_return: {math.degrees(RETURN):.0f}"
+        return told
+
+
+def _at_least(radius: float) -> str:
+    return f"radius-of-curvature: {{at_least: {upward(radius)}}} under sizing"
+
+
+def _shown(size: float) -> str:
+    return f"{size:#.4g}".rstrip(".")
+
+
+def _binding(cam: DiscCam, asked: Sizing, exact: ExactCam) -> dict[str, float]:
+    """The figures that are at their limits, and at which shaft angle, degrees."""
+    from camgeo.curve.curvature import least_radius
+
+    surface, bounds = exact.surface, {}
+    slope = surface.extremes("slope")
+    if asked.angles is not None and slope is not None:
+        low, high = slope
+        for name, reached, limit, at in (
+            ("pressure-angle-rise", high.value, asked.angles[0], high.at),
+            (ON_RETURN, -low.value, asked.angles[1], low.at),
+        ):
+            if math.atan(reached) > limit - _NEAR:
+                bounds[name] = degrees(at)
+    if asked.radius is not None:
+        radius, at = least_radius(surface.base)
+        if radius - cam.touch.radius < asked.radius * (1.0 + _NEAR):
+            bounds["radius-of-curvature"] = exact.motion.shaft_deg(at)
+    return bounds
+
+
+def sized(cam: DiscCam, asked: Sizing) -> DiscCam:
+    """The cam of the least size that keeps what is asked.
 
     Raises IntentError where there is none.
     """
@@ -69,11 +153,11 @@ def sized(cam: DiscCam, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
     exact = cam.exact()
     match cam.guide, exact:
         case Translating(), ExactGuided(law=law):
-            found = _stem(cam, law, asked, given.get("offset"))
+            found = _stem(cam, law, asked)
         case Oscillating(length=float(length), side=side), ExactGuided(law=law):
-            found = _arm(cam, law, asked, (length, side, given.get("pivot")))
+            found = _arm(cam, law, asked, length, side)
         case guide, ExactFaced(law=law):
-            if isinstance(guide, Oscillating) and "pivot" not in given:
+            if isinstance(guide, Oscillating) and asked.place is None:
                 raise IntentError("a flat face does not find the pivot; give follower.arm.pivot", "follower.arm")
             found = _face(cam, law, asked)
         case _:
@@ -82,25 +166,25 @@ def sized(cam: DiscCam, asked: Sizing, given: Mapping[str, float]) -> DiscCam:
     return found
 
 
-def _stem(cam: DiscCam, motion: Displacement, asked: Sizing, given: float | None) -> DiscCam:
+def _stem(cam: DiscCam, motion: Displacement, asked: Sizing) -> DiscCam:
     """A roller, shoe or knife edge on a stem: base radius and, unless given, offset."""
     from camgeo.curve import moving_frame
     from camgeo.curve.sizing import least_stem
 
-    stem = moving_frame.Translating(0.0, given or 0.0)
+    stem = moving_frame.Translating(0.0, asked.place or 0.0)
     if asked.angles is not None:
-        stem = least_stem(motion, *asked.angles, given)
-    stem = _rounder(cam, motion, asked, stem, settled=given is not None)
+        stem = least_stem(motion, *asked.angles, asked.place)
+    stem = _rounder(cam, motion, asked, stem, settled=asked.place is not None)
     return replace(cam, guide=Translating(stem.offset), base_radius=_base(cam, stem.prime))
 
 
-def _arm(cam: DiscCam, motion: Displacement, asked: Sizing, given: tuple[float, Side, float | None]) -> DiscCam:
-    """A roller, shoe or knife edge on an arm of given length and side, and maybe pivot: base radius and pivot."""
+def _arm(cam: DiscCam, motion: Displacement, asked: Sizing, length: float, side: Side) -> DiscCam:
+    """A roller, shoe or knife edge on an arm: base radius and, unless given, pivot."""
     from camgeo.curve import moving_frame
     from camgeo.curve.sizing import least_arm
     from kin.law.programme import IntentError
 
-    length, side, pivot = given
+    pivot = asked.place
     if asked.angles is not None:
         if pivot is not None:
             raise IntentError("the pivot is found with the pressure angle", "follower.arm.pivot")

@@ -16,6 +16,8 @@ from camgeo.recipe.figures import (
     HOLLOW_RADIUS,
     LEAST_WALL,
     MOTION_ERROR,
+    ON_RETURN,
+    ON_RISE,
     PEAKS,
     PRESSURE_ANGLE,
     RADIUS,
@@ -184,7 +186,7 @@ def of_limit(recipe: Recipe, limit: Limit, missed: Missed) -> str:
     if value > bound:
         own = _to_lower(recipe, figure, missed)
         return f"{own}{limit.field('at_most')} of {_outward(value, up=True)}"
-    own = _to_raise(recipe, figure, bound - value)
+    own = _to_raise(recipe, figure, value, bound)
     return f"{own}{limit.field('at_least')} of {_outward(value, up=False)}"
 
 
@@ -198,16 +200,23 @@ def _to_lower(recipe: Recipe, figure: str, missed: Missed) -> str:
         floor = recipe.cam.advice.least_pressure_angle
         if 0.0 < missed.bound <= floor:
             return f"a ratio nearer to 1 (at this one no swing, however small, stays below {floor:.4g} deg), or "
+    limits = "cam.sizing.pressure-angle"
+    if limits in recipe.marks and figure in {PRESSURE_ANGLE, ON_RISE, ON_RETURN}:
+        both = figure == PRESSURE_ANGLE and f"{limits}.on_return" in recipe.marks
+        key = "on_return" if figure == ON_RETURN else "at_most and on_return" if both else "at_most"
+        return f"{key} of {missed.bound:.6g} under sizing, or " if missed.bound > 0.0 else ""
     less = recipe.cam.advice.less_steep
-    if figure in {*PEAKS, *AT_SPEED}:  # the size of the cam changes none of them
+    if figure in {*PEAKS, *AT_SPEED} or recipe.cam.sizes:  # the size of the cam changes none of them, or is found
         less = less.removeprefix("a larger base radius, ")
     return f"{less}, or " if less and missed.bound > 0.0 else ""
 
 
-def _to_raise(recipe: Recipe, figure: str, by: float) -> str:
-    """Tell what would raise a figure by so much, in the recipe's unit."""
-    unit, own = "in" if recipe.units == "inch" else "mm", ""
-    if figure in {RADIUS, HOLLOW_RADIUS} and recipe.cam.touch.radius:
+def _to_raise(recipe: Recipe, figure: str, value: float, bound: float) -> str:
+    """Tell what would raise a figure to a bound, in the recipe's unit."""
+    unit, own, by = "in" if recipe.units == "inch" else "mm", "", bound - value
+    if figure == RADIUS and recipe.cam.sizes:
+        own = recipe.cam.advice.rounder(value, bound, unit)
+    elif figure in {RADIUS, HOLLOW_RADIUS} and recipe.cam.touch.radius:
         # the contour is the pitch curve's parallel inside: its convex radii are less by the roller's, hollow ones more
         roller, hollow = recipe.cam.touch.radius / recipe.mm, figure == HOLLOW_RADIUS
         if recipe.cam.side > 0 if hollow else by < roller:  # in a ring it is the base radius that makes hollows wider

@@ -19,15 +19,18 @@ from camgeo.checks.declared import (
 )
 from camgeo.recipe.figures import (
     AT_SPEED,
+    BASE_RADIUS,
     DWELL,
     FACE_WIDTH,
     FIGURES,
     HOLLOW_RADIUS,
     JAM_MARGIN,
+    OFFSET,
     ON_RETURN,
     ON_RISE,
     PEAKS,
     PITCH_RADIUS,
+    PIVOT,
     PIVOT_CLEARANCE,
     RADIUS,
     ROLLER_SPEED,
@@ -189,11 +192,27 @@ def _jam_margin(recipe: Recipe, design: Design) -> Measured:
     return Measured(None if guide is None else math.degrees(guide.jam) - value, "deg", at)
 
 
+def _base_radius(recipe: Recipe, _: Design) -> Measured:
+    base, *_others = recipe.cam.circles()
+    return Measured(base.radius, "mm")
+
+
+def _offset(_: Recipe, design: Design) -> Measured:
+    return Measured(design.follower.offset, "mm")
+
+
+def _pivot(_: Recipe, design: Design) -> Measured:
+    return Measured(design.follower.pivot, "mm")
+
+
 _OF_CURVE: dict[str, Callable[[Recipe, Design], Measured]] = {
     RADIUS: _radius,
     PITCH_RADIUS: _pitch_radius,
     HOLLOW_RADIUS: _hollow_radius,
     SIZE: _size,
+    BASE_RADIUS: _base_radius,
+    OFFSET: _offset,
+    PIVOT: _pivot,
     ON_RISE: _on_rise,
     ON_RETURN: _on_return,
     PIVOT_CLEARANCE: _pivot_clearance,

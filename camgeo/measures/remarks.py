@@ -82,7 +82,7 @@ def remarks_of(
 ) -> tuple[Remark, ...]:
     """Make every remark that there is to make on a recipe, its design, and the checks of its files."""
     found = [
-        _size_found(recipe),
+        _size_found(recipe, design),
         _pressure(recipe, design),
         _roller(recipe, design),
         _corner(recipe, design),
@@ -99,9 +99,9 @@ def remarks_of(
     return tuple(remark for remark in found if remark is not None)
 
 
-def _size_found(recipe: Recipe) -> Remark | None:
-    """What `sizing` found."""
-    said = recipe.cam.size_found(recipe.mm)
+def _size_found(recipe: Recipe, design: Design) -> Remark | None:
+    """What `sizing` found, and what bounds it."""
+    said = recipe.cam.advice.size_found(design.exact, recipe.mm)
     return Remark("sizing", None, None, "", said) if said else None
 
 
@@ -171,6 +171,8 @@ def _roller(recipe: Recipe, design: Design) -> Remark | None:
     if design.contour is None or radius is None or recipe.cam.side < 0 or not HALF * radius < roller:
         return None
     size = design.exact.rounder_pitch(radius, recipe.mm)
+    if recipe.cam.sizes:
+        size = recipe.cam.advice.rounder(radius / recipe.mm, roller / recipe.mm, recipe.units)
     if not size:
         return None
     told = (

@@ -41,7 +41,7 @@ class Limit:
         return f"limits.{self.key}" if self.key and sense == "at_most" else f"limits.{self.figure}.{sense}"
 
 
-Own: TypeAlias = Literal["guided", "rolling", "arm", "stem-face", "guide", "speed"]
+Own: TypeAlias = Literal["guided", "rolling", "arm", "stem", "stem-face", "guide", "speed"]
 Needs: TypeAlias = (
     Literal["", "linkage", "dwell", "follower", "roller", "swings", "face", "wall", "all", "preload", "backlash"] | Own
 )
@@ -61,6 +61,7 @@ NEEDS: dict[Needs, str] = {
     "guided": "a cam of kind disc or constant-diameter",
     "rolling": "a roller that a cam of kind disc or constant-diameter turns",
     "arm": "an arm that a cam of kind disc works",
+    "stem": "a stem that a cam of kind disc works",
     "stem-face": "a flat face on a stem",
     "guide": "dynamics.guide",
     "speed": "a follower without a linkage, and dynamics.rpm",
@@ -97,6 +98,9 @@ def with_former(values: collections.abc.Mapping[str, Value]) -> dict[str, Value]
 
 
 ON_RISE, ON_RETURN = "pressure-angle-rise", "pressure-angle-return"
+
+
+BASE_RADIUS, OFFSET, PIVOT = "base-radius", "offset", "pivot"
 
 
 FACE_WIDTH, ROLLER_SPEED, PIVOT_CLEARANCE, JAM_MARGIN = "face-width", "roller-speed", "pivot-clearance", "jam-margin"
@@ -190,6 +194,9 @@ FIGURES: dict[str, Figure] = {
         "most",
         "roller",
     ),
+    BASE_RADIUS: Figure("radius of the base circle, which `sizing` may find", Kind.LENGTH, "least", "guided"),
+    OFFSET: Figure("eccentricity of the stem's line, likewise", Kind.LENGTH, "least", "stem"),
+    PIVOT: Figure("distance of the arm's pivot from the shaft, likewise", Kind.LENGTH, "least", "arm"),
     SIZE: Figure("greatest distance of the contour from the shaft", Kind.LENGTH, "least"),
     LEAST_WALL: Figure("least wall between any two edges of the part", Kind.LENGTH, "most", "wall", swept=False),
     "clearance": Figure("least running clearance of the bodies", Kind.LENGTH, "most", "all", swept=False),
@@ -266,6 +273,8 @@ def there(needs: Needs, offers: frozenset[str], given: frozenset[str] | set[str]
             return "dynamics.guide" in given
         case "roller" | "swings" | "face" | "guided" | "rolling" | "arm" | "stem-face":
             return needs in offers
+        case "stem":
+            return not offers.isdisjoint({"stem", "stem-face"})
         case "wall":
             return any(f"part.{name}" in given for name in _OPENINGS)
         case "all":

@@ -139,6 +139,22 @@ class Recipe:
             text = changed(source, there, new)
         return load_text(text, self.path, f"{self.path} (replaced)")
 
+    def sized(self) -> Recipe:
+        """Give the recipe with the sizes that its cam found in the place of `sizing`; itself where there are none."""
+        from camgeo.recipe.loading import load_text
+        from camgeo.schema.change import changed, exchanged
+        from camgeo.schema.yaml_source import read_source
+
+        text = self.text
+        for path, size in self.cam.sizes.items():
+            source = read_source(text.encode("utf-8", "surrogatepass"), str(self.path))
+            value = size / self.mm
+            if path == "base_radius":
+                text = exchanged(source, "cam.sizing", path, value)
+            else:
+                text = changed(source, f"cam.{path}", value)
+        return load_text(text, self.path, f"{self.path} (sized)") if self.cam.sizes else self
+
     def told_in(self, units: Length) -> Recipe:
         """Give the recipe as one that tells its lengths in another unit; what it asks for stays."""
         return replace(self, units=units, mm=_MM[units])

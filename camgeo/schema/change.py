@@ -14,6 +14,7 @@ from camgeo.schema.errors import RecipeError, RecipeErrors, shown
 from camgeo.schema.yaml_source import (
     MAX_DEPTH,
     Mapping,
+    Scalar,
     Sequence,
     entries,
     is_empty,
@@ -60,6 +61,23 @@ def changed(source: Source, path: str, value: Value) -> str:
     if not old:  # `key:` and nothing behind it
         text = text if source.text[first - 1 : first].isspace() else f" {text}"
     return _checked(source, path, source.text[:first] + text + old[len(old.rstrip()) :] + source.text[behind:])
+
+
+def exchanged(source: Source, path: str, key: str, value: Value) -> str:
+    """Put an entry with another key in the place of one; all else stays as `changed` has it."""
+    *above, name = _steps(source, path)
+    node: Node | None = source.root
+    for step in above:
+        node = None if node is None else _entry(node, step)
+    pairs = node.entries if isinstance(node, Mapping) else ()
+    for old, held in pairs:
+        if isinstance(old, Scalar) and old.text == name:
+            first, behind = _index(source, old.mark), _index(source, held.end)
+            text = source.text[first:behind]
+            there = f"{path.removesuffix(str(name))}{key}"
+            new = f"{key}: {_flow(value, there, source.file, 0)}{text[len(text.rstrip()) :]}"
+            return _checked(source, path, source.text[:first] + new + source.text[behind:], there)
+    raise _refused(source, path, "not the path of a field", "write it like cam.base_radius or cam.motion[1].over")
 
 
 def _steps(source: Source, path: str) -> list[str | int]:
@@ -110,13 +128,13 @@ def _added(source: Source, node: Node, at: str, steps: list[str | int], value: V
     return f"{before}{' ' * (node.entries[0][0].mark[1] - 1)}{text}{newline}{source.text[cut:]}"
 
 
-def _checked(source: Source, path: str, text: str) -> str:
-    """Give back the new text, if it says what the old one did but for the value at a path."""
+def _checked(source: Source, path: str, text: str, new_path: str = "") -> str:
+    """Give back the new text, if it says what the old one did but for the value at a path, or at a new one."""
     try:
         new = read_source(text.encode("utf-8", "surrogatepass"), source.file).root
     except RecipeErrors as errors:
         raise _refused(source, path, "the value cannot be put there", "write it into the text by hand") from errors
-    if _others(source.root, path) != _others(new, path):
+    if _others(source.root, path) != _others(new, new_path or path):
         raise _refused(source, path, "the value cannot be put there", "write it into the text by hand")
     return text
 

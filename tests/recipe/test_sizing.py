@@ -163,3 +163,94 @@ def test_what_a_face_on_an_arm_needs_is_told() -> None:
     asked = FACE.replace("sizing: {", "sizing: {pressure-angle: {at_most: 30}, ")
     assert "a flat face on an arm is sized by its radius of curvature alone" in fault(asked)
     assert "leaves the face room to swing" in fault(FACE.replace("face: 5", "face: 119"))
+
+
+BOUND = """
+cam:
+  kind: disc
+  sizing: {pressure-angle: {at_most: 30}}  # of the return too
+  follower: {kind: roller, radius: 8, offset: 0}
+  motion:
+    - {rise: 20, over: 90, law: modified-sine}
+    - {dwell: 30}
+    - {return: 20, over: 60, law: cycloidal}
+    - {dwell: 180}
+"""
+RING = (
+    BOUND.replace("{kind: roller, radius: 8", "{kind: roller, radius: 90") + "  track: internal\npart: {outer: 400}\n"
+)
+
+
+def remark(text: str, name: str) -> str:
+    return next((one.sentence for one in camgeo.check(camgeo.load(text)).remarks if one.name == name), "")
+
+
+def failure(text: str) -> str:
+    """Detail of the failed checks of a recipe, with their remedies."""
+    return "\n".join(str(check) for check in camgeo.design(camgeo.load(text)).checks if not check.ok)
+
+
+def test_the_remark_says_what_bounds_the_size() -> None:
+    told = remark(BOUND, "sizing")
+    assert told == "base radius 48.77, bound by pressure-angle-return at 151.8 deg; 22.00 with on_return: 45"
+    wider = BOUND.replace("at_most: 30", "at_most: 30, on_return: 45")
+    assert remark(wider, "sizing") == "base radius 22.00, bound by pressure-angle-rise at 38.9 deg"
+    assert re.fullmatch(
+        r"base radius 73.35 with pivot 198.8, bound by pressure-angle-return at \S+ deg and radius-of-curvature at \S+ "
+        r"deg; \S+ with on_return: 45",
+        remark(ARM, "sizing"),
+    )
+
+
+def test_what_was_found_is_a_figure_and_can_be_limited() -> None:
+    stem, arm = camgeo.design(camgeo.load(BOUND)).figures, camgeo.design(camgeo.load(ARM)).figures
+    assert stem["base-radius"].value == pytest.approx(48.77017484, abs=1e-7)
+    assert (stem["offset"].value, "pivot" in stem, "offset" in arm) == (0.0, False, False)
+    assert arm["pivot"].value == pytest.approx(198.781985, abs=1e-5)
+    assert camgeo.design(camgeo.load(BOUND + "limits: {base-radius: {at_most: 48.8}, offset: {at_least: 0}}\n")).ok
+    assert not camgeo.design(camgeo.load(BOUND + "limits: {base-radius: {at_most: 48.7}}\n")).ok
+
+
+@pytest.mark.parametrize("units", ["mm", "inch"])
+@pytest.mark.parametrize("text", [BOUND, BOUND.replace(", offset: 0", ""), ARM, FACE])
+def test_the_recipe_with_the_numbers_in_is_the_same_cam(text: str, units: str) -> None:
+    text = f"units: {units}\n{text}"
+    found: Any = camgeo.design(camgeo.load(text))
+    given: Any = found.sized
+    assert "sizing" not in given.text
+    assert ("# of the return too" in given.text) == ("# of the return too" in text)
+    assert given.cam.sizing is None
+    assert given.cam.base_radius == pytest.approx(found.recipe.cam.base_radius, rel=1e-14)
+    assert given.cam.datum == pytest.approx(found.recipe.cam.datum, rel=1e-9)
+    assert camgeo.design(given).sized is given
+
+
+@pytest.mark.parametrize("text", [BOUND.replace("radius: 8, offset: 0", "radius: 30"), RING])
+def test_undercut_of_a_sized_cam_says_which_key_of_sizing_frees_it(text: str) -> None:
+    told = failure(text)
+    assert "base radius" not in told
+    if limit := re.search(r"; radius-of-curvature: ({at_least: \S+}) under sizing would be free of it", told):
+        mended = text.replace("at_most: 30}", f"at_most: 30}}, radius-of-curvature: {limit[1]}")
+    else:
+        roller = re.search(r"a roller radius below (\S+) would be free of it", told)
+        assert roller
+        mended = text.replace("radius: 90", f"radius: {0.999 * float(roller[1])}")
+    assert camgeo.design(camgeo.load(mended)).ok
+
+
+def test_limits_beside_sizing_name_the_keys_of_sizing() -> None:
+    steep = BOUND + "limits: {pressure-angle: {at_most: 20}}\n"
+    assert "at_most of 20 under sizing, or" in failure(steep)
+    assert failure(steep.replace("at_most: 30", "at_most: 20")) == ""
+    both = steep.replace("at_most: 30", "at_most: 30, on_return: 40")
+    assert "at_most and on_return of 20 under sizing, or" in failure(both)
+    sharp = BOUND + "limits: {radius-of-curvature: {at_least: 40}}\n"
+    assert "radius-of-curvature: {at_least: 40} under sizing, or" in failure(sharp)
+    assert failure(sharp.replace("at_most: 30}", "at_most: 30}, radius-of-curvature: {at_least: 40}")) == ""
+
+
+def test_a_large_roller_names_the_radius_under_sizing() -> None:
+    large = BOUND.replace("radius: 8", "radius: 20")
+    limit = re.search(r"which (radius-of-curvature: {at_least: 20}) under sizing keeps", remark(large, "large-roller"))
+    assert limit
+    assert remark(large.replace("at_most: 30}", f"at_most: 30}}, {limit[1]}"), "large-roller") == ""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 ACCELERATION, JERK = 2, 3  # orders of derivatives that a joint lets jump
 _MOST_ROWS = 1500  # of more, some are left out in the search
-_MOST_JOINTS = 24
+_MOST_JOINTS = 10
 _ROWS_A_JOINT = 6  # at least
 _GAIN = 12.0  # squares of the reading by which a joint must lessen the sum of squares: six standard deviations
 _PARTS = 4  # places looked at between two rows
@@ -33,6 +33,7 @@ _MERGED = 8  # rows, within which two joints may be one at which the acceleratio
 _BETWEEN = (0.5, 0.75, 0.25, 1.0, 0.0)  # where between them it is looked for
 _THREE = 10  # rows between the first of three joints and the last
 _ROUND = 1e-9  # of the squares of a jump: what the spline follows
+_SHARES = (1.0, 0.4)  # of such a step, the second where the first does not lessen it
 _MOVES = 6  # of the joints, each by Newton's method
 _BETTER = 0.97  # of the sum of squares, where a joint has been moved
 
@@ -99,13 +100,13 @@ class Sections:
         best, left = self, self.left(x, s, count)
         step = float(np.median(np.diff(x)))
         for _ in range(_MOVES):
-            trials = [best._stepped(x, s, count, step, share) for share in (1.0, 0.4)]
-            after, trial = min(
-                ((trial.left(x, s, count), trial) for trial in trials if trial is not None),
-                key=lambda pair: pair[0],
-                default=(math.inf, None),
-            )
-            if trial is None or not after < _BETTER * left:
+            trial, after = best, math.inf
+            for share in _SHARES:
+                trial = best._stepped(x, s, count, step, share) or best
+                after = trial.left(x, s, count) if trial is not best else math.inf
+                if after < _BETTER * left:
+                    break
+            if not after < _BETTER * left:
                 break
             best, left = trial, after
         return best

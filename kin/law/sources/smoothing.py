@@ -450,8 +450,11 @@ class Bounded:
         )
 
     def demand_supported(self, motion: Motion) -> None:
-        """Refuse an acceleration of more than twice what differences of the rows, each in error, allow."""
+        """Refuse a motion that leaves the rows once its least value is off, or accelerates more than they allow."""
         rows, total = self.task.rows, self.task.total
+        if not self.task.keeps(motion):
+            problem = "no motion that begins at its least value keeps the reading of the rows; this row leaves it first"
+            raise UnmetError(problem, self.field, self.line)
         h = np.diff(rows.theta)
         most = np.abs(np.diff(np.diff(rows.s) / h)) + 2.0 * self.task.reading * (1.0 / h[1:] + 1.0 / h[:-1])
         most = (most / (0.5 * (h[1:] + h[:-1]))).max()

@@ -23,6 +23,7 @@ _GAP = 1.5  # of the median of the five steps about it
 _LEAST_DWELL = math.radians(10)  # equal rows over less than that may be the top of a nose, rounded
 _FOOT, _ANKLE = 3.0, 60.0  # readings above a dwell between which the motion's foot is looked for
 _TRIALS, _RAISED = 8, 1.3  # of the reading error that a refused table would need
+_LEVELLED = 3  # times that a motion is made again, 0 where the last one was lowest
 _ENDS = 2  # rows at each end of a dwell between which it may end
 
 
@@ -84,9 +85,10 @@ def from_table(
         found = _shortened(found, len(rows.s), around)
     try:
         motion = bounded.laid(found)
-        if not task.keeps(motion):
-            lowest = task.lowest(motion)
-            motion = bounded.laid([lowest.levelled(dwell, reading) for dwell in found], lowest)
+        for _ in range(_LEVELLED):
+            if not task.keeps(motion):
+                lowest = task.lowest(motion)
+                motion = bounded.laid([lowest.levelled(dwell, reading) for dwell in found], lowest)
         bounded.demand_supported(motion)
     except UnmetError as error:
         raise TableError(error.problem + _remedy(task, fit.residual, equal), field, error.line) from None
