@@ -82,8 +82,9 @@ HAVE = {
     **dict.fromkeys(("peak-jerk", "contact-travel", "wall", "contour-error", "motion-error", "pieces"), FLAT),
     **dict.fromkeys(("least-force", "peak-force"), YOKE + VERIFY + TRAIN),
     **dict.fromkeys(("pressure-angle-rise", "pressure-angle-return", "roller-speed", "jam-margin"), STEM),
+    **dict.fromkeys(("base-radius", "offset"), STEM),
     **dict.fromkeys(("peak-velocity-at-speed", "peak-acceleration-at-speed", "peak-jerk-at-speed"), STEM),
-    "pivot-clearance": ARM,
+    **dict.fromkeys(("pivot-clearance", "pivot"), ARM),
     "face-width": FACE,
     "least-backlash": YOKE + VERIFY + LOOSE,
     "dwell-error": YOKE + VERIFY,
@@ -270,7 +271,15 @@ def test_an_unknown_figure_is_told_with_its_line_and_those_there_are() -> None:
 def test_a_figure_that_a_recipe_has_not() -> None:
     missing = {"linkage": FLAT, "dwell": FLAT, "follower": LINKED, "roller": FLAT, "swings": FLAT, "face": ROLLER}
     missing |= {"wall": ROLLER, "all": FLAT, "preload": FLAT, "backlash": FLAT}
-    missing |= {"guided": ROLLER, "rolling": ROLLER, "arm": STEM, "stem-face": FLAT, "guide": FLAT, "speed": FLAT}
+    missing |= {
+        "guided": ROLLER,
+        "rolling": ROLLER,
+        "arm": STEM,
+        "stem": ARM,
+        "stem-face": FLAT,
+        "guide": FLAT,
+        "speed": FLAT,
+    }
     for name, figure in FIGURES.items():
         if figure.needs:
             (one,) = told(missing[figure.needs], f"{{{name}: {{at_most: 1}}}}")
