@@ -34,6 +34,7 @@ def wrong(told: runner.Told) -> list[str]:
     return [f"{told.number} {told.name} {told.words}: {text}" for text in told.findings if not text.startswith(COST)]
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("number", range(QUICK))
 def test_attacks_find_nothing(number: int) -> None:
     assert wrong(runner.made(attack_of(SEED, number), number)) == []
@@ -49,6 +50,7 @@ def test_many_attacks_in_processes_that_are_watched_find_nothing(monkeypatch: py
     assert {one.status for one in every} >= {0, 1, 2}
 
 
+@pytest.mark.slow
 def test_an_attack_is_the_same_for_the_same_seed() -> None:
     for number in range(len(WAYS)):
         one, other, another = attack_of(3, number), attack_of(3, number), attack_of(4, number)

@@ -97,6 +97,7 @@ def test_what_a_remark_tells() -> None:
     assert coarse.sentence == "the tolerance, 3 mm, is 1.5 times the stroke of 2 mm"
 
 
+@pytest.mark.slow
 def test_a_files_dwell_that_is_shorter_than_the_intended_one_is_remarked() -> None:
     # a ripple just fills the band: arcs within 0.01 mm let it out, arcs within 0.005 do not
     text = (RECIPES / "long-dwell.yaml").read_text(encoding="utf-8").partition("sweep:")[0]

@@ -66,6 +66,7 @@ def test_few_pieces_are_looked_at_for_a_place_off_the_chain(count: int, monkeypa
     assert sum(looks) <= 4 * angle.size
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_points_that_all_pieces_are_nearest_to() -> None:
     t = np.linspace(0.0, 2.0 * np.pi, 1000, endpoint=False)
     heading = np.column_stack([-np.sin(t), np.cos(t)])

@@ -80,6 +80,7 @@ def test_the_acceleration_jumps_where_a_dwell_ends_between_rows():
     assert [rest.level for rest in found.rests] == pytest.approx([21.175, 0], abs=1e-12)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("row", [18, 49, 130])
 def test_a_row_that_stands_out_of_a_law_with_jumps_is_refused(row):
     rows = table(law(("cubic", "cubic", 10.0, 100, 0, 121)), 1, 4)
@@ -94,6 +95,7 @@ SHORT = ("cycloidal", "cycloidal", 12.0, 60, 14, 90)
 MIXED = ("polynomial-345", "modified-trapezoid", 14.933, 70, 37, 83)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("shape", "step", "row"),
     [
@@ -112,6 +114,7 @@ def test_a_row_that_stands_out_is_refused_wherever_it_is(shape, step, row):
     assert caught.value.line == row + 1
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("shape", "step", "row", "last"),
     [

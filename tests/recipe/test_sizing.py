@@ -81,6 +81,7 @@ def test_the_pivot_is_searched_where_the_radius_of_curvature_binds() -> None:
     assert cam.guide.pivot == pytest.approx(198.781985, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_the_offset_is_searched_where_the_radius_of_curvature_binds() -> None:
     text = re.sub(", arm: {.*?}", "", ARM).replace("roller, radius: 15", "roller, radius: 8")
     cam = sized(text)
@@ -127,6 +128,7 @@ cam:
 """
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("side", ["leading", "trailing"])
 @pytest.mark.parametrize(("face", "radius"), [(5.0, 10.0), (0.0, 3.0), (-10.0, 12.0), (40.0, 60.0)])
 def test_a_face_on_an_arm_is_sized_by_its_radius(face: float, radius: float, side: str) -> None:
@@ -211,6 +213,7 @@ def test_what_was_found_is_a_figure_and_can_be_limited() -> None:
     assert not camgeo.design(camgeo.load(BOUND + "limits: {base-radius: {at_most: 48.7}}\n")).ok
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("units", ["mm", "inch"])
 @pytest.mark.parametrize("text", [BOUND, BOUND.replace(", offset: 0", ""), ARM, FACE])
 def test_the_recipe_with_the_numbers_in_is_the_same_cam(text: str, units: str) -> None:

@@ -177,6 +177,7 @@ def test_nothing_sticks_out_or_lies_over_its_neighbour(
         browser.size(1280, 800)
 
 
+@pytest.mark.slow
 def test_the_axes_are_named_with_their_units(browser: Browser, tmp_path: Path) -> None:
     made = of("as-figure-9-2a")
     page_ = opened(browser, made, tmp_path)

@@ -136,6 +136,7 @@ def narrow(asked, values):
     return math.degrees(longest.length)
 
 
+@pytest.mark.slow
 def test_a_dwell_is_polished_off_the_knifes_edge():
     # eight numbers with which a ripple just fills the band: within 0.001 mm it may leave it
     asked = Ask.of(load(RECIPES / "long-dwell.yaml"))
