@@ -97,9 +97,10 @@ class _Chords:
 
     @staticmethod
     def between(start: Places, end: Places, sagitta: Array) -> _Chords:
-        """Chords by their ends."""
+        """Chords by their ends; one that closes on itself has no length, and any heading."""
         length = np.abs(end - start)
-        return _Chords(start, (end - start) / np.maximum(length, np.finfo(np.float64).tiny), length, sagitta)
+        closed = length == 0.0
+        return _Chords(start, np.where(closed, 1.0, (end - start) / np.where(closed, 1.0, length)), length, sagitta)
 
     def bounds(self, run: Indices, place: Places) -> tuple[Array, Array]:
         """Least distance that places (m,) can have from runs (m,), and one that they have from a point of them."""

@@ -76,3 +76,16 @@ def test_memory_does_not_grow_with_points_that_all_pieces_are_nearest_to() -> No
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < 100e6
+
+
+def test_loops_that_close_within_a_run() -> None:
+    """Three squares of eight pieces each: the chord of each run has no length."""
+    side = np.array([[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]], dtype=np.float64)
+    start = np.concatenate([side + place for place in ([0.0, 0.0], [10.0, 0.0], [0.0, 10.0])])
+    ahead = np.roll(side, -1, axis=0) - side
+    arcs = Arcs(start, np.tile(ahead, (3, 1)), np.zeros(24), np.ones(24))
+    where = points(arcs)
+    every = np.array([nearest_on(arcs, np.tile(point, (24, 1)))[1] for point in where])
+    piece, distance = nearest(arcs, where)
+    assert np.array_equal(piece, every.argmin(axis=1))
+    assert np.array_equal(distance, every.min(axis=1))
