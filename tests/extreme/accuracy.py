@@ -92,10 +92,11 @@ def in_time(seconds=SECONDS):
         signal.signal(signal.SIGALRM, before)
 
 
-def recipe(cam, *, tolerance=1e-3, files="dxf", units="mm", thickness=None, name="case"):
+def recipe(cam, *, tolerance=1e-3, files="dxf", units="mm", thickness=None, motion_error=None, name="case"):
     """A recipe of one cam; `cam` as lines of YAML or of flow mappings."""
     part = "" if thickness is None else f"part: {{thickness: {thickness!r}}}\n"
     lines = "".join(f"  {line}\n" for line in cam.strip().splitlines())
+    part += "" if motion_error is None else f"verify: {{motion_error: {motion_error!r}}}\n"
     text = f"units: {units}\ncam:\n{lines}{part}export:\n  tolerance: {tolerance:.25f}\n  files: [{files}]\n"
     return read(text.encode(), f"{name}.yaml")
 
