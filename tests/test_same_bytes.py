@@ -13,7 +13,7 @@ from support.places import ROOT
 BENCHMARKS = ROOT / "benchmarks"
 RECIPE = """\
 units: inch
-cam: {kind: support, reuleaux: {sides: 3, breadth: 1.9, rounding: 0.3}}
+cam: {kind: support, reuleaux: {sides: 3, breadth: 1.9, rounding: 8 mm}, shaft: [2 mm, 0]}
 export: {tolerance: 0.001, files: [dxf, csv]}
 verify: {angles: 8}
 """
