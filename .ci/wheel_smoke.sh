@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || set -- python3
-version=$(sed -n 's/^__version__ = "\(.*\)"$/\1/p' camgeo/__init__.py)
+version=$(sed -n 's/^__version__ = "\(.*\)"$/\1/p' camgeo/version.py)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 unset PYTHONPATH
