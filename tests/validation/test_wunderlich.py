@@ -13,7 +13,8 @@ from ledger import Row
 
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.law.programme import IntentError
 
 PI = np.pi
