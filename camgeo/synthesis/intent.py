@@ -21,9 +21,10 @@ def intended(recipe: Recipe, design: Design) -> Judged:
     from kin.judge.verify import Intent
 
     driven, asked = design.driven, recipe.dwell
+    (gauge,) = design.exact.gauges.values()
     turns = driven is not None and driven.turns
     intent = Intent(
-        follower=design.exact.gauge,
+        follower=gauge,
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,
