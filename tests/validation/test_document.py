@@ -4,6 +4,7 @@ import re
 
 import ledger
 import pytest
+from support.page_tables import Row
 
 LONG = ("test_wunderlich", "test_linkages")  # seconds each
 
@@ -41,6 +42,6 @@ def test_the_page_has_no_table_besides():
 
 def test_a_wrong_figure_is_caught(workshop):
     row = ledger.measured("test_rabinowitz", workshop)[2]
-    spoilt = ledger.Row(row.quantity, row.source, row.published, row.value, row.ours + 2 * row.within, row.within)
+    spoilt = Row(row.quantity, row.source, row.published, row.value, row.ours + 2 * row.within, row.within)
     assert row.holds
     assert not spoilt.holds
