@@ -20,8 +20,8 @@ from camgeo.measures.figures import of_design
 from camgeo.measures.limits import limit_checks
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES, PRESENT
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.recipe import RECIPE
 from camgeo.recipe.starter import KINDS, starter
 from camgeo.report.document import encoded
 from camgeo.report.failure import failure
