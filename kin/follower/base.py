@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
+from kin.follower.drive import Moved
 from kin.follower.guide import METRE
 from kin.follower.rests import dwells_of_law, dwells_of_transmission
 
@@ -153,6 +154,11 @@ class Follower(ABC):
     @abstractmethod
     def drives(self, contour: Contour) -> Sequence[Drive]:
         """What each contact feels of a contour over the shaft angle: its own position, in SI."""
+
+    def resting(self, contour: Contour) -> list[Moved]:
+        """Position, metres or radians, with each of its contacts resting on a contour."""
+        each = zip(self.contacts, self.drives(contour), strict=True)
+        return [Moved(drive, float(one.sense), -one.sense * self.si * one.zero) for one, drive in each]
 
     @abstractmethod
     def judge(self, contour: Contour, phi: Array) -> Judged:

@@ -13,14 +13,14 @@ from support.places import ROOT
 
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
 from kin.dynamics.drive import drives
 from kin.dynamics.events import FREE, LOWER, UPPER, Work, crossing
-from kin.dynamics.excitation import Moved, intended_faces
+from kin.dynamics.excitation import intended_faces
 from kin.dynamics.impacts import MOST_WORK, State, course, least_gap
 from kin.dynamics.separation import float_speed
 from kin.dynamics.separation_bounds import Look, Range
 from kin.dynamics.train import DynamicsError, Train, steady
+from kin.follower.drive import Moved
 from kin.follower.follower import DoubleRoller
 
 TURN = 2.0 * math.pi
@@ -169,7 +169,7 @@ def test_as_many_meetings_as_another_integration_of_the_same_law(play, ratio, ze
     That integration shares the motion alone, and met the same faces in the same order, within 1e-5 rad.
     """
     recipe = load(ROOT / "recipes" / "w-law.yaml")
-    follower = intended(recipe, designed(recipe)).follower
+    follower = designed(recipe).exact.gauge
     assert isinstance(follower, DoubleRoller)
     both = intended_faces(follower, play / follower.transmission.arm)
     lower, upper = drives([both.lower, both.upper])
