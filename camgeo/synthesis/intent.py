@@ -18,12 +18,15 @@ def intended(recipe: Recipe, design: Design) -> PartIntent:
     """What kin is given of the part: the follower with its law, and how the part is drawn."""
     from kin.judge.intent import DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
 
-    driven, asked, linkage = design.driven, recipe.dwell, None
+    driven, asked, linkage, gauges = design.driven, recipe.dwell, None, design.exact.gauges
     if driven is not None and driven.turns:
         dwell = None if asked is None else DwellAsked(asked.band, asked.at_least, asked.over)
         linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing(), dwell)
     intent = PartIntent(
-        surfaces=(SurfaceIntent(design.exact.gauge, side=recipe.cam.side, trimmed=design.trimmed),),
+        surfaces=tuple(
+            SurfaceIntent(gauges[surface.name], surface.name, side=surface.side, trimmed=design.trimmed)
+            for surface in design.exact.surfaces
+        ),
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,

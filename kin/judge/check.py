@@ -18,7 +18,7 @@ class Check:
 
     `value` is None where there was nothing to measure (a file that cannot be read); such a check does not hold, and
     `detail` says why. `at_deg` is the shaft angle of the worst place, in [0, 360), None where there is no such place.
-    `surface` is the name of the surface that it is about, None where there is but one or it is about all.
+    `surface` is the name of the surface that it is of, empty where the cam has one or it is of no surface.
     """
 
     name: str
@@ -30,7 +30,7 @@ class Check:
     sense: Sense = "at_most"
     file: str | None = None
     detail: str = ""
-    surface: str | None = None
+    surface: str = ""
 
 
 def at_most(

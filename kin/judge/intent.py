@@ -77,7 +77,7 @@ class LinkageIntent:
 class PartIntent:
     """What a disc in a file is meant to be.
 
-    surfaces    those that followers run on, outermost first; two of one section differ in name
+    surfaces    those that followers run on, in any order; two of them differ in name
     mirrored    the file is drawn mirrored about the x axis (the shaft turns counter-clockwise)
     mm          mm in one drawing unit of a DXF or SVG file or a program (solids are always in mm)
     bore        diameter, mm; None for no hole at all
@@ -107,12 +107,6 @@ class PartIntent:
     def featured(self) -> bool:
         """Whether the part has more than a round bore."""
         return bool(self.holes or self.layers)
-
-    @property
-    def deepest(self) -> int:
-        """How many others a closed chain of its sections may lie inside: holes lie in metal, and nothing in the air."""
-        ring = 0 if self.outline is None else 1
-        return ring + len(self.surfaces) - (1 if self.surfaces[-1].side < 0 else 0)
 
 
 @dataclass(frozen=True)

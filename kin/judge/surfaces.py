@@ -13,6 +13,7 @@ import numpy as np
 
 from kin.contour.arcs import cross, dot
 from kin.judge.bore import round_check
+from kin.numeric.angles import TURN
 from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from kin.read.nesting import Chain
 
 LOOKS = 16  # on each piece: an arc of a whole turn is seen to go round
+SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's size is looked at
 
 
 class Parted(NamedTuple):
@@ -59,16 +61,31 @@ def parted(
     round_shaft = (chain for chain in others if chain is outline or goes_round(chain.contour))
     layers = {chain.layer for chain in others} - {""}
     by_layer = any(surface.layer in layers for surface in surfaces)
-    chosen: list[Chain] = []
-    for surface in surfaces:
+    chosen: dict[str, Chain] = {}
+    for surface in outermost_first(surfaces):
         there = [chain for chain in others if chain.layer == surface.layer] if by_layer else [*islice(round_shaft, 1)]
         if not there:
             raise ReadError("empty", missing(surface), path)
         if len(there) > 1:
             raise ReadError("several", f"{len(there)} closed contours on the layer {surface.layer}", path)
-        chosen += there
-    holes = tuple(chain.contour for chain in others if not any(chain is one for one in chosen))
-    return Parted(tuple(chosen), holes, checks)
+        (chosen[surface.name],) = there
+    holes = tuple(chain.contour for chain in others if not any(chain is one for one in chosen.values()))
+    return Parted(tuple(chosen[surface.name] for surface in surfaces), holes, checks)
+
+
+def outermost_first(surfaces: Sequence[SurfaceIntent]) -> list[SurfaceIntent]:
+    """Order surfaces, which lie one in another, by how far their exact contours reach."""
+
+    def reach(surface: SurfaceIntent) -> float:
+        return float(np.hypot(*surface.gauge.envelope.points(SIZED).T).max())
+
+    return sorted(surfaces, key=reach, reverse=True) if len(surfaces) > 1 else list(surfaces)
+
+
+def deepest(part: PartIntent) -> int:
+    """How many others a closed chain of a part's sections may lie inside: holes lie in metal, and nothing in the air."""
+    ring = 0 if part.outline is None else 1
+    return ring + len(part.surfaces) - (1 if outermost_first(part.surfaces)[-1].side < 0 else 0)
 
 
 def missing(surface: SurfaceIntent) -> str:

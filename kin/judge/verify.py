@@ -16,7 +16,7 @@ from kin.contour.intersections import crossings
 from kin.judge.bore import bore_check
 from kin.judge.check import ROUNDING, Check, about, at_most, failed, less_sure
 from kin.judge.contour_checks import judge_contour
-from kin.judge.surfaces import Parted, parted
+from kin.judge.surfaces import SIZED, Parted, deepest, parted
 from kin.judge.verdict import SurfaceVerdict, Verdict
 from kin.numeric.angles import TURN
 from kin.numeric.errors import KinError
@@ -39,7 +39,6 @@ UNITS_SHARE = 1e-9  # two statements of the unit agree within this share
 SIZE_SHARE = (
     0.05  # a drawing that comes out by another unit's factor too large or small, within this, misstates its own
 )
-SIZED = np.linspace(0.0, TURN, 64)  # parameters at which the exact contour's size is looked at
 NOT_CLOSED = frozenset({"open", "gap", "branch", "several", "island"})
 NOT_READ = frozenset({"syntax", "truncated", "empty", "unsupported", "range"})  # of solids
 MOST_NAMED = 5  # faults named in a message
@@ -78,7 +77,7 @@ def verify(path: Path, part: PartIntent, angles: int, limits: Limits, units: flo
     standing = part.milling.standing if part.milling is not None else 0.0
     for chain, surface in zip(file.surfaces, part.surfaces, strict=True):
         found = judge_contour(chain.contour, surface, phi, limits, file.uneven, standing=standing, linkage=part.linkage)
-        checks += [replace(check, surface=surface.name or None) for check in found.checks]
+        checks += [replace(check, surface=surface.name) for check in found.checks]
         judged, away = found.judged, found.deviation
         surfaces.append(
             SurfaceVerdict(
@@ -125,7 +124,7 @@ def _demand_same(stated: float | None, given: float | None, path: Path) -> None:
 def _of_drawing(path: Path, part: PartIntent, limits: Limits, units: float | None) -> _Read:
     """Read a DXF or SVG: the checks on what is drawn, and its surfaces."""
     engraved = any(hole.depth is not None for hole in part.holes)
-    drawing = read_drawing(path, engraved=engraved, deepest=part.deepest)
+    drawing = read_drawing(path, engraved=engraved, deepest=deepest(part))
     _demand_same(drawing.units_mm, units, path)
     scale = (part.mm if units is None else units) if drawing.units_mm is None else 1.0
     chains = scaled(drawing.chains, scale, mirrored=part.mirrored)
@@ -209,7 +208,7 @@ def _of_solid(path: Path, part: PartIntent, limits: Limits, units: float | None)
 
         levels = levels_of(part)
     own = [surface.z for surface in part.surfaces if surface.z is not None]
-    solid = read_solid(path, [*levels, *own], units, part.deepest)
+    solid = read_solid(path, [*levels, *own], units, deepest(part))
     _demand_same(solid.units_mm, units, path)
     if len(solid.sections) < len(levels) + len(own):
         told = "the solid has no section where the part has its layers"

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
