@@ -83,7 +83,7 @@ def outermost_first(surfaces: Sequence[SurfaceIntent]) -> list[SurfaceIntent]:
 
 
 def deepest(part: PartIntent) -> int:
-    """How many others a closed chain of a part's sections may lie inside: holes lie in metal, and nothing in the air."""
+    """How many others a closed chain of a part may lie inside: holes lie in metal, and nothing in the air."""
     ring = 0 if part.outline is None else 1
     return ring + len(part.surfaces) - (1 if outermost_first(part.surfaces)[-1].side < 0 else 0)
 
