@@ -15,7 +15,8 @@ from pathlib import Path
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.judge.verify import Limits, verify
 
 RECIPE = b"""\

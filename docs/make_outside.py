@@ -26,7 +26,8 @@ import trimesh
 from camgeo.output import pipeline
 from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.judge.contour_checks import exact_area
 from kin.judge.layers import volume
 from kin.read.files import read_drawing

@@ -13,7 +13,8 @@ import numpy as np
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.read.drawing.dxf import read_dxf
 
 mpl.use("Agg")

@@ -80,11 +80,11 @@ class ExactFaced(ExactLed):
     cam: DiscCam
 
     @cached_property
-    def surface(self) -> Surface:
+    def surfaces(self) -> tuple[Surface, ...]:
         """The envelope of the face."""
         from camgeo.curve.disc import face_shape
 
         face = self.cam.face(self.law)
         whole = Curve.whole(face_shape(face))
         series = {"slope": face.slope, "contact": face.contact}
-        return Surface(whole, whole, pressure=FacePressure(face), place=FacePlace(face), series=series)
+        return (Surface(whole, whole, pressure=FacePressure(face), place=FacePlace(face), series=series),)

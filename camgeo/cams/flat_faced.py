@@ -20,9 +20,9 @@ from kin.numeric.distinct import distinct
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from kin.follower.follower import Follower as Gauge
     from kin.law.contacts import Guide, Touch
     from kin.law.joints import Joint
+    from kin.law.piecewise import Piecewise
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
@@ -109,18 +109,16 @@ class ExactLifted(ExactCam):
         return LiftPosition(self.law, self.law.datum)
 
     @cached_property
-    def surface(self) -> Surface:
+    def surfaces(self) -> tuple[Surface, ...]:
         """The envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
         from camgeo.curve.support import SupportShape
 
-        return replace(self.cam.surface(Curve.whole(SupportShape(self.law))), place=LiftPlace(self.law))
+        return (replace(self.cam.surface(Curve.whole(SupportShape(self.law))), place=LiftPlace(self.law)),)
 
-    @cached_property
-    def gauge(self) -> Gauge:
-        """The contacts with the lift."""
-        from kin.follower.follower import follower_of
-
-        return follower_of(self.follower.contacts, self.law.law)
+    @property
+    def judged_law(self) -> Piecewise:
+        """The lift."""
+        return self.law.law
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:

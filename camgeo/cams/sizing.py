@@ -126,7 +126,7 @@ def _binding(cam: DiscCam, asked: Sizing, exact: ExactCam) -> dict[str, float]:
     """The figures that are at their limits, and at which shaft angle, degrees."""
     from camgeo.curve.curvature import least_radius
 
-    surface, bounds = exact.surface, {}
+    (surface,), bounds = exact.surfaces, {}
     slope = surface.extremes("slope")
     if asked.angles is not None and slope is not None:
         low, high = slope
@@ -226,7 +226,7 @@ def demand_kept(cam: DiscCam, asked: Sizing) -> None:
     from camgeo.curve.rates import stretches
     from kin.law.programme import IntentError
 
-    surface = cam.exact().surface
+    (surface,) = cam.exact().surfaces
     shape = surface.base.shape
     if asked.angles is not None and isinstance(shape, CentreShape):
         over = stretches(shape.law)

@@ -12,7 +12,7 @@ from camgeo.curve.undercut.causes import UndercutError
 from camgeo.fit.arcs import fit_arcs
 from camgeo.machining.cutter import cutter_path, no_hollow
 from camgeo.synthesis.checks import hollow_radius
-from camgeo.synthesis.design import intended
+from camgeo.synthesis.intent import intended
 from camgeo.synthesis.part.as_intent import holes_of
 from kin.judge.check import Check, failed
 

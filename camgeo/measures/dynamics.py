@@ -118,7 +118,7 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
 
 
 def _scene(recipe: Recipe, asked: Dynamics, design: Design, runs: int, drawn: float | None) -> _Scene:
-    from camgeo.synthesis.design import intended
+    from camgeo.synthesis.intent import intended
     from kin.dynamics.train import Train
     from kin.follower.guide import METRE
 
@@ -141,7 +141,7 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, runs: int, drawn: fl
 
 def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
     """What drives the follower, as intended or as a file's contour gives it."""
-    from camgeo.synthesis.design import intended
+    from camgeo.synthesis.intent import intended
     from kin.dynamics.excitation import Faces, OfMechanism, intended_faces, measured_faces
 
     if design.driven is not None:

@@ -248,7 +248,7 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
 
 def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> Remark | None:
     """A limit that the tolerance of a file implies, and that is no small part of the stroke or of the rollers."""
-    from camgeo.synthesis.design import intended
+    from camgeo.synthesis.intent import intended
     from kin.judge.contour_checks import direct_play, is_loose, stroke_of
 
     if recipe.verify.motion_error is not None or not files:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.curve.curve import CurveError
-from camgeo.synthesis.design import intended
+from camgeo.synthesis.intent import intended
 
 if TYPE_CHECKING:
     from camgeo.recipe.machining import Compensation

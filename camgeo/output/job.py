@@ -17,7 +17,7 @@ from camgeo.fit.cache import Outlines, formula_rounding
 from camgeo.fit.nodes import ToleranceError
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import intent_of_file
-from camgeo.synthesis.design import permitted
+from camgeo.synthesis.intent import permitted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -14,7 +14,8 @@ from camgeo.common.clock import Clock
 from camgeo.measures.file_result import FileResult
 from camgeo.output.file_intent import intent_of_file
 from camgeo.report.document import Findings, document, encoded
-from camgeo.synthesis.design import Design, designed, permitted
+from camgeo.synthesis.design import Design, designed
+from camgeo.synthesis.intent import permitted
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -1,7 +1,6 @@
 """The exact cam of a recipe: what the follower is meant to do, the curve that does it, and what is wrong with either.
 
-Nothing here writes or fits. `designed` is the part of a run that needs no file; `intended` and `permitted` say in kin's
-words what a file will be held against.
+Nothing here writes or fits: `designed` is the part of a run that needs no file.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from camgeo.checks.declared import CURVATURE, PITCH, UNDERCUT_GLOBAL, UNDERCUT_L
 from camgeo.common.clock import Clock
 from camgeo.common.rounding import downward
 from camgeo.curve.curve import CurveError
-from camgeo.recipe.linkage import output_slides
 from kin.judge.check import Check
 
 if TYPE_CHECKING:
@@ -30,8 +28,6 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.linkage import Driven
     from camgeo.synthesis.part.body import Body
-    from kin.judge.verify import Intent as Judged
-    from kin.judge.verify import Limits
     from kin.law.support_function import Lift
     from kin.numeric.arrays import Array
 
@@ -58,7 +54,7 @@ class Design:
     @property
     def surface(self) -> Surface:
         """The exact curve."""
-        return self.exact.surface
+        return self.exact.surfaces[0]
 
     @property
     def motion(self) -> Position:
@@ -80,7 +76,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         with clock.stage("motion"):
             exact = recipe.cam.exact(framed=recipe.linkage is not None)
         with clock.stage("profile"):
-            surface = exact.surface
+            surface = exact.surfaces[0]
     except IntentError as error:
         raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
@@ -126,7 +122,7 @@ def sound(recipe: Recipe, exact: ExactCam) -> tuple[list[Check], Curve | None]:
     from camgeo.curve.undercut.causes import UndercutError
     from camgeo.curve.undercut.undercut import MOST_TOLD, undercuts
 
-    trim, surface = recipe.cam.undercut == "trim", exact.surface
+    surface, trim = exact.surfaces[0], recipe.cam.undercut == "trim"
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     roller = surface.radius
@@ -284,42 +280,3 @@ def _part(recipe: Recipe, contour: Curve, exact: ExactCam) -> tuple[Body | None,
 
     body = body_of(part, contour)
     return body, part_checks(body, contour, part.wall, exact.motion.shaft_deg)
-
-
-def intended(recipe: Recipe, design: Design) -> Judged:
-    """What kin is given of the part: the follower with its law, and how the part is drawn."""
-    from kin.judge.contour_checks import DwellAsked
-    from kin.judge.verify import Intent
-
-    driven, asked = design.driven, recipe.dwell
-    turns = driven is not None and driven.turns
-    intent = Intent(
-        follower=design.exact.gauge,
-        mm=recipe.mm,
-        mirrored=recipe.rotation == "ccw",
-        bore=recipe.part.bore,
-        thickness=recipe.part.thickness,
-        outer=recipe.part.outer,
-        trimmed=design.trimmed,
-        mechanism=driven.mechanism if driven is not None and turns else None,
-        swing=recipe.cam.frame_swing() if turns else None,
-        dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
-    )
-    if design.body is None:
-        return intent
-    from camgeo.synthesis.part.as_intent import cross_holes_of, holes_of, layers_of
-
-    body = design.body
-    return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
-
-
-def permitted(recipe: Recipe, tolerance: float) -> Limits:
-    """What kin permits: the tolerance, and the recipe's own limits of motion and output (degrees for a swing)."""
-    from kin.judge.verify import Limits
-
-    motion, output = recipe.verify.motion_error, recipe.verify.output_error
-    if output is not None and recipe.linkage is not None and not output_slides(recipe.linkage):
-        output = math.degrees(output)
-    if motion is not None and recipe.cam.arrangement.unit == "deg":
-        motion = math.degrees(motion)
-    return Limits(tolerance, motion, output=output)

@@ -16,7 +16,7 @@ from kin.law.support_function import Lift
 from kin.law.transmission_law import Transmission
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.piecewise import Piecewise
@@ -36,6 +36,7 @@ __all__ = [
     "SwingingFace",
     "Yoke",
     "follower_of",
+    "followers_of",
 ]
 
 
@@ -66,6 +67,20 @@ def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Tran
     if not flat:
         return Roller(held, side, raised)
     return SwingingFace(held, raised) if arm else FlatFace(held, Lift(raised))
+
+
+def followers_of(
+    contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Transmission, sides: Mapping[str, Side]
+) -> dict[str, Follower]:
+    """Make what each surface, by its name, is judged by: the follower of the contacts that touch it.
+
+    `sides` are those on which the metal of each surface lies. Raises ValueError as `follower_of` does, and for a
+    contact that touches none of them or a surface that nothing touches.
+    """
+    _demand({one.surface for one in contacts} == set(sides), "each touches one of the surfaces, and each is touched")
+    return {
+        name: follower_of([one for one in contacts if one.surface == name], law, side) for name, side in sides.items()
+    }
 
 
 def _demand(holds: bool, rule: str) -> None:

@@ -17,6 +17,7 @@ class Check:
 
     `value` is None where there was nothing to measure (a file that cannot be read); such a check does not hold, and
     `detail` says why. `at_deg` is the shaft angle of the worst place, in [0, 360), None where there is no such place.
+    `surface` is the name of the surface that it is of, empty where the cam has one or it is of no surface.
     """
 
     name: str
@@ -28,6 +29,7 @@ class Check:
     sense: Sense = "at_most"
     file: str | None = None
     detail: str = ""
+    surface: str = ""
 
 
 def at_most(

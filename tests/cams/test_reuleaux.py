@@ -16,7 +16,8 @@ from camgeo.machining.cutter import CutterPath, cutter_path
 from camgeo.measures.remarks import remarks_of
 from camgeo.recipe.loading import load_text
 from camgeo.schema.errors import RecipeErrors
-from camgeo.synthesis.design import designed, intended, permitted
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended, permitted
 from kin.contour.contour import Contour
 from kin.judge.contour_checks import judge_contour
 from kin.judge.verify import verify

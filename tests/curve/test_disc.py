@@ -373,9 +373,9 @@ def test_a_flat_top_beside_a_break_is_not_passed_over(bend: float) -> None:
 
 def test_a_figure_is_found_once_of_a_profile() -> None:
     cam = load(RECIPES / "disc-roller.yaml").cam
-    surface = cam.exact().surface
+    surface = cam.exact().surfaces[0]
     assert surface.extremes("slope") is surface.extremes("slope")
-    assert cam.exact().surface.extremes("slope") == surface.extremes("slope")
+    assert cam.exact().surfaces[0].extremes("slope") == surface.extremes("slope")
 
 
 def test_a_kink_inside_a_stretch_is_bounded_by_values_alone() -> None:

@@ -12,7 +12,8 @@ from support.integrated import integrated
 from support.places import ROOT
 
 from camgeo.recipe.loading import load
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.dynamics.drive import drives
 from kin.dynamics.events import FREE, LOWER, UPPER, Work, crossing
 from kin.dynamics.excitation import Moved, intended_faces

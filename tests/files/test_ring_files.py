@@ -16,7 +16,7 @@ from camgeo.machining.compensation import compensated
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.recipe.machining import Compensation
-from camgeo.synthesis.design import intended
+from camgeo.synthesis.intent import intended
 from kin.judge.verify import Limits, verify
 
 CAM = (

@@ -10,7 +10,8 @@ import pytest
 import camgeo
 from camgeo.measures.remarks import LOOSE
 from camgeo.recipe.loading import load_text
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.judge.contour_checks import MOST_SHARE, NO_LIMIT, STEEP, is_loose, stroke_of
 
 if TYPE_CHECKING:

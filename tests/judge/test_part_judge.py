@@ -9,7 +9,7 @@ from support import followers
 from support.heavy import ezdxf
 from support.parts import failures, files_of, recipe_of
 
-from camgeo.synthesis.design import intended
+from camgeo.synthesis.intent import intended
 from kin.contour.contour import Contour
 from kin.follower.envelope import FlatEnvelope
 from kin.judge.holes import Hole, Tally, apart, round_hole, tally

@@ -18,7 +18,8 @@ from support.square_frame import RESTS, Bars, Bench
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.judge.verify import Intent, Limits, verify
 from kin.law.frame_swing import frame_swing
 from kin.law.support_function import lift_constant_breadth

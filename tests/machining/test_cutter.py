@@ -14,7 +14,8 @@ from camgeo.curve.undercut.causes import UndercutError
 from camgeo.machining.cutter import cutter_path
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.contour.contour import Contour
 from kin.read.files import read_drawing
 

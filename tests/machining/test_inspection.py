@@ -10,7 +10,8 @@ import pytest
 from camgeo.machining.inspection import inspection_table
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.follower import FlatPair
 

@@ -447,7 +447,7 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
     recipe = load(path)
     exact = recipe.cam.exact()
     intent = exact.law
-    assert exact.surface.curve is not None
+    assert exact.surfaces[0].curve is not None
     bore = (recipe.part.bore or 0) / 2
     if isinstance(intent, Lift):
         theta = np.linspace(0, 2 * np.pi, 7201)
@@ -460,7 +460,7 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
         theta = np.linspace(0, 2 * np.pi, 72001)
         low, high = 0.0, intent.derivatives(theta, 0)[0].max()
         high = np.degrees(high) if exact.motion.unit == "deg" else high
-        frame = exact.surface.base.shape.sample(theta)
+        frame = exact.surfaces[0].base.shape.sample(theta)
         radius = 1 / (frame.turn / frame.speed).max()
         assert radius > recipe.cam.touch.radius
         assert isinstance(recipe.cam, DiscCam | ConstantDiameterCam)

@@ -33,10 +33,10 @@ def sized(text: str) -> Any:
     cam: Any = recipe.cam
     exact = cam.exact()
     rising, falling = cam.sizing.angles
-    low, high = exact.surface.extremes("slope")
+    low, high = exact.surfaces[0].extremes("slope")
     assert math.atan(high.value) <= rising + 1e-9 * DEGREE
     assert -math.atan(low.value) <= falling + 1e-9 * DEGREE
-    radius = least_radius(exact.surface.base)[0] - cam.touch.radius
+    radius = least_radius(exact.surfaces[0].base)[0] - cam.touch.radius
     assert radius >= cam.sizing.radius * (1.0 - 1e-9)
     return cam
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from camgeo.output.dispatch import make
 from camgeo.output.job import Job
 from camgeo.recipe.loading import read
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.judge.contour_checks import Limits
 from kin.judge.verify import verify
 

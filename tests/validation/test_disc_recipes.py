@@ -22,7 +22,8 @@ from camgeo.curve.rates import cut, stretches
 from camgeo.curve.sizing import least_face, least_stem, stem_needs
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load, load_text
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.law.sources.lobe import coefficients
 
 if TYPE_CHECKING:

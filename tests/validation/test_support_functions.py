@@ -6,7 +6,7 @@ held against Barbier's theorem, areas and lifts against closed forms written out
 
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 PI = np.pi
 SHAFT = (16.0, 7.5)  # Figure 6

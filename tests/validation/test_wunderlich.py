@@ -9,11 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
-from camgeo.synthesis.design import designed, intended
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.law.programme import IntentError
 
 PI = np.pi

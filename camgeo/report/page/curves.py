@@ -12,7 +12,7 @@ from camgeo.checks.declared import BENT
 from camgeo.curve.support import is_sharp
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PRESSURE_ANGLE
 from camgeo.report.page.followers import SHAFT
-from camgeo.synthesis.design import intended
+from camgeo.synthesis.intent import intended
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.checks.declared import BENT, PRESSURE, REVERSAL, WALL
-from camgeo.synthesis.design import intended
+from camgeo.synthesis.intent import intended
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve

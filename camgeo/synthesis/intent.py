@@ -1,0 +1,55 @@
+"""What a file is held against, in kin's words: the part that it is meant to be, and what is permitted of it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from camgeo.recipe.linkage import output_slides
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
+    from camgeo.synthesis.design import Design
+    from kin.judge.verify import Intent as Judged
+    from kin.judge.verify import Limits
+
+
+def intended(recipe: Recipe, design: Design) -> Judged:
+    """What kin is given of the part: the follower with its law, and how the part is drawn."""
+    from kin.judge.contour_checks import DwellAsked
+    from kin.judge.verify import Intent
+
+    driven, asked = design.driven, recipe.dwell
+    (gauge,) = design.exact.gauges.values()
+    turns = driven is not None and driven.turns
+    intent = Intent(
+        follower=gauge,
+        mm=recipe.mm,
+        mirrored=recipe.rotation == "ccw",
+        bore=recipe.part.bore,
+        thickness=recipe.part.thickness,
+        outer=recipe.part.outer,
+        trimmed=design.trimmed,
+        mechanism=driven.mechanism if driven is not None and turns else None,
+        swing=recipe.cam.frame_swing() if turns else None,
+        dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
+    )
+    if design.body is None:
+        return intent
+    from camgeo.synthesis.part.as_intent import cross_holes_of, holes_of, layers_of
+
+    body = design.body
+    return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
+
+
+def permitted(recipe: Recipe, tolerance: float) -> Limits:
+    """What kin permits: the tolerance, and the recipe's own limits of motion and output (degrees for a swing)."""
+    from kin.judge.verify import Limits
+
+    motion, output = recipe.verify.motion_error, recipe.verify.output_error
+    if output is not None and recipe.linkage is not None and not output_slides(recipe.linkage):
+        output = math.degrees(output)
+    if motion is not None and recipe.cam.arrangement.unit == "deg":
+        motion = math.degrees(motion)
+    return Limits(tolerance, motion, output=output)
