@@ -15,7 +15,7 @@ import kin.follower.roller
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.guide import Arm, Line
-from kin.follower.laws import ByLaw, BySwing
+from kin.follower.laws import ByLaw, Swing
 from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.contacts import LEADING, TRAILING
@@ -211,8 +211,8 @@ def test_a_short_spike_between_the_samples_is_found():
     [
         ByLaw(rising(0.2, 0.5)),
         ByLaw(rising(0.2, 0.5, ("harmonic", "parabolic"))),
-        BySwing(inch().transmission),
-        BySwing(from_delta(4, 3, 60.0, {1: 625.0}, {})),
+        Swing(inch().transmission),
+        Swing(from_delta(4, 3, 60.0, {1: 625.0}, {})),
     ],
 )
 def test_bounds_of_a_law_hold_and_are_near(intended):
@@ -234,7 +234,7 @@ def test_bounds_of_a_law_hold_and_are_near(intended):
 def test_rows_of_a_swing_are_those_of_the_transmission():
     transmission = inch().transmission
     phi = np.concatenate([np.linspace(-9.0, 9.0, 5000), transmission.at(transmission.breaks, 0)[0][0]])
-    rows, exact = BySwing(transmission).rows(phi), transmission.psi_of_shaft(phi, 2)
+    rows, exact = Swing(transmission).rows(phi), transmission.psi_of_shaft(phi, 2)
     assert rows[0] == pytest.approx(exact[0], abs=1e-14)
     assert rows[1] == pytest.approx(exact[1], abs=1e-10)
     assert rows[2] == pytest.approx(exact[2], abs=1e-6)
