@@ -152,11 +152,11 @@ def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[s
     """One run: entry of the report, and its check."""
     from kin.dynamics.drive import drives
     from kin.dynamics.excitation import Faces
-    from kin.follower.drive import Moved
+    from kin.follower.drive import Shifted
 
     faces = _faces(scene, design, file)
     if scene.asked.rate:  # the spring's force is given at the lowest place
-        faces = Faces(Moved(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
+        faces = Faces(Shifted(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
     ends = [end for rest in scene.rests for end in rest]
     found = drives([face for face in faces if face is not None], ends)
     entry: dict[str, Any] = {"from": "intended" if file is None else file.path.name}

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kin.follower.drive import Moved
+from kin.follower.drive import Shifted
 from kin.follower.guide import METRE
 
 if TYPE_CHECKING:
@@ -87,8 +87,8 @@ def intended_faces(follower: Follower, play: float | None) -> Faces:
     motion: Motion = Intended(follower)
     if play is None:
         first = follower.contacts[0].sense
-        return Faces(motion if first > 0 else Moved(motion, -1.0), None)
-    return Faces(motion, Moved(motion, 1.0, play))
+        return Faces(motion if first > 0 else Shifted(motion, -1.0), None)
+    return Faces(motion, Shifted(motion, 1.0, play))
 
 
 def measured_faces(follower: Follower, contour: Contour, play: float | None) -> Faces:

@@ -47,7 +47,7 @@ class Drive(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Moved:
+class Shifted:
     """sign * drive + offset, where the shaft stands `turned` ahead, radians."""
 
     drive: Drive

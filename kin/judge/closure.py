@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.follower.drive import Moved
+from kin.follower.drive import Shifted
 from kin.follower.follower import Closure, ContactError, Play
 from kin.judge.check import Check, failed
 from kin.judge.contour_checks import fine, play_checks
@@ -104,7 +104,7 @@ def _rests(surface: SurfaceIntent, follower: Follower, contour: Contour) -> Driv
     contact = surface.contact
     if contact is None:
         return rest
-    return Moved(rest, float(contact.sense), -contact.sense * follower.si * contact.zero, contact.turned)
+    return Shifted(rest, float(contact.sense), -contact.sense * follower.si * contact.zero, contact.turned)
 
 
 def _play(pushed: Drive, stopped: Drive, gauge: Follower, size: float) -> Play:
