@@ -103,11 +103,12 @@ def _searched(ask: Ask, arguments: argparse.Namespace) -> tuple[Outcome | None, 
 
 
 def _means() -> Means:
-    from camgeo.sweep.search.evaluator import REASONS, figures, measure
+    from camgeo.sweep.search.ask import Ask
+    from camgeo.sweep.search.figures import REASONS, figures
     from camgeo.sweep.search.refine import polish
     from camgeo.sweep.search.search import Means
 
-    return Means(figures, measure, polish, REASONS)
+    return Means(figures, Ask.measured, polish, REASONS)
 
 
 def _complain(ask: Ask, text: str) -> None:
