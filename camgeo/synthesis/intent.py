@@ -35,11 +35,12 @@ def intended(recipe: Recipe, design: Design) -> Judged:
         swing=recipe.cam.frame_swing() if turns else None,
         dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
     )
-    if design.body is None:
+    (disc,) = design.discs
+    if recipe.part.plain or disc.body is None:
         return intent
     from camgeo.synthesis.part.as_intent import cross_holes_of, holes_of, layers_of
 
-    body = design.body
+    body = disc.body
     return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,18 +15,23 @@ from camgeo.curve.measures import farthest
 from camgeo.curve.support import is_sharp
 from camgeo.synthesis.checks import slack
 from camgeo.synthesis.part.shapes import Opening, disc, strip
-from camgeo.synthesis.part.walls import Gap, contour_gap, inside_gap, outside_gap
+from camgeo.synthesis.part.walls import Gap, contour_gap, inside_gap, least_wall, outside_gap
 from kin.judge.check import Check
 from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
+    from typing import TypeAlias
 
+    from camgeo.cams.family import Surface
     from camgeo.curve.curve import Curve
     from camgeo.synthesis.part.body import Body, Unmarked
 
+    Contours: TypeAlias = Sequence[tuple[Surface, Curve]]
+
 MOST_NAMED = 6  # pairs named in a message
 ROUND = {"bore": "part.bore", "bolt hole": "part.bolts.hole", "dowel": "part.dowel.hole"}  # openings and their keys
+OPENING, OUTLINE = "opening", "outline"  # as edges: a surface, and the round outline about it
 ROUNDING = 1e-9  # mm, by which a wall that is just held may lie below its limit
 
 
@@ -45,13 +51,23 @@ class Pair(NamedTuple):
 NOWHERE = (float("inf"), float("inf"))  # of a wall that runs all along a face
 
 
-def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Callable[[float], float]) -> list[Check]:
-    """Check the walls of a part, and that the lightening holes asked for found room.
+def bore_check(bore: float, contours: Contours, least: float | None, shaft_deg: Callable[[float], float]) -> Check:
+    """Check the wall round a bore of this diameter in a part that has nothing else; arguments as of `part_checks`."""
+    wall, at = max(least_wall(contour, bore, surface.side) for surface, contour in contours)
+    ok = wall > 0.0 if least is None else wall >= least
+    told = "" if ok else "bore and contour" if wall > -0.5 * bore else "the shaft lies outside the contour"
+    return Check(WALL.name, ok, wall, least or 0.0, "mm", shaft_deg(at), "at_least", detail=told)
+
+
+def part_checks(
+    body: Body, contours: Contours, least: float | None, shaft_deg: Callable[[float], float]
+) -> list[Check]:
+    """Check the walls of a part round its surfaces, and that the lightening holes asked for found room.
 
     `least` is the wall asked for; without one it must be above 0. `shaft_deg` gives the shaft angle of a parameter.
     """
     checks = []
-    pairs = sorted(walls(body, contour), key=lambda pair: pair.gap.wall)
+    pairs = sorted(walls(body, contours), key=lambda pair: pair.gap.wall)
     if pairs:
         limit = 0.0 if least is None else least
         thin = [pair for pair in pairs if not _holds(pair.gap.wall, least)]
@@ -63,7 +79,8 @@ def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Call
         told += more + _free_of_thin_walls(thin, body, limit)
         checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told))
     if body.chamfer is not None:
-        checks.append(_chamfer_check(body, contour, shaft_deg))
+        chamfers = ((surface, _chamfer_check(body, contour, shaft_deg)) for surface, contour in contours)
+        checks += [replace(check, surface=surface.name) for surface, check in chamfers]
     if body.unmarked is not None:
         checks.append(_mark_check(body.unmarked))
     if body.placed is not None:
@@ -102,7 +119,7 @@ def _free_of_thin_walls(thin: list[Pair], body: Body, limit: float) -> str:
     outer = 0.0
     for pair in thin:
         lack = 2.0 * (limit - pair.gap.wall)
-        if (pair.one, pair.other) == ("opening", "outline"):
+        if pair.other == OUTLINE and pair.one.endswith(OPENING):
             outer = max(outer, lack)
             continue
         if pair.gap.wall < 0.0 and any(one.circle is None and one.name in pair[:2] for one in body.openings):
@@ -139,44 +156,51 @@ def _holds(wall: float, least: float | None) -> bool:
     return wall > 0.0 if least is None else wall >= least - ROUNDING
 
 
-def walls(body: Body, contour: Curve) -> Iterator[Pair]:
+def walls(body: Body, contours: Contours) -> Iterator[Pair]:
     """Walls between all pairs of edges; those of openings far apart are left out."""
-    edge, other = body.chamfer or 0.0, "contour" if body.chamfer is None else "chamfer"
-    yield from _ring_walls(body, contour)
+    yield from _outline_walls(body, contours)
     for opening in body.openings:
-        gap = contour_gap(contour, opening.chain, ring=body.outer is not None)
-        yield Pair(opening.name, other, gap._replace(wall=gap.wall - edge))
+        yield _to_surface(opening, body, contours)
     for i, one in enumerate(body.openings):
         for two in body.openings[:i]:
             (x, y), (x2, y2) = one.middle, two.middle
             if (x - x2) ** 2 + (y - y2) ** 2 <= (2.0 * (one.reach + two.reach)) ** 2:
                 yield Pair(two.name, one.name, outside_gap(one.chain, two.chain))
-    yield from _hub_walls(body, contour, edge)
+    yield from _hub_walls(body, contours)
     for opening in body.openings:
         if opening.depth is not None and body.thickness is not None:
             yield Pair(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
 
 
-def _ring_walls(body: Body, contour: Curve) -> Iterator[Pair]:
-    """Walls between the outline of a ring and its openings, the contour first of them."""
-    if body.outer is None:
+def _to_surface(opening: Opening, body: Body, contours: Contours) -> Pair:
+    """The wall between an opening and the surface in whose metal it lies: the widest."""
+    found = [(surface, contour_gap(contour, opening.chain, surface.side)) for surface, contour in contours]
+    surface, gap = max(found, key=lambda row: row[1].wall)
+    edge, name = (0.0, "contour") if body.chamfer is None else (body.chamfer, "chamfer")
+    return Pair(opening.name, f"{surface.name} {name}".strip(), gap._replace(wall=gap.wall - edge))
+
+
+def _outline_walls(body: Body, contours: Contours) -> Iterator[Pair]:
+    """Walls between the round outline of a body and what it has in it, the surfaces first."""
+    if body.outer is None or body.rim is None:
         return
-    radius, far = 0.5 * body.outer, farthest(contour)
-    x, y = contour.sample(np.array([far.at])).point[0].tolist()
-    yield Pair("opening", "outline", Gap(radius - far.value - slack(far), (x, y), far.at))
-    outline = disc("outline", "HOLES", (0.0, 0.0), radius)
+    radius = 0.5 * body.outer
+    for surface, contour in contours:
+        far = farthest(contour)
+        x, y = contour.sample(np.array([far.at])).point[0].tolist()
+        gap = Gap(radius - far.value - slack(far), (x, y), far.at)
+        yield Pair(f"{surface.name} {OPENING}".strip(), OUTLINE, gap)
     for opening in body.openings:
-        yield Pair(opening.name, outline.name, inside_gap(opening.chain, outline.chain))
+        yield Pair(opening.name, OUTLINE, inside_gap(opening.chain, body.rim.chain))
 
 
-def _hub_walls(body: Body, contour: Curve, edge: float) -> Iterator[Pair]:
+def _hub_walls(body: Body, contours: Contours) -> Iterator[Pair]:
     """Walls between the hub and all else; a hole may pass beside the hub or through it."""
     hub = body.hub
     if hub is None:
         return
     round_hub = disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)
-    gap = contour_gap(contour, round_hub.chain)
-    yield Pair("hub", "contour" if body.chamfer is None else "chamfer", gap._replace(wall=gap.wall - edge))
+    yield _to_surface(round_hub, body, contours)
     for opening in body.openings:
         within = opening.name == "bore" or (opening.depth is None and _is_within(opening, hub.diameter))
         gap = (inside_gap if within else outside_gap)(opening.chain, round_hub.chain)

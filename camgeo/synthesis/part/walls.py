@@ -17,6 +17,7 @@ from kin.contour.nearest import nearest, signed_distance
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve, Frame
     from kin.contour.arcs import Arcs
+    from kin.law.contacts import Side
     from kin.numeric.arrays import Array, Indices
 
 LOOKS_PER_TURN = 768  # points of a contour, about, at which the distance is looked at
@@ -33,13 +34,13 @@ class Gap(NamedTuple):
     parameter: float | None = None
 
 
-def least_wall(contour: Curve, bore: float) -> tuple[float, float]:
+def least_wall(contour: Curve, bore: float, side: Side = 1) -> tuple[float, float]:
     """Least wall in mm between a bore of this diameter about the shaft and the contour, and where (parameter).
 
-    Negative where the bore breaks through, and where the shaft lies outside the contour.
+    Negative where the bore breaks through, and where the shaft does not lie in the metal on that side of the contour.
     """
     distance, at = distance_inside(contour, (0.0, 0.0))
-    return distance - 0.5 * bore, at
+    return side * distance - 0.5 * bore, at
 
 
 def distance_inside(contour: Curve, place: tuple[float, float]) -> tuple[float, float]:
@@ -64,8 +65,8 @@ def distance_inside(contour: Curve, place: tuple[float, float]) -> tuple[float, 
     return side * float(distance[nearest_node]), float(nodes[nearest_node])
 
 
-def contour_gap(contour: Curve, chain: Arcs, *, ring: bool = False) -> Gap:
-    """Wall between a closed chain inside a contour, outside that of a ring, and that contour; negative elsewhere."""
+def contour_gap(contour: Curve, chain: Arcs, side: Side = 1) -> Gap:
+    """Wall between a closed chain in the metal on one side of a contour and that contour; negative elsewhere."""
     low, high, first, last = _looked_at(contour)
     falls, rises = _from_chain(chain, first.point, first.tangent), _from_chain(chain, last.point, last.tangent)
     turning = (falls < 0.0) & (rises > 0.0)
@@ -80,7 +81,7 @@ def contour_gap(contour: Curve, chain: Arcs, *, ring: bool = False) -> Gap:
     distance = signed_distance(chain, point)
     least = int(np.argmin(distance))
     wall = float(distance[least])
-    if wall > 0.0 and winds(first.point - chain.start[0]) is ring:
+    if wall > 0.0 and winds(first.point - chain.start[0]) is (side < 0):
         wall = -wall
     return Gap(wall, _place(point[least]), float(nodes[least]))
 
