@@ -8,6 +8,7 @@ from support import followers
 from support.brute_disc import peak
 from support.camfiles import arcs_through, write_dxf
 from support.cases import few
+from support.intent import part_of
 from support.programmes import Segment, law, programme
 
 import kin.follower.roller
@@ -15,7 +16,7 @@ from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.guide import Arm, Line
 from kin.follower.laws import ByLaw, Swing
-from kin.judge.contour_checks import Intent, Limits
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
@@ -168,7 +169,7 @@ def test_a_limit_below_the_true_error_and_above_the_samples_is_broken(tmp_path, 
     follower = inch()
     path = write_dxf(tmp_path / "cam.dxf", follower.envelope.points(np.arange(301) * 2 * np.pi / 301))
     few = np.arange(24) * 2 * np.pi / 24
-    intent, contour = Intent(follower, bore=10.0), through(follower.envelope, 301)
+    intent, contour = part_of(follower, bore=10.0), through(follower.envelope, 301)
     true = follower.judge(contour, few).motion
     monkeypatch.setattr(kin.follower.roller, "MOST_PIECES", 0)
     low = follower.judge(contour, few).motion

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.checks.declared import PRESSURE, REVERSAL, WALL
-from camgeo.synthesis.intent import intended
 
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
@@ -88,7 +87,7 @@ def _linkage(design: Design) -> list[Margin]:
 def _conditions(recipe: Recipe, design: Design) -> list[Margin]:
     if not design.contours:
         return []
-    follower = intended(recipe, design).follower
+    follower = design.exact.gauge
     unit = "deg/mm" if follower.unit == "deg" else ""
     condition = follower.motion_limit(SMALL) / SMALL
     size = max(contour.size for _, contour in design.contours)
