@@ -15,7 +15,7 @@ from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from camgeo.recipe.din6885 import TABLE, key_for
 from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
-from camgeo.synthesis.part.walls import contour_gap, distance_inside, inside_gap, least_wall, outside_gap
+from camgeo.synthesis.part.walls import Looks, contour_gap, distance_inside, inside_gap, least_wall, outside_gap
 from kin.contour.contour import Contour
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 
@@ -44,7 +44,7 @@ def test_reuleaux_about_its_middle():
 
 
 def test_point_in_a_circle():
-    inside, _ = distance_inside(circle((3.0, 4.0)), (7.0, -4.0))
+    inside, _ = distance_inside(Looks.of(circle((3.0, 4.0))), (7.0, -4.0))
     assert inside == pytest.approx(25.0 - math.hypot(7.0 + 3.0, -4.0 + 4.0), abs=1e-12)
 
 
@@ -136,19 +136,19 @@ def test_wall_between_outlines_is_that_of_fine_polygons(one, two, away, angle):
 @given(st.floats(0, 6.28), st.floats(0, 17), st.floats(0.2, 5))
 def test_wall_between_a_hole_and_a_round_contour(angle, away, radius):
     hole = disc("hole", "HOLES", polar(away, angle), radius)
-    gap = contour_gap(circle((0.0, 0.0)), hole.chain)
+    gap = contour_gap(Looks.of(circle((0.0, 0.0))), hole.chain)
     assert gap.wall == pytest.approx(25.0 - away - radius, abs=1e-9)
 
 
 def test_wall_of_a_hole_outside_or_across_the_contour_is_negative():
     contour = circle((0.0, 0.0))
-    assert contour_gap(contour, disc("", "HOLES", (40.0, 0.0), 3.0).chain).wall == pytest.approx(-12.0, abs=1e-9)
-    assert contour_gap(contour, disc("", "HOLES", (25.0, 0.0), 3.0).chain).wall < -2.9
+    assert contour_gap(Looks.of(contour), disc("", "HOLES", (40.0, 0.0), 3.0).chain).wall == pytest.approx(-12.0, abs=1e-9)
+    assert contour_gap(Looks.of(contour), disc("", "HOLES", (25.0, 0.0), 3.0).chain).wall < -2.9
 
 
 def test_wall_to_a_keyway_is_to_its_corners():
     key = Opening("bore", "BORE", keyed(6, 4, 1.8, math.pi / 2))
-    gap = contour_gap(circle((0.0, 0.0)), key.chain)
+    gap = contour_gap(Looks.of(circle((0.0, 0.0))), key.chain)
     assert gap.wall == pytest.approx(25.0 - math.hypot(7.8, 2.0), abs=1e-9)
 
 
