@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 RUN = 8  # pieces under one chord, chords under the next
 BLOCK = 1024  # points at a time
 MOST_PAIRS = 200_000  # of a point and a run; where more remain, fewer points are taken at a time
-ROUNDING = 1e-13  # of the greatest coordinate: by which bounds are widened, so that every piece equally near is looked at
+ROUNDING = (
+    1e-13  # of the greatest coordinate: by which bounds are widened, so that every piece equally near is looked at
+)
 
 
 def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,6 +20,8 @@ from kin.judge.check import Check
 from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
     from camgeo.curve.curve import Curve
     from camgeo.synthesis.part.body import Body, Unmarked
 
@@ -59,7 +60,7 @@ def part_checks(body: Body, looks: Looks, least: float | None, shaft_deg: Callab
     """
     checks = []
     limit = 0.0 if least is None else least
-    pairs = _thinnest(walls(body, looks), limit)
+    pairs = thinnest(walls(body, looks), limit)
     if pairs:
         thin = [pair for pair in pairs if not _holds(pair.gap.wall, least)]
         told = "; ".join(map(str, thin[:MOST_NAMED] or pairs[:1]))
@@ -146,8 +147,8 @@ def _holds(wall: float, least: float | None) -> bool:
     return wall > 0.0 if least is None else wall >= least - ROUNDING
 
 
-def _thinnest(possible: Iterable[Possible], limit: float) -> list[Pair]:
-    """Least wall and all that may be below a limit, thinnest first; what is thicker for sure is not found."""
+def thinnest(possible: Iterable[Possible], limit: float) -> list[Pair]:
+    """The least wall and all others up to a limit, thinnest first; what is thicker for sure is not found."""
     found: list[tuple[float, int, Pair]] = []
     least = math.inf
     for number, (at_least, pair) in sorted(enumerate(possible), key=lambda one: one[1].at_least):
@@ -156,7 +157,8 @@ def _thinnest(possible: Iterable[Possible], limit: float) -> list[Pair]:
         made = pair()
         found.append((made.gap.wall, number, made))
         least = min(least, made.gap.wall)
-    return [pair for *_, pair in sorted(found)]
+    found.sort()
+    return [pair for wall, _, pair in found if wall <= max(least, limit)]
 
 
 def walls(body: Body, looks: Looks) -> Iterator[Possible]:
