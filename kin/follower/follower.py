@@ -52,7 +52,7 @@ def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Tran
     if isinstance(law, Transmission):
         _demand(arm and len(others) == 1 and _share_arm(first, others[0]), "a transmission has two contacts on one arm")
         if not flat:
-            return DoubleRoller(tuple(contacts), law)
+            return DoubleRoller(tuple(contacts), side, law)
         _demand(all(one.datum == 0.5 * math.pi for one in contacts), "the faces of a pair count from across the line")
         return FlatPair(tuple(replace(one, datum=one.apart) for one in contacts), law)
     _demand(first.sense == 1 and first.turned == 0.0, "contact 1 pushes the follower out, where the shaft stands")
@@ -63,9 +63,9 @@ def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Tran
     raised = law.raised(first.zero)
     if others:
         _demand(len(others) == 1 and _opposite(first, others[0]), "two contacts on a line are opposite")
-        return Yoke(held, Lift(raised)) if flat else RollerYoke(held, raised)
+        return Yoke(held, Lift(raised)) if flat else RollerYoke(held, side, raised)
     if not flat:
-        return Roller(held, raised, side)
+        return Roller(held, side, raised)
     return SwingingFace(held, raised) if arm else FlatFace(held, Lift(raised))
 
 
