@@ -360,7 +360,7 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     """With a bore the wall is a check."""
     if recipe.part.bore is not None or not design.contours:
         return None
-    from camgeo.synthesis.part.walls import distance_inside, winds
+    from camgeo.synthesis.part.walls import Looks, distance_inside, winds
 
     distances = []
     for surface, contour in design.contours:
@@ -368,7 +368,7 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
         ring = contour.sample(np.concatenate(runs)).point
         if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * surface.curve.size:
             continue  # by far; what is nearer is looked at closely
-        distances.append(distance_inside(contour, (0.0, 0.0)))
+        distances.append(distance_inside(Looks.of(contour), (0.0, 0.0)))
     distance, at = min(distances, default=(math.inf, 0.0))
     if distance > 0.0:
         return None

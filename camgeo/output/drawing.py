@@ -85,7 +85,7 @@ def _reference(job: Job) -> list[Reference]:
     """Centre, base or prime circle, and the pitch curve: to look at, not to cut."""
     from camgeo.files.dxf import Circle, Point, Trace
     from camgeo.fit.arcs import fit_arcs
-    from camgeo.synthesis.part.walls import distance_inside
+    from camgeo.synthesis.part.walls import Looks, distance_inside
 
     recipe, cam = job.recipe, job.recipe.cam
     pitches = {id(surface.base): surface for surface in job.design.exact.surfaces}.values()
@@ -97,7 +97,7 @@ def _reference(job: Job) -> list[Reference]:
             found.append(Circle(name, (0.0, 0.0), radius))
             continue
         for surface in pitches:
-            least = abs(distance_inside(surface.base, (0.0, 0.0))[0])
+            least = abs(distance_inside(Looks.of(surface.base), (0.0, 0.0))[0])
             if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
                 found.append(Circle(name, (0.0, 0.0), least))
             if surface.radius:

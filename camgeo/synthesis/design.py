@@ -317,13 +317,15 @@ def _with_body(recipe: Recipe, disc: Disc, exact: ExactCam) -> tuple[Disc, list[
         return disc, []
     from camgeo.synthesis.part.body import body_of
     from camgeo.synthesis.part.checks import bore_check, part_checks
+    from camgeo.synthesis.part.walls import Looks
 
     part, shaft_deg = recipe.part, exact.motion.shaft_deg
-    body = body_of(part, disc.contours[0][1])
+    looks = [Looks.of(contour, surface.side, surface.name) for surface, contour in disc.contours]
+    body = body_of(part, looks[0])
     if not part.plain:
-        checks = part_checks(body, disc.contours, part.wall, shaft_deg)
+        checks = part_checks(body, looks, part.wall, shaft_deg)
     else:
-        checks = [] if part.bore is None else [bore_check(part.bore, disc.contours, part.wall, shaft_deg)]
+        checks = [] if part.bore is None else [bore_check(part.bore, looks, part.wall, shaft_deg)]
     if all(check.ok for check in checks):
         return replace(disc, body=body), checks
     return Disc(tuple(replace(made, contour=None) for made in disc.surfaces)), checks

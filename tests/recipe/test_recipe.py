@@ -29,10 +29,11 @@ from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, Re
 from camgeo.curve.moving_frame import Displacement
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import Export, FileRequest
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load, read
 from camgeo.recipe.machining import Compensation, Manufacture
 from camgeo.recipe.part import Part
-from camgeo.recipe.recipe import RECIPE, Recipe, Verify
+from camgeo.recipe.recipe import Recipe, Verify
 from camgeo.recipe.starter import KINDS, starter
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from support.discs import AREAS, DEGREE, POINTS
 
+from camgeo.cams.least_size import least_face, least_stem, stem_needs
 from camgeo.curve.backwards import least_hollow
 from camgeo.curve.curvature import least_radius
 from camgeo.curve.curve import Curve
 from camgeo.curve.extremes import greatest, least
 from camgeo.curve.parallel import Parallel
 from camgeo.curve.rates import cut, stretches
-from camgeo.curve.sizing import least_face, least_stem, stem_needs
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load, load_text
 from camgeo.synthesis.design import designed
