@@ -77,7 +77,7 @@ def fits() -> None:
         for name, fit in (("arcs", fit_arcs), ("polygon", fit_polygon), ("spline", fit_spline)):
 
             def whole(fit: Callable[[Curve, float], object] = fit, cam: object = cam) -> object:
-                return fit(cam.exact().surface.curve, MICROMETRE)
+                return fit(cam.exact().surfaces[0].curve, MICROMETRE)
 
             count = whole().count
             t = np.linspace(0.0, 6.0, count)

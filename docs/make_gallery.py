@@ -7,6 +7,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from drawing import keep
+
 from camgeo.cams.double_roller import DoubleRollerCam
 from camgeo.cams.flat_pair import FlatPairCam
 from camgeo.output.pipeline import shown
@@ -44,29 +46,25 @@ def family(recipe: Recipe) -> str:
 def main() -> None:
     """Draw all recipes, and put them on one page."""
     folder = ROOT / "docs" / "gallery"
-    folder.mkdir(exist_ok=True)
     cells: dict[str, list[str]] = {name: [] for name in FAMILIES}
-    drawn = set()
+    pictures = {}
     for path in sorted((ROOT / "recipes").glob("*.yaml")):
         recipe = load(path)
         _, found = shown(recipe)
-        picture = folder / f"{path.stem}.svg"
-        picture.write_text(still(found.scene, round(SHAFT_DEG / 360.0 * STEPS), recipe.name), encoding="utf-8")
-        drawn.add(picture)
+        pictures[path.stem] = still(found.scene, round(SHAFT_DEG / 360.0 * STEPS), recipe.name)
         cells[family(recipe)].append(
-            f'<td align="center" valign="bottom"><img src="gallery/{picture.name}" width="260" alt="{recipe.name}"><br>'
+            f'<td align="center" valign="bottom"><img src="gallery/{path.stem}.svg" width="260" '
+            f'alt="{recipe.name}"><br>'
             f'<a href="../recipes/{path.name}">{recipe.name}</a><br><sub>{escape(recipe.about)}</sub></td>'
         )
-        print(f"{picture.name}: {picture.stat().st_size} bytes")
-    for old in set(folder.glob("*.svg")) - drawn:
-        old.unlink()
+    total = keep(folder, pictures)
     text = [HEAD]
     for name, found_cells in cells.items():
         rows = [found_cells[i : i + COLUMNS] for i in range(0, len(found_cells), COLUMNS)]
         table = "\n".join("<tr>\n" + "\n".join(row) + "\n</tr>" for row in rows)
         text.append(f"## {name}\n\n<table>\n{table}\n</table>\n")
     (ROOT / "docs" / "gallery.md").write_text("\n".join(text), encoding="utf-8")
-    print(f"{len(drawn)} pictures, {sum(path.stat().st_size for path in drawn)} bytes in all")
+    print(f"{len(pictures)} pictures, {total} bytes in all")
 
 
 if __name__ == "__main__":

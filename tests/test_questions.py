@@ -88,7 +88,7 @@ def families() -> dict[str, Family]:
             classes=classes_in("kin/follower", "Follower") | {kind.__name__ for kind in (*GUIDES, *TOUCHES)} | {"Arm"},
             kinds=frozenset(
                 [
-                    *("flat face", "yoke", "square frame", "double roller", "flat pair", "roller yoke"),
+                    *("yoke", "square frame", "double roller", "flat pair", "roller yoke"),
                     *(f"{guide.word} {touch.word}" for guide in GUIDES for touch in TOUCHES),
                 ]
             ),

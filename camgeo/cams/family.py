@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple, TypeAlias
 
 from camgeo.schema.fields import Field, Kind
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.frame_swing import FrameSwing
     from kin.law.joints import Joint
+    from kin.law.piecewise import Piecewise
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
     from kin.numeric.arrays import Array
@@ -60,7 +62,8 @@ class Surface:
     is the angle between the contact's normal and the follower's way, rad, over parameters of the curve (n,), above 0
     where the cam drives a rise; `place` is where a flat face is touched, mm along it. `series` are figures over the
     shaft angle whose extremes are proved: slope, the tangent of the pressure angle; contact, the place on a flat face,
-    mm; spin, turns of the roller per turn of the shaft.
+    mm; spin, turns of the roller per turn of the shaft. `name` is that by which contacts and reports tell it from the
+    cam's other surfaces, empty where there is one; `disc` counts the discs on the shaft.
     """
 
     base: Curve
@@ -70,6 +73,8 @@ class Surface:
     pressure: Callable[[Array], Array] = upright
     place: Callable[[Array], Array] | None = None
     series: Mapping[str, Figure] = field(default_factory=dict)
+    name: str = ""
+    disc: int = 0
     _extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:
@@ -101,9 +106,10 @@ class Follower:
 
     @property
     def arrangement(self) -> Arrangement:
-        """Guide and touch of its contacts, and how many they are."""
+        """Guide and touch of its contacts, and in how many places they are: one roller may touch two surfaces."""
         first = self.contacts[0]
-        return Arrangement(type(first.guide), type(first.touch), len(self.contacts))
+        places = {replace(contact, touch=first.touch, surface=first.surface) for contact in self.contacts}
+        return Arrangement(type(first.guide), type(first.touch), len(places))
 
     @property
     def width(self) -> float | None:
@@ -252,18 +258,26 @@ class ExactCam(ABC):
 
     @property
     @abstractmethod
-    def surface(self) -> Surface:
-        """The surface that gives the motion."""
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Every surface that the follower touches, in the order of reports."""
+
+    @cached_property
+    def gauges(self) -> dict[str, Gauge]:
+        """What kin judges surfaces by, each by its name: a follower made of the same contacts by kin's own means."""
+        from kin.follower.follower import followers_of
+
+        sides = {surface.name: surface.side for surface in self.surfaces}
+        return followers_of(self.follower.contacts, self.judged_law, sides)
 
     @property
-    def surfaces(self) -> tuple[Surface, ...]:
-        """Every surface that a follower touches."""
-        return (self.surface,)
+    def gauge(self) -> Gauge:
+        """What kin judges the first surface by."""
+        return self.gauges[self.surfaces[0].name]
 
     @property
     @abstractmethod
-    def gauge(self) -> Gauge:
-        """What kin judges files by: the follower with its motion, made of the same contacts by kin's own means."""
+    def judged_law(self) -> Piecewise | Transmission:
+        """The law as kin's followers take it."""
 
     @property
     def breaks(self) -> Array:

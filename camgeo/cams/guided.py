@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from camgeo.curve.extremes import Figure
     from camgeo.curve.moving_frame import CentreShape, Displacement, Guide
     from camgeo.curve.rates import Series
-    from kin.follower.follower import Follower as Gauge
     from kin.law.joints import Joint
+    from kin.law.piecewise import Piecewise
 
 LARGER_BASE = "a larger base radius, a smaller stroke, or the same over a wider angle"
 _MARGIN = 1e-3  # rad: sizes are reported rounded, and where two limits meet rounding breaks one
@@ -119,11 +119,9 @@ class ExactLed(ExactCam):
         return position_of(self.follower.contacts[0].guide, self.law)
 
     @cached_property
-    def gauge(self) -> Gauge:
-        """The contacts with the displacement."""
-        from kin.follower.follower import follower_of
-
-        return follower_of(self.follower.contacts, self.law.law(), self.cam.side)
+    def judged_law(self) -> Piecewise:
+        """The displacement."""
+        return self.law.law()
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -141,7 +139,7 @@ class ExactGuided(ExactLed):
     """Under a touch that is round about a centre."""
 
     @cached_property
-    def surface(self) -> Surface:
+    def surfaces(self) -> tuple[Surface, ...]:
         """The centre's path, and the contour within it by the radius (around it, of a ring).
 
         A knife edge's contour is the parallel at 0: it may be hollow, which a flat face's own contour may not.
@@ -154,11 +152,11 @@ class ExactGuided(ExactLed):
         if isinstance(self.cam.touch, Roller):
             series["spin"] = Spin(pitch, radius, float(side))
         curve = Curve.whole(Parallel(pitch, side * radius))
-        return Surface(Curve.whole(pitch), curve, radius, side, pitch.pressure_angle, None, series)
+        return (Surface(Curve.whole(pitch), curve, radius, side, pitch.pressure_angle, None, series),)
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius on this stem; for this length of arm that with the pivot's distance."""
-        from camgeo.curve.sizing import least_arm, least_stem
+        from camgeo.cams.least_size import least_arm, least_stem
 
         guide, pivot = self.follower.contacts[0].guide, ""
         if isinstance(guide, Translating):
@@ -178,8 +176,8 @@ class ExactGuided(ExactLed):
 
     def rounder_pitch(self, radius: float, mm: float) -> str:  # noqa: ARG002 - the least radius is found anew
         """The base radius at which the roller is half of the pitch curve's least convex radius."""
+        from camgeo.cams.least_size import least_prime
         from camgeo.curve.moving_frame import CentreShape
-        from camgeo.curve.sizing import least_prime
 
         if not isinstance(self.cam.touch, Roller):
             return ""

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from camgeo.cams.family import Follower, Surface
     from camgeo.schema.reader import Reader, Values
-    from kin.follower.follower import Follower as Gauge
     from kin.law.joints import Joint
     from kin.law.transmission import Transmission
 
@@ -218,16 +217,14 @@ class ExactPair(ExactCam):
         return SwingPosition(self.law, 0.5 if self.cam.swing_of == "pair" else 1.0)
 
     @cached_property
-    def surface(self) -> Surface:
+    def surfaces(self) -> tuple[Surface, ...]:
         """As the family has it."""
-        return self.cam.surface(self.law, self.out)
+        return (self.cam.surface(self.law, self.out),)
 
-    @cached_property
-    def gauge(self) -> Gauge:
-        """The contacts with the transmission."""
-        from kin.follower.follower import follower_of
-
-        return follower_of(self.follower.contacts, self.law)
+    @property
+    def judged_law(self) -> Transmission:
+        """The transmission."""
+        return self.law
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:

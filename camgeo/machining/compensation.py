@@ -77,7 +77,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
     name = f"{recipe.name}, {by.told(recipe.mm)}"
     made = replace(recipe, name=name, cam=exact.cam, part=part)
     if exact.free:
-        contour = exact.surface.curve if design.contour is not None else None
+        contour = exact.surfaces[0].curve if design.contour is not None else None
     else:
         checks, contour = sound(made, exact)
     if body is not None and body.chamfer is not None and contour is not None:
@@ -86,7 +86,7 @@ def compensated(recipe: Recipe, design: Design, by: Compensation, field: str) ->
         design,
         exact=exact,
         contour=contour,
-        trimmed=is_trimmed(contour, exact.surface),
+        trimmed=is_trimmed(contour, exact.surfaces[0]),
         driven=None,
         body=body,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,22 +29,27 @@ SAME = 1e-12  # of the greatest value: others within it are equal to it
 
 
 def motion_checks(exact: ExactCam) -> list[Check]:
-    """Those of the intended motion's checks that the follower names, in that order."""
-    proofs = exact.proofs
-    return [_proved(name, proofs[name]()) if name in proofs else MADE[name](exact) for name in exact.follower.checks]
+    """Those of the intended motion's checks that the follower names, in that order: of each surface, or of the law."""
+    proofs, found = exact.proofs, []
+    for name in exact.follower.checks:
+        if name in proofs:
+            found.append(_proved(name, proofs[name]()))
+        else:
+            found += [replace(MADE[name](exact, surface), surface=surface.name) for surface in exact.surfaces]
+    return found
 
 
 def _proved(name: str, proof: Proof) -> Check:
     return Check(name, proof.ok, proof.value, proof.limit, proof.unit, proof.at_deg)
 
 
-def _face_length(exact: ExactCam) -> Check:
+def _face_length(exact: ExactCam, surface: Surface) -> Check:
     """How far the contact travels along a face."""
-    if (proved := exact.surface.extremes("contact")) is not None:
+    if (proved := surface.extremes("contact")) is not None:
         least, most = proved
         further = max(proved, key=lambda one: abs(one.value))
         return Check(TRAVEL.name, True, most.value - least.value, None, "mm", degrees(further.at), "at_least")
-    place = exact.surface.place
+    place = surface.place
     if place is None:
         raise TypeError("no contact travels along a face")
     t = spread(exact.breaks, 2.0 * math.pi)
@@ -52,12 +58,11 @@ def _face_length(exact: ExactCam) -> Check:
     return Check(TRAVEL.name, True, low[0] + high[0], None, "mm", degrees(max(low, high)[1]), "at_least")
 
 
-def _pressure_angle(exact: ExactCam) -> Check:
+def _pressure_angle(exact: ExactCam, surface: Surface) -> Check:
     """Greatest angle between the contact normal and the direction in which the follower moves, degrees.
 
     At 90 degrees the cam cannot drive.
     """
-    surface = exact.surface
     if (proved := surface.extremes("slope")) is not None:
         worst = max(proved, key=lambda one: abs(one.value))
         value, at = math.degrees(math.atan(abs(worst.value) + slack(worst))), worst.at
@@ -66,10 +71,10 @@ def _pressure_angle(exact: ExactCam) -> Check:
     return Check(PRESSURE.name, value < 90.0, value, 90.0, "deg", exact.motion.shaft_deg(at))
 
 
-def _constant_diameter(exact: ExactCam) -> Check:
+def _constant_diameter(exact: ExactCam, surface: Surface) -> Check:
     """Constancy of the pitch curve's diameters through the shaft, for two opposite rollers."""
     t = spread(np.mod(exact.breaks, math.pi), math.pi)
-    near, far = (np.hypot(*exact.surface.base.sample(t + by).point.T) for by in (0.0, math.pi))
+    near, far = (np.hypot(*surface.base.sample(t + by).point.T) for by in (0.0, math.pi))
     diameter = near + far
     mean = 0.5 * float(diameter.max() + diameter.min())
     off = np.abs(diameter - mean)
@@ -77,9 +82,9 @@ def _constant_diameter(exact: ExactCam) -> Check:
     return Check(DIAMETER.name, bool(off[worst] <= limit), float(off[worst]), limit, "mm", degrees(float(t[worst])))
 
 
-def _face_width(exact: ExactCam) -> Check:
+def _face_width(exact: ExactCam, surface: Surface) -> Check:
     """Whether the contact stays on the face, whose width is centred on the stem's axis."""
-    value, at = needed_width(exact.surface)
+    value, at = needed_width(surface)
     width = exact.follower.width
     return Check(FACE_WIDTH.name, width is None or value <= width, value, width, "mm", at)
 
@@ -98,10 +103,10 @@ def jam_angle(exact: ExactCam) -> tuple[float, float]:
 
     On the rise that is the greatest of all, or where the rise begins: of an eccentric stem |e| over its foot.
     """
-    proved = exact.surface.extremes("slope")
-    if proved is None:
+    proved = [slope[1] for surface in exact.surfaces if (slope := surface.extremes("slope")) is not None]
+    if not proved:
         raise TypeError("no stem is led in a guide")
-    most = proved[1]
+    most = max(proved, key=lambda one: one.value + slack(one))
     steepest = max(most.value + slack(most), exact.follower.lean)
     return math.degrees(math.atan(steepest)), degrees(most.at)
 
@@ -114,7 +119,7 @@ def guide_checks(recipe: Recipe, exact: ExactCam, contour: Curve | None) -> list
         limit = math.degrees(train.guide.jam)
         found.append(Check(JAM.name, value < limit, value, limit, "deg", at))
     if made is not None and made.wheel is not None and contour is not None:
-        radius, place = hollow_radius(exact.surface.side, contour)
+        radius, place = hollow_radius(exact.surfaces[0].side, contour)
         at_deg = None if math.isinf(radius) else exact.motion.shaft_deg(place)
         wheel = 0.5 * made.wheel
         told = "the contour has no hollow" if math.isinf(radius) else ""
@@ -155,10 +160,10 @@ def _greatest(of: Callable[[Array], Array], t: Array) -> tuple[float, float]:
     return value, at
 
 
-MADE: dict[str, Callable[[ExactCam], Check]] = {
+MADE: dict[str, Callable[[ExactCam, Surface], Check]] = {
     DIAMETER.name: _constant_diameter,
     TRAVEL.name: _face_length,
     FACE_WIDTH.name: _face_width,
     PRESSURE.name: _pressure_angle,
 }
-"""How each check of an intended motion is made that hangs on no law; the others are its proofs."""
+"""How each check of a surface under its follower is made that hangs on no law; the others are its proofs."""

@@ -54,7 +54,7 @@ class Design:
     @property
     def surface(self) -> Surface:
         """The exact curve."""
-        return self.exact.surface
+        return self.exact.surfaces[0]
 
     @property
     def motion(self) -> Position:
@@ -76,7 +76,7 @@ def designed(recipe: Recipe, clock: Clock | None = None) -> Design:
         with clock.stage("motion"):
             exact = recipe.cam.exact(framed=recipe.linkage is not None)
         with clock.stage("profile"):
-            surface = exact.surface
+            surface = exact.surfaces[0]
     except IntentError as error:
         raise recipe.error(f"cam.{error.field}", error.message) from error
     try:
@@ -122,7 +122,7 @@ def sound(recipe: Recipe, exact: ExactCam) -> tuple[list[Check], Curve | None]:
     from camgeo.curve.undercut.causes import UndercutError
     from camgeo.curve.undercut.undercut import MOST_TOLD, undercuts
 
-    trim, surface = recipe.cam.undercut == "trim", exact.surface
+    surface, trim = exact.surfaces[0], recipe.cam.undercut == "trim"
     of_kind = {"local": UNDERCUT_LOCAL, "global": UNDERCUT_GLOBAL}
     # the base curve's radii are the contour's and the roller's together; its own bounds need not be computed for that
     roller = surface.radius

@@ -93,7 +93,7 @@ class View(Generic[G_co, T_co]):
         for one in self.contacts:
             if not (isinstance(one.guide, guide) and isinstance(one.touch, touch)):
                 raise TypeError(f"no {touch.__name__} on a guide {guide.__name__}: {one}")
-            contacts.append(Contact(one.guide, one.touch, one.datum, one.sense, one.apart, one.turned))
+            contacts.append(Contact(one.guide, one.touch, one.datum, one.sense, one.apart, one.turned, one.surface))
         return View(self.recipe, self.design, tuple(contacts))
 
 

@@ -13,7 +13,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
+import numpy as np
+
+from kin.follower.drive import Shifted
 from kin.follower.guide import METRE
+from kin.follower.laws import ByLaw, Swing
 from kin.follower.rests import dwells_of_law, dwells_of_transmission
 
 if TYPE_CHECKING:
@@ -23,6 +27,7 @@ if TYPE_CHECKING:
     from kin.follower.drive import Drive
     from kin.follower.envelope import Envelope
     from kin.follower.motion_error import Judged, Play
+    from kin.follower.tracking import Law
     from kin.law.contacts import Contact, Guide, Touch, Unit
     from kin.law.piecewise import Piecewise
     from kin.law.transmission import Transmission
@@ -32,33 +37,17 @@ Rests = tuple[tuple[float, float], ...]
 
 
 class Motion(Protocol):
-    """An intended motion over the shaft angle; `Lift`, `Piecewise` and `Swing` are."""
+    """An intended motion over the shaft angle; `Lift`, `Piecewise` and `kin.follower.laws.Swing` are."""
 
     @property
     def breaks(self) -> Array:
         """Shaft angles in [0, 2 pi) where the second derivative may jump."""
 
-    def derivatives(self, phi: Array, order: int) -> Array:
-        """Position, mm or radians, and its derivatives at shaft angles phi (n,): (order + 1, n)."""
+    def derivatives(self, phi: Array, order: int, side: int = 1) -> Array:
+        """Position, mm or radians, and its derivatives at shaft angles phi (n,): (order + 1, n).
 
-
-@dataclass(frozen=True, eq=False)
-class Swing:
-    """The swing of a double follower over the shaft angle, `share` times psi, radians."""
-
-    transmission: Transmission
-    share: float = 1.0
-
-    @cached_property
-    def breaks(self) -> Array:
-        """Shaft angles of the law's breaks."""
-        phi: Array = self.transmission.at(self.transmission.breaks, 0)[0][0]
-        return phi
-
-    def derivatives(self, phi: Array, order: int) -> Array:
-        """Swing and its derivatives at shaft angles phi (n,): (order + 1, n)."""
-        rows: Array = self.share * self.transmission.psi_of_shaft(phi, order)
-        return rows
+        At a break they are those from the right, or from the left (side -1).
+        """
 
 
 @dataclass(frozen=True)
@@ -154,6 +143,11 @@ class Follower(ABC):
     def drives(self, contour: Contour) -> Sequence[Drive]:
         """What each contact feels of a contour over the shaft angle: its own position, in SI."""
 
+    def resting(self, contour: Contour) -> list[Shifted]:
+        """Position, metres or radians, with each of its contacts resting on a contour."""
+        each = zip(self.contacts, self.drives(contour), strict=True)
+        return [Shifted(drive, float(one.sense), -one.sense * self.si * one.zero) for one, drive in each]
+
     @abstractmethod
     def judge(self, contour: Contour, phi: Array) -> Judged:
         """Motion error and play; rms and increments are from the shaft angles phi (n,).
@@ -171,8 +165,27 @@ class Follower(ABC):
 
 
 @dataclass(frozen=True, eq=False)
-class OfLaw(Follower):
-    """A follower whose intended motion is a law over the shaft angle."""
+class Moved(Follower):
+    """A follower on a guide or an arm, whose intended motion runs over a parameter that its envelope shares."""
+
+    @property
+    @abstractmethod
+    def course(self) -> Law:
+        """The intended motion over the shaft angle, as contact is followed along it."""
+
+    @property
+    @abstractmethod
+    def breaks(self) -> Array:
+        """Parameters in [0, 2 pi) at which the second derivative may jump, rising."""
+
+    @abstractmethod
+    def over(self, parameter: Array) -> tuple[Array, Array]:
+        """Shaft angle and position with two derivatives by the parameter, (3, n) each."""
+
+
+@dataclass(frozen=True, eq=False)
+class OfLaw(Moved):
+    """A follower whose intended motion is a law over the shaft angle, which is the parameter."""
 
     law: Piecewise
 
@@ -182,14 +195,29 @@ class OfLaw(Follower):
         return self.law
 
     @cached_property
+    def course(self) -> ByLaw:
+        """The law with bounds of how steep it is."""
+        return ByLaw(self.law)
+
+    @cached_property
     def rests(self) -> Rests:
         """Dwells of the law."""
         return tuple(dwells_of_law(self.law))
 
+    @property
+    def breaks(self) -> Array:
+        """Those of the law."""
+        return self.law.breaks
+
+    def over(self, parameter: Array) -> tuple[Array, Array]:
+        """Shaft angle and position, (3, n) each."""
+        angle = np.stack([parameter, np.ones_like(parameter), np.zeros_like(parameter)])
+        return angle, self.law.derivatives(parameter, 2)
+
 
 @dataclass(frozen=True, eq=False)
-class OfTransmission(Follower):
-    """A double follower whose intended motion is the swing of a transmission, `share` times psi."""
+class OfTransmission(Moved):
+    """A double follower whose intended motion is the swing of a transmission, `share` times psi, over its parameter."""
 
     share: ClassVar[float] = 1.0
     transmission: Transmission
@@ -199,7 +227,27 @@ class OfTransmission(Follower):
         """The swing over the shaft angle."""
         return Swing(self.transmission, self.share)
 
+    @property
+    def course(self) -> Swing:
+        """The same."""
+        return self.motion
+
     @cached_property
     def rests(self) -> Rests:
         """Dwells of psi."""
         return tuple(dwells_of_transmission(self.transmission))
+
+    @property
+    def breaks(self) -> Array:
+        """Those of the transmission."""
+        return self.transmission.breaks
+
+    def over(self, parameter: Array) -> tuple[Array, Array]:
+        """Shaft angle and swing, (3, n) each."""
+        phi, psi = self.transmission.at(parameter, 2)
+        return phi, self.share * psi
+
+    def shaft_angle(self, parameter: Array) -> Array:
+        """Shaft angle at which contact A touches the envelope's point of that parameter (n,)."""
+        phi: Array = self.transmission.at(parameter, 0)[0][0]
+        return phi

@@ -16,12 +16,10 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from kin.contour.arcs import cross, dot, left, right, unit
-from kin.follower.projection import Feet, Inverse, better, climb, gauss, grid, searched_again, two_best
+from kin.follower.projection import Feet, better, climb, gauss, grid, searched_again, two_best
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from kin.law.piecewise import Piecewise
     from kin.law.support_function import Lift
     from kin.law.transmission import Transmission
@@ -55,33 +53,48 @@ class Envelope(Protocol):
         """Give the parallel contour inside, at a distance, mm."""
 
 
-class SupportLaw(Protocol):
-    """A support function of period 2 pi; `kin.law.support_function.Lift` is one."""
+class FacePitch(Protocol):
+    """Where a flat face stands over a parameter of period 2 pi; `Transmission` is one, of face A of its pair."""
 
     @property
     def breaks(self) -> Array:
-        """Angles in [0, 2 pi) where the second derivative may jump."""
-
-    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """Return p, mm, and its derivatives by theta (n,), (order + 1, n); at a break from the right, or left (-1)."""
-
-
-class PolarPitch(Protocol):
-    """A face's distance over its normal's direction, both over a parameter; `Transmission` has one."""
-
-    @property
-    def breaks(self) -> Array:
-        """Parameters in [0, 2 pi) where the second derivative may jump."""
+        """Parameters in [0, 2 pi) where the second derivative may jump, rising."""
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Distance r, mm, and direction t, rising, with derivatives: (order + 1, n) each."""
+        """Distance r from the shaft, mm, and direction t of the normal, rising, with derivatives: (order + 1, n) each.
+
+        At a break they are those from the right, or from the left (side -1).
+        """
 
 
 @dataclass(frozen=True, eq=False)
-class FacePitch:
+class LiftPitch:
+    """A face on a line of travel, its normal `tilt` ahead of that, rad; the parameter is the shaft angle.
+
+    `along` is its distance from the shaft along that line, mm.
+    """
+
+    along: Lift
+    tilt: float = 0.0
+
+    @property
+    def breaks(self) -> Array:
+        """Shaft angles of the lift's breaks."""
+        return self.along.breaks
+
+    def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
+        """Give r = cos(tilt) along and t = tau + tilt."""
+        r: Array = np.cos(self.tilt) * self.along.derivatives(tau, order, side)
+        t = np.zeros_like(r)
+        t[0], t[1:2] = tau + self.tilt, 1.0
+        return r, t
+
+
+@dataclass(frozen=True, eq=False)
+class ArmPitch:
     """Line through the pivot of an arm along its face, whose angle to the line from pivot to shaft is `law`, radians.
 
-    r = C sin psi, t = phi + side (psi - pi/2); `side` is 1 where the face trails the pivot.
+    r = C sin psi, t = phi + side (psi - pi/2) over the shaft angle; `side` is 1 where the face trails the pivot.
     """
 
     law: Piecewise
@@ -94,7 +107,7 @@ class FacePitch:
         return self.law.breaks
 
     def pitch(self, tau: Array, order: int, side: int = 1) -> tuple[Array, Array]:
-        """Give r and t over the shaft angle; see `PolarPitch`. The order is at most 2."""
+        """Give r and t; the order is at most 2."""
         psi, rate, bend = self.law.derivatives(tau, 2, side)
         sine, cosine = np.sin(psi), np.cos(psi)
         r = self.pivot * np.stack([sine, cosine * rate, cosine * bend - sine * rate**2])
@@ -104,106 +117,46 @@ class FacePitch:
         return r[: order + 1], t[: order + 1]
 
 
-@dataclass(frozen=True, eq=False)
-class PairSupport:
-    """A polar pitch curve r(t) read as a support function: W's as that of the cam of a flat pair (W section 5)."""
-
-    polar: PolarPitch
-
-    @cached_property
-    def breaks(self) -> Array:
-        """Angles in [0, 2 pi) where the second derivative may jump, rising."""
-        return np.sort(np.mod(self.polar.pitch(self.polar.breaks, 0)[1][0], TURN))
-
-    @cached_property
-    def _parameter(self) -> Callable[[Array], tuple[Array, Array]]:
-        polar = self.polar.pitch(grid(self.polar.breaks, 64), 0)[1][0]
-        if np.allclose(polar, grid(self.polar.breaks, 64), rtol=0.0, atol=1e-13):  # tau is t itself
-            return lambda theta: (theta, np.zeros_like(theta))
-        return Inverse(lambda tau: self.polar.pitch(tau, 2)[1], self.polar.breaks)
-
-    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """Return r, mm, and its derivatives by t, (order + 1, n), order at most 2."""
-        tau, step = self._parameter(np.asarray(theta, dtype=float))
-        tau = np.where(np.abs(step) < 1e-14, tau, tau + step)  # a break stays a break
-        r, t = self.polar.pitch(tau, 2, side)
-        slope = r[1] / t[1]
-        return np.stack([r[0], slope, (r[2] - slope * t[2]) / t[1] ** 2])[: order + 1]
-
-
-@dataclass(frozen=True, eq=False)
-class Outset:
-    """A support function and a distance: that of the parallel curve outside, or inside if it is negative."""
-
-    support: SupportLaw
-    distance: float
-
-    @property
-    def breaks(self) -> Array:
-        """Breaks of the support function."""
-        return self.support.breaks
-
-    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """Return p and the distance, and the derivatives of p, (order + 1, n)."""
-        found = self.support.derivatives(theta, order, side).copy()
-        found[0] += self.distance
-        return found
-
-
-@dataclass(frozen=True, eq=False)
-class Tilted:
-    """Support function of a cam whose face stands askew: its normal `tilt` ahead of the line of travel, radians.
-
-    `along` is the face's distance from the shaft along that line, over the shaft angle: p(t) = cos(tilt) along(t-tilt).
-    """
-
-    along: Lift
-    tilt: float
-
-    @cached_property
-    def breaks(self) -> Array:
-        """Angles in [0, 2 pi) where the second derivative may jump, rising."""
-        return np.sort(np.mod(self.along.breaks + self.tilt, TURN))
-
-    @property
-    def rounding(self) -> float:
-        """As of the lift."""
-        return self.along.rounding
-
-    def derivatives(self, theta: Array, order: int, side: int = 1) -> Array:
-        """Return p and its derivatives by t, (order + 1, n)."""
-        found: Array = np.cos(self.tilt) * self.along.derivatives(theta - self.tilt, order, side)
-        return found
+def support_rows(pitch: FacePitch, tau: Array, side: int = 1) -> tuple[Array, Array]:
+    """Support function p, mm, and two derivatives by the normal's direction t, and t's rows by tau: (3, n) each."""
+    r, t = pitch.pitch(tau, 2, side)
+    slope = r[1] / t[1]
+    return np.stack([r[0], slope, (r[2] - slope * t[2]) / t[1] ** 2]), t
 
 
 @dataclass(frozen=True, eq=False)
 class FlatEnvelope:
-    """The contour enveloped by a flat face; its parameter is theta, the direction of the face's outward normal."""
+    """The contour enveloped by a flat face that stands `out` mm beyond its pitch, over the pitch's parameter."""
 
-    support: SupportLaw
+    pitch: FacePitch
+    out: float = 0.0
+
+    def _support(self, tau: Array, side: int = 1) -> tuple[Array, Array]:
+        p, t = support_rows(self.pitch, tau, side)
+        p[0] += self.out
+        return p, t
 
     def points(self, parameter: Array) -> Array:
-        """Points c = p u + p' n at angles theta (n,): (n, 2)."""
-        p, slope = self.support.derivatives(parameter, 1)
-        u = unit(parameter)
+        """Points c = p u + p' n: (n, 2)."""
+        (p, slope, _), t = self._support(np.asarray(parameter, dtype=float))
+        u = unit(t[0])
         points: Array = p[:, None] * u + slope[:, None] * left(u)
         return points
 
     @cached_property
-    def _table(self) -> tuple[Array, Array, Array]:
-        """theta, smaller radius of curvature rho of the two sides, p."""
-        theta = grid(self.support.breaks)
-        p, _, bend = self.support.derivatives(theta, 2)
-        left_bend = self.support.derivatives(self.support.breaks, 2, -1)[2]
+    def _table(self) -> tuple[Array, Array, Array, Array]:
+        """Parameter, rho = p + p'', the lesser of both sides at a break, p and direction of the normal."""
+        tau, breaks = grid(self.pitch.breaks), self.pitch.breaks
+        (p, _, bend), t = self._support(tau)
         rho = p + bend
-        at = np.searchsorted(theta, np.mod(self.support.breaks, TURN))
-        rho[at] = np.minimum(rho[at], p[at] + left_bend)
-        return theta, rho, p
+        at = np.searchsorted(tau, np.mod(breaks, TURN))
+        rho[at] = np.minimum(rho[at], p[at] + self._support(breaks, -1)[0][2])
+        return tau, rho, p, t[0]
 
     def radii(self) -> tuple[Array, Array]:
-        """Angles theta (m,) closely round the turn, and rho (m,), mm."""
-        theta, rho, _ = self._table
-        return theta, rho
+        """Parameters (m,) closely round the turn, and rho (m,), mm."""
+        tau, rho, _, _ = self._table
+        return tau, rho
 
     @property
     def extent(self) -> float:
@@ -213,58 +166,65 @@ class FlatEnvelope:
     @cached_property
     def regular(self) -> bool:
         """Whether rho >= 0 all round."""
-        _, rho, p = self._table
+        _, rho, p, _ = self._table
         return bool(rho.min() >= -1e-12 * np.abs(p).max())
 
     @cached_property
     def _start(self) -> tuple[Array, Array, Array]:
-        """A point inside (the mean of c(theta), Steiner's), and theta over the direction from there."""
-        theta, _, _ = self._table
-        point = self.points(theta)
+        """A point inside (the mean of the points), and the parameter over the direction from there."""
+        tau = self._table[0]
+        point = self.points(tau)
         inside = point.mean(axis=0)
         away = np.unwrap(np.arctan2(point[:, 1] - inside[1], point[:, 0] - inside[0]))
         away = np.maximum.accumulate(away)
         turns = np.array([-TURN, 0.0, TURN])[:, None]
-        return inside, (away + turns).ravel(), (theta + turns).ravel()
+        return inside, (away + turns).ravel(), (tau + turns).ravel()
 
     def feet(self, points: Array) -> Feet:
         """Feet of points (n, 2): where X.u - p is greatest."""
         if not self.regular:
             return self._search(points)
-        inside, direction, theta = self._start
-        feet = self._climb(points, np.interp(_angle(points - inside), direction, theta))
+        inside, direction, tau = self._start
+        feet = self._climb(points, np.interp(_angle(points - inside), direction, tau))
         return searched_again(feet, points, self, self._search)
 
     def _search(self, points: Array) -> Feet:
         """Feet found from samples all round."""
-        theta, _, p = self._table
-        u = unit(theta)
-        first, second = two_best(lambda x: x @ u.T - p, points, len(theta))
-        return better(self._climb(points, theta[first]), self._climb(points, theta[second]))
+        tau, _, p, t = self._table
+        u = unit(t)
+        first, second = two_best(lambda x: x @ u.T - p, points, len(tau))
+        return better(self._climb(points, tau[first]), self._climb(points, tau[second]))
 
-    def _climb(self, points: Array, theta: Array) -> Feet:
+    def _climb(self, points: Array, tau: Array) -> Feet:
+        turned = np.empty((3, len(tau)))  # t and its derivatives at the last place of each
+        curved = np.empty(len(tau))
+
         def slopes(x: Array, which: Indices) -> tuple[Array, Array, Array]:
-            p, slope, bend = self.support.derivatives(x, 2)
-            u = unit(x)
+            (p, slope, bend), t = self._support(x)
+            u = unit(t[0])
             here = points[which]
             away = dot(here, u)
-            return away - p, dot(here, left(u)) - slope, away + bend
+            rise = dot(here, left(u)) - slope
+            turned[:, which], curved[which] = t, away + bend
+            return away - p, t[1] * rise, t[1] ** 2 * (away + bend) - t[2] * rise
 
-        theta, step, value, slope, bend = climb(slopes, theta, self.support.breaks)
-        curved = bend > 0.0
-        radius = np.where(curved, bend, 1.0)
-        excess = value + np.where(curved, 0.5 * slope * slope / radius, 0.0)
-        return Feet(theta + step, excess, unit(theta + step), np.where(curved, 1.0 / radius, 0.0))
+        tau, step, value, slope, bend = climb(slopes, tau, self.pitch.breaks)
+        round_ = (bend > 0.0) & (curved > 0.0)
+        excess = value + np.where(round_, 0.5 * slope * slope / np.where(round_, bend, 1.0), 0.0)
+        direction = turned[0] + step * (turned[1] + 0.5 * step * turned[2])
+        curvature = np.where(round_, 1.0 / np.where(round_, curved, 1.0), 0.0)
+        return Feet(tau + step, excess, unit(direction), curvature)
 
     def area_and_perimeter(self) -> tuple[float, float]:
-        """1/2 integral of (p^2 - p'^2), mm^2, and integral of p, mm (Cauchy)."""
-        theta, weight = gauss(self.support.breaks)
-        p, slope = self.support.derivatives(theta, 1)
+        """1/2 integral of (p^2 - p'^2) over t, mm^2, and integral of p, mm (Cauchy)."""
+        tau, weight = gauss(self.pitch.breaks)
+        (p, slope, _), t = self._support(tau)
+        weight = weight * t[1]
         return float(0.5 * weight @ (p * p - slope * slope)), float(weight @ p)
 
     def inset(self, distance: float) -> FlatEnvelope:
         """Give the parallel contour inside."""
-        return FlatEnvelope(Outset(self.support, -distance))
+        return FlatEnvelope(self.pitch, self.out - distance)
 
 
 class Pitch(Protocol):

@@ -14,7 +14,7 @@ import numpy as np
 
 from kin.follower.base import Closure, Follower, Rests
 from kin.follower.drive import OfFace
-from kin.follower.envelope import FlatEnvelope, Tilted
+from kin.follower.envelope import FlatEnvelope, LiftPitch
 from kin.follower.motion_error import Judged, MotionError, Play, motion_error, with_steps
 from kin.follower.rests import dwells
 from kin.follower.support import Bearing, bearing_of
@@ -48,11 +48,6 @@ class FlatFace(Follower):
         """Dwells of the lift."""
         return tuple(dwells(self.lift))
 
-    @cached_property
-    def support(self) -> Lift | Tilted:
-        """Support function of the exact contour."""
-        return Tilted(self.lift, self.ahead) if self.ahead else self.lift
-
     @property
     def ahead(self) -> float:
         """Angle by which the face's normal stands ahead of the line of travel, radians."""
@@ -66,12 +61,8 @@ class FlatFace(Follower):
 
     @cached_property
     def envelope(self) -> FlatEnvelope:
-        """The exact contour; its parameter is the direction of the face's normal, `ahead` of the shaft angle."""
-        return FlatEnvelope(self.support)
-
-    def shaft_angle(self, parameter: Array) -> Array:
-        """Shaft angle at which the envelope's point of that parameter is touched (n,)."""
-        return parameter - self.ahead
+        """The exact contour; its parameter is the shaft angle."""
+        return FlatEnvelope(LiftPitch(self.lift, self.ahead))
 
     def contact(self, contour: Contour, theta: Array) -> Array:
         """Position of the face (of a yoke face 1), mm: (n,), or (2, n) with either face resting."""
@@ -87,7 +78,7 @@ class FlatFace(Follower):
     def judge(self, contour: Contour, theta: Array) -> Judged:
         """Motion error, and of a yoke the play of the contour in the frame; extremes over the whole turn."""
         bearing = bearing_of(contour)
-        reach = error_extremes(bearing, self.support)
+        reach = self._reach(bearing)
         return Judged(self._error(bearing, theta, reach), self._play(bearing), reach)
 
     def _error(self, bearing: Bearing, theta: Array, reach: Extremes) -> MotionError:
@@ -96,7 +87,26 @@ class FlatFace(Follower):
         position = bearing.derivatives(angle + ahead, bearing.find(angle + ahead))[0] / share
         ranges = [lift_range(bearing, begin + ahead, end + ahead) / share for begin, end in self.rests]
         errors = position - self.intended(angle)
-        return motion_error((worst / share, at - ahead), errors, max(ranges, default=None), "mm")
+        return motion_error((worst / share, at), errors, max(ranges, default=None), "mm")
+
+    def _reach(self, bearing: Bearing) -> Extremes:
+        """Extremes over the shaft angle of how far the contour reaches beyond the intended face, along its normal."""
+        lift, share, ahead = self.lift, self._share, self.ahead
+        nodes = bearing.nodes(0.0, TURN, lift.breaks, ahead)
+        stretch, at_low, at_high = bearing.between(nodes, ahead)
+        intended = share * lift.derivatives(nodes, 2)
+        at_low -= intended[:, :-1]
+        at_high -= intended[:, 1:]
+        if len(lift.breaks):  # from within, that is from the left, at the high ends
+            at = np.searchsorted(nodes, lift.breaks)
+            at = np.where(at == 0, len(nodes) - 1, at)
+            at_high[:, at - 1] += intended[:, at] - share * lift.derivatives(nodes[at], 2, -1)
+
+        def error(phi: Array, of: Indices) -> Array:
+            return bearing.derivatives(phi + ahead, stretch[of]) - share * lift.derivatives(phi, 2)
+
+        fine = resolution(bearing.contour.vertices) + 4.0 * lift.rounding
+        return extremes(nodes[:-1], nodes[1:], at_low, at_high, error, resolution=fine)
 
     def motion_limit(self, tolerance: float) -> float:
         """Greatest motion error of a contour within `tolerance` of the exact one, mm."""
@@ -145,31 +155,6 @@ class Yoke(FlatFace):
             degrees(found.least_at),
             "mm",
         )
-
-
-def error_extremes(bearing: Bearing, law: Lift | Tilted) -> Extremes:
-    """Extremes of q - p over the turn."""
-    nodes = bearing.nodes(0.0, TURN, law.breaks)
-    stretch, at_low, at_high = bearing.between(nodes)
-    intended = law.derivatives(nodes, 2)
-    at_low -= intended[:, :-1]
-    at_high -= intended[:, 1:]
-    if len(law.breaks):  # from within, that is from the left, at the high ends
-        at = np.searchsorted(nodes, law.breaks)
-        at = np.where(at == 0, len(nodes) - 1, at)
-        at_high[:, at - 1] += intended[:, at] - law.derivatives(nodes[at], 2, -1)
-
-    def error(theta: Array, of: Indices) -> Array:
-        return bearing.derivatives(theta, stretch[of]) - law.derivatives(theta, 2)
-
-    return extremes(
-        nodes[:-1],
-        nodes[1:],
-        at_low,
-        at_high,
-        error,
-        resolution=resolution(bearing.contour.vertices) + 4.0 * law.rounding,
-    )
 
 
 def lift_range(bearing: Bearing, begin: float, end: float) -> float:

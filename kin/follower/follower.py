@@ -16,7 +16,7 @@ from kin.law.support_function import Lift
 from kin.law.transmission_law import Transmission
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kin.law.contacts import Contact, Guide, Side, Touch
     from kin.law.piecewise import Piecewise
@@ -36,6 +36,7 @@ __all__ = [
     "SwingingFace",
     "Yoke",
     "follower_of",
+    "followers_of",
 ]
 
 
@@ -51,7 +52,7 @@ def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Tran
     if isinstance(law, Transmission):
         _demand(arm and len(others) == 1 and _share_arm(first, others[0]), "a transmission has two contacts on one arm")
         if not flat:
-            return DoubleRoller(tuple(contacts), law)
+            return DoubleRoller(tuple(contacts), side, law)
         _demand(all(one.datum == 0.5 * math.pi for one in contacts), "the faces of a pair count from across the line")
         return FlatPair(tuple(replace(one, datum=one.apart) for one in contacts), law)
     _demand(first.sense == 1 and first.turned == 0.0, "contact 1 pushes the follower out, where the shaft stands")
@@ -62,10 +63,24 @@ def follower_of(contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Tran
     raised = law.raised(first.zero)
     if others:
         _demand(len(others) == 1 and _opposite(first, others[0]), "two contacts on a line are opposite")
-        return Yoke(held, Lift(raised)) if flat else RollerYoke(held, raised)
+        return Yoke(held, Lift(raised)) if flat else RollerYoke(held, side, raised)
     if not flat:
-        return Roller(held, raised, side)
+        return Roller(held, side, raised)
     return SwingingFace(held, raised) if arm else FlatFace(held, Lift(raised))
+
+
+def followers_of(
+    contacts: Sequence[Contact[Guide, Touch]], law: Piecewise | Transmission, sides: Mapping[str, Side]
+) -> dict[str, Follower]:
+    """Make what each surface, by its name, is judged by: the follower of the contacts that touch it.
+
+    `sides` are those on which the metal of each surface lies. Raises ValueError as `follower_of` does, and for a
+    contact that touches none of them or a surface that nothing touches.
+    """
+    _demand({one.surface for one in contacts} == set(sides), "each touches one of the surfaces, and each is touched")
+    return {
+        name: follower_of([one for one in contacts if one.surface == name], law, side) for name, side in sides.items()
+    }
 
 
 def _demand(holds: bool, rule: str) -> None:

@@ -8,11 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from kin.contour.arcs import cross, dot, right
+from kin.follower.motion_error import ContactError
 from kin.follower.steepness import ParameterTable, Steepness, steepness_of_law, steepness_of_transmission
 from kin.numeric.angles import TURN
 from kin.numeric.jet import Jet
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kin.follower.guide import Guide as Led
     from kin.law.contacts import Contact, Guide, Touch
     from kin.law.piecewise import Piecewise
@@ -24,23 +28,49 @@ NEAR = 1e-7  # rad; a step of third order is good to rounding
 
 @dataclass(frozen=True, eq=False)
 class GuidedPitch:
-    """Pitch curve of a guided roller, one contact of a follower whose position is a law over the shaft angle."""
+    """Pitch curve of a guided roller, one contact of a follower, over the parameter of its motion.
+
+    `over` gives shaft angle and position of the follower, mm or radians, with two derivatives by the parameter,
+    (3, n) each; at `breaks` the second may jump.
+    """
 
     contact: Contact[Guide, Touch]
     guide: Led
-    law: Piecewise
+    breaks: Array
+    over: Callable[[Array], tuple[Array, Array]]
 
-    @property
-    def breaks(self) -> Array:
-        """Shaft angles where the second derivative may jump."""
-        return self.law.breaks
+    def _own(self, tau: Array) -> tuple[Array, Array]:
+        """Rows of the angle at which the guide stands, and of the contact's own position, (3, n) each."""
+        phi, position = self.over(tau)
+        own = self.contact.sense * position
+        own[0] += self.contact.zero
+        if self.contact.turned:
+            phi = np.stack([phi[0] + self.contact.turned, *phi[1:]])
+        return phi, own
 
     def points(self, tau: Array) -> tuple[Array, Array, Array]:
-        """Centre and two derivatives by the shaft angle, each (n, 2)."""
-        phi = np.stack([tau, np.ones_like(tau), np.zeros_like(tau)])
-        own = self.contact.sense * self.law.derivatives(tau, 2)
-        own[0] += self.contact.zero
-        return self.guide.path(phi, own)
+        """Centre and two derivatives by the parameter, each (n, 2)."""
+        return self.guide.path(*self._own(tau))
+
+    def leeway(self, tau: Array, tolerance: float) -> tuple[Array, Array, Array]:
+        """How far the roller may move before it leaves the pitch curve by `tolerance`, to second order: rad or mm (n,).
+
+        Also first and second derivative of the distance from the pitch curve by the position, absolute (n,): the first
+        of an arm is l cos(pressure angle).
+        """
+        phi, own = self._own(tau)
+        _, first, second = self.guide.path(phi, own)
+        across, inward = self.guide.along(phi[0], own[0])
+        speed = np.hypot(first[:, 0], first[:, 1])
+        tangent = first / speed[:, None]
+        outward = right(tangent)
+        bend = cross(first, second) / speed**3
+        slope = np.abs(dot(across, outward))
+        if (slope <= 0.0).any():
+            raise ContactError("the roller moves along the cam, at a pressure angle of 90 degrees,", float("nan"))
+        sag = np.abs(bend * dot(across, tangent) ** 2 + dot(inward, outward))
+        swing = tolerance / slope
+        return swing + 0.5 * sag / slope * swing**2, slope, sag
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,13 +93,25 @@ class ByLaw:
 
 
 @dataclass(frozen=True, eq=False)
-class BySwing:
-    """`kin.follower.tracking.Law`: the swing psi over the shaft angle."""
+class Swing:
+    """The swing of a double follower over the shaft angle, `share` times psi, radians; as `ByLaw` for contact."""
 
     transmission: Transmission
+    share: float = 1.0
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Shaft angles of the law's breaks."""
+        phi: Array = self.transmission.at(self.transmission.breaks, 0)[0][0]
+        return phi
+
+    def derivatives(self, phi: Array, order: int, side: int = 1) -> Array:
+        """Swing and its derivatives at shaft angles phi (n,): (order + 1, n); at a break those of that side."""
+        rows: Array = self.share * self.transmission.psi_of_shaft(phi, order, side)
+        return rows
 
     def rows(self, phi: Array) -> Array:
-        """Swing and two derivatives at shaft angles phi (n,): (3, n)."""
+        """Swing and two derivatives at shaft angles phi (n,), (3, n); at a break those of either side."""
         tau, side = self._parameter.at(phi)
         shaft, psi = self.transmission.jets(Jet.variable(tau, 3), side)
         p = [psi.c[0]]
@@ -81,7 +123,8 @@ class BySwing:
         far = np.abs(h) > NEAR
         if far.any():
             rows[:, far] = self.transmission.psi_of_shaft(phi[far], 2)
-        return rows
+        swing: Array = self.share * rows
+        return swing
 
     @cached_property
     def _parameter(self) -> ParameterTable:
@@ -93,4 +136,4 @@ class BySwing:
 
     def steepest(self, low: Array, high: Array) -> Array:
         """Bounds of three derivatives over shaft angles from low to high, each (n,): (3, n)."""
-        return self._steepness.over(low, high)
+        return self.share * self._steepness.over(low, high)

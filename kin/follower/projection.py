@@ -180,39 +180,6 @@ def better(one: Feet, two: Feet, score_one: Array | None = None, score_two: Arra
     return Feet(*(np.where(wins if a.ndim == 1 else wins[:, None], a, b) for a, b in pairs))
 
 
-class Inverse:
-    """Inverse of a rising function that gains 2 pi over its period 2 pi, from a table and one Newton step or more."""
-
-    def __init__(self, function: Callable[[Array], Array], breaks: Array) -> None:
-        """`function(x)` gives value and two derivatives, (3, n); `breaks` are where the second one jumps."""
-        self._function = function
-        x = grid(breaks)
-        y = function(x)[0]
-        self._x = np.concatenate([x - TURN, x, x + TURN])
-        self._y = np.concatenate([y - TURN, y, y + TURN])
-        self._middle = float(y[0]) + 0.5 * TURN
-
-    def __call__(self, y: Array) -> tuple[Array, Array]:
-        """Return x near the solutions, and the remaining steps to them, |step| below FINE_STEP: each (n,)."""
-        base = TURN * np.round((y - self._middle) / TURN)
-        x = np.interp(y - base, self._y, self._x)
-        step = np.zeros_like(x)
-        todo = np.arange(len(x))
-        for _ in range(MOST_STEPS):
-            value, slope, bend = self._function(x[todo])
-            miss = y[todo] - base[todo] - value
-            first = miss / slope
-            step[todo] = first - 0.5 * bend * first * first / slope
-            todo = todo[np.abs(step[todo]) > FINE_STEP]
-            if not len(todo):
-                break
-            x[todo] += step[todo]
-        if len(todo):
-            left = float(np.abs(step[todo]).max())
-            raise UnsettledError(f"{len(todo)} angles were not found in {MOST_STEPS} steps; {left:.3g} rad are left")
-        return x + base, step
-
-
 def gauss(breaks: Array) -> tuple[Array, Array]:
     """Nodes and weights (m,) that integrate over one turn a function smooth between the breaks."""
     ends = grid(breaks, 64)

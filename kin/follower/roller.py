@@ -9,20 +9,21 @@ So is the play between two rollers, without the closer look.
 
 from __future__ import annotations
 
+import math
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from kin.contour.arcs import cross, dot, left, right
 from kin.contour.nearest import signed_distance
-from kin.follower.base import Closure, Follower, OfLaw, OfTransmission
+from kin.follower.base import Closure, Moved, OfLaw, OfTransmission
 from kin.follower.contact import dilated, first_contact, shortened
 from kin.follower.drive import OfRoller
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
-from kin.follower.guide import led, polar_rows
-from kin.follower.laws import ByLaw, BySwing, GuidedPitch
+from kin.follower.guide import led
+from kin.follower.laws import GuidedPitch
 from kin.follower.motion_error import ContactError, Judged, Play, motion_error, with_steps
 from kin.follower.projection import grid
 from kin.follower.rests import dwell_angles
@@ -48,10 +49,10 @@ SPLINE_ERROR = 1e-7  # mm, within which arcs stand in for a spline that drives a
 
 
 @dataclass(frozen=True, eq=False)
-class _Rollers(Follower):
+class _Rollers(Moved):
     """What one roller and two have in common; each of the contacts has a roller of the same radius."""
 
-    side: Side = 1  # of the contour on which the metal lies: 1 inside, -1 outside
+    side: Side  # of the contour on which the metal lies: 1 inside, -1 outside
 
     @property
     def radius(self) -> float:
@@ -74,8 +75,8 @@ class _Rollers(Follower):
         return found if len(found) > 1 else found[0]
 
     def drives(self, contour: Contour) -> list[OfRoller]:
-        """Position of each roller on its guide; arcs within SPLINE_ERROR stand in for splines."""
-        obstacle = self._obstacle(contour, SPLINE_ERROR)
+        """Position of each roller on its guide; arcs within SPLINE_ERROR, or as fine as asked for, are its splines."""
+        obstacle = self._obstacle(contour, contour.arcs_within or SPLINE_ERROR)
         each = zip(self.contacts, self.guides, strict=True)
         return [OfRoller(obstacle, guide, one.turned) for one, guide in each]
 
@@ -83,53 +84,67 @@ class _Rollers(Follower):
         chain = contour.as_arcs(*spline)[0]
         return dilated(chain if self.side > 0 else chain.reversed(), self.radius)
 
-    def _positions(self, obstacle: Arcs, phi: Array) -> Array:
-        each = zip(self.contacts, self.guides, strict=True)
+    def _positions(self, obstacle: Arcs, phi: Array, count: int = 2) -> Array:
+        """Position with each of the first `count` rollers held: (1 or 2, n)."""
+        each = list(zip(self.contacts, self.guides, strict=True))[:count]
         return np.stack([one.position(held_position(obstacle, guide, phi + one.turned)) for one, guide in each])
 
+    @cached_property
+    def pitches(self) -> tuple[GuidedPitch, ...]:
+        """Intended path of each roller's centre."""
+        each = zip(self.contacts, self.guides, strict=True)
+        return tuple(GuidedPitch(one, guide, self.breaks, self.over) for one, guide in each)
 
-class _Guided(_Rollers, OfLaw):
+    @abstractmethod
+    def _looked(self, obstacle: Arcs, steps: Array) -> tuple[Array, ...]:
+        """Shaft angles at which each roller whose error counts is looked at: `steps` first."""
+
+    @abstractmethod
+    def _play(self, contour: Contour, obstacle: Arcs, held: Sequence[Held], phi: Array) -> Play | None:
+        """Play at shaft angles phi (n,) and where rollers pass from piece to piece; None for a single roller."""
+
+    def judge(self, contour: Contour, phi: Array) -> Judged:
+        """Motion error with a roller in contact, and the play; rms and increments are from the shaft angles phi (n,).
+
+        ContactError where a roller meets nothing.
+        """
+        obstacle, steps = self._obstacle(contour), with_steps(phi)
+        each = list(zip(self.contacts, self.guides, self._looked(obstacle, steps), strict=False))
+        held = [held_on(obstacle, guide, looked, one.zero, one.sense) for one, guide, looked in each]
+        place = [one.position(there.position[: len(steps)]) for (one, _, _), there in zip(each, held, strict=True)]
+        errors = np.stack(place) - self.course.rows(steps)[0]
+        worst, remainder = settled(held, self.course, errors, few=len(obstacle) <= MOST_PIECES)
+        dwells = list(dwell_angles(self.rests, phi))
+        kept = self._positions(obstacle, np.concatenate(dwells), len(held)) if dwells else np.empty((1, 0))
+        ends = np.cumsum([len(angle) for angle in dwells])[:-1]
+        flatness = [float(np.ptp(part, axis=1).max()) for part in np.split(kept, ends, axis=1) if part.size]
+        motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=remainder)
+        return Judged(motion, self._play(contour, obstacle, held, phi))
+
+    def motion_limit(self, tolerance: float) -> float:
+        """Greatest error, degrees or mm, of a contour within `tolerance` of the exact one.
+
+        That is e/cos(pressure angle), of an arm over its length, the largest over the turn and of all rollers, and the
+        term of second order.
+        """
+        tau = grid(self.breaks)
+        most = max(float(pitch.leeway(tau, tolerance)[0].max()) for pitch in self.pitches)
+        return math.degrees(most) if self.unit == "deg" else most
+
+
+class _Guided(OfLaw, _Rollers):
     """Rollers on guides, of which the first is to follow a law over the shaft angle."""
 
     @cached_property
     def envelope(self) -> RollerEnvelope:
         """The exact contour; its parameter is the shaft angle."""
-        return RollerEnvelope(GuidedPitch(self.contacts[0], self.guides[0], self.law), self.side * self.radius)
+        return RollerEnvelope(self.pitches[0], self.side * self.radius)
 
-    @cached_property
-    def _law(self) -> ByLaw:
-        return ByLaw(self.law)
+    def _looked(self, obstacle: Arcs, steps: Array) -> tuple[Array, ...]:  # noqa: ARG002 - nothing else is asked of it
+        return (steps,)
 
-    def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion error of the first roller, and the play; rms and increments are from the shaft angles phi (n,).
-
-        ContactError where nothing is met.
-        """
-        obstacle, first = self._obstacle(contour), self.contacts[0]
-        guide, steps = self.guides[0], with_steps(phi)
-        held = held_on(obstacle, guide, steps, first.zero, first.sense)
-        errors = (first.position(held.position[: len(steps)]) - self.intended(steps))[None]
-        worst, remainder = settled([held], self._law, errors, few=len(obstacle) <= MOST_PIECES)
-        dwells = [float(np.ptp(held_position(obstacle, guide, angle))) for angle in dwell_angles(self.rests, phi)]
-        motion = motion_error(worst, errors[0], max(dwells, default=None), self.unit, remainder=remainder)
-        return Judged(motion, self._play(obstacle, phi))
-
-    def _play(self, obstacle: Arcs, phi: Array) -> Play | None:  # noqa: ARG002 - one roller has none
+    def _play(self, contour: Contour, obstacle: Arcs, held: Sequence[Held], phi: Array) -> Play | None:  # noqa: ARG002
         return None
-
-    def motion_limit(self, tolerance: float) -> float:
-        """Greatest error, degrees or mm, of a contour within `tolerance` of the exact one.
-
-        That is e/cos(pressure angle), of an arm over its length, the largest over the turn, and the term of second
-        order.
-        """
-        greatest = float(self._leeway(tolerance, grid(self.law.breaks)).max())
-        return float(np.degrees(greatest)) if self.unit == "deg" else greatest
-
-    def _leeway(self, tolerance: float, tau: Array) -> Array:
-        """How far the roller may move at shaft angles tau (n,) before it leaves the pitch curve by `tolerance`."""
-        along = self.guides[0].along(tau, self.contacts[0].own(self.intended(tau)))
-        return leeway(self.envelope.pitch.points(tau), *along, tolerance)[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,16 +175,17 @@ class RollerYoke(_Guided):
     def play_limit(self, tolerance: float) -> float:
         """Greatest play or interference, mm: what either roller may be off."""
         tau = grid(np.sort(np.mod(np.concatenate([self.law.breaks, self.law.breaks + np.pi]), TURN)))
-        return float((self._leeway(tolerance, tau) + self._leeway(tolerance, tau + np.pi)).max())
+        near, far = (pitch.leeway(tau, tolerance)[0] for pitch in self.pitches)
+        return float((near + far).max())
 
-    def _play(self, obstacle: Arcs, phi: Array) -> Play:
+    def _play(self, contour: Contour, obstacle: Arcs, held: Sequence[Held], phi: Array) -> Play:  # noqa: ARG002
         angle = np.concatenate([phi, passing_angles(obstacle, self.guides[0])])
         near, far = self._positions(obstacle, angle)
         return sampled_play(far - near, angle)
 
 
 @dataclass(frozen=True, eq=False)
-class DoubleRoller(_Rollers, OfTransmission):
+class DoubleRoller(OfTransmission, _Rollers):
     """W's two rollers on rigid arms of length l that include 2 alpha, the pivot at l from the shaft.
 
     The position is psi, clockwise positive; roller A trails the pivot, roller B leads it (W 4.4). Psi is pi - alpha
@@ -186,67 +202,24 @@ class DoubleRoller(_Rollers, OfTransmission):
         """The exact contour; its parameter is the transmission's own."""
         return RollerEnvelope(TransmissionPitch(self.transmission), self.radius)
 
-    def shaft_angle(self, parameter: Array) -> Array:
-        """Shaft angle at which roller A touches the envelope's point of that parameter (n,)."""
-        phi: Array = self.transmission.at(parameter, 0)[0][0]
-        return phi
-
-    def judge(self, contour: Contour, phi: Array) -> Judged:
-        """Motion error with either roller in contact, and the gap at B while A is held.
-
-        Rms and increments are from the given shaft angles phi (n,). ContactError where a roller meets nothing.
-        """
-        chain, obstacle, steps = contour.as_arcs()[0], self._obstacle(contour), with_steps(phi)
-        passing = [passing_angles(obstacle, guide) for guide in self.guides]
-        looked = np.concatenate([steps, *passing]), steps
-        held = [
-            held_on(obstacle, guide, angle, one.zero, one.sense)
-            for one, guide, angle in zip(self.contacts, self.guides, looked, strict=True)
-        ]
-        psi = [one.position(there.position) for one, there in zip(self.contacts, held, strict=True)]
-        errors = np.stack([found[: len(steps)] for found in psi]) - self._law.rows(steps)[0]
-        worst, remainder = settled(held, self._law, errors, few=len(obstacle) <= MOST_PIECES)
-        dwells = list(dwell_angles(self.rests, phi))
-        kept = self._positions(obstacle, np.concatenate(dwells)) if dwells else np.empty((2, 0))
-        ends = np.cumsum([len(angle) for angle in dwells])[:-1]
-        flatness = [float(np.ptp(one, axis=1).max()) for one in np.split(kept, ends, axis=1) if one.size]
-        motion = motion_error(worst, errors, max(flatness, default=None), self.unit, remainder=remainder)
-        # the increments tell nothing new of the gap
-        chosen = np.r_[: len(phi), len(steps) : len(steps) + sum(map(len, passing))]
-        angle, b = held[0].phi[chosen], self.contacts[1]
-        second = self.guides[1].centre(angle, b.own(psi[0][chosen]))
-        return Judged(motion, sampled_play(signed_distance(chain, second) - self.radius, angle))
-
-    @cached_property
-    def _law(self) -> BySwing:
-        return BySwing(self.transmission)
-
-    def motion_limit(self, tolerance: float) -> float:
-        """Greatest error, degrees, of a contour within `tolerance` of the exact one.
-
-        That is e/cos(pressure angle) over the arm, the largest over the turn and of both rollers, and the term of
-        second order.
-        """
-        return float(np.degrees(max(swing.max() for swing, _, _ in self._leeway(tolerance))))
-
     def play_limit(self, tolerance: float) -> float:
         """Greatest gap or interference at B, mm: e there, and how far the swing from e at A moves B on the cam."""
-        (swing, _, _), (_, slope, bend) = self._leeway(tolerance)
+        tau = grid(self.breaks)
+        (swing, _, _), (_, slope, bend) = (pitch.leeway(tau, tolerance) for pitch in self.pitches)
         return float((tolerance + slope * swing + 0.5 * bend * swing**2).max())
 
-    def _leeway(self, tolerance: float) -> list[tuple[Array, Array, Array]]:
-        """For rollers A and B, over the turn: the swing `tolerance` allows, and how fast a swing moves them off."""
-        tau = grid(self.transmission.breaks)
-        phi, psi = self.transmission.at(tau, 2)
-        apart = np.zeros_like(phi)
-        apart[0] = self.transmission.alpha
-        found = []
-        for sense in (-1, 1):
-            centre = polar_rows(phi, self.transmission.arm)
-            arm = polar_rows(phi + sense * apart - psi, self.transmission.arm)
-            first, second, third = (c + a for c, a in zip(centre, arm, strict=True))
-            found.append(leeway((first, second, third), left(arm[0]), -arm[0], tolerance))
-        return found
+    def _looked(self, obstacle: Arcs, steps: Array) -> tuple[Array, ...]:
+        # of A also where the gap at B may be least or greatest
+        return np.concatenate([steps, *(passing_angles(obstacle, guide) for guide in self.guides)]), steps
+
+    def _play(self, contour: Contour, obstacle: Arcs, held: Sequence[Held], phi: Array) -> Play:
+        # the increments tell nothing new of the gap
+        count = sum(len(passing_angles(obstacle, guide)) for guide in self.guides)
+        chosen = np.r_[: len(phi), 2 * len(phi) : 2 * len(phi) + count]
+        a, b = self.contacts
+        angle, swing = held[0].phi[chosen], a.position(held[0].position[chosen])
+        second = self.guides[1].centre(angle, b.own(swing))
+        return sampled_play(signed_distance(contour.as_arcs()[0], second) - self.radius, angle)
 
 
 def held_on(obstacle: Arcs, guide: Guide, looked: Array, offset: float = 0.0, sense: int = 1) -> Held:
@@ -348,25 +321,3 @@ def sampled_play(gap: Array, phi: Array) -> Play:
     """Least and greatest of the gaps, mm, at shaft angles phi (n,)."""
     least, most = int(np.argmin(gap)), int(np.argmax(gap))
     return Play(float(gap[least]), degrees(phi[least]), float(gap[most]), degrees(phi[most]), "mm", "sampled")
-
-
-def leeway(
-    pitch: tuple[Array, Array, Array], across: Array, inward: Array, tolerance: float
-) -> tuple[Array, Array, Array]:
-    """How far a roller may move before it leaves a pitch curve by `tolerance`, to second order: radians or mm (n,).
-
-    `pitch` is the pitch point and its derivatives, `across` and `inward` how the centre moves with its position, to
-    first and second order, (n, 2) each. Also first and second derivative of the distance from the pitch curve by the
-    position, absolute (n,): the first of an arm is l cos(pressure angle).
-    """
-    _, first, second = pitch
-    speed = np.hypot(first[:, 0], first[:, 1])
-    tangent = first / speed[:, None]
-    outward = right(tangent)
-    bend = cross(first, second) / speed**3
-    slope = np.abs(dot(across, outward))
-    if (slope <= 0.0).any():
-        raise ContactError("the roller moves along the cam, at a pressure angle of 90 degrees,", float("nan"))
-    sag = np.abs(bend * dot(across, tangent) ** 2 + dot(inward, outward))
-    swing = tolerance / slope
-    return swing + 0.5 * sag / slope * swing**2, slope, sag

@@ -88,9 +88,9 @@ class Bearing:
                 radius[bow] = _radius(beziers, row, t)
         return x, radius
 
-    def nodes(self, low: float, high: float, breaks: Array) -> Array:
-        """low, high, and all breaks of the contour and of `breaks` (in [0, 2 pi)) between them, rising."""
-        all_breaks = np.concatenate([self.breaks, breaks])
+    def nodes(self, low: float, high: float, breaks: Array, turned: float = 0.0) -> Array:
+        """low, high, and between them the breaks of q(theta + turned) and of `breaks` (in [0, 2 pi)), rising."""
+        all_breaks = np.concatenate([np.mod(self.breaks - turned, TURN), breaks])
         first = int(np.floor(low / TURN))
         turns = TURN * np.arange(first, int(np.ceil(high / TURN)) + 1)
         spread = all_breaks if len(turns) == 1 else (all_breaks + turns[:, None]).ravel()

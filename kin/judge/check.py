@@ -9,6 +9,7 @@ from typing import Literal
 from kin.numeric.angles import degrees
 
 Sense = Literal["at_least", "at_most"]
+ROUNDING = 1e-12  # of the judge itself, as a share of the extent; a value this far above its limit still holds
 
 
 @dataclass(frozen=True)
@@ -17,6 +18,7 @@ class Check:
 
     `value` is None where there was nothing to measure (a file that cannot be read); such a check does not hold, and
     `detail` says why. `at_deg` is the shaft angle of the worst place, in [0, 360), None where there is no such place.
+    `surface` is the name of the surface that it is of, empty where the cam has one or it is of no surface.
     """
 
     name: str
@@ -28,6 +30,7 @@ class Check:
     sense: Sense = "at_most"
     file: str | None = None
     detail: str = ""
+    surface: str = ""
 
 
 def at_most(

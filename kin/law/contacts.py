@@ -103,7 +103,7 @@ class Contact(Generic[G_co, T_co]):
 
     Its own position is datum - apart + sense * the follower's: a sense of 1 pushes the follower towards greater
     positions, -1 towards lesser ones. `datum` is foot, rest or level; `apart` is how far two contacts that share their
-    guide stand from its middle.
+    guide stand from its middle. `surface` is the name of the surface that is touched, empty where the cam has one.
     """
 
     guide: G_co
@@ -112,6 +112,7 @@ class Contact(Generic[G_co, T_co]):
     sense: Side = 1
     apart: float = 0.0
     turned: float = 0.0
+    surface: str = ""
 
     @property
     def zero(self) -> float:

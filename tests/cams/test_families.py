@@ -49,7 +49,7 @@ def test_an_exact_cam_goes_to_another_process(name: str) -> None:
     exact = load(ROOT / "recipes" / f"{name}.yaml").cam.exact()
     same = pickle.loads(pickle.dumps(exact))
     t = np.linspace(0.0, 1.0, 7)
-    assert (same.surface.pressure(t) == exact.surface.pressure(t)).all()
-    assert same.surface.curve.sample(t).point == pytest.approx(exact.surface.curve.sample(t).point, abs=0.0)
+    assert (same.surfaces[0].pressure(t) == exact.surfaces[0].pressure(t)).all()
+    assert same.surfaces[0].curve.sample(t).point == pytest.approx(exact.surfaces[0].curve.sample(t).point, abs=0.0)
     assert same.follower == exact.follower
-    assert pickle.dumps(exact.surface)
+    assert pickle.dumps(exact.surfaces[0])

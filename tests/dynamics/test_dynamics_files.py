@@ -64,11 +64,7 @@ def test_derivatives_of_every_motion():
     consistent(intended_faces(followers.double_roller(ROLLERS, 8.0), None).lower)
     consistent(OfFace(bearing_of(polygon_of(lift_from_fourier(25.0, {3: 1.5}, {}), 60))), step=1e-5)
     pair = followers.flat_pair(PAIR)
-    support = pair.support
-    t = TURN / 80 * np.arange(80)
-    r, slope = support.derivatives(t, 1)
-    points = np.stack([r * np.cos(t) - slope * np.sin(t), r * np.sin(t) + slope * np.cos(t)], axis=-1)
-    contour = Contour.from_vertices(points)
+    contour = Contour.from_vertices(pair.envelope.points(TURN / 80 * np.arange(80)))
     for drive in pair.drives(contour):
         consistent(drive, step=1e-5)
     eccentric = circle_about(3.0, 2.0, 20.0)

@@ -13,14 +13,14 @@ from support.places import ROOT
 
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
 from kin.dynamics.drive import drives
 from kin.dynamics.events import FREE, LOWER, UPPER, Work, crossing
-from kin.dynamics.excitation import Moved, intended_faces
+from kin.dynamics.excitation import intended_faces
 from kin.dynamics.impacts import MOST_WORK, State, course, least_gap
 from kin.dynamics.separation import float_speed
 from kin.dynamics.separation_bounds import Look, Range
 from kin.dynamics.train import DynamicsError, Train, steady
+from kin.follower.drive import Shifted
 from kin.follower.follower import DoubleRoller
 
 TURN = 2.0 * math.pi
@@ -127,7 +127,7 @@ def test_corners_throw_the_follower_off_without_damping_at_any_preload_they_can(
 
 def test_no_play_is_refused_with_its_place():
     lower = Harmonic(1, 1e-3)
-    upper = Moved(Harmonic(1, 0.9e-3), 1.0, 0.05e-3)  # they meet where cos is above a half
+    upper = Shifted(Harmonic(1, 0.9e-3), 1.0, 0.05e-3)  # they meet where cos is above a half
     drives_ = faces(lower, upper)
     least, at = least_gap(drives_[0], drives_[1])
     assert least == pytest.approx(-0.05e-3, rel=1e-12)
@@ -170,7 +170,7 @@ def test_as_many_meetings_as_another_integration_of_the_same_law(play, ratio, ze
     That integration shares the motion alone, and met the same faces in the same order, within 1e-5 rad.
     """
     recipe = load(ROOT / "recipes" / "w-law.yaml")
-    follower = intended(recipe, designed(recipe)).follower
+    follower = designed(recipe).exact.gauge
     assert isinstance(follower, DoubleRoller)
     both = intended_faces(follower, play / follower.transmission.arm)
     lower, upper = drives([both.lower, both.upper])
@@ -193,7 +193,7 @@ def stiff(ratio, zeta, rpm=300.0, preload=0.0, mass=0.4):
 def test_play_takes_no_more_places_the_stiffer_the_train(ratio, zeta):
     """Two turns of a rise and its dwells between two faces."""
     motion = Cycloid(math.radians(120.0), 20e-3)
-    found = course(stiff(ratio, zeta), faces(motion, Moved(motion, 1.0, 5e-5)), 300.0, 2)
+    found = course(stiff(ratio, zeta), faces(motion, Shifted(motion, 1.0, 5e-5)), 300.0, 2)
     assert found.stopped is None
     assert found.turns[-1].impacts > 0
     assert found.turns[-1].bore == {LOWER, UPPER}
@@ -212,7 +212,7 @@ def test_a_turn_under_a_spring_is_bounded_too(ratio, zeta):
 
 def test_a_course_that_takes_too_much_says_how_far_it_came():
     motion = Cycloid(math.radians(120.0), 20e-3)
-    both = faces(motion, Moved(motion, 1.0, 5e-5))
+    both = faces(motion, Shifted(motion, 1.0, 5e-5))
     train = stiff(123.0, 0.1)
     whole = course(train, both, 300.0, 2)
     found = course(train, both, 300.0, 2, most=whole.places // 4)
@@ -269,7 +269,7 @@ def test_an_instant_is_where_the_search_begins_if_the_state_has_ended_there():
 def test_an_implicit_solver_sees_the_same_turn(rpm, damping, play):
     pytest.importorskip("scipy")
     motion = Cycloid(math.radians(120.0), 20e-3)
-    upper = None if play is None else Moved(motion, 1.0, play)
+    upper = None if play is None else Shifted(motion, 1.0, play)
     train = Train(0.4, damping, 2e5, 150.0 if play is None else 0.0)
     start = (train.at(rpm).static(0.0), 0.0) if play is None else (0.5 * play, 0.0)
     places = np.linspace(0.0, TURN, 2001)

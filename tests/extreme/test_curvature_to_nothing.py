@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from accuracy import Row, made, names, off_file, off_motion, off_profile, recipe, shown_as_measured
 from extreme_oracle import fourier, reuleaux
+from support import followers
 
 from camgeo.synthesis.design import designed
-from kin.follower.flat import error_extremes
 from kin.follower.support import bearing_of
 from kin.law.support_function import lift_reuleaux
 
@@ -119,5 +119,6 @@ def test_short_arcs_do_not_bear_beyond_their_neighbours():
     lift = lift_reuleaux(3, 50.0, 1e-9)
     assert contour.is_convex
     assert (contour.joints < -1e-6).any()
-    assert error_extremes(bearing_of(contour), lift).worst[0] < 1e-13
+    reach = followers.flat_face(lift).judge(contour, np.zeros(1)).reach
+    assert reach.worst[0] < 1e-13
     assert np.abs(bearing_of(contour).breaks).size >= 6

@@ -120,7 +120,7 @@ def undercut_by_small_rise(radius):
     """A rise of a thousandth of a degree in a hundredth, on rollers that pass over it: where contact is lost."""
     cam, _ = to_and_fro("double-roller", "7/5", 1e-3, 0.01, f"roller_radius: {radius}")
     with in_time(20):
-        curve = recipe(cam, files=ARCS).cam.exact().surface.curve
+        curve = recipe(cam, files=ARCS).cam.exact().surfaces[0].curve
         lost = remains(curve, causes(curve)).lost
     corners = np.concatenate([one.corners for one in lost])
     ends = PitchCurve.of(curve).at(np.array([[one.start, one.end] for one in lost]).ravel()).point

@@ -21,7 +21,7 @@ from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
 from kin.contour.contour import Contour
-from kin.judge.contour_checks import Limits
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.read.drawing.svg import read_svg
 from kin.read.files import ReadError, read_drawing

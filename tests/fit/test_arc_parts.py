@@ -14,7 +14,7 @@ from camgeo.recipe.loading import load
 
 def curve_of(name):
     cam = load(RECIPES / f"{name}.yaml").cam
-    return cam.exact().surface.curve
+    return cam.exact().surfaces[0].curve
 
 
 class Counted:

@@ -26,7 +26,7 @@ RECIPES = Path(__file__).parents[2] / "recipes"
 def test_edges_and_rounds_are_few_where_rounding_shows(
     recipe: str, tolerance: float, most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    curve: Curve = load(RECIPES / f"{recipe}.yaml").cam.exact().surface.curve
+    curve: Curve = load(RECIPES / f"{recipe}.yaml").cam.exact().surfaces[0].curve
     rounds = 0
 
     def counted(curve: Curve, edges: Placed, sides: Array, tolerance: float) -> Seen:
@@ -43,7 +43,7 @@ def test_edges_and_rounds_are_few_where_rounding_shows(
 
 
 def test_a_root_that_is_far_off_for_a_fine_edge_is_followed(monkeypatch: pytest.MonkeyPatch) -> None:
-    curve: Curve = load(RECIPES / "w-figure-9.yaml").cam.exact().surface.curve
+    curve: Curve = load(RECIPES / "w-figure-9.yaml").cam.exact().surfaces[0].curve
     reached = []
 
     def seen(curve: Curve, at: Array, low: Array, high: Array, tolerance: float) -> object:

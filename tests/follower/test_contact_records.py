@@ -15,19 +15,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from camgeo.curve.moving_frame import Displacement
 from camgeo.fit.arcs import fit_arcs
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
 from kin.contour.contour import Contour
-from kin.follower.follower import follower_of
+from kin.follower.follower import followers_of
 from kin.follower.motion_error import ContactError
 from kin.law.contacts import Arrangement, Contact, Flat, Oscillating, Roller, Shoe, Translating
-from kin.law.transmission_law import Transmission
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import Any
+
 
 MOTION = "[{rise: 8, over: 120, law: cycloidal}, {dwell: 40}, {return: 8, over: 140, law: cycloidal}, {dwell: 60}]"
 SWING = MOTION.replace(": 8,", ": 12,")
@@ -73,16 +72,21 @@ def held(name: str) -> tuple[Any, ...]:
     design = designed(recipe)
     assert design.contour is not None
     arcs = fit_arcs(design.contour, 1e-6)
-    law: Any = design.exact.law
-    law = law if isinstance(law, Transmission) else law.law() if isinstance(law, Displacement) else law.law
-    return design.follower.contacts, law, recipe.cam.side, Contour.from_bulges(arcs.points, arcs.bulges)
+    return (
+        design.follower.contacts,
+        design.exact.judged_law,
+        recipe.cam.side,
+        Contour.from_bulges(arcs.points, arcs.bulges),
+    )
 
 
 def off(name: str, contacts: tuple[Contact[Any, Any], ...], side: int = 0) -> float:
     """By how much the contour is off, mm or deg, infinite where kin refuses the contacts."""
     _, law, metal, contour = held(name)
+    sides: Any = {"": side or metal}
     try:
-        judged = follower_of(contacts, law, side or metal).judge(contour, PHI)
+        (follower,) = followers_of(contacts, law, sides).values()
+        judged = follower.judge(contour, PHI)
     except (ContactError, ValueError):
         return math.inf
     play = judged.play
@@ -95,6 +99,8 @@ def wrong(contact: Contact[Any, Any]) -> Iterator[tuple[str, Contact[Any, Any]]]
         value = getattr(contact, field.name)
         if field.name == "sense":
             yield "sense", replace(contact, sense=-value)
+        elif field.name == "surface":
+            yield "surface", replace(contact, surface="another")
         elif field.name in {"guide", "touch"}:
             for one in fields(value):
                 inner = getattr(value, one.name)

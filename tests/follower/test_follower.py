@@ -414,11 +414,11 @@ def test_limits_hold_and_are_reached_by_the_parallel_contours(name):
 def test_limits_of_a_pair_hold_and_are_reached(name):
     e = 0.05
     pair = followers.flat_pair(PAIRS[name])
-    t = np.arange(6000) * 2 * np.pi / 6000
-    exact = pair.envelope.points(t)
+    tau = np.arange(6000) * 2 * np.pi / 6000
+    exact, normal = pair.envelope.points(tau), unit(PAIRS[name].pitch(tau, 0)[1][0])
     worst, gap = 0.0, 0.0
     for offset in (e, -e):
-        judged = pair.judge(polygon(exact + offset * unit(t)), PHI)
+        judged = pair.judge(polygon(exact + offset * normal), PHI)
         worst = max(worst, judged.motion.max)
         gap = max(gap, -judged.play.least, judged.play.most)
     assert 0.99 * pair.motion_limit(e) < worst < 1.001 * pair.motion_limit(e)

@@ -8,14 +8,15 @@ from support import followers
 from support.brute_disc import peak
 from support.camfiles import arcs_through, write_dxf
 from support.cases import few
+from support.intent import part_of
 from support.programmes import Segment, law, programme
 
 import kin.follower.roller
 from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.guide import Arm, Line
-from kin.follower.laws import ByLaw, BySwing
-from kin.judge.contour_checks import Intent, Limits
+from kin.follower.laws import ByLaw, Swing
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
@@ -168,7 +169,7 @@ def test_a_limit_below_the_true_error_and_above_the_samples_is_broken(tmp_path, 
     follower = inch()
     path = write_dxf(tmp_path / "cam.dxf", follower.envelope.points(np.arange(301) * 2 * np.pi / 301))
     few = np.arange(24) * 2 * np.pi / 24
-    intent, contour = Intent(follower, bore=10.0), through(follower.envelope, 301)
+    intent, contour = part_of(follower, bore=10.0), through(follower.envelope, 301)
     true = follower.judge(contour, few).motion
     monkeypatch.setattr(kin.follower.roller, "MOST_PIECES", 0)
     low = follower.judge(contour, few).motion
@@ -211,8 +212,8 @@ def test_a_short_spike_between_the_samples_is_found():
     [
         ByLaw(rising(0.2, 0.5)),
         ByLaw(rising(0.2, 0.5, ("harmonic", "parabolic"))),
-        BySwing(inch().transmission),
-        BySwing(from_delta(4, 3, 60.0, {1: 625.0}, {})),
+        Swing(inch().transmission),
+        Swing(from_delta(4, 3, 60.0, {1: 625.0}, {})),
     ],
 )
 def test_bounds_of_a_law_hold_and_are_near(intended):
@@ -234,7 +235,7 @@ def test_bounds_of_a_law_hold_and_are_near(intended):
 def test_rows_of_a_swing_are_those_of_the_transmission():
     transmission = inch().transmission
     phi = np.concatenate([np.linspace(-9.0, 9.0, 5000), transmission.at(transmission.breaks, 0)[0][0]])
-    rows, exact = BySwing(transmission).rows(phi), transmission.psi_of_shaft(phi, 2)
+    rows, exact = Swing(transmission).rows(phi), transmission.psi_of_shaft(phi, 2)
     assert rows[0] == pytest.approx(exact[0], abs=1e-14)
     assert rows[1] == pytest.approx(exact[1], abs=1e-10)
     assert rows[2] == pytest.approx(exact[2], abs=1e-6)

@@ -11,8 +11,7 @@ import camgeo
 from camgeo.measures.remarks import LOOSE
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
-from kin.judge.contour_checks import MOST_SHARE, NO_LIMIT, STEEP, is_loose, stroke_of
+from kin.judge.limits import MOST_SHARE, NO_LIMIT, STEEP, is_loose, stroke_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -102,7 +101,7 @@ def test_a_double_roller_that_is_steep_but_bounded_is_held_as_before(tmp_path: P
 def test_a_steep_stem_on_both_sides_of_its_bounds(tmp_path: Path, share: float, fails: bool, remarked: bool) -> None:
     """The tolerance at which the limit is that share of the stroke: 84 times the tolerance and more here."""
     recipe = load_text(STEM.format(tolerance=0.01), "cam.yaml")
-    follower = intended(recipe, designed(recipe)).follower
+    follower = designed(recipe).exact.gauge
     assert stroke_of(follower) == pytest.approx(40.0, rel=1e-12)
     low, high = 1e-6, 1.0
     while high - low > 1e-9 * high:

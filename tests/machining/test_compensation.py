@@ -14,7 +14,7 @@ from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
-from kin.judge.contour_checks import Limits
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.support_function import Circle, lift_constant_breadth, lift_from_fourier
 from kin.read.files import read_drawing

@@ -11,8 +11,7 @@ from camgeo.machining.inspection import inspection_table
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
-from kin.follower.envelope import FlatEnvelope, RollerEnvelope, TransmissionPitch
+from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.follower import FlatPair
 
 ROLLER = "cam: {kind: double-roller, ratio: 4/3, arm: 60, roller_radius: 8, delta: {cos: {1: 625}}}\n"
@@ -94,10 +93,9 @@ def test_each_face_of_a_pair_passes_the_pivot():
         assert np.allclose(pair(table, f"{name}n"), units(theta), rtol=0.0, atol=1e-12)
         reach = np.sum(pair(table, name) * units(theta), axis=1)
         assert np.allclose(reach, np.sum(80.0 * units(phi) * units(theta), axis=1), rtol=0.0, atol=1e-11)
-        follower = intended(read(PAIR.encode(), "c.yaml"), design).follower
+        follower = design.exact.gauge
         assert isinstance(follower, FlatPair)
-        envelope = FlatEnvelope(follower.support)
-        assert np.abs(envelope.feet(pair(table, name)).excess).max() < 1e-11
+        assert np.abs(follower.envelope.feet(pair(table, name)).excess).max() < 1e-11
 
 
 def test_a_mirrored_drawing_in_inches_has_the_same_motion():

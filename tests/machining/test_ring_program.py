@@ -26,7 +26,7 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
 from kin.contour.contour import Contour
-from kin.judge.contour_checks import Limits
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.read.files import read_drawing
 from kin.read.gcode import read_gcode

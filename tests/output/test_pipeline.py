@@ -23,7 +23,7 @@ from camgeo.report.document import finite
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
-from kin.judge.contour_checks import SPLINE_ERROR
+from kin.judge.limits import SPLINE_ERROR
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -5,19 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from support.groove import CAM, grooved
 
-from camgeo.cams.guided import ExactGuided
 from camgeo.output import pipeline
 from camgeo.output.dispatch import SURFACES
 from camgeo.recipe.export import FILES
-from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-MOTION = "[{rise: 8, over: 120, law: cycloidal}, {dwell: 40}, {return: 8, over: 140, law: cycloidal}, {dwell: 60}]"
-CAM = f"cam: {{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 8}}, motion: {MOTION}}}"
 PART = "part: {thickness: 8, bore: 10}"
 MILLED = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 2, safe_height: 5}"
 FORMS = sorted(SURFACES, key=str)
@@ -37,12 +34,9 @@ def test_every_form_of_a_file_is_in_the_table() -> None:
 
 
 @pytest.mark.parametrize(("kind", "how"), FORMS)
-def test_a_form_that_is_taught_one_surface_refuses_two(
-    kind: str, how: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(ExactGuided, "surfaces", property(lambda self: (self.surface, self.surface)))
+def test_a_form_that_is_taught_one_surface_refuses_two(kind: str, how: str | None, tmp_path: Path) -> None:
     text = f"{CAM}\n{PART}\n{MILLED}\nexport: {{files: [{written(kind, how)}]}}\n"
-    recipe = read(text.encode(), tmp_path / "groove.yaml")
+    recipe = grooved(text)
     with pytest.raises(RecipeErrors) as caught:
         pipeline.export(recipe, tmp_path / "out")
     (error,) = caught.value.errors
@@ -52,8 +46,7 @@ def test_a_form_that_is_taught_one_surface_refuses_two(
 
 
 def test_a_form_that_is_taught_more_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ExactGuided, "surfaces", property(lambda self: (self.surface, self.surface)))
     monkeypatch.setitem(SURFACES, ("dxf", "arcs"), 2)
-    recipe = read(f"{CAM}\nexport: {{files: [{{csv: {{as: polar}}}}]}}\n".encode(), tmp_path / "groove.yaml")
+    recipe = grooved(f"{CAM}\nexport: {{files: [{{csv: {{as: polar}}}}]}}\n")
     with pytest.raises(RecipeErrors, match=r"csv as polar does not hold a cam of 2 surfaces.*give dxf as arcs"):
         pipeline.export(recipe, tmp_path / "out")

@@ -20,7 +20,7 @@ DISCS = [
 
 def curve_of(cam):
     cam = load_text(f"cam: {{kind: {cam}}}\nexport: {{files: [dxf]}}\n", "cam.yaml").cam
-    return cam.exact().surface.curve
+    return cam.exact().surfaces[0].curve
 
 
 def turned(arcs):

@@ -306,7 +306,7 @@ def test_what_is_not_asked_for_is_skipped() -> None:
         (
             TRAIN.replace("preload: 150", "backlash: 0.02"),
             "cam: {kind: support, p: 25 + 2*cos(2*t)}\n",
-            "a single flat face has no backlash",
+            "a single translating flat face has no backlash",
         ),
         (
             TRAIN.replace("preload: 150", "backlash: 0.02"),

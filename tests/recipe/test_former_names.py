@@ -13,8 +13,8 @@ import camgeo
 from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES, FORMER, PRESENT
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load, load_text
-from camgeo.recipe.recipe import RECIPE
 from camgeo.schema.errors import DeprecatedKeyWarning, RecipeErrors
 from camgeo.schema.fields import field_at, present
 from camgeo.schema.json_schema import json_schema

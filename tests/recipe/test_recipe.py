@@ -29,10 +29,11 @@ from camgeo.cams.support import FormulaShape, FourierShape, HypocycloidShape, Re
 from camgeo.curve.moving_frame import Displacement
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import Export, FileRequest
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load, read
 from camgeo.recipe.machining import Compensation, Manufacture
 from camgeo.recipe.part import Part
-from camgeo.recipe.recipe import RECIPE, Recipe, Verify
+from camgeo.recipe.recipe import Recipe, Verify
 from camgeo.recipe.starter import KINDS, starter
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema
@@ -448,7 +449,7 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
     recipe = load(path)
     exact = recipe.cam.exact()
     intent = exact.law
-    assert exact.surface.curve is not None
+    assert exact.surfaces[0].curve is not None
     bore = (recipe.part.bore or 0) / 2
     if isinstance(intent, Lift):
         theta = np.linspace(0, 2 * np.pi, 7201)
@@ -461,7 +462,7 @@ def test_a_shipped_recipe_is_a_cam_with_metal_around_its_bore(path: Path) -> Non
         theta = np.linspace(0, 2 * np.pi, 72001)
         low, high = 0.0, intent.derivatives(theta, 0)[0].max()
         high = np.degrees(high) if exact.motion.unit == "deg" else high
-        frame = exact.surface.base.shape.sample(theta)
+        frame = exact.surfaces[0].base.shape.sample(theta)
         radius = 1 / (frame.turn / frame.speed).max()
         assert radius > recipe.cam.touch.radius
         assert isinstance(recipe.cam, DiscCam | ConstantDiameterCam)

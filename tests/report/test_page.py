@@ -24,6 +24,8 @@ from support.pages import RECIPES, SHAFT, SHOWN, Made, fetched, of, told, unpack
 from camgeo.cli.main import main
 from camgeo.cli.watch import watch
 from camgeo.curve.ring import Ring, disc
+from camgeo.measures.file_result import FileResult
+from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load, load_text
 from camgeo.report.document import ROUNDING
 from camgeo.report.page import svg, tables
@@ -33,11 +35,15 @@ from camgeo.report.page.pack import packed
 from camgeo.report.page.page import LOCAL, RELOAD, asset, data, encoded, page
 from camgeo.report.page.scene import STEPS
 from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended
 from kin.contour.contour import Contour
+from kin.judge.intent import Limits
+from kin.judge.verify import verify
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from camgeo.recipe.recipe import Recipe
     from camgeo.report.page.content import Content
 
 MOST = 1_000_000  # bytes of a page
@@ -375,6 +381,12 @@ def test_errors_round_the_contour_are_those_that_the_judge_found(made: Made) -> 
         assert (error.low <= error.high).all()
 
 
+def judged(recipe: Recipe, path: Path) -> FileResult:
+    """The file as the judge reads it."""
+    verdict = verify(path, intended(recipe, designed(recipe)), 36, Limits(1e-3))
+    return FileResult.of(path, FileRequest(verdict.kind), 1e-3, verdict)
+
+
 def test_a_shifted_contour_shows_as_an_error_on_one_side(tmp_path: Path) -> None:
     import ezdxf
 
@@ -385,7 +397,7 @@ def test_a_shifted_contour_shows_as_an_error_on_one_side(tmp_path: Path) -> None
     for entity in drawing.modelspace():
         entity.translate(0.01, 0.0, 0.0)
     drawing.saveas(path)
-    (error,) = content(recipe, designed(recipe), [path]).errors
+    (error,) = content(recipe, designed(recipe), [judged(recipe, path)]).errors
     assert error.high[0] == pytest.approx(0.01, abs=1e-4)
     assert error.low[STEPS // 2] == pytest.approx(-0.01, abs=1e-4)
 
@@ -413,8 +425,9 @@ def test_an_unreadable_file_is_left_out(tmp_path: Path) -> None:
     recipe = load(RECIPES / "reuleaux.yaml")
     path = tmp_path / "reuleaux.stl"
     path.write_bytes(b"solid nothing\nendsolid nothing\n")
-    assert read(recipe, path) is None
-    found = content(recipe, designed(recipe), [path])
+    file = judged(recipe, path)
+    assert read(recipe, file) is None
+    found = content(recipe, designed(recipe), [file])
     assert found.errors == ()
     parsed(page(recipe, found, {**of("w-ellipse").outcome.report, "files": []}))
 

@@ -26,6 +26,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "tests"))  # where pytest has it; the page is written without pytest
 
 from support.once import once  # noqa: E402
+from support.page_tables import HEAD, cells, write  # noqa: E402
 
 PAGE = ROOT / "docs" / "validation.md"
 TOPICS = (
@@ -38,50 +39,12 @@ TOPICS = (
     "test_wunderlich",
     "test_linkages",
 )
-HEAD = "| quantity | source | published | ours | differs by |\n| --- | --- | --- | --- | --- |"
 MISPRINT_HEAD = "| where | printed | right | measured | printed is off by |\n| --- | --- | --- | --- | --- |"
-
-
-@dataclass(frozen=True)
-class Row:
-    """One line of a table.
-
-    `published` is the text to show, `value` the number it stands for (None where the source gives no number);
-    `within` how far ours may lie from it, or from the page's where there is no value; `form` shows ours.
-    """
-
-    quantity: str
-    source: str
-    published: str
-    value: float | None
-    ours: float
-    within: float
-    form: str = ".7g"
-
-    @property
-    def key(self):
-        return self.quantity, self.source, self.published
-
-    @property
-    def holds(self):
-        return self.value is None or abs(self.ours - self.value) <= self.within
-
-    def line(self):
-        if self.value is None:
-            differs = "-"
-        else:
-            # rounding differs between machines, so below a billionth only the order is given
-            off = abs(self.ours - self.value)
-            floor = 1e-9 * max(1.0, abs(self.value))
-            differs = f"{off:.1e}" if off > floor else f"< {floor:.0e}"
-        return f"| {' | '.join(self.key)} | {self.ours:{self.form}} | {differs} |"
 
 
 def shown(mark):
     """Rows of a table of the page, as lists of cells."""
-    text = PAGE.read_text(encoding="utf-8")
-    block = text.split(f"<!-- {mark} -->\n")[1].split("\n<!-- end -->")[0]
-    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in block.splitlines()[2:]]
+    return cells(PAGE, mark)
 
 
 @dataclass(frozen=True)
@@ -174,12 +137,9 @@ def main():
         wrong = [MISPRINT_HEAD, *(one.line() for one in misprints(workshop))]
     for row in (row for rows in found.values() for row in rows if not row.holds):
         print(f"{row.line()}  allowed {row.within}")
-    written = {topic: "\n".join([HEAD, *(row.line() for row in rows)]) for topic, rows in found.items()}
-    text = PAGE.read_text(encoding="utf-8")
-    for mark, table in {**written, "misprints": "\n".join(wrong)}.items():
-        before, rest = text.split(f"<!-- {mark} -->\n")
-        text = f"{before}<!-- {mark} -->\n{table}\n<!-- end -->{rest.split('<!-- end -->', 1)[1]}"
-    PAGE.write_text(text, encoding="utf-8")
+    for topic, rows in found.items():
+        write(PAGE, topic, [HEAD, *(row.line() for row in rows)])
+    write(PAGE, "misprints", wrong)
 
 
 if __name__ == "__main__":

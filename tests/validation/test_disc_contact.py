@@ -21,11 +21,11 @@ from support.disc_followers import (
 )
 from support.discs import AREAS, DEGREE, M02, M07, M15, POINTS, TURN, segments
 
+from camgeo.cams.least_size import least_arm, least_stem
 from camgeo.curve.curve import Curve
 from camgeo.curve.disc import StraightFace, face_shape
 from camgeo.curve.moving_frame import CentreShape, Displacement, Translating
 from camgeo.curve.parallel import Parallel
-from camgeo.curve.sizing import least_arm, least_stem
 from camgeo.curve.undercut.trim import trimmed
 from kin.contour.contour import Contour
 from kin.follower import guide

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 PI = math.pi
 DEGREE = PI / 180

@@ -9,7 +9,7 @@ import math
 import mpmath as mp
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 from camgeo.fit.polygon import least_vertices
 

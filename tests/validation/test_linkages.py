@@ -9,9 +9,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from ledger import Row
 from linkage_page import BANDS, DWELLING, Scene
 from linkage_reference import FIGURES, FINE, PI, apart, lift, longest
+from support.page_tables import Row
 from support.square_frame import CENTRED, Bars, Bench
 
 DRAWN = {"9": ("1", "2a", "2c", "2d"), "13": ("1", "2a", "2b", "2d")}

@@ -7,7 +7,7 @@ the product are those of its motion at 24,001 places, and of the motion table of
 import mpmath as mp
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 from kin.law.programme import LAWS
 

@@ -5,7 +5,7 @@ Measured on the spline of the exported R2000 DXF, whose points are put into the 
 
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 PI = np.pi
 

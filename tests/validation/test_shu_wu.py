@@ -6,7 +6,7 @@ figures are curves, so peaks and radii are held against closed forms written out
 
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 PI = np.pi
 BETA, STROKE, BASE, BREADTH = 2 * PI / 3, 20.0, 40.0, 100.0

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from ledger import Row
+from support.page_tables import Row
 
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
 from kin.law.programme import IntentError
 
 PI = np.pi
@@ -258,7 +257,7 @@ def rows(workshop):
         )
     nine = workshop.shipped("w-figure-9")
     swing = np.degrees(np.arcsin(625 / 3600))
-    contact = intended(nine.recipe, nine.design).follower.contact(nine.contour, t)
+    contact = nine.design.exact.gauge.contact(nine.contour, t)
     found += [
         Row(
             "swing of w-figure-9, asin(m²/l²), deg (CSV)",
@@ -410,7 +409,7 @@ def test_figure_5_first_arc(workshop):
 def test_equation_4_9_symmetry_of_a_law_by_contact_with_the_file(workshop):
     """(phi, psi) -> (phi - psi + delta, -psi)."""
     made = workshop.shipped("w-law")
-    follower = intended(made.recipe, made.design).follower
+    follower = made.design.exact.gauge
     phi = np.linspace(0, PI / 2, 181)
     psi = follower.contact(made.contour, phi).mean(axis=0)
     image = follower.contact(made.contour, phi - psi + PI / 2).mean(axis=0)

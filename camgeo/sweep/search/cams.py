@@ -178,7 +178,8 @@ def _base(recipe: Recipe, count: int) -> _Base:
         lift = exact.plate
         if lift is None:
             return nothing
-        radius, _ = least_radius(exact.surface.curve)
+        (surface,) = exact.surfaces
+        radius, _ = least_radius(surface.curve)
     except (IntentError, CurveError):
         return nothing
     fault = FINE if is_constant_breadth(lift) else IMPOSSIBLE
