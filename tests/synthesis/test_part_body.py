@@ -10,6 +10,7 @@ from support.parts import CAM, found, recipe_of
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
 from camgeo.synthesis.part.body import body_of
+from camgeo.synthesis.part.walls import Looks
 
 
 def opening(design, name):
@@ -265,6 +266,6 @@ def test_what_cannot_be(part, told):
 
 def test_a_body_needs_no_thickness_for_a_drawing():
     design, _ = found(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}"))
-    body = body_of(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}").part, design.contour)
+    body = body_of(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}").part, Looks.of(design.contour))
     assert body.prism
     assert (body.bottom, body.top) == (0.0, 8.0)
