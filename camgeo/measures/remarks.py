@@ -351,13 +351,13 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     """With a bore the wall is a check."""
     if recipe.part.bore is not None or design.contour is None:
         return None
-    from camgeo.synthesis.part.walls import distance_inside, winds
+    from camgeo.synthesis.part.walls import Looks, distance_inside, winds
 
     runs = [np.linspace(run.low, run.high, LOOKS) for run in design.contour.runs]
     ring = design.contour.sample(np.concatenate(runs)).point
     if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * design.surface.curve.size:
         return None  # by far; what is nearer is looked at closely
-    distance, at = distance_inside(design.contour, (0.0, 0.0))
+    distance, at = distance_inside(Looks.of(design.contour), (0.0, 0.0))
     if distance > 0.0:
         return None
     told = f"the shaft lies outside the contour by {_length(recipe, -distance)}"
