@@ -91,6 +91,7 @@ def test_every_format_holds_its_corners(text, tmp_path):
     assert all(check.ok for check in checks), [str(check) for check in checks if not check.ok]
 
 
+@pytest.mark.slow
 @kernel
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)

@@ -124,7 +124,7 @@ def test_every_figure_has_a_recipe_here() -> None:
     assert set(HAVE) == set(FIGURES)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("text", "sign", "sense"),
     few([(text, *side) for side in ((1.0, "at_most"), (-1.0, "at_least")) for text in sorted(set(HAVE.values()))], 4),

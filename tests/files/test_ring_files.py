@@ -95,6 +95,7 @@ def test_a_step_file_has_the_volume_of_the_ring(tmp_path, form):
     assert checks["volume"].ok
 
 
+@pytest.mark.slow
 def test_a_kerf_narrows_the_opening_and_widens_the_outline(tmp_path):
     """The pitch curve stays: the roller of the drawn part is smaller by what its opening is."""
     recipe = ring(files="{dxf: {kerf: 0.4}}")

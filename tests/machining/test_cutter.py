@@ -143,6 +143,7 @@ def test_the_path_on_a_layer_of_its_own(tmp_path, top):
     assert [c["name"] for c in outcome.report["checks"] if not c["ok"]] == ["cutter-reach"] * 2
 
 
+@pytest.mark.slow
 def test_a_hollow_is_reached_by_a_cutter_just_small_enough():
     _, design = design_of(DEEP)
     hollow, _ = least_hollow(design.only_surface.contour)

@@ -100,6 +100,7 @@ def test_d14_valve():
     holds(roller, fitted(Parallel(CentreShape(s, Translating.on(27.0)), 9.0), 1e-6), 1e-6)
 
 
+@pytest.mark.slow
 def test_d15_undercut():
     """The trimmed contour loses the lift that is printed, where it is printed; no more of it is lost to the fit."""
     follower = on_stem(M15, 26.0, 0.0, 18.0)

@@ -389,6 +389,7 @@ def either_side(parameter):
 D15 = "[{rise: 20, over: 60, law: cycloidal}, {dwell: 10}, {return: 20, over: 60, law: cycloidal}, {dwell: 230}]"
 
 
+@pytest.mark.slow
 def test_d15_undercut():
     cam = f"base_radius: 8, follower: {{kind: roller, radius: 18}}, motion: {D15}"
     _, refused = made(cam)

@@ -298,13 +298,14 @@ def goldberg(workshop):
     return workshop.shipped("w-ellipse", "spline")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(5)
 def test_equation_7_1_on_the_file(pitch):
     curve, e = pitch
     assert np.abs(curve.closing(np.linspace(0, 2 * PI, 3601))).max() <= 3 * e
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 def test_section_6_chord_polygon_closes_from_any_start(pitch):
     curve, e = pitch
     # each chord may add e / cos(75 deg)
