@@ -17,7 +17,8 @@ from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
-from kin.judge.verify import Limits, verify
+from kin.judge.intent import Limits
+from kin.judge.verify import verify
 
 RECIPE = b"""\
 cam:

@@ -31,7 +31,8 @@ from camgeo.recipe.loading import load, load_text
 from camgeo.sweep.study.tolerance_ladder import Rung, climb
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
-from kin.judge.verify import Limits, verify
+from kin.judge.intent import Limits
+from kin.judge.verify import verify
 
 ROOT = Path(__file__).parents[1]
 SHIPPED = {"yoke": "as-figure-2a", "roller": "w-figure-9"}

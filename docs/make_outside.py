@@ -28,8 +28,8 @@ from camgeo.recipe.export import FileRequest
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
-from kin.judge.contour_checks import exact_area
 from kin.judge.layers import volume
+from kin.judge.volume import exact_area
 from kin.read.files import read_drawing
 
 if TYPE_CHECKING:
@@ -144,10 +144,10 @@ def _sample(recipe: Recipe, path: Path, file: dict[str, object]) -> Sample:
         )
     )
     contour, holes = drawing.contour, sorted(hole.area for hole in drawing.holes)
-    area, perimeter, _ = exact_area(contour, intent)
+    area, perimeter, _ = exact_area([contour], intent)
     touched = area
-    if intent.outer is not None:  # of a ring the largest hole is the opening, which its area counts already
-        touched, holes = 0.25 * math.pi * intent.outer**2 - area, holes[:-1]
+    if intent.outline is not None:  # of a ring the largest hole is the opening, which its area counts already
+        touched, holes = 0.25 * math.pi * intent.outline**2 - area, holes[:-1]
     cut = area - sum(holes)
     thickness = recipe.part.thickness or 0.0
     solid = volume(intent.layers, intent.cross_holes, area, perimeter) if intent.layers else cut * thickness

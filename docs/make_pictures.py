@@ -14,7 +14,6 @@ import numpy as np
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
 from kin.read.drawing.dxf import read_dxf
 
 mpl.use("Agg")
@@ -43,7 +42,7 @@ def main() -> None:
             outcome = pipeline.export(recipe, Path(folder))
             path = Path(folder) / recipe.name / f"{recipe.name}.dxf"
             drawing = read_dxf(path)
-        follower = intended(recipe, design).follower
+        follower = design.exact.gauge
         phi = np.linspace(0.0, 2.0 * np.pi, 3601)
         error = np.atleast_2d(follower.contact(drawing.contour, phi) - follower.intended(phi))
         draw_mechanism(axes[0, column], drawing, follower, phi[300])

@@ -270,6 +270,11 @@ class ExactCam(ABC):
         return followers_of(self.follower.contacts, self.judged_law, sides)
 
     @property
+    def gauge(self) -> Gauge:
+        """What kin judges the first surface by."""
+        return self.gauges[self.surfaces[0].name]
+
+    @property
     @abstractmethod
     def judged_law(self) -> Piecewise | Transmission:
         """The law as kin's followers take it."""

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.machining import Manufacture
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.judge.verify import Intent
+    from kin.judge.intent import PartIntent
 
 MOST_PASSES = 2000  # through the part
 ALIKE = 1e-9  # share by which hollows of a regular cam differ through rounding: the first of them is reported
@@ -150,7 +150,7 @@ def milled_holes(recipe: Recipe, design: Design) -> tuple[list[RoundHole], list[
     return wide, others
 
 
-def milling_intent(recipe: Recipe, design: Design) -> Intent:
+def milling_intent(recipe: Recipe, design: Design) -> PartIntent:
     """What kin is given of a program: the part as `intended`, but for what is not milled, and the machine's side."""
     from kin.judge.milling import Milling
 
@@ -168,9 +168,9 @@ def milling_intent(recipe: Recipe, design: Design) -> Intent:
         thickness=recipe.part.thickness or 0.0,
         depth_of_cut=asked.depth_of_cut or recipe.part.thickness or 0.0,
         climb=asked.direction == "climb",
-        side=recipe.cam.side,
         standing=check.limit or 0.0 if lost else 0.0,
         hub=None if top is None else (0.5 * top.diameter, top.height),
+        outline=recipe.part.outer is None,
     )
     return replace(
         meant,
@@ -178,6 +178,6 @@ def milling_intent(recipe: Recipe, design: Design) -> Intent:
         holes=holes,
         layers=(),
         cross_holes=(),
-        trimmed=meant.trimmed or lost,
+        surfaces=tuple(replace(surface, trimmed=surface.trimmed or lost) for surface in meant.surfaces),
         milling=milling,
     )

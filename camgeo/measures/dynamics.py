@@ -15,12 +15,11 @@ from kin.numeric.angles import degrees
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.dynamics import Dynamics
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.contour.contour import Contour
     from kin.dynamics.cycle import Turn
     from kin.dynamics.drive import Drive
     from kin.dynamics.excitation import Faces
@@ -67,13 +66,10 @@ class _Scene(NamedTuple):
     rests: tuple[tuple[float, float], ...]
     unit: float
     name: str
-    drawn: float | None
 
 
-def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: float | None = None) -> Found:
-    """Find the dynamics of a recipe that asks for them, as intended and with each drawing and solid.
-
-    `units`, mm, is that of a file that states none; without it drawings are in the recipe's, meshes in mm.
+def dynamics_of(recipe: Recipe, design: Design, files: Sequence[FileResult]) -> Found:
+    """Find the dynamics of a recipe that asks for them, as intended and with each drawing and solid that was read.
 
     Checks, for the intent and each file: `float`, that the contact force stays above 0 at the speed asked for, or with
     play `play`, that some is left. Raises RecipeErrors where the train has no steady state, and ValueError for a recipe
@@ -82,29 +78,28 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
     from kin.dynamics.drive import DriveError
     from kin.dynamics.train import DynamicsError
     from kin.follower.motion_error import ContactError
-    from kin.read.files import KINDS
 
     asked = recipe.dynamics
     if asked is None:
         raise ValueError("the recipe has no dynamics")
-    sources: list[Path | None] = [None]
+    sources: list[FileResult | None] = [None]
     if recipe.linkage is None:
-        sources += [path for path in files if path.suffix.lstrip(".") in KINDS]
-    scene = _scene(recipe, asked, design, len(sources), units)
+        sources += [file for file in files if file.contour is not None]
+    scene = _scene(recipe, asked, design, len(sources))
     entries: list[dict[str, Any]] = []
     checks: list[Check] = []
-    for path in sources:
+    for file in sources:
         try:
-            entry, check = _one(scene, design, path)
+            entry, check = _one(scene, design, file)
         except DynamicsError as error:
             raise recipe.error("dynamics", str(error)) from error
         except (ContactError, DriveError) as error:
-            if path is None:
+            if file is None:
                 raise recipe.error("dynamics", str(error)) from error
-            entry = {"from": path.name}
+            entry = {"from": file.path.name}
             check = failed((FLOAT if asked.backlash is None else LEAST_BACKLASH).name, str(error), unit="N", limit=0.0)
         entries.append(entry)
-        checks.append(check if path is None else about(check, path.name))
+        checks.append(check if file is None else about(check, file.path.name))
     train = scene.train
     section = {
         "rpm": asked.rpm,
@@ -118,14 +113,13 @@ def dynamics_of(recipe: Recipe, design: Design, files: Sequence[Path], units: fl
     return Found(section, tuple(checks))
 
 
-def _scene(recipe: Recipe, asked: Dynamics, design: Design, runs: int, drawn: float | None) -> _Scene:
-    from camgeo.synthesis.intent import intended
+def _scene(recipe: Recipe, asked: Dynamics, design: Design, runs: int) -> _Scene:
     from kin.dynamics.train import Train
     from kin.follower.guide import METRE
 
     train = Train(asked.mass, asked.damping, asked.stiffness, asked.preload or 0.0, asked.rate)
     if design.driven is None:
-        follower = intended(recipe, design).follower
+        follower = design.exact.gauge
         if asked.backlash is not None and len(follower.contacts) == 1:
             why = f"a single {design.follower.name} has no backlash"
             raise recipe.error("dynamics.backlash", why, None, "give preload")
@@ -137,53 +131,36 @@ def _scene(recipe: Recipe, asked: Dynamics, design: Design, runs: int, drawn: fl
         found = tuple((dwell.start, dwell.end) for dwell in design.driven.dwells.get("shaft", ()))
     name = "deg" if swings else "in" if recipe.units == "inch" else "mm"
     unit = math.degrees(1.0) if swings else 1.0 / (METRE * recipe.mm)
-    return _Scene(recipe, asked, train, _Purse(runs), _Purse(runs), found, unit, name, drawn)
+    return _Scene(recipe, asked, train, _Purse(runs), _Purse(runs), found, unit, name)
 
 
-def _faces(scene: _Scene, design: Design, path: Path | None) -> Faces:
+def _faces(scene: _Scene, design: Design, file: FileResult | None) -> Faces:
     """What drives the follower, as intended or as a file's contour gives it."""
-    from camgeo.synthesis.intent import intended
     from kin.dynamics.excitation import Faces, OfMechanism, intended_faces, measured_faces
 
     if design.driven is not None:
         return Faces(OfMechanism(design.driven.mechanism), None)
-    intent = intended(scene.recipe, design)
+    follower = design.exact.gauge
     play = scene.asked.backlash
     if play is not None:  # at the contact, which of a double follower lies about an arm's length from its pivot
-        play = intent.follower.moved_by(play)
-    if path is None:
-        return intended_faces(intent.follower, play)
-    units = scene.recipe.unstated(path) if scene.drawn is None else scene.drawn
-    return measured_faces(intent.follower, contour_of(path, intent.mm, mirrored=intent.mirrored, units=units), play)
+        play = follower.moved_by(play)
+    if file is None or file.contour is None:
+        return intended_faces(follower, play)
+    return measured_faces(follower, file.contour, play)
 
 
-def contour_of(path: Path, mm: float, *, mirrored: bool, units: float | None = None) -> Contour:
-    """Read the outer contour of a drawing or a solid, in mm as if not mirrored.
-
-    Where the file states no unit it is `units`, mm; without that it is `mm` in a drawing, and 1 mm in a mesh.
-    """
-    from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
-
-    if kind_of(path) in SOLIDS:
-        contour = read_solid(path, (), units).contour
-    else:
-        drawing = read_drawing(path)
-        mm = mm if units is None else units
-        contour = drawing.contour if drawing.units_mm is not None or mm == 1.0 else drawing.contour.scaled(mm)
-    return contour.mirrored() if mirrored else contour
-
-
-def _one(scene: _Scene, design: Design, path: Path | None) -> tuple[dict[str, Any], Check]:
+def _one(scene: _Scene, design: Design, file: FileResult | None) -> tuple[dict[str, Any], Check]:
     """One run: entry of the report, and its check."""
     from kin.dynamics.drive import drives
-    from kin.dynamics.excitation import Faces, Moved
+    from kin.dynamics.excitation import Faces
+    from kin.follower.drive import Shifted
 
-    faces = _faces(scene, design, path)
+    faces = _faces(scene, design, file)
     if scene.asked.rate:  # the spring's force is given at the lowest place
-        faces = Faces(Moved(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
+        faces = Faces(Shifted(faces.lower, 1.0, -_lowest(_faces(scene, design, None).lower)), None)
     ends = [end for rest in scene.rests for end in rest]
     found = drives([face for face in faces if face is not None], ends)
-    entry: dict[str, Any] = {"from": "intended" if path is None else path.name}
+    entry: dict[str, Any] = {"from": "intended" if file is None else file.path.name}
     if len(found) > 1:
         return _with_backlash(scene, entry, found[0], found[1])
     return _with_spring(scene, entry, found[0])

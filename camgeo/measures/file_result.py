@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from camgeo.recipe.export import NO_PART
+from kin.judge.verdict import OfSurfaces
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -13,32 +14,38 @@ if TYPE_CHECKING:
     from camgeo.fit.pieces import Bound
     from camgeo.recipe.export import FileRequest
     from kin.contour.contour import Contour
-    from kin.follower.frame import LinkageVerdict
-    from kin.follower.motion_error import MotionError
+    from kin.judge.closure import ClosureVerdict
+    from kin.judge.verdict import SurfaceVerdict, Verdict
 
 
 @dataclass(frozen=True)
-class FileResult:
+class FileResult(OfSurfaces):
     """One written file: what was asked, what was proved of it and what the judge measured (mm, degrees).
 
-    `body` is the one that it is judged as. `perimeter` and `area` (mm, mm^2) are those of its contour as read,
-    `units` (mm) is the unit of its numbers, None where there are none or nothing was read; `contour` is that contour,
-    in mm and as if not mirrored.
+    `body` is the one that it is judged as, `units` (mm) the unit of its numbers, None where there are none or nothing
+    was read. `surfaces`, `closures` and `chains`, every closed contour as read, are those of its verdict: none of a
+    file that is not judged as the cam.
     """
 
     path: Path
     request: FileRequest
-    tolerance: float | None
-    pieces: int | None
-    bound: Bound | None
-    measured_error: float | None
-    motion: MotionError | None
-    linkage: LinkageVerdict | None = None
+    tolerance: float | None = None
+    pieces: int | None = None
+    bound: Bound | None = None
     body: str = "cam"
-    perimeter: float | None = None
-    area: float | None = None
     units: float | None = None
-    contour: Contour | None = None
+    surfaces: tuple[SurfaceVerdict, ...] = ()
+    closures: tuple[ClosureVerdict, ...] = ()
+    chains: tuple[Contour, ...] = ()
+
+    @staticmethod
+    def of(
+        path: Path, request: FileRequest, tolerance: float, verdict: Verdict, made: tuple[int, Bound] | None = None
+    ) -> FileResult:
+        """Give what is known of a file by its verdict, and if it was `made` here number of pieces and proved bound."""
+        pieces, bound = (verdict.pieces, None) if made is None else made
+        found = verdict.surfaces, verdict.closures, verdict.chains
+        return FileResult(path, request, tolerance, pieces, bound, "cam", verdict.units, *found)
 
     @property
     def shows_cam(self) -> bool:

@@ -248,13 +248,12 @@ def _motion(recipe: Recipe, design: Design) -> list[Remark | None]:
 
 def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Sequence[FileResult]) -> Remark | None:
     """A limit that the tolerance of a file implies, and that is no small part of the stroke or of the rollers."""
-    from camgeo.synthesis.intent import intended
-    from kin.judge.contour_checks import direct_play, is_loose, stroke_of
+    from kin.judge.limits import direct_play, is_loose, stroke_of
 
     if recipe.verify.motion_error is not None or not files:
         return None
     tolerances = {file.path.name: file.tolerance for file in files}
-    follower, found = intended(recipe, design).follower, []
+    follower, found = design.exact.gauge, []
     whole, closure = stroke_of(follower), follower.closure
     word = "swing" if follower.unit == "deg" else "stroke"
     for check in checks:
@@ -263,7 +262,7 @@ def _implied(recipe: Recipe, design: Design, checks: Sequence[Check], files: Seq
             continue
         direct, size, of = follower.direct_limit(tolerance), whole, word
         if closure is not None and check.name == closure.name:
-            direct = direct_play(follower, tolerance)
+            direct = direct_play(closure, follower, tolerance)
             size, of = (whole, word) if closure.radius is None else (closure.radius, "roller's radius")
         elif check.name != MOTION.name:
             continue
@@ -352,13 +351,13 @@ def _shaft(recipe: Recipe, design: Design) -> Remark | None:
     """With a bore the wall is a check."""
     if recipe.part.bore is not None or design.contour is None:
         return None
-    from camgeo.synthesis.part.walls import distance_inside, winds
+    from camgeo.synthesis.part.walls import Looks, distance_inside, winds
 
     runs = [np.linspace(run.low, run.high, LOOKS) for run in design.contour.runs]
     ring = design.contour.sample(np.concatenate(runs)).point
     if winds(ring) and np.hypot(ring[:, 0], ring[:, 1]).min() > CLEAR * design.surface.curve.size:
         return None  # by far; what is nearer is looked at closely
-    distance, at = distance_inside(design.contour, (0.0, 0.0))
+    distance, at = distance_inside(Looks.of(design.contour), (0.0, 0.0))
     if distance > 0.0:
         return None
     told = f"the shaft lies outside the contour by {_length(recipe, -distance)}"

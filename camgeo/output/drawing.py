@@ -93,7 +93,7 @@ def _reference(job: Job) -> list[Reference]:
     """Centre, base or prime circle, and the pitch curve: to look at, not to cut."""
     from camgeo.files.dxf import Circle, Point, Trace
     from camgeo.fit.arcs import fit_arcs
-    from camgeo.synthesis.part.walls import distance_inside
+    from camgeo.synthesis.part.walls import Looks, distance_inside
 
     recipe, surface = job.recipe, job.design.surface
     cam = recipe.cam
@@ -104,7 +104,7 @@ def _reference(job: Job) -> list[Reference]:
         if radius is not None:
             found.append(Circle(name, (0.0, 0.0), radius))
             continue
-        least = abs(distance_inside(surface.base, (0.0, 0.0))[0])
+        least = abs(distance_inside(Looks.of(surface.base), (0.0, 0.0))[0])
         if least > recipe.export.tolerance:  # the shaft may stand on the contour itself
             found.append(Circle(name, (0.0, 0.0), least))
         if surface.radius:

@@ -11,12 +11,12 @@ if TYPE_CHECKING:
     from camgeo.recipe.machining import Compensation
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.judge.verify import Intent
+    from kin.judge.intent import PartIntent
 
 
 def intent_of_file(
     recipe: Recipe, design: Design, kind: str, by: Compensation | None = None, field: str = "export.files"
-) -> Intent:
+) -> PartIntent:
     """What kin is given of a file of some kind, whose part may be made different `by` something.
 
     Raises RecipeErrors for a program of which the recipe knows nothing, and as `compensated` does.

@@ -160,21 +160,7 @@ class Job:
         units = told.mm if request.kind == "stl" else None  # which an STL cannot state
         with self.clock.stage(f"judge {request.kind}"):
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, tolerance), units)
-        measured = verdict.measured_error
-        file = FileResult(
-            path,
-            request,
-            tolerance,
-            pieces,
-            bound,
-            measured,
-            verdict.motion,
-            verdict.linkage,
-            perimeter=verdict.perimeter,
-            area=verdict.area,
-            units=verdict.units,
-            contour=verdict.contour,
-        )
+        file = FileResult.of(path, request, tolerance, verdict, (pieces, bound))
         return Made((file,), tuple(self._why_lost(check) for check in verdict.checks))
 
     def _why_lost(self, check: Check) -> Check:

@@ -142,7 +142,7 @@ def _glb(job: Job, request: FileRequest, path: Path, parts: Sequence[Part]) -> M
         mesh = replace(part.mesh, points=part.mesh.points + np.array([0.0, 0.0, part.raised]))
         actors.append(Actor(part.body.name, mesh, part.body.pose, part.body.colour))
     write_glb(path, actors, title=job.recipe.name)
-    return Made((FileResult(path, request, None, None, None, None, None, units=UNIT_MM["m"]),))
+    return Made((FileResult(path, request, units=UNIT_MM["m"]),))
 
 
 def _judged_cam(job: Job, request: FileRequest, path: Path, part: Part) -> Made:
@@ -156,5 +156,5 @@ def _judged_body(job: Job, request: FileRequest, path: Path, part: Part, corners
     tolerance, units = job.tolerance(request), job.recipe.told_for(request).mm
     with job.clock.stage(f"judge {request.kind}"):
         checks = judge_body(part.body.name, corners, slabs(part.body.plates), tolerance, path)
-    file = FileResult(path, request, tolerance, None, part.bound, None, None, body=part.body.name, units=units)
+    file = FileResult(path, request, tolerance, None, part.bound, part.body.name, units)
     return Made((file,), tuple(about(check, path.name) for check in checks))

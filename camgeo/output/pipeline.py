@@ -124,10 +124,7 @@ def judged(
             given = recipe.unstated(path) if units is None else units
             verdict = verify(path, meant, recipe.verify.angles, permitted(recipe, within), given)
         request = FileRequest(verdict.kind, compensation=request.compensation)
-        measured = verdict.measured_error
-        file = FileResult(path, request, within, verdict.pieces, None, measured, verdict.motion, verdict.linkage)
-        read = replace(file, perimeter=verdict.perimeter, area=verdict.area, units=verdict.units)
-        files.append(replace(read, contour=verdict.contour))
+        files.append(FileResult.of(path, request, within, verdict))
         checks += verdict.checks
     skipped: tuple[Skipped, ...] = ()
     if second_opinion:
@@ -135,7 +132,7 @@ def judged(
 
         opinion = second_opinion_on(files, recipe, design, checks, clock)
         checks, skipped = [*checks, *opinion.checks], opinion.skipped
-    return document(recipe, _findings(recipe, design, checks, files, clock, skipped=skipped, units=units))
+    return document(recipe, _findings(recipe, design, checks, files, clock, skipped=skipped))
 
 
 def _produced(
@@ -173,7 +170,7 @@ def _produced(
     found = _findings(recipe, design, checks, files, clock, skipped=skipped)
     for request in pages:
         path = folder / request.filename(recipe.name, recipe.export.files)
-        found = _with_page(recipe, design, found, FileResult(path, request, None, None, None, None, None), clock)
+        found = _with_page(recipe, design, found, FileResult(path, request), clock)
     return design, found
 
 
@@ -191,7 +188,7 @@ def _content(recipe: Recipe, design: Design, found: Findings, clock: Clock) -> C
     from camgeo.report.page.content import content
 
     with clock.stage("page"):
-        return content(recipe, design, [file.path for file in found.files if file.shows_cam])
+        return content(recipe, design, [file for file in found.files if file.shows_cam])
 
 
 def _findings(
@@ -202,7 +199,6 @@ def _findings(
     clock: Clock,
     *,
     skipped: tuple[tuple[str, str], ...] = (),
-    units: float | None = None,
 ) -> Findings:
     """Everything that a run found."""
     linkage = None
@@ -216,7 +212,7 @@ def _findings(
         from camgeo.measures.dynamics import dynamics_of
 
         with clock.stage("dynamics"):
-            train = dynamics_of(recipe, design, [file.path for file in files if file.shows_cam], units)
+            train = dynamics_of(recipe, design, [file for file in files if file.shows_cam])
         checks = [*checks, *train.checks]
     if recipe.limits:
         from camgeo.measures.limits import limit_checks

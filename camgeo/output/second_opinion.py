@@ -268,19 +268,19 @@ def _triangles(file: FileResult) -> int:
 
 def _volume(job: Job, file: FileResult, read: Any) -> list[Check]:  # noqa: ANN401 - trimesh has no types
     """Hold trimesh's volume against the exact one, as the judge holds its own."""
-    from kin.judge.contour_checks import volume_check
-    from kin.judge.part_checks import layers_volume_check
+    from kin.judge.volume import layers_volume_check, volume_check
 
     job, _ = job.of_file(file.request)
     intent = intent_of_file(job.recipe, job.design, file.request.kind)
     mm, tolerance = file.units, file.tolerance
-    if file.contour is None or mm is None or tolerance is None or intent.thickness is None:
+    contours = [surface.contour for surface in file.surfaces if surface.contour is not None]
+    if not contours or mm is None or tolerance is None or intent.thickness is None:
         return []
     volume = mm**3 * float(read.volume)
     if intent.layers:
-        check = layers_volume_check(volume, file.contour, intent, tolerance)
+        check = layers_volume_check(volume, contours, intent, tolerance)
     else:
-        check = volume_check(volume, intent.thickness, file.contour, intent, tolerance)
+        check = volume_check(volume, intent.thickness, contours, intent, tolerance)
     return [replace(check, name=MESH_VOLUME.name)]
 
 

@@ -29,7 +29,7 @@ def make_table(job: Job, request: FileRequest, path: Path) -> Made:
         columns, rows = _TABLES[name](job, request)
         write_table(path, columns, rows, gaps=name in _GAPS)
     units = job.recipe.told_for(request).mm
-    return Made((FileResult(path, request, None, None, None, None, None, units=units),))
+    return Made((FileResult(path, request, units=units),))
 
 
 def _motion(job: Job, request: FileRequest) -> Columns:

@@ -31,4 +31,4 @@ def make_view(job: Job, request: FileRequest, path: Path) -> Made:
     pose[:, 2] = sense * 2.0 * math.pi * np.arange(STEPS + 1) / STEPS
     with job.clock.stage("write glb"):
         write_glb(path, [Actor("cam", mesh, pose, COLOUR)], title=job.recipe.name)
-    return Made((FileResult(path, request, None, None, None, None, None, units=UNIT_MM["m"]),))
+    return Made((FileResult(path, request, units=UNIT_MM["m"]),))

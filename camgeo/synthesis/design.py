@@ -277,6 +277,8 @@ def _part(recipe: Recipe, contour: Curve, exact: ExactCam) -> tuple[Body | None,
         ]
     from camgeo.synthesis.part.body import body_of
     from camgeo.synthesis.part.checks import part_checks
+    from camgeo.synthesis.part.walls import Looks
 
-    body = body_of(part, contour)
-    return body, part_checks(body, contour, part.wall, exact.motion.shaft_deg)
+    looks = Looks.of(contour)
+    body = body_of(part, looks)
+    return body, part_checks(body, looks, part.wall, exact.motion.shaft_deg)

@@ -11,29 +11,28 @@ from camgeo.recipe.linkage import output_slides
 if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
-    from kin.judge.verify import Intent as Judged
-    from kin.judge.verify import Limits
+    from kin.judge.intent import Limits, PartIntent
 
 
-def intended(recipe: Recipe, design: Design) -> Judged:
+def intended(recipe: Recipe, design: Design) -> PartIntent:
     """What kin is given of the part: the follower with its law, and how the part is drawn."""
-    from kin.judge.contour_checks import DwellAsked
-    from kin.judge.verify import Intent
+    from kin.judge.intent import DwellAsked, LinkageIntent, PartIntent, SurfaceIntent
 
-    driven, asked = design.driven, recipe.dwell
-    (gauge,) = design.exact.gauges.values()
-    turns = driven is not None and driven.turns
-    intent = Intent(
-        follower=gauge,
+    driven, asked, linkage, gauges = design.driven, recipe.dwell, None, design.exact.gauges
+    if driven is not None and driven.turns:
+        dwell = None if asked is None else DwellAsked(asked.band, asked.at_least, asked.over)
+        linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing(), dwell)
+    intent = PartIntent(
+        surfaces=tuple(
+            SurfaceIntent(gauges[surface.name], surface.name, side=surface.side, trimmed=design.trimmed)
+            for surface in design.exact.surfaces
+        ),
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
         bore=recipe.part.bore,
         thickness=recipe.part.thickness,
-        outer=recipe.part.outer,
-        trimmed=design.trimmed,
-        mechanism=driven.mechanism if driven is not None and turns else None,
-        swing=recipe.cam.frame_swing() if turns else None,
-        dwell=DwellAsked(asked.band, asked.at_least, asked.over) if asked is not None and turns else None,
+        outline=recipe.part.outer,
+        linkage=linkage,
     )
     if design.body is None:
         return intent
@@ -45,7 +44,7 @@ def intended(recipe: Recipe, design: Design) -> Judged:
 
 def permitted(recipe: Recipe, tolerance: float) -> Limits:
     """What kin permits: the tolerance, and the recipe's own limits of motion and output (degrees for a swing)."""
-    from kin.judge.verify import Limits
+    from kin.judge.intent import Limits
 
     motion, output = recipe.verify.motion_error, recipe.verify.output_error
     if output is not None and recipe.linkage is not None and not output_slides(recipe.linkage):

@@ -6,10 +6,11 @@ has two: the one that pushes it up, and the one that keeps it below, see `kin.dy
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
+from kin.follower.drive import Shifted
 from kin.follower.guide import METRE
 
 if TYPE_CHECKING:
@@ -25,31 +26,6 @@ class Faces(NamedTuple):
 
     lower: Excitation
     upper: Excitation | None
-
-
-@dataclass(frozen=True, eq=False)
-class Moved:
-    """sign * motion + offset."""
-
-    motion: Excitation
-    sign: float = 1.0
-    offset: float = 0.0
-
-    @property
-    def breaks(self) -> Array:
-        """As the motion's."""
-        return self.motion.breaks
-
-    @property
-    def smooth(self) -> bool:
-        """As the motion."""
-        return self.motion.smooth
-
-    def rows(self, phi: Array) -> Array:
-        """See `kin.follower.drive.Excitation`."""
-        rows = self.sign * self.motion.rows(phi)
-        rows[0] += self.offset
-        return rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,8 +77,8 @@ def intended_faces(follower: Follower, play: float | None) -> Faces:
     motion: Excitation = Intended(follower)
     if play is None:
         first = follower.contacts[0].sense
-        return Faces(motion if first > 0 else Moved(motion, -1.0), None)
-    return Faces(motion, Moved(motion, 1.0, play))
+        return Faces(motion if first > 0 else Shifted(motion, -1.0), None)
+    return Faces(motion, Shifted(motion, 1.0, play))
 
 
 def measured_faces(follower: Follower, contour: Contour, play: float | None) -> Faces:
@@ -112,15 +88,12 @@ def measured_faces(follower: Follower, contour: Contour, play: float | None) -> 
     what it is too large takes from the play. ContactError where the follower finds no contact, ValueError for play
     with a follower that has one contact.
     """
-    contacts, drives = follower.contacts, follower.drives(contour)
+    contacts = follower.contacts
     if play is not None and len(contacts) == 1:
         raise ValueError("a follower of one contact has no backlash")
-    si = follower.si
+    rests = follower.resting(contour)
     if play is None:
-        return Faces(Moved(drives[0], 1.0, -si * contacts[0].zero), None)
-    # the follower's position is sense * (own - zero): one contact pushes it up, the other keeps it below
-    lower, upper = sorted(zip(contacts, drives, strict=True), key=lambda pair: -pair[0].sense)
-    return Faces(
-        Moved(lower[1], 1.0, -si * lower[0].zero),
-        Moved(upper[1], -1.0, si * upper[0].zero + play),
-    )
+        return Faces(replace(rests[0], sign=1.0, offset=contacts[0].sense * rests[0].offset), None)
+    # one contact pushes it up, the other keeps it below
+    lower, upper = sorted(rests, key=lambda rest: -rest.sign)
+    return Faces(lower, replace(upper, offset=upper.offset + play))

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
+from kin.follower.drive import Shifted
 from kin.follower.guide import METRE
 from kin.follower.laws import ByLaw, Swing
 from kin.follower.rests import dwells_of_law, dwells_of_transmission
@@ -141,6 +142,11 @@ class Follower(ABC):
     @abstractmethod
     def drives(self, contour: Contour) -> Sequence[Excitation]:
         """What each contact feels of a contour over the shaft angle: its own position, in SI."""
+
+    def resting(self, contour: Contour) -> list[Shifted]:
+        """Position, metres or radians, with each of its contacts resting on a contour."""
+        each = zip(self.contacts, self.drives(contour), strict=True)
+        return [Shifted(drive, float(one.sense), -one.sense * self.si * one.zero) for one, drive in each]
 
     @abstractmethod
     def judge(self, contour: Contour, phi: Array) -> Judged:

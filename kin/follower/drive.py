@@ -44,6 +44,32 @@ class Excitation(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
+class Shifted:
+    """sign * drive + offset, where the shaft stands `turned` ahead, radians."""
+
+    drive: Excitation
+    sign: float = 1.0
+    offset: float = 0.0
+    turned: float = 0.0
+
+    @property
+    def breaks(self) -> Array:
+        """The drive's."""
+        return self.drive.breaks - self.turned if self.turned else self.drive.breaks
+
+    @property
+    def smooth(self) -> bool:
+        """As that one."""
+        return self.drive.smooth
+
+    def rows(self, phi: Array) -> Array:
+        """See `Excitation`."""
+        rows = self.sign * self.drive.rows(phi + self.turned if self.turned else phi)
+        rows[0] += self.offset
+        return rows
+
+
+@dataclass(frozen=True, eq=False)
 class OfFace:
     """Distance at which a flat face rests on a contour, its normal `turned` ahead of the shaft angle.
 

@@ -75,8 +75,8 @@ class _Rollers(Moved):
         return found if len(found) > 1 else found[0]
 
     def drives(self, contour: Contour) -> list[OfRoller]:
-        """Position of each roller on its guide; arcs within SPLINE_ERROR stand in for splines."""
-        obstacle = self._obstacle(contour, SPLINE_ERROR)
+        """Position of each roller on its guide; arcs within SPLINE_ERROR, or as fine as asked for, are its splines."""
+        obstacle = self._obstacle(contour, contour.arcs_within or SPLINE_ERROR)
         each = zip(self.contacts, self.guides, strict=True)
         return [OfRoller(obstacle, guide, one.turned) for one, guide in each]
 

@@ -9,6 +9,7 @@ from typing import Literal
 from kin.numeric.angles import degrees
 
 Sense = Literal["at_least", "at_most"]
+ROUNDING = 1e-12  # of the judge itself, as a share of the extent; a value this far above its limit still holds
 
 
 @dataclass(frozen=True)

@@ -90,7 +90,7 @@ def faces(layers: Sequence[Layer]) -> list[tuple[str, float]]:
             continue
         z = one.high if one is below else one.low
         if below is None or above is None:
-            found.append(("hub" if one.outline is not None else "thickness", z))
+            found.append((one.outline.kind if one.outline is not None else "thickness", z))
         elif below.outline != above.outline or below.inset[1] != above.inset[0]:
             found.append(("thickness", z))
         elif below.holes != above.holes:

@@ -2,7 +2,7 @@
 
 z is 0 at the top of the stock and falls into it. A cut is what the cutter does between coming down and going up again:
 an arc of entry, a closed path, an arc of exit. The deepest path of each contour decides what it is; the one that holds
-all others is milled from outside, the others are holes. Of a ring all are holes.
+all others is milled from outside, the others are holes. Of stock that comes with its outline all are holes.
 """
 
 from __future__ import annotations
@@ -19,18 +19,14 @@ from kin.contour.nearest import nearest, signed_distance
 from kin.contour.offset import TightError, parallel
 from kin.contour.region import gaps
 from kin.judge.check import Check, at_most, failed
-from kin.judge.ring import goes_round
 from kin.numeric.places import place_text
 from kin.read.errors import ReadError
 from kin.read.gcode import ARC_MM, arcs_of
+from kin.read.nesting import Chain, Nest, counter_clockwise
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
     from kin.contour.arcs import Arcs
     from kin.contour.contour import Contour
-    from kin.law.contacts import Side
     from kin.numeric.arrays import Array
     from kin.read.gcode import Move, Program
 
@@ -51,7 +47,7 @@ class Milling:
     climb         a right-handed cutter meets the metal climbing
     standing      how far metal may stand outside the contour where the cutter does not reach
     hub           radius and height of the metal about the shaft that stands on the stock; None without
-    side          on which the metal lies: 1 within the contour; -1 round it, as of a ring, whose outline is not milled
+    outline       the outline is milled; of round stock, as of a ring, it is not
     """
 
     radius: float
@@ -60,7 +56,7 @@ class Milling:
     climb: bool = True
     standing: float = 0.0
     hub: tuple[float, float] | None = None
-    side: Side = 1
+    outline: bool = True
 
 
 class Cut(NamedTuple):
@@ -72,14 +68,11 @@ class Cut(NamedTuple):
     exit: list[Move]
 
 
-@dataclass(frozen=True)
-class Milled:
-    """The contour and holes that a program leaves, counter-clockwise, mm; checks; number of moves round the contour."""
+@dataclass(frozen=True, eq=False)
+class Milled(Nest):
+    """What a program leaves, mm, by falling area, the outline first if it is milled; and checks."""
 
-    contour: Contour
-    holes: tuple[Contour, ...]
     checks: tuple[Check, ...]
-    pieces: int
 
 
 def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
@@ -92,7 +85,7 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
     last = [feature[-1] for feature in features]
     loops = [arcs_of(cut.loop) for cut in last]
     sizes = [abs(_area(loop)) for loop in loops]
-    outer = int(np.argmax(sizes)) if milling.side > 0 else None
+    outer = int(np.argmax(sizes)) if milling.outline else None
     edges = []
     for k, (cut, loop) in enumerate(zip(last, loops, strict=True)):
         inward = 1.0 if (_area(loop) > 0.0) == (k == outer) else -1.0
@@ -100,10 +93,9 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
             edge = parallel(loop, inward * radius, FINE * tolerance)
         except TightError as error:
             raise ReadError("open", f"the cutter's path from line {cut.loop[0].line}: {error}", path) from error
-        edges.append(edge if edge.area > 0.0 else edge.reversed())
-    chosen = _opening(edges, path) if outer is None else outer
-    contour = edges[chosen]
-    holes = tuple(edge for k, edge in enumerate(edges) if k != chosen)
+        edges.append(counter_clockwise(edge))
+    chains = [Chain(edge, pieces=len(cut.loop)) for edge, cut in zip(edges, last, strict=True)]
+    falling = sorted(range(len(chains)), key=lambda k: (k != outer, -edges[k].area))
     checks = (
         _cutter_check(program, milling),
         _arcs_check(program),
@@ -113,15 +105,7 @@ def milled(program: Program, milling: Milling, tolerance: float) -> Milled:
         _entry_check(features),
         _hub_check(program, milling) or _gouge_check(features, edges, outer, milling, tolerance),
     )
-    return Milled(contour, holes, checks, len(last[chosen].loop))
-
-
-def _opening(edges: Sequence[Contour], path: Path) -> int:
-    """Which of the edges goes round the shaft; a ring may have holes that are larger."""
-    found = next((k for k, edge in enumerate(edges) if goes_round(edge)), None)
-    if found is None:
-        raise ReadError("empty", "the program mills no opening about the shaft, in which the follower runs", path)
-    return found
+    return Milled(tuple(chains[k] for k in falling), checks)
 
 
 def _cuts(program: Program) -> list[Cut]:

@@ -10,6 +10,7 @@ from kin.read.drawing.drawing import Aside, Drawing, Fault
 from kin.read.drawing.dxf import read_dxf
 from kin.read.errors import ReadError
 from kin.read.mesh.stl import Section, Solid, read_stl
+from kin.read.nesting import scaled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -53,16 +54,18 @@ def kind_of(path: Path | str) -> Kind:
     return found
 
 
-def read_drawing(path: Path | str, gap: float | None = None, *, engraved: bool = False) -> Drawing:
+def read_drawing(path: Path | str, gap: float | None = None, *, engraved: bool = False, deepest: int = 1) -> Drawing:
     """Read a DXF or SVG; raises as `read_dxf` does."""
     if kind_of(path) == "svg":
         from kin.read.drawing.svg import read_svg
 
-        return read_svg(path, gap, engraved=engraved)
-    return read_dxf(path, gap, engraved=engraved)
+        return read_svg(path, gap, engraved=engraved, deepest=deepest)
+    return read_dxf(path, gap, engraved=engraved, deepest=deepest)
 
 
-def read_solid(path: Path | str, heights: Sequence[float] = (), units: float | None = None) -> AnySolid:
+def read_solid(
+    path: Path | str, heights: Sequence[float] = (), units: float | None = None, deepest: int = 1
+) -> AnySolid:
     """Read an STL, 3MF or STEP; raises as `read_stl`, `read_3mf` and `read_step` do.
 
     `units`, mm, is that of an STL, which states none and is read in mm without.
@@ -70,27 +73,23 @@ def read_solid(path: Path | str, heights: Sequence[float] = (), units: float | N
     if kind_of(path) == "step":
         from kin.read.step.step import read_step
 
-        return read_step(path, heights)
+        return read_step(path, heights, deepest)
     if kind_of(path) == "3mf":
         from kin.read.mesh.threemf import read_3mf
 
-        return read_3mf(path, heights)
+        return read_3mf(path, heights, deepest)
     if units is None or units == 1.0:
-        return read_stl(path, heights)
-    found = read_stl(path, [z / units for z in heights])
-    sections = [
-        Section(z, one.contour.scaled(units), tuple(hole.scaled(units) for hole in one.holes))
-        for z, one in zip(heights, found.sections, strict=False)
-    ]
+        return read_stl(path, heights, deepest)
+    found = read_stl(path, [z / units for z in heights], deepest)
+    sections = zip(heights, found.sections, strict=False)
     return replace(
         found,
-        contour=found.contour.scaled(units),
-        holes=tuple(hole.scaled(units) for hole in found.holes),
+        chains=scaled(found.chains, units),
         z_min=units * found.z_min,
         z_max=units * found.z_max,
         height=units * found.height,
         volume=units**3 * found.volume,
-        sections=tuple(sections),
+        sections=tuple(Section(scaled(one.chains, units), z) for z, one in sections),
         faces=tuple(units * z for z in found.faces),
         uneven=units * found.uneven,
     )

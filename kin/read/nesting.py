@@ -1,8 +1,9 @@
-"""Which of several closed contours is the outer one, and whether the others are holes in it."""
+"""Which of several closed contours is the outer one, and which lie inside which."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -11,13 +12,69 @@ from kin.numeric.places import place_text
 from kin.read.errors import ReadError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from kin.contour.contour import Contour
 
-__all__ = ["counter_clockwise", "demand_few", "met", "nested"]
+__all__ = ["Chain", "Nest", "Place", "counter_clockwise", "demand_few", "met", "nested", "scaled"]
 
 MOST_CONTOURS = 2000
+
+
+class Place(NamedTuple):
+    """Number of a contour, how many others it lies inside, and the rank of the smallest of these by falling area."""
+
+    number: int
+    depth: int
+    inside: int | None
+
+
+class Chain(NamedTuple):
+    """A closed contour, counter-clockwise, mm.
+
+    depth   how many others it lies inside
+    inside  which of them directly, by its rank in the `Nest`; None for the outer contour
+    layer   of a drawing on which it stands
+    pieces  of it, as the file counts them: edges, arcs, spans of a spline, moves
+    """
+
+    contour: Contour
+    depth: int = 0
+    inside: int | None = None
+    layer: str = ""
+    pieces: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Nest:
+    """Closed chains by falling area, the first of which holds all others."""
+
+    chains: tuple[Chain, ...]
+
+    @property
+    def contour(self) -> Contour:
+        """The outer contour."""
+        return self.chains[0].contour
+
+    @property
+    def holes(self) -> tuple[Contour, ...]:
+        """What lies inside the outer contour."""
+        return tuple(chain.contour for chain in self.chains[1:])
+
+    @property
+    def pieces(self) -> int:
+        """Pieces of the outer contour, as the file counts them: edges, arcs, spans of a spline."""
+        return self.chains[0].pieces
+
+
+def scaled(chains: Sequence[Chain], factor: float, *, mirrored: bool = False) -> tuple[Chain, ...]:
+    """Return chains enlarged about the origin, and mirrored in the x axis."""
+    found = []
+    for chain in chains:
+        contour = chain.contour.scaled(factor) if factor != 1.0 else chain.contour
+        found.append(chain._replace(contour=contour.mirrored() if mirrored else contour))
+    return tuple(found)
 
 
 def demand_few(count: int, path: Path) -> None:
@@ -37,30 +94,32 @@ def met(place: tuple[float, float], path: Path) -> ReadError:
     return ReadError("crossing", f"two closed contours cross or touch at {place_text(x, y, digits=9)}", path, place)
 
 
-def nested(contours: list[Contour], path: Path) -> list[int]:
-    """Numbers of the contours by falling area, the first of which holds all others.
+def nested(contours: list[Contour], path: Path, deepest: int = 1) -> list[Place]:
+    """Order contours, which do not meet, by falling area: the first holds all others.
 
-    The contours do not meet. Raises ReadError "several" for one that lies outside the first, "island" for one inside
-    another hole.
+    Raises ReadError "several" for one that lies outside the first, "island" for one inside more than `deepest` others.
     """
     order = sorted(range(len(contours)), key=lambda k: -abs(contours[k].area))
-    places = np.array([contours[k].start[0] for k in order])
+    points = np.array([contours[k].start[0] for k in order])
+    depth, inside_of = np.zeros(len(order), dtype=np.intp), np.full(len(order), -1, dtype=np.intp)
     for rank, k in enumerate(order[:-1]):
-        others = places[rank + 1 :]
+        others = points[rank + 1 :]
         x_min, y_min, x_max, y_max = contours[k].box
         inside = np.zeros(len(others), dtype=np.bool_)
         near = np.flatnonzero(((others >= (x_min, y_min)) & (others <= (x_max, y_max))).all(axis=1))  # in its box
         if near.size:
             chain, _ = counter_clockwise(contours[k]).as_arcs()
             inside[near] = signed_distance(chain, others[near]) < 0.0
-        wrong = others[inside if rank else ~inside]
-        if not len(wrong):
+        depth[rank + 1 :][inside], inside_of[rank + 1 :][inside] = depth[rank] + 1, rank
+        wrong = ~inside if rank == 0 else inside & (depth[rank] >= deepest)
+        if not wrong.any():
             continue
-        x, y = wrong[0].tolist()
-        box = contours[order[rank + 1 + int(np.flatnonzero(inside if rank else ~inside)[0])]].box
+        x, y = others[wrong][0].tolist()
+        box = contours[order[rank + 1 + int(np.flatnonzero(wrong)[0])]].box
         size = f"{box.x_max - box.x_min:.6g} x {box.y_max - box.y_min:.6g} mm"
         what = f"the closed contour at {place_text(x, y, digits=9)}"
         if rank:
             raise ReadError("island", f"{what} lies inside a hole; it is {size}", path, (x, y))
         raise ReadError("several", f"{what} does not lie inside the largest one; it is {size}", path, (x, y))
-    return order
+    places = zip(order, depth.tolist(), inside_of.tolist(), strict=True)
+    return [Place(k, deep, None if outer < 0 else outer) for k, deep, outer in places]

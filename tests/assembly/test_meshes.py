@@ -149,6 +149,7 @@ linkage:
 """
 
 
+@pytest.mark.slow
 def test_corners_that_are_one_once_rounded_leave_nothing_open():
     """The edge of an arm passes under a rail at a slant: three pairs of corners lie within a millionth of a mm."""
     recipe = load_text(SLANTED, "c.yaml")

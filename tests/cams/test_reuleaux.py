@@ -6,6 +6,7 @@ import math
 import ezdxf
 import numpy as np
 import pytest
+from support.intent import findings
 from support.kernel import kernel
 
 from camgeo.api.run import export
@@ -19,7 +20,6 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended, permitted
 from kin.contour.contour import Contour
-from kin.judge.contour_checks import judge_contour
 from kin.judge.verify import verify
 from kin.law.reuleaux import closed_angles, corners
 from kin.read.files import read_drawing, read_solid
@@ -55,7 +55,7 @@ def judged(text, points, bulges, tolerance=1e-4):
     recipe = recipe_of(text)
     intent = intended(recipe, designed(recipe))
     contour = Contour.from_bulges(points, bulges)
-    found = judge_contour(contour, intent, PHI, permitted(recipe, tolerance))
+    found = findings(contour, intent, PHI, permitted(recipe, tolerance))
     return {check.name: check for check in found.checks}
 
 
@@ -91,6 +91,7 @@ def test_every_format_holds_its_corners(text, tmp_path):
     assert all(check.ok for check in checks), [str(check) for check in checks if not check.ok]
 
 
+@pytest.mark.slow
 @kernel
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("text", SHARP.values(), ids=SHARP)
@@ -288,7 +289,7 @@ def test_a_rounding_in_place_of_a_corner_is_seen():
     intent = intended(recipe, designed(recipe))
     other = designed(recipe_of(TRIANGLE.replace("50}", "50, rounding: 0.002}"))).contour
     made = fit_arcs(other, 1e-9)
-    found = judge_contour(Contour.from_bulges(made.points, made.bulges), intent, PHI, permitted(recipe, 1e-4))
+    found = findings(Contour.from_bulges(made.points, made.bulges), intent, PHI, permitted(recipe, 1e-4))
     assert not next(check for check in found.checks if check.name == "motion").ok
 
 
@@ -296,5 +297,5 @@ def test_a_trimmed_cam_is_still_judged_by_its_own_limits():
     recipe = recipe_of("cam: {kind: support, p: 25 + 4*cos(3*t), undercut: trim}\n")
     design = designed(recipe)
     assert design.trimmed
-    assert intended(recipe, design).trimmed
+    assert intended(recipe, design).surfaces[0].trimmed
     assert not designed(recipe_of(TRIANGLE)).trimmed

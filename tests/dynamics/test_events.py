@@ -13,14 +13,14 @@ from support.places import ROOT
 
 from camgeo.recipe.loading import load
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
 from kin.dynamics.drive import drives
 from kin.dynamics.events import FREE, LOWER, UPPER, Work, crossing
-from kin.dynamics.excitation import Moved, intended_faces
+from kin.dynamics.excitation import intended_faces
 from kin.dynamics.impacts import MOST_WORK, State, course, least_gap
 from kin.dynamics.separation import float_speed
 from kin.dynamics.separation_bounds import Look, Range
 from kin.dynamics.train import DynamicsError, Train, steady
+from kin.follower.drive import Shifted
 from kin.follower.follower import DoubleRoller
 
 TURN = 2.0 * math.pi
@@ -128,7 +128,7 @@ def test_corners_throw_the_follower_off_without_damping_at_any_preload_they_can(
 
 def test_no_play_is_refused_with_its_place():
     lower = Harmonic(1, 1e-3)
-    upper = Moved(Harmonic(1, 0.9e-3), 1.0, 0.05e-3)  # they meet where cos is above a half
+    upper = Shifted(Harmonic(1, 0.9e-3), 1.0, 0.05e-3)  # they meet where cos is above a half
     drives_ = faces(lower, upper)
     least, at = least_gap(drives_[0], drives_[1])
     assert least == pytest.approx(-0.05e-3, rel=1e-12)
@@ -160,6 +160,7 @@ def test_a_touch_between_two_samples_is_met():
             assert found.turns[0].velocity_at == pytest.approx(first, abs=2.0 * time[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("play", "ratio", "zeta", "impacts", "peak"),
     few([(0.05, 123.3, 0.03, 79, 30.797), (0.02, 400.3, 0.05, 157, 41.34), (0.002, 400.3, 0.05, 57, 11.937)], 3),
@@ -170,7 +171,7 @@ def test_as_many_meetings_as_another_integration_of_the_same_law(play, ratio, ze
     That integration shares the motion alone, and met the same faces in the same order, within 1e-5 rad.
     """
     recipe = load(ROOT / "recipes" / "w-law.yaml")
-    follower = intended(recipe, designed(recipe)).follower
+    follower = designed(recipe).exact.gauge
     assert isinstance(follower, DoubleRoller)
     both = intended_faces(follower, play / follower.transmission.arm)
     lower, upper = drives([both.lower, both.upper])
@@ -193,14 +194,14 @@ def stiff(ratio, zeta, rpm=300.0, preload=0.0, mass=0.4):
 def test_play_takes_no_more_places_the_stiffer_the_train(ratio, zeta):
     """Two turns of a rise and its dwells between two faces."""
     motion = Cycloid(math.radians(120.0), 20e-3)
-    found = course(stiff(ratio, zeta), faces(motion, Moved(motion, 1.0, 5e-5)), 300.0, 2)
+    found = course(stiff(ratio, zeta), faces(motion, Shifted(motion, 1.0, 5e-5)), 300.0, 2)
     assert found.stopped is None
     assert found.turns[-1].impacts > 0
     assert found.turns[-1].bore == {LOWER, UPPER}
     assert found.places < 1_000_000
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("zeta", [1e-4, 0.1, 1.0])
 @pytest.mark.parametrize("ratio", [1.3, 123.3, 1e3 + 0.3, 1e5 + 0.3])
 def test_a_turn_under_a_spring_is_bounded_too(ratio, zeta):
@@ -212,7 +213,7 @@ def test_a_turn_under_a_spring_is_bounded_too(ratio, zeta):
 
 def test_a_course_that_takes_too_much_says_how_far_it_came():
     motion = Cycloid(math.radians(120.0), 20e-3)
-    both = faces(motion, Moved(motion, 1.0, 5e-5))
+    both = faces(motion, Shifted(motion, 1.0, 5e-5))
     train = stiff(123.0, 0.1)
     whole = course(train, both, 300.0, 2)
     found = course(train, both, 300.0, 2, most=whole.places // 4)
@@ -269,7 +270,7 @@ def test_an_instant_is_where_the_search_begins_if_the_state_has_ended_there():
 def test_an_implicit_solver_sees_the_same_turn(rpm, damping, play):
     pytest.importorskip("scipy")
     motion = Cycloid(math.radians(120.0), 20e-3)
-    upper = None if play is None else Moved(motion, 1.0, play)
+    upper = None if play is None else Shifted(motion, 1.0, play)
     train = Train(0.4, damping, 2e5, 150.0 if play is None else 0.0)
     start = (train.at(rpm).static(0.0), 0.0) if play is None else (0.5 * play, 0.0)
     places = np.linspace(0.0, TURN, 2001)
@@ -320,7 +321,7 @@ def test_too_much_work_for_an_explicit_solver_is_told():
 # --- float ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("zeta", few([0.01, 0.3, 0.9, 1.0, 2.0], 2))
 @pytest.mark.parametrize("order", [1, 3])
 def test_float_of_a_harmonic_drive_begins_where_its_amplitude_reaches_the_preload(order, zeta):
@@ -412,6 +413,7 @@ def test_what_is_said_of_a_range_holds_inside_it():
     assert tight > 0.9  # the bound says something
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(("ratio", "zeta"), [(1e3 + 0.3, 1e-5), (1e5 + 0.3, 1e-6)])
 def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(ratio, zeta):

@@ -2,6 +2,7 @@
 
 import math
 import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
 from kin.contour.contour import Contour
-from kin.judge.contour_checks import Limits
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.read.drawing.svg import read_svg
 from kin.read.files import ReadError, read_drawing
@@ -42,6 +43,11 @@ def made(folder, *, part=ENGRAVED, form="arcs", tolerance=0.01, more="", cam=CAM
     (result,), checks = make(Job.of(recipe, design), request, path)
     assert all(check.ok for check in checks), checks
     return recipe, design, path, {check.name: check for check in checks}, result
+
+
+@pytest.fixture(scope="module")
+def engraved(tmp_path_factory):
+    return made(tmp_path_factory.mktemp("engraved"))
 
 
 def written(folder, body, head=HEAD):
@@ -100,8 +106,8 @@ def test_every_form_is_the_cam_by_a_second_reader_too(tmp_path, form, rotation):
     assert {"arcs": "A", "polyline": "L", "spline": "C"}[form] in data
 
 
-def test_drawing_is_at_true_size_and_says_so(tmp_path):
-    _, design, path, _, _ = made(tmp_path)
+def test_drawing_is_at_true_size_and_says_so(engraved):
+    _, design, path, _, _ = engraved
     text = path.read_text()
     wide, high, left, _, across, down = re.search(
         r'width="(.*?)mm" height="(.*?)mm" viewBox="(\S+) (\S+) (\S+) (\S+)"', text
@@ -204,8 +210,9 @@ def spoilt(path, pattern, replacement):
         (r'scale\(1 -1\)"', 'scale(1.001 -1.001)"', {"contour", "motion"}),
     ],
 )
-def test_planted_faults_are_caught(tmp_path, pattern, replacement, found):
-    recipe, design, path, _, _ = made(tmp_path)
+def test_planted_faults_are_caught(engraved, tmp_path, pattern, replacement, found):
+    recipe, design, sound, _, _ = engraved
+    path = shutil.copy(sound, tmp_path / "part.svg")
     spoilt(path, pattern, replacement)
     if "BORE" in pattern:
         spoilt(path, 'inkscape:label="BORE"', "")

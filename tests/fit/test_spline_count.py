@@ -182,6 +182,7 @@ def test_the_spline_is_smooth_in_its_own_parameter(name: str) -> None:
     assert abs(first[0] * last[1] - first[1] * last[0]) < 1e-11 * np.hypot(*first) * np.hypot(*last)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("name", few(["as-figure-2b", "reuleaux", "shu-wu", "w-booth"], 4))
 @pytest.mark.parametrize("times", [1.0, 2.0, 20.0])

@@ -124,6 +124,7 @@ def test_the_record_is_what_the_judge_finds(name: str) -> None:
     assert off(name, contacts) < SEEN
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", RECIPES)
 def test_no_field_of_a_record_is_left_unread(name: str) -> None:
     contacts, _, side, _ = held(name)

@@ -8,6 +8,7 @@ from support import followers
 from support.brute_disc import peak
 from support.camfiles import arcs_through, write_dxf
 from support.cases import few
+from support.intent import part_of
 from support.programmes import Segment, law, programme
 
 import kin.follower.roller
@@ -15,7 +16,7 @@ from kin.contour.arcs import unit
 from kin.contour.contour import Contour
 from kin.follower.guide import Arm, Line
 from kin.follower.laws import ByLaw, Swing
-from kin.judge.contour_checks import Intent, Limits
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.law.contacts import LEADING, TRAILING
 from kin.law.piecewise import Piecewise
@@ -168,7 +169,7 @@ def test_a_limit_below_the_true_error_and_above_the_samples_is_broken(tmp_path, 
     follower = inch()
     path = write_dxf(tmp_path / "cam.dxf", follower.envelope.points(np.arange(301) * 2 * np.pi / 301))
     few = np.arange(24) * 2 * np.pi / 24
-    intent, contour = Intent(follower, bore=10.0), through(follower.envelope, 301)
+    intent, contour = part_of(follower, bore=10.0), through(follower.envelope, 301)
     true = follower.judge(contour, few).motion
     monkeypatch.setattr(kin.follower.roller, "MOST_PIECES", 0)
     low = follower.judge(contour, few).motion
@@ -196,6 +197,7 @@ def test_few_shaft_angles_give_the_same_error_as_many():
     assert max(few.max, many.max) <= min(few.bound, many.bound)
 
 
+@pytest.mark.slow
 def test_a_short_spike_between_the_samples_is_found():
     follower = inch()
     points = follower.envelope.points(np.arange(2000) * 2 * np.pi / 2000)
@@ -324,6 +326,7 @@ def test_a_dent_or_spike_of_one_vertex_is_proved(vertex, depth):
     proved(follower.judge(contour, PHI).motion, np.degrees(dense(follower, contour, 20_000)), 1.0)
 
 
+@pytest.mark.slow
 def test_what_is_not_proved_is_looked_at_closely(monkeypatch):
     def unsettled(*_):
         raise UnsettledError("not proved")
@@ -339,6 +342,7 @@ def test_what_is_not_proved_is_looked_at_closely(monkeypatch):
         assert motion.max == pytest.approx(np.degrees(dense(follower, contour, 20_000)), rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("scale", [1.0 - 4e-4, 1.0 + 4e-4])
 def test_a_dent_or_spike_in_a_very_fine_polygon_is_not_lost_between_samples(scale):

@@ -11,8 +11,7 @@ import camgeo
 from camgeo.measures.remarks import LOOSE
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
-from kin.judge.contour_checks import MOST_SHARE, NO_LIMIT, STEEP, is_loose, stroke_of
+from kin.judge.limits import MOST_SHARE, NO_LIMIT, STEEP, is_loose, stroke_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,7 +69,8 @@ def test_a_limit_is_loose_beside_the_stroke_and_beside_what_the_tolerance_gives_
     assert not is_loose(0.09, 0.001, 10.0, LOOSE)
 
 
-@pytest.mark.parametrize("delta", [1799, pytest.param(1799.99, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("delta", [1799, 1799.99])
 def test_a_double_roller_nearly_square_to_its_way_has_no_implied_limit(tmp_path: Path, delta: float) -> None:
     failed = failing(report(tmp_path, ROLLERS.format(delta=delta, more="")))
     assert set(failed) == ({"motion"} if delta == 1799 else {"motion", "form-closure"})
@@ -93,6 +93,7 @@ def test_a_double_roller_that_is_steep_but_bounded_is_held_as_before(tmp_path: P
     assert set(failing(report(tmp_path, ROLLERS.format(delta=1799, more=", motion_error: 1")))) == {"motion"}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("share", "fails", "remarked"),
     [(1.01 * MOST_SHARE, True, False), (0.99 * MOST_SHARE, False, True), (0.99 * LOOSE, False, False)],
@@ -100,7 +101,7 @@ def test_a_double_roller_that_is_steep_but_bounded_is_held_as_before(tmp_path: P
 def test_a_steep_stem_on_both_sides_of_its_bounds(tmp_path: Path, share: float, fails: bool, remarked: bool) -> None:
     """The tolerance at which the limit is that share of the stroke: 84 times the tolerance and more here."""
     recipe = load_text(STEM.format(tolerance=0.01), "cam.yaml")
-    follower = intended(recipe, designed(recipe)).follower
+    follower = designed(recipe).exact.gauge
     assert stroke_of(follower) == pytest.approx(40.0, rel=1e-12)
     low, high = 1e-6, 1.0
     while high - low > 1e-9 * high:

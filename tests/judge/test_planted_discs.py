@@ -18,6 +18,7 @@ from support.disc_followers import (
     on_swinging_face,
 )
 from support.discs import DEGREE, M01, M02, M03, M07, M08, TURN, displaced
+from support.intent import part_of
 from support.stepfiles import washer
 
 from camgeo.curve.curve import Curve
@@ -27,7 +28,8 @@ from camgeo.fit.spline import fit_spline
 from kin.follower.follower import Roller
 from kin.follower.guide import Line
 from kin.judge.holes import round_hole
-from kin.judge.verify import Intent, Limits, verify
+from kin.judge.intent import Limits
+from kin.judge.verify import verify
 from kin.law.piecewise import Piecewise
 from kin.law.segment import Constant
 
@@ -38,7 +40,7 @@ DENSE = TURN / 4000 * np.arange(4000)
 
 def intent(follower, **other):
     ring = isinstance(follower, Roller) and follower.side < 0
-    return Intent(follower, outer=OUTER if ring else None, **other)
+    return part_of(follower, outline=OUTER if ring else None, **other)
 
 
 def drawn(path, points, bulges, follower):
@@ -71,14 +73,14 @@ def test_a_sound_file_passes(tmp_path, name):
 def test_a_spline_under_every_follower(tmp_path, name):
     follower, path = FOLLOWERS[name], tmp_path / "cam.dxf"
     asked = intent(follower)
-    drawn_spline(path, fit_spline(Curve.whole(CURVES[name]), 1e-5), bore=asked.outer)
+    drawn_spline(path, fit_spline(Curve.whole(CURVES[name]), 1e-5), bore=asked.outline)
     verdict = verify(path, asked, 180, LIMITS)
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
     assert verdict.measured_error <= 1e-5 + 1e-8  # the judge's own arcs for a spline count
     assert verdict.motion.max <= follower.motion_limit(1e-5 + 1e-8)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -91,7 +93,7 @@ def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
         assert caught >= {"contour", "motion"}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("depth", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
@@ -132,7 +134,7 @@ MISTAKEN = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("fault", MISTAKEN)
 def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
     name, meant = MISTAKEN[fault]
@@ -192,7 +194,7 @@ def test_a_ring_as_a_solid_of_faces(tmp_path):
     still = Piecewise(np.array([0.0, TURN]), (Constant(4.0),), TURN, smooth_seam=True)
     follower = followers.roller(Line(), 2.0, still, side=-1)
     for outer, failed in ((40.0, set()), (40.002, {"outer", "volume"})):
-        verdict = verify(path, Intent(follower, outer=outer, thickness=8.0), 30, LIMITS)
+        verdict = verify(path, part_of(follower, outline=outer, thickness=8.0), 30, LIMITS)
         assert {check.name for check in verdict.checks if not check.ok} == failed
 
 

@@ -19,9 +19,11 @@ from support.camfiles import (
 )
 from support.cases import few
 from support.heavy import ezdxf
+from support.intent import gauge_of, part_of
 
 from kin.follower.follower import Yoke
-from kin.judge.verify import Intent, Limits, verify
+from kin.judge.intent import Limits
+from kin.judge.verify import verify
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 
@@ -45,12 +47,12 @@ def opposite_roller_points(count):
 
 
 CAMS = {
-    "yoke": (Intent(YOKE, bore=10.0, thickness=8.0), support_points),
+    "yoke": (part_of(YOKE, bore=10.0, thickness=8.0), support_points),
     "double roller": (
-        Intent(ROLLERS, bore=10.0, thickness=8.0),
+        part_of(ROLLERS, bore=10.0, thickness=8.0),
         lambda count: roller_points(count, HOLLOW, 8.0),
     ),
-    "roller yoke": (Intent(FRAME, bore=10.0, thickness=8.0), opposite_roller_points),
+    "roller yoke": (part_of(FRAME, bore=10.0, thickness=8.0), opposite_roller_points),
 }
 
 
@@ -92,7 +94,7 @@ def test_a_sound_file_passes_every_check(tmp_path, cam, form):
     verdict = verify(path, intent, ANGLES, LIMITS)
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
     names = {"contour", "motion", "bore"}
-    names |= {"constant-breadth", "breadth-max"} if isinstance(intent.follower, Yoke) else {"form-closure"}
+    names |= {"constant-breadth", "breadth-max"} if isinstance(gauge_of(intent), Yoke) else {"form-closure"}
     names |= {"watertight", "thickness", "volume"} if form == "stl" else {"units", "closed"}
     assert {check.name for check in verdict.checks} == names
     assert {check.file for check in verdict.checks} == {path.name}
@@ -221,7 +223,7 @@ def test_no_units(tmp_path, cam):
 @pytest.mark.thin(3)
 def test_inches_meant_and_inches_drawn(tmp_path, cam):
     intent, points = cam
-    inches = Intent(intent.follower, mm=25.4, bore=10.0)
+    inches = part_of(gauge_of(intent), mm=25.4, bore=10.0)
     path = write_dxf(tmp_path / "cam.dxf", points(EDGES) / 25.4, bores=[(0, 0, 5 / 25.4)], units=1)
     assert failures(path, inches) == set()
     # what the file states counts: mm are as good, as long as they are mm
@@ -260,9 +262,9 @@ def test_a_mirrored_cam(tmp_path, cam):
     intent, points = cam
     mirrored = points(EDGES) * [1.0, -1.0]
     path = write_dxf(tmp_path / "cam.dxf", mirrored)
-    meant = Intent(intent.follower, mirrored=True, bore=10.0)
+    meant = part_of(gauge_of(intent), mirrored=True, bore=10.0)
     assert failures(path, meant) == set()
-    if intent.follower is YOKE:  # which is not its own mirror image
+    if gauge_of(intent) is YOKE:  # which is not its own mirror image
         assert {"contour", "motion"} <= failures(path, intent)
         assert {"contour", "motion"} <= failures(write_dxf(tmp_path / "straight.dxf", points(EDGES)), meant)
 
@@ -287,7 +289,7 @@ def test_the_bore(tmp_path, cam, bores):
 @pytest.mark.thin(3)
 def test_a_bore_where_none_is_meant(tmp_path, cam):
     intent, points = cam
-    none = Intent(intent.follower)
+    none = part_of(gauge_of(intent))
     assert failures(write_dxf(tmp_path / "cam.dxf", points(EDGES)), none) == {"bore"}
     assert failures(write_dxf(tmp_path / "plain.dxf", points(EDGES), bores=()), none) == set()
 
@@ -334,6 +336,7 @@ def test_an_empty_drawing(tmp_path, cam):
     assert failures(tmp_path / "cam.dxf", cam[0]) == {"readable"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("depth", few([0.002, 0.3], 2))
 def test_a_dent_in_a_hollow_that_neither_roller_feels(tmp_path, depth):
     """A scratch narrower than the roller, at the bottom of a hollow: both rollers pass over it."""
@@ -357,6 +360,7 @@ def test_a_dent_that_no_flat_face_feels_counts_with_its_depth(tmp_path, depth):
     assert [check.name for check in verdict.checks if not check.ok] == ["contour"] * (depth > LIMITS.tolerance)
 
 
+@pytest.mark.slow
 def test_metal_left_in_a_hollow_is_felt_and_seen(tmp_path):
     intent, points = CAMS["double roller"]
     vertices = points(20_000)

@@ -11,8 +11,10 @@ import pytest
 from support import followers
 from support.camfiles import arcs_through, circle_points, solid_triangles, support_points, write_dxf, write_stl
 from support.cases import few
+from support.intent import linked, part_of
 
-from kin.judge.verify import DwellAsked, Intent, Limits, verify
+from kin.judge.intent import DwellAsked, Limits
+from kin.judge.verify import verify
 from kin.law.support_function import lift_from_fourier
 from kin.linkage.dyad import RRR
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank, SliderCrank
@@ -28,7 +30,7 @@ LIFT = lift_from_fourier(25.0, {1: -18.0}, {1: 13 / 30 - 8.5, 3: 1.0, 5: 13 / 30
 YOKE = followers.yoke(LIFT, 50.0)
 FOUR_BAR = Mechanism(FourBar(80.0, 70.0, 105.0), LIFT, 50.0)
 DWELL = DwellAsked(np.radians(0.1), np.radians(37.0))  # 37.05 degrees of the shaft are intended
-INTENT = Intent(YOKE, bore=10.0, thickness=8.0, mechanism=FOUR_BAR, dwell=DWELL)
+INTENT = part_of(YOKE, bore=10.0, thickness=8.0, mechanism=FOUR_BAR, dwell=DWELL)
 PLAIN = {"contour", "motion", "constant-breadth", "breadth-max"}
 LINKED = {"linkage-error", "dwell"}
 FORMS = ["dxf", "stl"]
@@ -84,19 +86,20 @@ def test_a_sound_file_passes_every_check(tmp_path, form):
 
 
 def test_without_a_mechanism_nothing_is_said_of_one(tmp_path):
-    plain = dataclasses.replace(INTENT, mechanism=None, dwell=None)
+    plain = dataclasses.replace(INTENT, linkage=None)
     verdict, checks = judged(written(tmp_path, "dxf", cam()), plain)
     assert verdict.ok
     assert verdict.linkage is None
     assert not LINKED & set(checks)
 
 
+@pytest.mark.slow
 def test_a_dwell_that_need_not_last_is_told_and_not_judged(tmp_path):
-    intent = dataclasses.replace(INTENT, dwell=DwellAsked(np.radians(0.1), over="relative"))
+    intent = linked(INTENT, dwell=DwellAsked(np.radians(0.1), over="relative"))
     verdict, checks = judged(written(tmp_path, "dxf", cam()), intent)
     assert "dwell" not in checks
     assert verdict.linkage.dwells[0].length_deg == pytest.approx(45.17, abs=0.01)
-    verdict, _ = judged(written(tmp_path, "dxf", cam()), dataclasses.replace(INTENT, dwell=None))
+    verdict, _ = judged(written(tmp_path, "dxf", cam()), linked(INTENT, dwell=None))
     assert verdict.linkage.dwells == ()
     assert verdict.linkage.error.dwell_flatness is None
 
@@ -116,7 +119,7 @@ def test_any_contour_within_the_tolerance_passes(tmp_path):
     """Corners scattered within the tolerance, by chance: whatever they do together, no check fails."""
     rng = np.random.default_rng(7)
     inside = 1.5e-4  # the edges of the sound polygon are that far inside, or less
-    intent = dataclasses.replace(INTENT, dwell=None)
+    intent = linked(INTENT, dwell=None)
     for _ in range(5):
         t = np.arange(EDGES) * 2 * np.pi / EDGES
         waves = sum(rng.normal() * np.cos(k * t + rng.uniform(0, 6.28)) / k for k in range(1, 6))
@@ -128,12 +131,13 @@ def test_any_contour_within_the_tolerance_passes(tmp_path):
         assert checks["linkage-error"].value > 0.2 * checks["linkage-error"].limit
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_callers_own(tmp_path):
     path = written(tmp_path, "dxf", cam())
     reached = judged(path)[0].linkage.error.max
     assert failures(path, limits=Limits(E, output=1.01 * reached)) == set()
     assert failures(path, limits=Limits(E, output=0.99 * reached)) == {"linkage-error"}
-    short = dataclasses.replace(INTENT, dwell=dataclasses.replace(DWELL, at_least=np.radians(37.06)))
+    short = linked(INTENT, dwell=dataclasses.replace(DWELL, at_least=np.radians(37.06)))
     assert failures(path, short) == {"dwell"}
 
 
@@ -143,7 +147,7 @@ def test_mirrored_drawings(tmp_path):
     assert failures(path, dataclasses.replace(INTENT, mirrored=True)) == set()
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("linkage", "dyads", "unit"),
     [
@@ -154,7 +158,7 @@ def test_mirrored_drawings(tmp_path):
     ],
 )
 def test_other_mechanisms(tmp_path, linkage, dyads, unit):
-    intent = dataclasses.replace(INTENT, mechanism=Mechanism(linkage, LIFT, 50.0, dyads), dwell=None)
+    intent = linked(INTENT, mechanism=Mechanism(linkage, LIFT, 50.0, dyads), dwell=None)
     vertices, bulges = arcs_through(cam(3000, 25.0 + E))
     verdict, checks = judged(write_dxf(tmp_path / "cam.dxf", vertices, bulges), intent, Limits(E + 2e-7))
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
@@ -191,7 +195,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault(tmp_path, fault, form):
@@ -199,7 +203,7 @@ def test_a_fault(tmp_path, fault, form):
     assert caught <= failures(written(tmp_path, form, points()))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("form", few(FORMS, 3))
 @pytest.mark.parametrize("k", range(0, EDGES, 200))
 def test_metal_left_on_anywhere_is_felt_by_the_output(tmp_path, form, k):
@@ -217,7 +221,7 @@ def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, factor):
     k = int(np.argmax(np.abs(bulges)))
     sagitta = abs(bulges[k]) * np.hypot(*(vertices[k + 1] - vertices[k])) / 2
     limits = Limits(0.2 * sagitta)
-    intent = dataclasses.replace(INTENT, dwell=None)
+    intent = linked(INTENT, dwell=None)
     assert failures(write_dxf(tmp_path / "sound.dxf", vertices, bulges), intent, limits) == set()
     bulges[k] *= factor
     found = failures(write_dxf(tmp_path / "cam.dxf", vertices, bulges), intent, limits)
@@ -229,7 +233,7 @@ def test_one_bulge_flipped_or_left_out_or_doubled(tmp_path, factor):
 def test_a_dwell_spoilt_by_a_bump_within_it(tmp_path, form):
     """Metal on where the output should stand still, which lifts it out of the band."""
     k = round(20.0 / 360.0 * EDGES)  # where face 2 bears at a relative angle of 290 degrees, amid the dwell
-    intent = dataclasses.replace(INTENT, dwell=DwellAsked(np.radians(0.02), np.radians(17.0)))
+    intent = linked(INTENT, dwell=DwellAsked(np.radians(0.02), np.radians(17.0)))
     _, sound = judged(written(tmp_path, form, cam()), intent)
     assert sound["dwell"].ok
     found, checks = judged(written(tmp_path, form, moved_vertex(cam(), 0.03, k)), intent)
@@ -243,7 +247,7 @@ def test_a_cam_that_the_mechanism_cannot_follow(tmp_path):
     spoilt = cam()
     k = int(LIFT.derivatives(np.arange(EDGES) * 2 * np.pi / EDGES, 0)[0].argmax())
     spoilt[k] *= 1.0 + 45.0 / np.hypot(*spoilt[k])
-    intent = dataclasses.replace(INTENT, mechanism=Mechanism(InvertedSliderCrank(60.0, 0.0), LIFT, 50.0))
+    intent = linked(INTENT, mechanism=Mechanism(InvertedSliderCrank(60.0, 0.0), LIFT, 50.0))
     verdict, checks = judged(write_dxf(tmp_path / "cam.dxf", spoilt), intent)
     assert verdict.linkage is None
     for name in LINKED:
@@ -256,7 +260,7 @@ def test_a_cam_that_the_mechanism_cannot_follow(tmp_path):
 
 def test_an_intended_mechanism_that_does_not_turn(tmp_path):
     """An inverted slider-crank of ground 20 turns the shaft back. No file can do what cannot be done."""
-    intent = dataclasses.replace(INTENT, mechanism=Mechanism(InvertedSliderCrank(20.0, 0.0), LIFT, 50.0))
+    intent = linked(INTENT, mechanism=Mechanism(InvertedSliderCrank(20.0, 0.0), LIFT, 50.0))
     _, checks = judged(written(tmp_path, "dxf", cam()), intent)
     for name in LINKED:
         assert not checks[name].ok
@@ -265,7 +269,8 @@ def test_an_intended_mechanism_that_does_not_turn(tmp_path):
 
 def test_a_trimmed_cam_is_told_of_and_judged_by_given_limits_alone(tmp_path):
     path = written(tmp_path, "dxf", turned(cam(), 0.2))
-    trimmed = dataclasses.replace(INTENT, trimmed=True, dwell=None)
+    whole = linked(INTENT, dwell=None)
+    trimmed = dataclasses.replace(whole, surfaces=(dataclasses.replace(whole.surfaces[0], trimmed=True),))
     verdict, checks = judged(path, trimmed)
     assert "linkage-error" not in checks
     assert verdict.linkage.error.max > verdict.linkage.limit

@@ -14,13 +14,16 @@ import numpy as np
 import pytest
 from support import followers
 from support.camfiles import arcs_through, write_dxf
+from support.cases import few
+from support.intent import gauge_of, linked
 from support.square_frame import RESTS, Bars, Bench
 
 from camgeo.output import pipeline
 from camgeo.recipe.loading import load_text
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
-from kin.judge.verify import Intent, Limits, verify
+from kin.judge.intent import Limits
+from kin.judge.verify import verify
 from kin.law.frame_swing import frame_swing
 from kin.law.support_function import lift_constant_breadth
 from kin.linkage.four_bar import InvertedSliderCrank
@@ -42,15 +45,15 @@ verify: {angles: 360}
 """
 
 
-def designed_of(old="", new=""):
+def read(old="", new=""):
     assert old in TEXT
-    recipe = load_text(TEXT.replace(old, new), "a.yaml")
-    return recipe, designed(recipe)
+    return load_text(TEXT.replace(old, new), "a.yaml")
 
 
 @pytest.fixture(scope="module")
 def intent():
-    return intended(*designed_of())
+    recipe = read()
+    return intended(recipe, designed(recipe))
 
 
 def file_of(folder, lift, turned=0.0):
@@ -71,12 +74,14 @@ def false_lift(intent, law):
     """What is meant by an intent whose lift has come from another law: all but the swing agrees with the file."""
     lift = lift_constant_breadth(80.0, law.half_turn, "swing")
     breadth = float(lift.derivatives(np.array([0.0, math.pi]), 0)[0].sum())
-    mechanism = Mechanism(intent.mechanism.linkage, lift, breadth)
-    return dataclasses.replace(intent, follower=followers.yoke(lift, breadth=breadth), mechanism=mechanism), lift
+    mechanism = Mechanism(intent.linkage.mechanism.linkage, lift, breadth)
+    (surface,) = linked(intent, mechanism=mechanism).surfaces
+    surfaces = (dataclasses.replace(surface, gauge=followers.yoke(lift, breadth=breadth)),)
+    return dataclasses.replace(linked(intent, mechanism=mechanism), surfaces=surfaces), lift
 
 
 def test_a_sound_file_passes(tmp_path, intent):
-    assert failures(file_of(tmp_path, intent.follower.lift), intent) == set()
+    assert failures(file_of(tmp_path, gauge_of(intent).motion), intent) == set()
 
 
 FAULTS = {
@@ -93,30 +98,29 @@ FAULTS = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_the_cam_of_another_swing_is_caught(tmp_path, intent, fault):
-    wrong = designed_of(*FAULTS[fault])[1].exact.law
+    wrong = read(*FAULTS[fault]).cam.exact().law
     assert failures(file_of(tmp_path, wrong), intent) >= {"contour", "motion", "linkage-error"}
 
 
-@pytest.mark.parametrize("turned", [0.02, -0.02])
+@pytest.mark.parametrize("turned", few([0.02, -0.02]))
 def test_a_turned_cam_is_caught(tmp_path, intent, turned):
-    assert failures(file_of(tmp_path, intent.follower.lift, turned), intent) >= {"contour", "linkage-error"}
+    assert failures(file_of(tmp_path, gauge_of(intent).motion, turned), intent) >= {"contour", "linkage-error"}
 
 
-@pytest.mark.parametrize("part", ["motion", "links"])
+@pytest.mark.parametrize("part", few(["motion", "links"]))
 def test_a_lift_that_is_not_the_laws_is_caught_by_the_swing_alone(tmp_path, intent, part):
     """As a generator would make it that mistook the law: the file is what its own lift says, exactly."""
-    law = intent.swing
+    law = intent.linkage.swing
     if part == "motion":
-        wrong = frame_swing(
-            designed_of("polynomial-4567", "polynomial-345")[0].cam.frame_swing().motion, 80.0, 9.0, 1.0
-        )
+        wrong = frame_swing(read("polynomial-4567", "polynomial-345").cam.frame_swing().motion, 80.0, 9.0, 1.0)
     else:
         wrong = frame_swing(law.motion, 80.05, 9.0, 1.0)
     meant, lift = false_lift(intent, wrong)
     path = file_of(tmp_path, lift)
-    assert failures(path, dataclasses.replace(meant, swing=None)) == set()
+    assert failures(path, linked(meant, swing=None)) == set()
     assert failures(path, meant) == {"linkage-error"}
 
 
@@ -143,9 +147,8 @@ def test_the_judge_holds_the_file_against_the_law_over_the_shaft_angle(tmp_path)
 
 
 def test_what_is_given_to_the_judge(intent):
-    assert isinstance(intent, Intent)
-    assert isinstance(intent.mechanism.linkage, InvertedSliderCrank)
-    assert intent.swing is not None
+    assert isinstance(intent.linkage.mechanism.linkage, InvertedSliderCrank)
+    assert intent.linkage.swing is not None
     plain = TEXT.replace("swing: [{rise: 20, over: 140, law: polynomial-4567}, {dwell: 60}]", "motion: [{dwell: 180}]")
     recipe = load_text(plain, "a.yaml")
-    assert intended(recipe, designed(recipe)).swing is None
+    assert intended(recipe, designed(recipe)).linkage.swing is None

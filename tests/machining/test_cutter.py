@@ -15,7 +15,6 @@ from camgeo.machining.cutter import cutter_path
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
 from kin.contour.contour import Contour
 from kin.read.files import read_drawing
 
@@ -87,11 +86,11 @@ def test_a_shape_run_backwards_is_the_same_shape(body):
     [(ROLLER, 3.0), (ROLLER, 8.0), (ROLLER, 18.0), (DWELLS, 5.0), (SHU_WU, 10.0), (REULEAUX, 1.0), (TRIMMED, 4.0)],
 )
 def test_the_path_keeps_its_distance_all_round(body, radius):
-    recipe, design = design_of(body)
+    _, design = design_of(body)
     path = cutter_path(design.contour, radius)
     assert path.lost == ()
     arcs = path.within(0.001)
-    feet = intended(recipe, design).follower.envelope.feet(points_of(arcs))
+    feet = design.exact.gauge.envelope.feet(points_of(arcs))
     if body != TRIMMED:  # a trimmed cam's envelope is that of the motion, whose face would touch beside the corner
         assert np.abs(feet.excess - radius).max() <= arcs.bound.worst
         assert np.abs(feet.excess - radius).max() > 1e-4 or body == REULEAUX
@@ -144,6 +143,7 @@ def test_the_path_on_a_layer_of_its_own(tmp_path, top):
     assert [c["name"] for c in outcome.report["checks"] if not c["ok"]] == ["cutter-reach"] * 2
 
 
+@pytest.mark.slow
 def test_a_hollow_is_reached_by_a_cutter_just_small_enough():
     _, design = design_of(DEEP)
     hollow, _ = least_hollow(design.contour)

@@ -11,7 +11,6 @@ from camgeo.machining.inspection import inspection_table
 from camgeo.output import pipeline
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
 from kin.follower.envelope import RollerEnvelope, TransmissionPitch
 from kin.follower.follower import FlatPair
 
@@ -94,7 +93,7 @@ def test_each_face_of_a_pair_passes_the_pivot():
         assert np.allclose(pair(table, f"{name}n"), units(theta), rtol=0.0, atol=1e-12)
         reach = np.sum(pair(table, name) * units(theta), axis=1)
         assert np.allclose(reach, np.sum(80.0 * units(phi) * units(theta), axis=1), rtol=0.0, atol=1e-11)
-        follower = intended(read(PAIR.encode(), "c.yaml"), design).follower
+        follower = design.exact.gauge
         assert isinstance(follower, FlatPair)
         assert np.abs(follower.envelope.feet(pair(table, name)).excess).max() < 1e-11
 

@@ -26,7 +26,7 @@ from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
 from kin.contour.contour import Contour
-from kin.judge.contour_checks import Limits
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 from kin.read.files import read_drawing
 from kin.read.gcode import read_gcode
@@ -64,6 +64,7 @@ def exact_opening(recipe, sign=1.0, count=8001):
     return shapely.Polygon(contour.sample(t).point * [1.0, sign])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("asked", "sign"),
     few(
@@ -133,6 +134,7 @@ def unreached(recipe, count=10_000):
     return float((spatial.cKDTree(centre[free]).query(frame.point)[0] - radius).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("across", few([118, 116]))
 def test_hollows_that_a_cutter_does_not_reach(tmp_path, across):
     recipe = recipe_of(across)
@@ -150,6 +152,7 @@ def test_hollows_that_a_cutter_does_not_reach(tmp_path, across):
     assert f"{reach['value']:.3g} mm inside" in contour["detail"]
 
 
+@pytest.mark.slow
 def test_another_way_in_where_the_path_has_a_corner():
     """Where a hollow is not reached the path turns in a corner, which is no place to come to it."""
     text = ", unreached: 1, start: {}"
@@ -163,6 +166,7 @@ def test_another_way_in_where_the_path_has_a_corner():
     assert pipeline.check(recipe_of(118, text.format(0))).ok
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("more", ["", ", layer: true"])
 def test_a_cutter_of_the_radius_of_a_dwell_is_refused(more):
@@ -233,6 +237,7 @@ MADE = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", MADE)
 def test_a_program_that_is_made_wrong(whole, tmp_path, fault):
     given, expected = MADE[fault]
@@ -266,6 +271,7 @@ SPOILT = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", SPOILT)
 def test_a_program_that_is_spoilt(whole, tmp_path, fault):
     path = tmp_path / "c.ngc"

@@ -23,7 +23,7 @@ from camgeo.report.document import finite
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.expected_checks import foreseen
-from kin.judge.contour_checks import SPLINE_ERROR
+from kin.judge.limits import SPLINE_ERROR
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -83,6 +83,7 @@ def test_every_shipped_recipe_exports_and_passes(path: Path, tmp_path: Path) -> 
         assert 0.0 <= motion["at_deg"] < 360.0
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-10])
 def test_rollers_feel_a_spline_as_finely_as_it_is_drawn(tolerance: float) -> None:

@@ -5,7 +5,6 @@ The programs are OpenSCAD, PrusaSlicer and trimesh, where they are installed; nu
 
 import shutil
 import subprocess
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,12 +13,13 @@ from hypothesis import strategies as st
 from support import followers
 from support.camfiles import circle_points, roller_points, solid_triangles, support_points, write_stl
 from support.cases import examples
+from support.intent import findings, linked, part_of
 from support.solids import sound
 
 from kin.contour.contour import Contour
 from kin.follower.frame import implied_limit
-from kin.judge.contour_checks import DwellAsked, judge_contour
-from kin.judge.verify import Intent, Limits, verify
+from kin.judge.intent import DwellAsked, Limits
+from kin.judge.verify import verify
 from kin.law.support_function import lift_from_fourier
 from kin.law.transmission import from_delta
 from kin.linkage.four_bar import FourBar
@@ -35,8 +35,8 @@ POINTS = {
     "double roller": roller_points(EDGES, HOLLOW, 8.0),
 }
 INTENTS = {
-    "yoke": Intent(followers.yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0), bore=10.0, thickness=THICK),
-    "double roller": Intent(followers.double_roller(from_delta(*HOLLOW, {}), 8.0), bore=10.0, thickness=THICK),
+    "yoke": part_of(followers.yoke(lift_from_fourier(25.0, {3: 2.0}, {5: 0.3}), 50.0), bore=10.0, thickness=THICK),
+    "double roller": part_of(followers.double_roller(from_delta(*HOLLOW, {}), 8.0), bore=10.0, thickness=THICK),
 }
 LIMITS = Limits(tolerance=0.05)
 YOKE = INTENTS["yoke"]
@@ -240,7 +240,7 @@ def test_what_was_found_counts_into_every_figure(tmp_path):
     assert 2e-5 < solid.uneven < 3e-4
     verdict = verify(path, YOKE, 120, LIMITS)
     phi = 2.0 * np.pi / 120 * np.arange(120)
-    alone = judge_contour(solid.contour, YOKE, phi, LIMITS)
+    alone = findings(solid.contour, YOKE, phi, LIMITS)
     assert verdict.motion.max == pytest.approx(alone.judged.motion.max + solid.uneven, rel=1e-9)
     assert verdict.motion.increment == pytest.approx(alone.judged.motion.increment + 2.0 * solid.uneven, rel=1e-9)
     assert verdict.play.least == pytest.approx(alone.judged.play.least - 2.0 * solid.uneven, rel=1e-9)
@@ -253,7 +253,7 @@ def test_what_was_found_counts_into_every_figure(tmp_path):
     # a limit just above the figure of the one section does not hold for all of them
     tight = Limits(LIMITS.tolerance, motion=alone.judged.motion.max + 0.5 * solid.uneven)
     assert set(failures(path, limits=tight)) == {"motion"}
-    assert all(check.ok for check in judge_contour(solid.contour, YOKE, phi, tight).checks)
+    assert all(check.ok for check in findings(solid.contour, YOKE, phi, tight).checks)
 
 
 @pytest.mark.slow
@@ -263,16 +263,16 @@ def test_what_was_found_counts_for_a_linkage_as_well():
     contour = Contour.from_vertices(
         support_points(400, 25.0, ((1, -18.0, 13 / 30 - 8.5), (3, 0, 1.0), (5, 0, 13 / 30)))
     )
-    intent = Intent(followers.yoke(lift, 50.0), mechanism=mechanism, dwell=DwellAsked(0.01, 0.1))
+    intent = part_of(followers.yoke(lift, 50.0), mechanism=mechanism, dwell=DwellAsked(0.01, 0.1))
     phi = 2.0 * np.pi / 120 * np.arange(120)
     off = implied_limit(mechanism, 1e-3)
-    sure, unsure = (judge_contour(contour, intent, phi, LIMITS, uneven).linkage for uneven in (0.0, 1e-3))
+    sure, unsure = (findings(contour, intent, phi, LIMITS, uneven).linkage for uneven in (0.0, 1e-3))
     assert unsure.error.max == pytest.approx(sure.error.max + off, rel=1e-12)
     assert unsure.play_across.most == pytest.approx(sure.play_across.most + 2e-3, rel=1e-12)
     # an output that may be off either way stays within the band for certain while within a narrower one
     assert unsure.dwells[0].band == pytest.approx(sure.dwells[0].band, rel=1e-12)
-    narrow = replace(intent, dwell=DwellAsked(0.01 - 2.0 * np.radians(off), 0.1))
-    assert unsure.dwells[0].length_deg == judge_contour(contour, narrow, phi, LIMITS).linkage.dwells[0].length_deg
+    narrow = linked(intent, dwell=DwellAsked(0.01 - 2.0 * np.radians(off), 0.1))
+    assert unsure.dwells[0].length_deg == findings(contour, narrow, phi, LIMITS).linkage.dwells[0].length_deg
     assert unsure.dwells[0].length_deg < sure.dwells[0].length_deg
 
 

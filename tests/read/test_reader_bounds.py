@@ -89,7 +89,7 @@ def test_contours_far_from_each_other_are_not_compared(tmp_path, monkeypatch):
     )
     assert first_meeting(contours) is None
     assert sum(compared) == 64  # each hole with the outline alone
-    assert nested(contours, tmp_path)[0] == 0
+    assert nested(contours, tmp_path)[0].number == 0
 
 
 def test_bodies_of_a_mesh_by_another_way():

@@ -10,7 +10,8 @@ from support.kernel import kernel, made, step_recipe
 from support.parts import failures, intended
 from support.stepfiles import stadium
 
-from kin.judge.verify import Limits, verify
+from kin.judge.intent import Limits
+from kin.judge.verify import verify
 from kin.read.errors import ReadError
 from kin.read.step.step import read_step
 

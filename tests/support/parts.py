@@ -10,7 +10,7 @@ from camgeo.output.job import Job
 from camgeo.recipe.loading import read
 from camgeo.synthesis.design import designed
 from camgeo.synthesis.intent import intended
-from kin.judge.contour_checks import Limits
+from kin.judge.intent import Limits
 from kin.judge.verify import verify
 
 CAM = "cam: {kind: support, p: 25 + 2*cos(3*t), shaft: [3, 2]}\n"

@@ -45,6 +45,7 @@ def test_the_base_radius_that_is_told_is_free_of_undercut(rise: float) -> None:
     assert sharp(BREADTH, size=(5.0 + larger) * (1.0 - 1e-5), of=rise).contour is None
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("square", few([400.0, 497.3, 594.6, 789.2, 886.5], 3))
 def test_the_roller_radius_that_is_told_is_free_of_undercut(square: float) -> None:

@@ -8,14 +8,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.heavy import shapely
+from support.places import RECIPES
 
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from camgeo.recipe.din6885 import TABLE, key_for
+from camgeo.recipe.loading import load
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.part.checks import ROUNDING, thinnest, walls
 from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
-from camgeo.synthesis.part.walls import contour_gap, distance_inside, inside_gap, least_wall, outside_gap
+from camgeo.synthesis.part.walls import Looks, contour_gap, distance_inside, inside_gap, least_wall, outside_gap
 from kin.contour.contour import Contour
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 
@@ -44,7 +48,7 @@ def test_reuleaux_about_its_middle():
 
 
 def test_point_in_a_circle():
-    inside, _ = distance_inside(circle((3.0, 4.0)), (7.0, -4.0))
+    inside, _ = distance_inside(Looks.of(circle((3.0, 4.0))), (7.0, -4.0))
     assert inside == pytest.approx(25.0 - math.hypot(7.0 + 3.0, -4.0 + 4.0), abs=1e-12)
 
 
@@ -136,19 +140,19 @@ def test_wall_between_outlines_is_that_of_fine_polygons(one, two, away, angle):
 @given(st.floats(0, 6.28), st.floats(0, 17), st.floats(0.2, 5))
 def test_wall_between_a_hole_and_a_round_contour(angle, away, radius):
     hole = disc("hole", "HOLES", polar(away, angle), radius)
-    gap = contour_gap(circle((0.0, 0.0)), hole.chain)
+    gap = contour_gap(Looks.of(circle((0.0, 0.0))), hole.chain)
     assert gap.wall == pytest.approx(25.0 - away - radius, abs=1e-9)
 
 
 def test_wall_of_a_hole_outside_or_across_the_contour_is_negative():
-    contour = circle((0.0, 0.0))
-    assert contour_gap(contour, disc("", "HOLES", (40.0, 0.0), 3.0).chain).wall == pytest.approx(-12.0, abs=1e-9)
-    assert contour_gap(contour, disc("", "HOLES", (25.0, 0.0), 3.0).chain).wall < -2.9
+    looks = Looks.of(circle((0.0, 0.0)))
+    assert contour_gap(looks, disc("", "HOLES", (40.0, 0.0), 3.0).chain).wall == pytest.approx(-12.0, abs=1e-9)
+    assert contour_gap(looks, disc("", "HOLES", (25.0, 0.0), 3.0).chain).wall < -2.9
 
 
 def test_wall_to_a_keyway_is_to_its_corners():
     key = Opening("bore", "BORE", keyed(6, 4, 1.8, math.pi / 2))
-    gap = contour_gap(circle((0.0, 0.0)), key.chain)
+    gap = contour_gap(Looks.of(circle((0.0, 0.0))), key.chain)
     assert gap.wall == pytest.approx(25.0 - math.hypot(7.8, 2.0), abs=1e-9)
 
 
@@ -176,3 +180,19 @@ def test_the_table_is_whole_and_its_keys_have_play_in_the_hub():
         play = row.shaft + row.hub - row.height
         assert 0.15 < play < 0.45
         assert row.shaft > row.hub
+
+
+@pytest.mark.parametrize("name", ["w-law", "disc-ring", "disc-packaging", "w-rosette", "hypocycloid"])
+@pytest.mark.parametrize("limit", [0.0, 6.0])
+def test_walls_that_are_left_out_are_neither_the_least_nor_thin(name: str, limit: float) -> None:
+    recipe = load(RECIPES / f"{name}.yaml")
+    design = designed(recipe)
+    assert design.contour is not None
+    assert design.body is not None
+    looks = Looks.of(design.contour)
+    possible = list(walls(design.body, looks))
+    every = [(bound, pair()) for bound, pair in possible]
+    assert all(bound <= pair.gap.wall + ROUNDING for bound, pair in every)
+    whole = sorted((pair for _, pair in every), key=lambda pair: pair.gap.wall)
+    most = max(whole[0].gap.wall, limit)
+    assert thinnest(possible, limit) == [pair for pair in whole if pair.gap.wall <= most]

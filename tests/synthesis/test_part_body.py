@@ -10,6 +10,7 @@ from support.parts import CAM, found, recipe_of
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.expected_checks import foreseen
 from camgeo.synthesis.part.body import body_of
+from camgeo.synthesis.part.walls import Looks
 
 
 def opening(design, name):
@@ -82,7 +83,7 @@ def test_the_mark_lies_on_the_ray_at_zero_as_far_out_as_the_wall_lets_it():
     assert farther.contour is None
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize(
     ("part", "tight"),
     [("mark: {width: 60}", True), ("mark: {width: 30, length: 40}, chamfer: 1", True), ("mark: {width: 4}", False),
@@ -265,6 +266,6 @@ def test_what_cannot_be(part, told):
 
 def test_a_body_needs_no_thickness_for_a_drawing():
     design, _ = found(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}"))
-    body = body_of(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}").part, design.contour)
+    body = body_of(recipe_of("{thickness: 8, bore: {hexagon: 12, at: 30}}").part, Looks.of(design.contour))
     assert body.prism
     assert (body.bottom, body.top) == (0.0, 8.0)

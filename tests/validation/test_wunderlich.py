@@ -14,7 +14,6 @@ from support.page_tables import Row
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
-from camgeo.synthesis.intent import intended
 from kin.law.programme import IntentError
 
 PI = np.pi
@@ -258,7 +257,7 @@ def rows(workshop):
         )
     nine = workshop.shipped("w-figure-9")
     swing = np.degrees(np.arcsin(625 / 3600))
-    contact = intended(nine.recipe, nine.design).follower.contact(nine.contour, t)
+    contact = nine.design.exact.gauge.contact(nine.contour, t)
     found += [
         Row(
             "swing of w-figure-9, asin(m²/l²), deg (CSV)",
@@ -299,13 +298,14 @@ def goldberg(workshop):
     return workshop.shipped("w-ellipse", "spline")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(5)
 def test_equation_7_1_on_the_file(pitch):
     curve, e = pitch
     assert np.abs(curve.closing(np.linspace(0, 2 * PI, 3601))).max() <= 3 * e
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 def test_section_6_chord_polygon_closes_from_any_start(pitch):
     curve, e = pitch
     # each chord may add e / cos(75 deg)
@@ -409,7 +409,7 @@ def test_figure_5_first_arc(workshop):
 def test_equation_4_9_symmetry_of_a_law_by_contact_with_the_file(workshop):
     """(phi, psi) -> (phi - psi + delta, -psi)."""
     made = workshop.shipped("w-law")
-    follower = intended(made.recipe, made.design).follower
+    follower = made.design.exact.gauge
     phi = np.linspace(0, PI / 2, 181)
     psi = follower.contact(made.contour, phi).mean(axis=0)
     image = follower.contact(made.contour, phi - psi + PI / 2).mean(axis=0)

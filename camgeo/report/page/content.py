@@ -17,8 +17,8 @@ from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.law.contacts import Arrangement, Guide
@@ -56,9 +56,9 @@ class Content:
     errors: tuple[FileError, ...]
 
 
-def content(recipe: Recipe, design: Design, paths: Sequence[Path]) -> Content:
-    """Gather what a page shows; `paths` are the drawings and solids that were made, and still lie there."""
-    files = [found for path in paths if (found := outline.read(recipe, path)) is not None]
+def content(recipe: Recipe, design: Design, results: Sequence[FileResult]) -> Content:
+    """Gather what a page shows; `results` are those of the drawings and solids that were made."""
+    files = [found for result in results if (found := outline.read(recipe, result)) is not None]
     exact = outline.Exact.of(design, outline.Exact.looks(files))
     drawn = [(file.name, file.rings) for file in files] or [(EXACT, _exact_rings(recipe, design))]
     scene, plots, relative = _mechanism(recipe, design, drawn)

@@ -12,7 +12,6 @@ from camgeo.checks.declared import BENT
 from camgeo.curve.support import is_sharp
 from camgeo.recipe.figures import ON_RETURN, ON_RISE, PRESSURE_ANGLE
 from camgeo.report.page.followers import SHAFT
-from camgeo.synthesis.intent import intended
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
@@ -189,7 +188,7 @@ def rests(recipe: Recipe, design: Design) -> list[Rest]:
         dwells_of = design.driven.dwells.get("shaft", ())
         counted = [dwell for dwell in dwells_of if dwell.length >= COUNTS * dwells_of[0].length]
         return [_rest(dwell.start, dwell.start + dwell.length, band) for dwell in counted]
-    return [_rest(begin, end, "") for begin, end in intended(recipe, design).follower.rests]
+    return [_rest(begin, end, "") for begin, end in design.exact.gauge.rests]
 
 
 def _rest(begin: float, end: float, band: str) -> Rest:

@@ -13,16 +13,14 @@ from camgeo.report.page.scene import STEPS
 from kin.numeric.angles import TURN
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
     from camgeo.curve.curve import Curve
+    from camgeo.measures.file_result import FileResult
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design
     from kin.contour.arcs import Arcs
     from kin.numeric.arrays import Array
-    from kin.read.files import AnySolid, Drawing
 
 POINTS = 1440  # of an exact contour
 MOST_PIECES = 1600  # of a file's contour that a page draws; of more, every second or third node
@@ -59,33 +57,15 @@ class Read:
     rings: tuple[Ring, ...]
 
 
-def read(recipe: Recipe, path: Path) -> Read | None:
-    """Read a drawing or a solid; None where no contour can be read from it, which a check of it says."""
-    from kin.judge.ring import faced
-    from kin.read.errors import ReadError
-    from kin.read.files import SOLIDS, kind_of, read_drawing, read_solid
-
-    try:
-        if kind_of(path) in SOLIDS:
-            found: Drawing | AnySolid = read_solid(path, (), recipe.unstated(path))
-            unit = 1.0
-        else:
-            found = drawing = read_drawing(path)
-            unit = recipe.mm if drawing.units_mm is None else 1.0
-    except ReadError:
+def read(recipe: Recipe, file: FileResult) -> Read | None:
+    """What the judge has read of a drawing or a solid; None where that is no contour, which a check of it says."""
+    contour = file.contour
+    if contour is None:
         return None
-    scaled = [each.scaled(unit) for each in (found.contour, *found.holes)]
-    shown = [each.mirrored() for each in scaled] if recipe.rotation == "ccw" else scaled
-    contour = shown[0]
-    if recipe.part.outer is not None:
-        try:
-            contour = faced(contour, shown[1:], recipe.part.outer, math.inf, path).contour
-        except ReadError:
-            return None
     size = float(np.abs(contour.vertices).max())
     arcs, _ = contour.as_arcs(max(MEASURED * recipe.export.tolerance, ROUNDING * size))
-    rings = tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in shown)
-    return Read(path.name, arcs, len(contour), rings)
+    rings = tuple(_drawn(each.as_arcs(FINE * size)[0]) for each in file.chains)
+    return Read(file.path.name, arcs, len(contour), rings)
 
 
 def _drawn(arcs: Arcs) -> Ring:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.checks.declared import BENT, PRESSURE, REVERSAL, WALL
-from camgeo.synthesis.intent import intended
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve
@@ -85,7 +84,7 @@ def _linkage(design: Design) -> list[Margin]:
 
 
 def _conditions(recipe: Recipe, design: Design, contour: Curve) -> list[Margin]:
-    follower = intended(recipe, design).follower
+    follower = design.exact.gauge
     unit = "deg/mm" if follower.unit == "deg" else ""
     condition = follower.motion_limit(SMALL) / SMALL
     size = contour.size

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -14,12 +15,12 @@ from camgeo.curve.measures import farthest
 from camgeo.curve.support import is_sharp
 from camgeo.synthesis.checks import slack
 from camgeo.synthesis.part.shapes import Opening, disc, strip
-from camgeo.synthesis.part.walls import Gap, contour_gap, inside_gap, outside_gap
+from camgeo.synthesis.part.walls import Gap, Looks, contour_gap, inside_gap, outside_gap
 from kin.judge.check import Check
 from kin.numeric.places import place_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from camgeo.curve.curve import Curve
     from camgeo.synthesis.part.body import Body, Unmarked
@@ -42,18 +43,25 @@ class Pair(NamedTuple):
         return f"{self.one} and {self.other}: {self.gap.wall:.4g} mm{place}"
 
 
+class Possible(NamedTuple):
+    """Two edges whose wall is no less than `at_least`, and what finds it."""
+
+    at_least: float
+    pair: Callable[[], Pair]
+
+
 NOWHERE = (float("inf"), float("inf"))  # of a wall that runs all along a face
 
 
-def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Callable[[float], float]) -> list[Check]:
+def part_checks(body: Body, looks: Looks, least: float | None, shaft_deg: Callable[[float], float]) -> list[Check]:
     """Check the walls of a part, and that the lightening holes asked for found room.
 
     `least` is the wall asked for; without one it must be above 0. `shaft_deg` gives the shaft angle of a parameter.
     """
     checks = []
-    pairs = sorted(walls(body, contour), key=lambda pair: pair.gap.wall)
+    limit = 0.0 if least is None else least
+    pairs = thinnest(walls(body, looks), limit)
     if pairs:
-        limit = 0.0 if least is None else least
         thin = [pair for pair in pairs if not _holds(pair.gap.wall, least)]
         told = "; ".join(map(str, thin[:MOST_NAMED] or pairs[:1]))
         left = len(thin) - MOST_NAMED
@@ -63,7 +71,7 @@ def part_checks(body: Body, contour: Curve, least: float | None, shaft_deg: Call
         told += more + _free_of_thin_walls(thin, body, limit)
         checks.append(Check(WALL.name, not thin, worst.wall, limit, "mm", at_deg, "at_least", detail=told))
     if body.chamfer is not None:
-        checks.append(_chamfer_check(body, contour, shaft_deg))
+        checks.append(_chamfer_check(body, looks.contour, shaft_deg))
     if body.unmarked is not None:
         checks.append(_mark_check(body.unmarked))
     if body.placed is not None:
@@ -139,48 +147,79 @@ def _holds(wall: float, least: float | None) -> bool:
     return wall > 0.0 if least is None else wall >= least - ROUNDING
 
 
-def walls(body: Body, contour: Curve) -> Iterator[Pair]:
+def thinnest(possible: Iterable[Possible], limit: float) -> list[Pair]:
+    """The least wall and all others up to a limit, thinnest first; what is thicker for sure is not found."""
+    found: list[tuple[float, int, Pair]] = []
+    least = math.inf
+    for number, (at_least, pair) in sorted(enumerate(possible), key=lambda one: one[1].at_least):
+        if at_least - ROUNDING > max(least, limit):
+            break
+        made = pair()
+        found.append((made.gap.wall, number, made))
+        least = min(least, made.gap.wall)
+    found.sort()
+    return [pair for wall, _, pair in found if wall <= max(least, limit)]
+
+
+def walls(body: Body, looks: Looks) -> Iterator[Possible]:
     """Walls between all pairs of edges; those of openings far apart are left out."""
-    edge, other = body.chamfer or 0.0, "contour" if body.chamfer is None else "chamfer"
-    yield from _ring_walls(body, contour)
+    yield from _ring_walls(body, looks)
     for opening in body.openings:
-        gap = contour_gap(contour, opening.chain, ring=body.outer is not None)
-        yield Pair(opening.name, other, gap._replace(wall=gap.wall - edge))
+        yield _to_contour(body, looks, opening, ring=body.outer is not None)
     for i, one in enumerate(body.openings):
         for two in body.openings[:i]:
-            (x, y), (x2, y2) = one.middle, two.middle
-            if (x - x2) ** 2 + (y - y2) ** 2 <= (2.0 * (one.reach + two.reach)) ** 2:
-                yield Pair(two.name, one.name, outside_gap(one.chain, two.chain))
-    yield from _hub_walls(body, contour, edge)
+            apart = math.dist(one.middle, two.middle)
+            if apart <= 2.0 * (one.reach + two.reach):
+                yield Possible(apart - one.radius - two.radius, partial(_outside, two, one))
+    yield from _hub_walls(body, looks)
     for opening in body.openings:
         if opening.depth is not None and body.thickness is not None:
-            yield Pair(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
+            yield _sure(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
 
 
-def _ring_walls(body: Body, contour: Curve) -> Iterator[Pair]:
+def _to_contour(body: Body, looks: Looks, opening: Opening, *, ring: bool) -> Possible:
+    """Wall between an opening or a hub and the contour, or its chamfer."""
+    edge, other = body.chamfer or 0.0, "contour" if body.chamfer is None else "chamfer"
+
+    def pair() -> Pair:
+        gap = contour_gap(looks, opening.chain, ring=ring)
+        return Pair(opening.name, other, gap._replace(wall=gap.wall - edge))
+
+    return Possible(looks.wall_at_least(opening.middle, opening.radius, ring=ring) - edge, pair)
+
+
+def _outside(one: Opening, other: Opening) -> Pair:
+    return Pair(one.name, other.name, outside_gap(other.chain, one.chain))
+
+
+def _sure(one: str, other: str, gap: Gap) -> Possible:
+    """A wall that is known."""
+    return Possible(gap.wall, lambda: Pair(one, other, gap))
+
+
+def _ring_walls(body: Body, looks: Looks) -> Iterator[Possible]:
     """Walls between the outline of a ring and its openings, the contour first of them."""
     if body.outer is None:
         return
-    radius, far = 0.5 * body.outer, farthest(contour)
-    x, y = contour.sample(np.array([far.at])).point[0].tolist()
-    yield Pair("opening", "outline", Gap(radius - far.value - slack(far), (x, y), far.at))
+    radius, far = 0.5 * body.outer, farthest(looks.contour)
+    x, y = looks.contour.sample(np.array([far.at])).point[0].tolist()
+    yield _sure("opening", "outline", Gap(radius - far.value - slack(far), (x, y), far.at))
     outline = disc("outline", "HOLES", (0.0, 0.0), radius)
     for opening in body.openings:
-        yield Pair(opening.name, outline.name, inside_gap(opening.chain, outline.chain))
+        yield _sure(opening.name, outline.name, inside_gap(opening.chain, outline.chain))
 
 
-def _hub_walls(body: Body, contour: Curve, edge: float) -> Iterator[Pair]:
+def _hub_walls(body: Body, looks: Looks) -> Iterator[Possible]:
     """Walls between the hub and all else; a hole may pass beside the hub or through it."""
     hub = body.hub
     if hub is None:
         return
     round_hub = disc("hub", "HOLES", (0.0, 0.0), 0.5 * hub.diameter)
-    gap = contour_gap(contour, round_hub.chain)
-    yield Pair("hub", "contour" if body.chamfer is None else "chamfer", gap._replace(wall=gap.wall - edge))
+    yield _to_contour(body, looks, round_hub, ring=False)
     for opening in body.openings:
         within = opening.name == "bore" or (opening.depth is None and _is_within(opening, hub.diameter))
         gap = (inside_gap if within else outside_gap)(opening.chain, round_hub.chain)
-        yield Pair(opening.name, "hub", gap)
+        yield _sure(opening.name, "hub", gap)
     height = body.screw_height
     if body.screw is None or height is None or body.thickness is None:
         return
@@ -189,9 +228,9 @@ def _hub_walls(body: Body, contour: Curve, edge: float) -> Iterator[Pair]:
     along = Opening("set screw", "HOLES", strip(0.5 * hub.diameter, body.screw.diameter, body.screw.at))
     for opening in body.openings:
         if opening.name != "bore" and opening.depth is None and _is_within(opening, hub.diameter):
-            yield Pair("set screw", opening.name, outside_gap(opening.chain, along.chain))
-    yield Pair("set screw", "the disc's face", Gap(beyond - radius, NOWHERE))
-    yield Pair("set screw", "the hub's face", Gap(hub.height - beyond - radius, NOWHERE))
+            yield _sure("set screw", opening.name, outside_gap(opening.chain, along.chain))
+    yield _sure("set screw", "the disc's face", Gap(beyond - radius, NOWHERE))
+    yield _sure("set screw", "the hub's face", Gap(hub.height - beyond - radius, NOWHERE))
 
 
 def _is_within(opening: Opening, diameter: float) -> bool:

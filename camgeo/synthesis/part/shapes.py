@@ -59,6 +59,11 @@ class Opening:
         x_min, y_min, x_max, y_max = self.outline.box()
         return 0.5 * math.hypot(x_max - x_min, y_max - y_min)
 
+    @property
+    def radius(self) -> float:
+        """Of a circle about the middle that holds all of it."""
+        return self.reach if self.circle is None else self.circle[1]
+
 
 def disc(name: str, layer: Layer, centre: tuple[float, float], radius: float) -> Opening:
     """Round opening."""

@@ -13,7 +13,7 @@ from kin.contour.intersections import first_meeting
 from kin.contour.pieces import ARC, Pieces
 from kin.read.drawing.chaining import GAP, GAP_SHARE, ROUNDING, SAME_POINT, SAME_SHARE, close_pairs, loops
 from kin.read.errors import ReadError
-from kin.read.nesting import counter_clockwise, demand_few, met, nested
+from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, met, nested
 from kin.read.size import demand_few_pieces
 
 if TYPE_CHECKING:
@@ -39,8 +39,8 @@ __all__ = [
 ]
 
 CUT, BORE = "CUT", "BORE"
-# Layers that are cut beside CUT: the bore's, holes, a mark that is cut through.
-BESIDE = frozenset({BORE, "HOLES", "MARK"})
+# Layers that are cut beside CUT: the bore's, holes, a mark that is cut through, the flanks of a groove.
+BESIDE = frozenset({BORE, "HOLES", "MARK", "GROOVE_INNER", "GROOVE_OUTER"})
 # What is engraved stands here, read if it is asked for.
 ENGRAVED = "ENGRAVE"
 # Layers that are never cut: our own reference geometry and cutter's path, and AutoCAD's definition points.
@@ -69,14 +69,13 @@ class Aside(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Drawing:
+class Drawing(Nest):
     """What a DXF or SVG file gives to cut, in mm (in drawing units if it states none), and what else is worth knowing.
 
-    contour, holes  counter-clockwise all of them
+    chains          every closed chain to cut
     units_mm        mm in a drawing unit, by $INSUNITS or a comment on top, or by an SVG's width and viewBox; None if
                     the file states none
     turned          the outer contour was drawn clockwise, and was turned round
-    pieces          pieces of the outer contour as the file counts them: edges, arcs, spans of a spline
     widest_gap      widest gap between entities joined to the outer contour, mm
     layers          layers that the contour and the holes were taken from
     aside           what was not read: reference geometry, text, other layers
@@ -87,11 +86,8 @@ class Drawing:
     engraved        what is engraved, counter-clockwise, if it was asked for
     """
 
-    contour: Contour
-    holes: tuple[Contour, ...]
     units_mm: float | None
     turned: bool
-    pieces: int
     widest_gap: float
     layers: tuple[str, ...]
     aside: tuple[Aside, ...]
@@ -121,11 +117,12 @@ def drawing_of(
     version: str,
     measurement: int | None = None,
     extents: Box | None = None,
+    deepest: int = 1,
 ) -> Drawing:
     """Join what is to be cut, and what is engraved, in drawing units, to the contours of a drawing in mm.
 
     `gap` in mm, by default GAP, or less in a small drawing; the rest is reported as it is. Heights may differ by as
-    much as such a gap. Raises ReadError as the readers do.
+    much as such a gap; chains may lie inside `deepest` others. Raises ReadError as the readers do.
     """
     scale = 1.0 if unit is None else unit
     pieces, run = gathered(found.shapes)
@@ -146,14 +143,15 @@ def drawing_of(
     meeting = first_meeting([c.contour for c in chained])
     if meeting:
         raise met(meeting, path)
-    first, *others = nested([c.contour for c in chained], path)
-    outer = chained[first]
+    order = nested([c.contour for c in chained], path, deepest)
+    outer = chained[order[0].number]
     return Drawing(
-        contour=counter_clockwise(outer.contour),
-        holes=tuple(counter_clockwise(chained[k].contour) for k in others),
+        chains=tuple(
+            Chain(counter_clockwise(one.contour), depth, inside, found.layers[one.entities[0]], one.spans(found.shapes))
+            for one, depth, inside in ((chained[k], depth, inside) for k, depth, inside in order)
+        ),
         units_mm=unit,
         turned=outer.contour.area < 0.0,
-        pieces=sum(found.shapes[k].spans for k in outer.entities),
         widest_gap=outer.gap,
         layers=tuple(sorted(set(found.layers))),
         aside=tuple(Aside(*key, count) for key, count in sorted(found.aside.items())),
@@ -261,6 +259,10 @@ class Chained(NamedTuple):
     contour: Contour
     entities: Indices
     gap: float
+
+    def spans(self, shapes: list[Shape]) -> int:
+        """Pieces as the file counts them."""
+        return sum(shapes[k].spans for k in self.entities)
 
 
 def chain(pieces: Pieces, run: Indices, gap: float, same: float, path: Path) -> list[Chained]:

@@ -54,14 +54,16 @@ def read_dxf(
     layer: str | None = None,
     *,
     engraved: bool = False,
+    deepest: int = 1,
 ) -> Drawing:
     """Read the outer contour and the holes that a DXF file gives to cut.
 
     gap     mm; ends of loose pieces are joined if they lie within it. Default: 1e-6, or 2e-8 of a drawing below 50 mm
-    layer   the one to cut. Default: CUT, with holes also from BORE, HOLES, MARK and 0, if there is something on CUT;
-            else all layers but those of reference geometry. The outermost closed chain is the contour, those inside
-            it are holes.
+    layer   the one to cut. Default: CUT, also BORE, HOLES, MARK, GROOVE_INNER, GROOVE_OUTER and 0, if there is
+            something on CUT; else all layers but those of reference geometry. The outermost closed chain is the
+            contour, those inside it are holes.
     engraved  read closed chains on the layer ENGRAVE too, if there is something on CUT
+    deepest   how many others a closed chain may lie inside: 1, so that a hole has no island
 
     Raises OSError as the file system does; ReadError for all that makes the contour anything but one closed chain of
     lines, arcs and splines in one plane, with the place and the size of the gap.
@@ -88,6 +90,7 @@ def read_dxf(
         version=document.dxfversion,
         measurement=measurement,
         extents=extents,
+        deepest=deepest,
     )
 
 

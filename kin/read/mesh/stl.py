@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from kin.numeric.places import place_text
 from kin.read.bodies import MOST_BODIES, beside
 from kin.read.errors import ReadError
 from kin.read.mesh.prism import Outline, evened, upright
-from kin.read.nesting import counter_clockwise, demand_few, met, nested
+from kin.read.nesting import Chain, Nest, counter_clockwise, demand_few, met, nested
 from kin.read.size import contents
 
 if TYPE_CHECKING:
@@ -49,19 +49,18 @@ MOST_STEPS = 8
 NOT_ONE = frozenset({"several", "island", "crossing"})
 
 
-class Section(NamedTuple):
-    """A section: its height, mm, outline and holes, counter-clockwise all of them."""
+@dataclass(frozen=True, eq=False)
+class Section(Nest):
+    """A section at a height, mm."""
 
     height: float
-    contour: Contour
-    holes: tuple[Contour, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Solid:
+class Solid(Nest):
     """A part as an STL or 3MF file holds it, mm.
 
-    contour, holes      polygons of the section at `height`, counter-clockwise all of them
+    chains              polygons of the section at `height`
     z_min, z_max        least and greatest height
     height              at which the section was taken
     prism               the walls stand upright and every section is the same, to the file's rounding
@@ -77,8 +76,6 @@ class Solid:
     units_mm            length of the file's unit, None where it states none
     """
 
-    contour: Contour
-    holes: tuple[Contour, ...]
     z_min: float
     z_max: float
     height: float
@@ -94,6 +91,10 @@ class Solid:
     uneven: float = 0.0
     units_mm: float | None = None
 
+    def section(self, z: float) -> Section:
+        """One of the sections, by its height as asked for."""
+        return next(one for one in self.sections if one.height == z)
+
     @property
     def closed(self) -> bool:
         """Whether every edge belongs to exactly two triangles."""
@@ -103,11 +104,6 @@ class Solid:
     def thickness(self) -> float:
         """Height of the part, mm."""
         return self.z_max - self.z_min
-
-    @property
-    def pieces(self) -> int:
-        """Number of the contour's edges."""
-        return len(self.contour)
 
     @property
     def faults(self) -> tuple[str, ...]:
@@ -125,21 +121,22 @@ class Solid:
         return tuple(faults)
 
 
-def read_stl(path: Path | str, heights: Sequence[float] = ()) -> Solid:
+def read_stl(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> Solid:
     """Read a part. Costs about one sort of the corners.
 
     The contour is that of the section at half the part's height, where a part has steps of the widest one midway
-    between two of them; or it is that of the first of `heights`, all of which become `sections`.
+    between two of them; or it is that of the first of `heights`, all of which become `sections`. In a section a closed
+    chain may lie inside `deepest` others.
 
     Raises OSError as the file system does; ReadError where the file is cut short or damaged, and where the section
     does not close or is not one contour with holes. All other faults are in the Solid's fields.
     """
     path = Path(path)
     corners, form = triangles_of(contents(path, "stl"), path)
-    return solid_of(corners, form, heights, path)
+    return solid_of(corners, form, heights, path, deepest)
 
 
-def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path) -> Solid:
+def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path, deepest: int = 1) -> Solid:
     """Make the part of triangles (t, 3, 3), mm, as `read_stl` does."""
     if not bool((np.abs(corners) <= LARGEST).all()):
         raise ReadError("range", "a coordinate is not finite or out of range", path)
@@ -156,7 +153,7 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
             corners, uneven, found = moved.corners, moved.by, again
     mesh, outline = found.mesh, found.outline
     if not found.prism:
-        _refuse_apart(read, path)
+        _refuse_apart(read, path, deepest)
     height = heights[0] if len(heights) else (z_min + z_max) / 2.0
     whole = outline
     z = corners[:, :, 2]
@@ -165,18 +162,17 @@ def solid_of(corners: Corners, form: Form, heights: Sequence[float], path: Path)
         stepped = len(levels) > 2 and not len(heights)
         height, outline = widest(mesh, levels, path) if stepped else cut(mesh, height, path)
     try:
-        contour, holes = sectioned(outline, path, across=whole is None)
+        chains = sectioned(outline, path, deepest, across=whole is None)
     except ReadError as error:
         raise _named(read, error, path) from None
     sections = []
     for asked in heights:
         if whole is None:
-            sections.append(Section(asked, *sectioned(cut(mesh, asked, path)[1], path, across=True)))
+            sections.append(Section(sectioned(cut(mesh, asked, path)[1], path, deepest, across=True), asked))
         elif z_min < asked < z_max:
-            sections.append(Section(asked, contour, holes))
+            sections.append(Section(chains, asked))
     return Solid(
-        contour=contour,
-        holes=holes,
+        chains=chains,
         z_min=z_min,
         z_max=z_max,
         height=height,
@@ -215,7 +211,7 @@ def _boxes(mesh: Mesh) -> list[tuple[Array, Array]]:
     return list(zip(low, high, strict=True))
 
 
-def _refuse_apart(mesh: Mesh, path: Path) -> None:
+def _refuse_apart(mesh: Mesh, path: Path, deepest: int) -> None:
     """Refuse a closed mesh of which some body stands apart from the rest, above it or beside it or in a hole of it."""
     if mesh.edge_faults.open or not mesh.bodies.any():
         return
@@ -227,7 +223,7 @@ def _refuse_apart(mesh: Mesh, path: Path) -> None:
         if all(bool((low > above).any() or (high < below).any()) for below, above in others):
             raise _others(mesh, path)
         try:
-            sectioned(section(mesh, float(0.5 * (low[2] + high[2])))[1], path, across=True)
+            sectioned(section(mesh, float(0.5 * (low[2] + high[2])))[1], path, deepest, across=True)
         except ReadError as error:
             if error.reason in NOT_ONE:
                 raise _others(mesh, path) from None
@@ -252,16 +248,17 @@ def widest(mesh: Mesh, levels: Array, path: Path) -> tuple[float, Outline]:
     return max(found, key=lambda one: float(np.prod(np.ptp(one[1].points, axis=0))))
 
 
-def sectioned(outline: Outline, path: Path, *, across: bool) -> tuple[Contour, tuple[Contour, ...]]:
-    """Contour and holes of a section, which is one contour with holes in it; `across` triangles, or along a face."""
+def sectioned(outline: Outline, path: Path, deepest: int = 1, *, across: bool) -> tuple[Chain, ...]:
+    """Closed chains of a section, all of which lie inside the first; `across` triangles, or along a face."""
     loops = [outline.points[ring] for ring in rings(outline, path)]
     demand_few(len(loops), path)
     contours = [Contour.from_vertices(straightened(loop) if across else loop) for loop in loops]
     meeting = first_meeting(contours)
     if meeting:
         raise met(meeting, path)
-    first, *others = nested(contours, path)
-    return counter_clockwise(contours[first]), tuple(counter_clockwise(contours[k]) for k in others)
+    order = nested(contours, path, deepest)
+    each = ((counter_clockwise(contours[k]), depth, inside) for k, depth, inside in order)
+    return tuple(Chain(contour, depth, inside, pieces=len(contour)) for contour, depth, inside in each)
 
 
 def triangles_of(raw: bytes, path: Path) -> tuple[Corners, Literal["binary", "text"]]:

@@ -68,7 +68,7 @@ class Placed(NamedTuple):
         return bool((np.abs(turn @ turn.T - np.eye(3)) <= RIGID).all() and np.linalg.det(turn) > 0.0)
 
 
-def read_3mf(path: Path | str, heights: Sequence[float] = ()) -> Solid:
+def read_3mf(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> Solid:
     """Read the part as `read_stl` does: the only object that is built, or of several the one named "cam".
 
     Where a part lies on the plate and which way it is turned there does not count; a place that scales, shears or
@@ -85,7 +85,7 @@ def read_3mf(path: Path | str, heights: Sequence[float] = ()) -> Solid:
         raise ReadError("several" if built else "empty", message if built else "no object is built", path)
     one = chosen[0]
     corners = one.corners if one.rigid else _moved(one.corners, one.place)
-    return replace(solid_of(corners, "3mf", heights, path), units_mm=one.mm)
+    return replace(solid_of(corners, "3mf", heights, path, deepest), units_mm=one.mm)
 
 
 def read_placed(path: Path | str) -> tuple[Placed, ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +21,7 @@ from kin.read.bodies import MOST_BODIES, beside
 from kin.read.drawing.drawing import Found, drawing_of
 from kin.read.errors import ReadError
 from kin.read.mesh.stl import Section
+from kin.read.nesting import Nest
 from kin.read.size import contents
 from kin.read.step.faces import Plane, Tube, face_of
 from kin.read.step.part21 import exchange
@@ -29,7 +30,6 @@ from kin.read.step.space import space_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kin.contour.contour import Contour
     from kin.numeric.arrays import Array
     from kin.read.drawing.drawing import Drawing
     from kin.read.step.curves import Edge, Space
@@ -46,11 +46,10 @@ MOST_NAMED = 3  # edges in a message
 
 
 @dataclass(frozen=True, eq=False)
-class StepSolid:
+class StepSolid(Nest):
     """A part as a STEP file holds it, mm; `Solid` of an STL has the same in triangles.
 
-    contour, holes      section at `height`, counter-clockwise all of them
-    pieces              lines, arcs and spans of the contour
+    chains              of the section at `height`
     z_min, z_max        least and greatest height
     height              at which the section was taken
     prism               the walls stand upright from the lowest face to the highest one
@@ -64,9 +63,6 @@ class StepSolid:
     units_mm            length of its unit
     """
 
-    contour: Contour
-    holes: tuple[Contour, ...]
-    pieces: int
     z_min: float
     z_max: float
     height: float
@@ -86,27 +82,29 @@ class StepSolid:
         """Height of the part, mm."""
         return self.z_max - self.z_min
 
+    def section(self, z: float) -> Section:
+        """One of the sections, by its height as asked for."""
+        return next(one for one in self.sections if one.height == z)
 
-def read_step(path: Path | str, heights: Sequence[float] = ()) -> StepSolid:
+
+def read_step(path: Path | str, heights: Sequence[float] = (), deepest: int = 1) -> StepSolid:
     """Read a part.
 
     The contour is that of the first of `heights`, all of which become `sections`; without any it is that of the widest
-    section midway between two levels of the part.
+    section midway between two levels of the part. In a section a closed chain may lie inside `deepest` others.
 
     Raises OSError as the file system does; ReadError, with the number of the instance where it has one, for what is not
-    read and where a section is not one closed contour with holes in it.
+    read and where a section is not one closed contour with others in it.
     """
     path = Path(path)
-    body = _Body.of(exchange(contents(path, "step"), path))
+    body = _Body.of(exchange(contents(path, "step"), path), deepest)
     misfit = body.misfit
     asked = [body.checked(z) for z in heights] or [body.widest()]
     drawings = [body.section(z) for z in asked]
-    sections = [Section(z, one.contour, one.holes) for z, one in zip(asked, drawings, strict=True)]
+    sections = [Section(one.chains, z) for z, one in zip(asked, drawings, strict=True)]
     first = drawings[0]
     return StepSolid(
-        contour=first.contour,
-        holes=first.holes,
-        pieces=first.pieces,
+        chains=first.chains,
         z_min=body.levels[0],
         z_max=body.levels[-1],
         height=asked[0],
@@ -129,9 +127,10 @@ class _Body:
     faces: list[Face]
     edges: dict[int, Edge]
     levels: list[float]
+    deepest: int = 1
 
     @staticmethod
-    def of(file: Exchange) -> _Body:
+    def of(file: Exchange, deepest: int = 1) -> _Body:
         """Read the one solid of a file."""
         solids = [*file.of("MANIFOLD_SOLID_BREP"), *file.of("BREP_WITH_VOIDS"), *file.of("FACETED_BREP")]
         if not solids:
@@ -140,7 +139,7 @@ class _Body:
             raise beside(
                 [(f"solid #{one}", _Body._reach(file, one)) for one in solids[:MOST_BODIES]], len(solids), file.path
             )
-        return _Body._one(file, solids[0])
+        return replace(_Body._one(file, solids[0]), deepest=deepest)
 
     @staticmethod
     def _reach(file: Exchange, solid: int) -> tuple[Array, Array] | None:
@@ -210,11 +209,12 @@ class _Body:
         path = self.space.file.path
         if not found.shapes:
             raise ReadError("open", f"no face reaches through z = {z:.9g} mm", path)
-        return drawing_of(found, None, None, self.space.accuracy, path, version="STEP")
+        return drawing_of(found, None, None, self.space.accuracy, path, version="STEP", deepest=self.deepest)
 
     def _area(self, z: float) -> float:
         cut = self.section(z)
-        return cut.contour.area - sum(hole.area for hole in cut.holes)
+        metal, free = (sum(chain.contour.area for chain in cut.chains if chain.depth % 2 == odd) for odd in (0, 1))
+        return metal - free
 
     @property
     def volume(self) -> float:

@@ -1,0 +1,59 @@
+"""Round openings and outlines about the shaft: the bore of a plain part, the outline of a ring."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.contour.arcs import dot, left
+from kin.judge.check import ROUNDING, Check, at_most, failed
+from kin.numeric.extrema import extremes, resolution
+from kin.numeric.places import place_text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.contour.contour import Contour
+    from kin.numeric.arrays import Array, Indices
+
+
+def bore_check(holes: Sequence[Contour], bore: float | None, tolerance: float) -> Check | None:
+    """Check that there is one hole, round and about the shaft, in number, place and diameter; None if none is due."""
+    if bore is None:
+        if not holes:
+            return None
+        return failed("bore", f"{len(holes)} hole(s), where none is expected", unit="mm", limit=tolerance)
+    if len(holes) != 1:
+        detail = f"{len(holes)} holes, where one of diameter {bore:.9g} mm is expected"
+        return failed("bore", detail, unit="mm", limit=tolerance)
+    return round_check("bore", holes[0], bore, tolerance)
+
+
+def round_check(name: str, contour: Contour, diameter: float, tolerance: float) -> Check:
+    """Check that a contour is a circle of that diameter, mm, about the shaft."""
+    least, most = _distance_range(contour)
+    across, box = 2.0 * float(np.sqrt(abs(contour.area) / np.pi)), contour.box
+    worst = max(most - 0.5 * diameter, 0.5 * diameter - least, 0.5 * abs(across - diameter))
+    place = place_text(0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max))
+    detail = f"diameter {across:.9g} mm about {place}"
+    return at_most(name, worst, tolerance, "mm", detail=detail, slack=ROUNDING * diameter)
+
+
+def _distance_range(contour: Contour) -> tuple[float, float]:
+    """Least and greatest distance of a contour from the origin."""
+    arcs, _ = contour.as_arcs()
+    pieces, _ = arcs.cut(np.ceil(np.maximum(np.abs(arcs.curvature) * arcs.length / 0.1, 1.0)).astype(np.intp))
+    fine = resolution(pieces.start)
+
+    def distance(s: Array, piece: Indices) -> Array:
+        here = pieces.take(piece)
+        x, tangent = here.points(s), here.tangents(s)
+        r = np.maximum(np.hypot(x[:, 0], x[:, 1]), fine)
+        slope = dot(x, tangent) / r
+        return np.stack([r, slope, (1.0 + here.curvature * dot(x, left(tangent)) - slope**2) / r])
+
+    every = np.arange(len(pieces))
+    low, high = np.zeros(len(pieces)), pieces.length
+    found = extremes(low, high, distance(low, every), distance(high, every), distance, resolution=fine)
+    return found.least, found.greatest

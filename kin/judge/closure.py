@@ -1,0 +1,135 @@
+"""What is left to a follower between two surfaces, over the whole turn and from both contours as they lie in files.
+
+One surface pushes the follower out, the other stops it: the flanks of a groove, the discs of a conjugate pair. The
+gauges of both are meant to stand at one position, so what is left between them is meant to be nothing; the follower
+itself has its clearance besides. Both positions are smooth between breaks, and so is their difference.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.follower.drive import Shifted
+from kin.follower.follower import Closure, ContactError, Play
+from kin.judge.check import Check, failed
+from kin.judge.contour_checks import fine, play_checks
+from kin.numeric.angles import TURN, degrees
+from kin.numeric.distinct import distinct
+from kin.numeric.errors import UnsettledError
+from kin.numeric.extrema import extremes
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.contour.contour import Contour
+    from kin.follower.drive import Excitation
+    from kin.follower.follower import Follower
+    from kin.judge.intent import ClosureIntent, Limits, SurfaceIntent
+    from kin.numeric.arrays import Array, Indices
+
+Surface = tuple["SurfaceIntent", "Contour"]
+INSET = 1e-6  # of a stretch between two breaks: so far within it is looked at, and reckoned back from there
+LEAST = 12  # stretches
+RESOLUTION = 1e-11  # of the extent, or of a radian
+CLOSE = 1e-9  # rad: breaks that are closer are one
+
+
+@dataclass(frozen=True)
+class ClosureVerdict:
+    """What is left between two surfaces: to the gauges, which is meant to be nothing, and to the follower itself."""
+
+    pushes: str
+    stops: str
+    gauges: Play
+    play: Play
+
+
+def judge_closures(
+    surfaces: Sequence[Surface], closures: Sequence[ClosureIntent], limits: Limits, uneven: float = 0.0
+) -> tuple[tuple[ClosureVerdict, ...], list[Check]]:
+    """Judge what is left between surfaces, of one file or of several, in mm and as if not mirrored.
+
+    A closure one of whose surfaces is not among these is left out. `uneven` as of `judge_contour`, for either.
+    """
+    by_name = {surface.name: (surface, contour) for surface, contour in surfaces}
+    verdicts, checks = [], []
+    for closure in closures:
+        if not {closure.pushes, closure.stops} <= set(by_name):
+            continue
+        pair = by_name[closure.pushes], by_name[closure.stops]
+        try:
+            verdict, found = _judged(closure, pair, limits, uneven)
+        except (ContactError, UnsettledError) as error:
+            checks.append(failed(closure.name, str(error), unit=pair[0][0].gauge.unit))
+            continue
+        verdicts.append(verdict)
+        checks += found
+    return tuple(verdicts), checks
+
+
+def _judged(
+    closure: ClosureIntent, pair: tuple[Surface, Surface], limits: Limits, uneven: float
+) -> tuple[ClosureVerdict, list[Check]]:
+    gauges = tuple(surface.gauge for surface, _ in pair)
+    finer = [fine(contour, limits.tolerance) for _, contour in pair]
+    rests = [_rests(surface, surface.gauge, one.contour) for (surface, _), one in zip(pair, finer, strict=True)]
+    size = max(float(np.abs(contour.vertices).max()) for _, contour in pair)
+
+    def limit(tolerance: float) -> float:
+        return sum(gauge.motion_limit(tolerance) for gauge in gauges)
+
+    off = limit(uneven) if uneven else 0.0
+    between = _play(rests[0], rests[1], gauges[0], size).less_sure(off)
+    play = between
+    if any(surface.follower is not None for surface, _ in pair):
+        first, second = (
+            _rests(surface, surface.follower or surface.gauge, one.contour)
+            for (surface, _), one in zip(pair, finer, strict=True)
+        )
+        play = _play(first, second, gauges[0], size).less_sure(off)
+    judged_as = Closure(limit, closure.name, lever=2.0)
+    slack = max(one.slack for one in finer)
+    checks = play_checks(between, judged_as, gauges[0], limits, slack, detail=judged_as.detail(play))
+    if limits.play is None and any(surface.trimmed for surface, _ in pair):
+        checks = []
+    return ClosureVerdict(closure.pushes, closure.stops, between, play), checks
+
+
+def _rests(surface: SurfaceIntent, follower: Follower, contour: Contour) -> Excitation:
+    """Position of the follower, metres or radians, as it rests on a surface."""
+    (rest,) = follower.resting(contour)
+    contact = surface.contact
+    if contact is None:
+        return rest
+    return Shifted(rest, float(contact.sense), -contact.sense * follower.si * contact.zero, contact.turned)
+
+
+def _play(pushed: Excitation, stopped: Excitation, gauge: Follower, size: float) -> Play:
+    """How far one drive is beyond the other over the turn, mm or degrees: least and greatest."""
+    ends = np.concatenate([pushed.breaks, stopped.breaks, np.arange(LEAST) * TURN / LEAST])
+    ends = distinct(np.mod(ends, TURN))
+    ends = ends[np.diff(ends, prepend=-np.inf) > CLOSE]
+    width = np.diff(ends, append=ends[0] + TURN)
+
+    def left(phi: Array, _: Indices | None = None) -> Array:
+        rows: Array = stopped.rows(phi) - pushed.rows(phi)
+        return rows
+
+    at_low, at_high = (_carried(left(ends + share * width), (at - share) * width) for at, share in ENDS)
+    unit = gauge.si * size if gauge.unit == "mm" else 1.0
+    found = extremes(ends, ends + width, at_low, at_high, left, resolution=RESOLUTION * unit)
+    scale = float(np.degrees(1.0)) if gauge.unit == "deg" else 1.0 / gauge.si
+    least, most = (scale * found.least, degrees(found.least_at)), (scale * found.greatest, degrees(found.greatest_at))
+    return Play(*least, *most, gauge.unit)
+
+
+ENDS = ((0.0, INSET), (1.0, 1.0 - INSET))
+
+
+def _carried(rows: Array, step: Array) -> Array:
+    """Value and two derivatives (3, n) a step (n,) on, to second order."""
+    f, slope, bend = rows
+    return np.stack([f + step * (slope + 0.5 * step * bend), slope + step * bend, bend])

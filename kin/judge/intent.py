@@ -1,0 +1,124 @@
+"""What a part is meant to be, and what is permitted of it: all that the judge is told beside the file itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from kin.follower.follower import Follower
+    from kin.judge.holes import Hole
+    from kin.judge.layers import CrossHole, Layer
+    from kin.judge.milling import Milling
+    from kin.law.contacts import Contact, Guide, Side, Touch
+    from kin.law.frame_swing import FrameSwing
+    from kin.linkage.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class SurfaceIntent:
+    """A surface of a disc that a follower runs on.
+
+    gauge     the follower that judges it, with its motion law, in mm and radians
+    name      by which checks and closures tell it; empty where there is no other
+    layer     of a drawing on which it stands; where there is no such layer it is told by how chains lie in one another
+    z         height of the section of a solid in which it is looked for, mm; None for that of the plain disc
+    side      on which the metal lies: 1 within the contour, -1 round it
+    trimmed   an undercut is cut off: what motion is lost is reported, and judged only against limits that are given
+    follower  that runs on it, where the gauge is larger by a clearance; None for the gauge itself
+    contact   of the follower there, where its position does not count as the gauge's does: on the second of two discs
+    """
+
+    gauge: Follower
+    name: str = ""
+    layer: str = ""
+    z: float | None = None
+    side: Side = 1
+    trimmed: bool = False
+    follower: Follower | None = None
+    contact: Contact[Guide, Touch] | None = None
+
+
+@dataclass(frozen=True)
+class ClosureIntent:
+    """What is left to a follower between two surfaces: by name the one that pushes it out and the one that stops it.
+
+    `name` is that of the check. What the gauges find left is meant to be nothing.
+    """
+
+    pushes: str
+    stops: str
+    name: str = "form-closure"
+
+
+@dataclass(frozen=True)
+class DwellAsked:
+    """A dwell: the output stays within a range of `band`, rad or mm, for `at_least`, rad (None: it is only told)."""
+
+    band: float
+    at_least: float | None = None
+    over: Literal["shaft", "relative"] = "shaft"
+
+
+@dataclass(frozen=True)
+class LinkageIntent:
+    """The mechanism that the yoke's frame drives as a coupler.
+
+    swing   law that its frame has to follow; its lift's is the law if None
+    dwell   of its output, which is found in each file and, if it must last, judged
+    """
+
+    mechanism: Mechanism
+    swing: FrameSwing | None = None
+    dwell: DwellAsked | None = None
+
+
+@dataclass(frozen=True)
+class PartIntent:
+    """What a disc in a file is meant to be.
+
+    surfaces    those that followers run on, in any order; two of them differ in name
+    mirrored    the file is drawn mirrored about the x axis (the shaft turns counter-clockwise)
+    mm          mm in one drawing unit of a DXF or SVG file or a program (solids are always in mm)
+    bore        diameter, mm; None for no hole at all
+    thickness   of a solid, mm, z from 0; None where only contours are judged
+    outline     diameter of its round outline, mm, such as a ring's; None where the outermost surface is the outline
+    holes       all openings, the bore among them, of a part that has more than a round bore; `bore` is None then
+    layers      of its solid, from below, and radial holes through layers with an outline of their own
+    milling     how a program mills it
+    linkage     that it drives; None for a plain follower
+    closures    what is left between its surfaces
+    """
+
+    surfaces: tuple[SurfaceIntent, ...]
+    mirrored: bool = False
+    mm: float = 1.0
+    bore: float | None = None
+    thickness: float | None = None
+    outline: float | None = None
+    holes: tuple[Hole, ...] = ()
+    layers: tuple[Layer, ...] = ()
+    cross_holes: tuple[CrossHole, ...] = ()
+    milling: Milling | None = None
+    linkage: LinkageIntent | None = None
+    closures: tuple[ClosureIntent, ...] = ()
+
+    @property
+    def featured(self) -> bool:
+        """Whether the part has more than a round bore."""
+        return bool(self.holes or self.layers)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What is permitted: `tolerance` of the contour, mm; greatest motion error, and greatest play or interference.
+
+    Motion and play are in mm or degrees as the follower has them, `output`, the greatest error of a mechanism's output,
+    as the mechanism has it; None is what the tolerance implies, see `motion_limit` and `closure` of the followers
+    and `kin.follower.frame.implied_limit`.
+    """
+
+    tolerance: float
+    motion: float | None = None
+    play: float | None = None
+    output: float | None = None

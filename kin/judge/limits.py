@@ -1,0 +1,58 @@
+"""Limits: what a user gives, or what the tolerance implies, as far as that says anything."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.follower.projection import grid
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kin.follower.follower import Closure, Follower
+    from kin.judge.check import Check
+
+# Splines are judged as arcs within this share of the tolerance, and no coarser than SPLINE_ERROR, mm, as far as
+# rounding lets them be.
+SPLINE_SHARE, SPLINE_ERROR = 1e-3, 1e-9
+# A limit that the tolerance implies is none where it is above this share of the stroke (of a play: of the rollers'
+# radius), and so many times what the tolerance gives at a pressure angle of 0.
+MOST_SHARE, STEEP = 0.1, 10.0
+NO_LIMIT = "no limit follows from the tolerance here; give verify.motion_error"
+
+
+def stroke_of(follower: Follower) -> float:
+    """Stroke, mm, or swing, degrees, of the intended motion, looked at at the shaft angles of limits."""
+    stroke = float(np.ptp(follower.intended(grid(follower.motion.breaks))))
+    return float(np.degrees(stroke)) if follower.unit == "deg" else stroke
+
+
+def is_loose(limit: float, direct: float, size: float, share: float = MOST_SHARE) -> bool:
+    """Whether a limit is above that share of a size, and far above what the same tolerance gives directly."""
+    return limit > share * size and limit > STEEP * direct
+
+
+def direct_play(closure: Closure, follower: Follower, tolerance: float) -> float:
+    """What the limit of play, mm or degrees, is at a pressure angle of 0: two contacts, each off by the tolerance."""
+    return 2.0 * (follower.direct_limit(tolerance) if closure.radius is None else tolerance)
+
+
+def unlimited(check: Check) -> Check:
+    """Fail a check whose limit is none."""
+    detail = f"{NO_LIMIT}; {check.limit:.3g} {check.unit} would be permitted"
+    return replace(check, ok=False, limit=None, detail=f"{detail}; {check.detail}" if check.detail else detail)
+
+
+def limit_of(
+    implied: Callable[[float], float], given: float | None, tolerance: float, slack: float
+) -> tuple[float, float]:
+    """Return the limit, given or implied by the tolerance, and by how much the judge's own rounding may exceed it.
+
+    Where rounding grows beyond a small share of a limit that is given, the limit holds and not the rounding.
+    """
+    by_tolerance = implied(tolerance)
+    room = implied(tolerance + slack) - by_tolerance
+    return (by_tolerance, room) if given is None else (given, min(room, SPLINE_SHARE * given))

@@ -1,0 +1,109 @@
+"""The checks on a mechanism that a cam drives: how far its output is off, and how long it dwells."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.follower.frame import FrameError, implied_limit, judge_frame
+from kin.judge.check import Check, at_most, failed
+from kin.linkage.loop import BindingError
+
+if TYPE_CHECKING:
+    from kin.contour.contour import Contour
+    from kin.follower.frame import DwellFound, LinkageVerdict
+    from kin.judge.intent import DwellAsked, Limits, LinkageIntent
+    from kin.linkage.mechanism import Mechanism
+    from kin.numeric.arrays import Array
+
+DWELL_ROUNDING = 1e-7  # degrees; the ends of a dwell are found to this
+
+
+def judge_linkage(
+    contour: Contour,
+    linkage: LinkageIntent,
+    phi: Array,
+    limits: Limits,
+    *,
+    trimmed: bool,
+    slack: float,
+    uneven: float,
+) -> tuple[LinkageVerdict | None, list[Check]]:
+    """Judge how a contour drives the mechanism: checks linkage-error and, if the dwell must last, dwell."""
+    mechanism, asked = linkage.mechanism, linkage.dwell
+    at_least = None if asked is None or asked.at_least is None else float(np.degrees(asked.at_least))
+    try:
+        off = _output_less_sure(mechanism, uneven)
+        if asked is None:
+            found = judge_frame(contour, mechanism, phi, limits.tolerance, swing=linkage.swing)
+        else:
+            band = _band_less_sure(asked, mechanism, off)
+            found = judge_frame(
+                contour, mechanism, phi, limits.tolerance, swing=linkage.swing, band=band, over=asked.over
+            )
+        if uneven:
+            found = replace(
+                found,
+                error=found.error.less_sure(off),
+                centred=found.centred.less_sure(off),
+                play_across=found.play_across.less_sure(2.0 * uneven),
+                play_along=found.play_along.less_sure(2.0 * uneven),
+                dwells=tuple(replace(one, band=one.band + 2.0 * off) for one in found.dwells),
+            )
+    except (FrameError, BindingError) as problem:
+        what = str(problem) if isinstance(problem, FrameError) else f"the intended mechanism: {problem}"
+        checks = [failed("linkage-error", what, unit=mechanism.unit, limit=limits.output)]
+        if at_least is not None:
+            checks.append(replace(failed("dwell", what, unit="deg", limit=at_least), sense="at_least"))
+        return None, checks
+    checks = []
+    if limits.output is not None or not trimmed:
+        checks.append(_output_check(found, limits, slack))
+    if at_least is not None:
+        checks.append(_dwell_check(found.dwells[0], mechanism.unit, at_least))
+    return found, checks
+
+
+def _output_less_sure(mechanism: Mechanism, uneven: float) -> float:
+    """What a contour that is off by `uneven`, mm, can do to the output."""
+    off = implied_limit(mechanism, uneven) if uneven else 0.0
+    if off is None:
+        raise FrameError(f"the mechanism binds within the {uneven:.3g} mm by which the solid's sections differ")
+    return off
+
+
+def _band_less_sure(asked: DwellAsked, mechanism: Mechanism, off: float) -> float:
+    """Band within which an output stays for certain in the band asked for, if it may be off either way, rad or mm."""
+    band = asked.band - 2.0 * (float(np.radians(off)) if mechanism.unit == "deg" else off)
+    if band <= 0.0:
+        raise FrameError(
+            f"the output may be off by {off:.3g} {mechanism.unit}, which leaves nothing of the dwell's band"
+        )
+    return band
+
+
+def _output_check(found: LinkageVerdict, limits: Limits, slack: float) -> Check:
+    error, across, along = found.error, found.play_across, found.play_along
+    detail = (
+        f"{found.centred.max:.3g} {error.unit} with the frame centred; "
+        f"backlash {across.least:.3g} to {across.most:.3g} mm across, "
+        f"{along.least:.3g} to {along.most:.3g} mm along the frame"
+    )
+    limit = found.limit if limits.output is None else limits.output
+    if limit is None:
+        detail = f"the mechanism binds within the tolerance, which thus implies no limit; {detail}"
+        return Check("linkage-error", ok=False, value=error.max, limit=None, unit=error.unit, detail=detail)
+    room = 0.0 if found.limit is None else found.limit * slack / limits.tolerance
+    at = np.radians(error.at_deg)
+    return at_most("linkage-error", error.max, limit, error.unit, at=at, detail=detail, slack=room)
+
+
+def _dwell_check(shortest: DwellFound, unit: str, at_least: float) -> Check:
+    """Check the longest dwell in that way of resting in which it is shortest."""
+    ok, over = shortest.length_deg >= at_least - DWELL_ROUNDING, shortest.over
+    at = shortest.start_deg if over == "shaft" else None
+    where = f"from {shortest.start_deg:.6g} degrees of the {over} angle"
+    detail = f"{where}, within {shortest.band:.6g} {unit}, {shortest.rest}"
+    return Check("dwell", ok, shortest.length_deg, at_least, "deg", at, "at_least", detail=detail)

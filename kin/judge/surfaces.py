@@ -1,0 +1,102 @@
+"""Where the surfaces of a part are among the closed chains of a drawing, a section or a program.
+
+What goes round the shaft lies one in another: a round outline, the surfaces, the bore. The outermost of all chains is
+the outline, whether or not it goes round.
+"""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kin.contour.arcs import cross, dot
+from kin.judge.bore import round_check
+from kin.numeric.angles import TURN
+from kin.read.errors import ReadError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from kin.contour.contour import Contour
+    from kin.judge.check import Check
+    from kin.judge.intent import PartIntent, SurfaceIntent
+    from kin.read.nesting import Chain
+
+LOOKS = 16  # on each piece: an arc of a whole turn is seen to go round
+SIZED = np.linspace(0.0, TURN, 64)  # parameters at which an exact contour's size is looked at
+
+
+class Parted(NamedTuple):
+    """The chain of each surface, the holes besides, and what is checked of a round outline."""
+
+    surfaces: tuple[Chain, ...]
+    holes: tuple[Contour, ...]
+    checks: tuple[Check, ...]
+
+
+def parted(
+    outline: Chain | None,
+    others: Sequence[Chain],
+    part: PartIntent,
+    tolerance: float,
+    path: Path,
+    *,
+    z: float | None = None,
+) -> Parted:
+    """Tell apart the chains of a part, in mm, as if not mirrored; `outline` is None where it is not in the file.
+
+    `z` is the height of the section in which they lie, None for that of the plain disc.
+    A surface is what stands on its layer; where none of the surfaces has a chain there, they are those that go round
+    the shaft, by falling area. ReadError where one is missing.
+    """
+    checks: tuple[Check, ...] = ()
+    if outline is not None and part.outline is None:
+        others = (outline, *others)
+    elif outline is not None and part.outline is not None:
+        checks = (round_check("outer", outline.contour, part.outline, tolerance),)
+    surfaces = [surface for surface in part.surfaces if surface.z == z]
+    round_shaft = (chain for chain in others if chain is outline or goes_round(chain.contour))
+    layers = {chain.layer for chain in others} - {""}
+    by_layer = any(surface.layer in layers for surface in surfaces)
+    chosen: dict[str, Chain] = {}
+    for surface in outermost_first(surfaces):
+        there = [chain for chain in others if chain.layer == surface.layer] if by_layer else [*islice(round_shaft, 1)]
+        if not there:
+            raise ReadError("empty", missing(surface), path)
+        if len(there) > 1:
+            raise ReadError("several", f"{len(there)} closed contours on the layer {surface.layer}", path)
+        (chosen[surface.name],) = there
+    holes = tuple(chain.contour for chain in others if not any(chain is one for one in chosen.values()))
+    return Parted(tuple(chosen[surface.name] for surface in surfaces), holes, checks)
+
+
+def outermost_first(surfaces: Sequence[SurfaceIntent]) -> list[SurfaceIntent]:
+    """Order surfaces, which lie one in another, by how far their exact contours reach."""
+
+    def reach(surface: SurfaceIntent) -> float:
+        return float(np.hypot(*surface.gauge.envelope.points(SIZED).T).max())
+
+    return sorted(surfaces, key=reach, reverse=True) if len(surfaces) > 1 else list(surfaces)
+
+
+def deepest(part: PartIntent) -> int:
+    """How many others a closed chain of a part may lie inside: holes lie in metal, and nothing in the air."""
+    ring = 0 if part.outline is None else 1
+    return ring + len(part.surfaces) - (1 if outermost_first(part.surfaces)[-1].side < 0 else 0)
+
+
+def missing(surface: SurfaceIntent) -> str:
+    """Say that a surface is not there."""
+    if surface.name:
+        return f"the {surface.name} is missing, on which its follower runs"
+    return "the ring has no opening about the shaft, in which its follower runs"
+
+
+def goes_round(contour: Contour) -> bool:
+    """Whether a contour encloses the shaft."""
+    points = contour.sample(LOOKS)
+    after = np.roll(points, -1, axis=0)
+    return bool(abs(np.arctan2(cross(points, after), dot(points, after)).sum()) > np.pi)

@@ -1,0 +1,114 @@
+"""What is found of a file: checks, and of each surface what the judge measured and the contour that it read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kin.contour.contour import Contour
+    from kin.follower.frame import LinkageVerdict
+    from kin.follower.motion_error import MotionError, Play
+    from kin.judge.check import Check
+    from kin.judge.closure import ClosureVerdict
+    from kin.read.files import Kind
+
+
+@dataclass(frozen=True)
+class SurfaceVerdict:
+    """What was found of one surface of a part; all is None where nothing could be read.
+
+    name            as the intent has it
+    contour         as read, in mm and as if not mirrored
+    motion, play    as the contour gives them by contact; None without contact, play also for one-sided followers
+    measured_error  two-sided distance from the exact contour, mm
+    pieces          of the contour, as the file counts them
+    linkage         what the contour makes of the mechanism; None without one, or where it does not drive it all round
+    """
+
+    name: str = ""
+    contour: Contour | None = None
+    motion: MotionError | None = None
+    play: Play | None = None
+    measured_error: float | None = None
+    pieces: int | None = None
+    linkage: LinkageVerdict | None = None
+
+
+UNREAD = SurfaceVerdict()
+
+
+class OfSurfaces:
+    """What there is of the first surface, which most cams have alone."""
+
+    surfaces: tuple[SurfaceVerdict, ...]
+
+    @property
+    def surface(self) -> SurfaceVerdict:
+        """The first surface."""
+        return self.surfaces[0] if self.surfaces else UNREAD
+
+    @property
+    def contour(self) -> Contour | None:
+        """As read, in mm and as if not mirrored."""
+        return self.surface.contour
+
+    @property
+    def motion(self) -> MotionError | None:
+        """Error of the follower's motion."""
+        return self.surface.motion
+
+    @property
+    def play(self) -> Play | None:
+        """Of a follower that two contacts hold on the one surface."""
+        return self.surface.play
+
+    @property
+    def measured_error(self) -> float | None:
+        """Two-sided distance from the exact contour, mm."""
+        return self.surface.measured_error
+
+    @property
+    def linkage(self) -> LinkageVerdict | None:
+        """What the contour makes of the mechanism."""
+        return self.surface.linkage
+
+    @property
+    def perimeter(self) -> float | None:
+        """Length of the contour, mm."""
+        return None if self.contour is None else self.contour.length
+
+    @property
+    def area(self) -> float | None:
+        """Area that the contour encloses, mm^2."""
+        return None if self.contour is None else abs(self.contour.area)
+
+
+@dataclass(frozen=True)
+class Verdict(OfSurfaces):
+    """What was found of a file.
+
+    kind      of the file: drawing, solid or program
+    checks    units, closed, contour, motion, bore, ... ; or the one that says why the file cannot be read
+    surfaces  what was found of each, in the intent's order; none where the file cannot be read
+    closures  what is left between them
+    units     mm in a unit of the file as it was read: as the file states, or else as it was given or meant
+    chains    every closed contour of the drawing, section or program that holds the first surface, outermost first
+    """
+
+    kind: Kind
+    checks: tuple[Check, ...]
+    surfaces: tuple[SurfaceVerdict, ...] = ()
+    closures: tuple[ClosureVerdict, ...] = ()
+    units: float | None = None
+    chains: tuple[Contour, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether every check holds."""
+        return all(check.ok for check in self.checks)
+
+    @property
+    def pieces(self) -> int | None:
+        """Of the first surface, as the file counts them."""
+        return self.surface.pieces

@@ -1,0 +1,53 @@
+"""The check on a solid's volume, by the area and the perimeter of its exact surfaces."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kin.judge.check import ROUNDING, Check, at_most
+from kin.judge.layers import volume, wall_area
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kin.contour.contour import Contour
+    from kin.judge.intent import PartIntent
+
+
+def exact_area(contours: Sequence[Contour], part: PartIntent) -> tuple[float, float, str]:
+    """Area and length of the edges, mm^2 and mm, and whose they are: the intent's, or the file's contours'.
+
+    The contours, one of each surface, give those of a trimmed cam, for which there is no closed form.
+    """
+    area, length, regular = 0.0, 0.0, True
+    for contour, surface in zip(contours, part.surfaces, strict=True):
+        envelope = surface.gauge.envelope
+        regular = regular and envelope.regular
+        enclosed, edge = envelope.area_and_perimeter() if envelope.regular else (contour.area, contour.length)
+        area, length = area + surface.side * enclosed, length + edge
+    if part.outline is not None:
+        area, length = 0.25 * np.pi * part.outline**2 + area, np.pi * part.outline + length
+    return area, length, "intent" if regular else "contour"
+
+
+def volume_check(
+    measured: float, height: float, contours: Sequence[Contour], part: PartIntent, tolerance: float
+) -> Check:
+    """Check a solid's volume against the area times its height, within the tolerance times the area of the walls."""
+    area, perimeter, source = exact_area(contours, part)
+    bore = part.bore or 0.0
+    expected = (area - 0.25 * np.pi * bore**2) * height
+    limit = tolerance * (perimeter + np.pi * bore + 2.0 * np.pi * tolerance) * height  # to second order
+    detail = f"{measured:.9g} mm^3, by the {source} {expected:.9g}"
+    return at_most("volume", abs(measured - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)
+
+
+def layers_volume_check(measured: float, contours: Sequence[Contour], part: PartIntent, tolerance: float) -> Check:
+    """Check the volume of a part in layers, mm^3, against closed forms: within the tolerance times the walls' area."""
+    area, perimeter, source = exact_area(contours, part)
+    expected = volume(part.layers, part.cross_holes, area, perimeter)
+    limit = tolerance * wall_area(part.layers, part.cross_holes, perimeter)
+    detail = f"{measured:.9g} mm^3, by the {source} {expected:.9g}"
+    return at_most("volume", abs(measured - expected), limit, "mm^3", detail=detail, slack=ROUNDING * expected)
