@@ -28,7 +28,7 @@ from camgeo.checks.declared import (
 )
 from camgeo.common.arguments import number_of, path_of, spelled, whole_of
 from camgeo.common.errors import CallError
-from camgeo.recipe.recipe import MOST_ANGLES
+from camgeo.recipe.keys import MOST_ANGLES
 from kin.numeric.places import place_text
 
 if TYPE_CHECKING:

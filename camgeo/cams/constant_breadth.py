@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.faced import SizeAdvice
 from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Undercut
-from camgeo.cams.flat_faced import FlatFacedCam
+from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.cams.half_turn import MOTION, SWING, HalfTurnCam, check_half_turn
 from camgeo.cams.motion import FormulaAsked
 from camgeo.schema.fields import Table, length

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
 from camgeo.cams.motion import check_whole_turn, motion_field
-from camgeo.cams.sizing import SIZING, Sizing, sized
+from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
 from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length
 from camgeo.schema.json_schema import one_of_schema
 from camgeo.schema.reader import kind_of
@@ -153,21 +152,19 @@ def _size(cam: Values, reader: Reader) -> None:
     from kin.law.programme import IntentError
 
     follower = cam["follower"]
-    asked = Sizing.of(cam["sizing"], follower)
-    if asked.angles is None and asked.radius is None:
+    sizing = Sizing.of(cam["sizing"], follower)
+    if sizing.angles is None and sizing.radius is None:
         reader.fault_at("cam.sizing", "no limit is given", None, "give pressure-angle, radius-of-curvature or both")
         return
-    start = build({**cam, "base_radius": 1.0, "follower": _placed(follower)}, reader.mm)
+    start = SizedDiscCam(**_values({**cam, "base_radius": 1.0, "follower": _placed(follower)}), sizing=sizing)
     try:
-        found = sized(start, asked)
+        cam["sized"] = sized(start)
     except IntentError as error:
         path = f"cam.{error.field}"
         remedy = "" if error.field.startswith("motion") else "give base_radius instead"  # no size mends a motion
         if error.field.endswith(".pivot"):
             remedy = "leave it out, or give base_radius in place of sizing"
         reader.fault_at(path if path in reader.marks else "cam.sizing", error.message, None, remedy)
-        return
-    cam["sized"] = replace(found, sizing=asked)
 
 
 def _placed(follower: Values) -> Values:
@@ -181,6 +178,11 @@ def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
     if "sized" in cam:
         sized: DiscCam = cam["sized"]
         return sized
+    return DiscCam(**_values(cam))
+
+
+def _values(cam: Values) -> Values:
+    """Fields of the cam of values in which there is no fault."""
     follower: Values = dict(cam["follower"])
     arm = follower.get("arm")
     if arm is None:
@@ -188,14 +190,14 @@ def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
     else:
         side = TRAILING if arm.get("side", "trailing") == "trailing" else LEADING
         guide = Oscillating(arm["pivot"], side, arm.get("length"))
-    return DiscCam(
-        base_radius=cam["base_radius"],
-        guide=guide,
-        touch=_touch(follower, arm or {}),
-        motion=cam["motion"],
-        undercut=cam.get("undercut", "refuse"),
-        side=-1 if cam.get("track") == "internal" else 1,
-    )
+    return {
+        "base_radius": cam["base_radius"],
+        "guide": guide,
+        "touch": _touch(follower, arm or {}),
+        "motion": cam["motion"],
+        "undercut": cam.get("undercut", "refuse"),
+        "side": -1 if cam.get("track") == "internal" else 1,
+    }
 
 
 def _touch(follower: Values, arm: Values) -> Touch:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
-from camgeo.cams.faced import ExactFaced, SizeAdvice
-from camgeo.cams.family import Advice, Circle, ExactCam, Follower, GrownError, Undercut
-from camgeo.cams.guided import LARGER_BASE, ExactGuided, GuidedCam, RoundAdvice
+from camgeo.cams.family import Advice, Circle, ExactCam, Follower, GrownError, Surface, Undercut
+from camgeo.cams.flat_faced import SizeAdvice
+from camgeo.cams.guided import LARGER_BASE, ExactGuided, ExactLed, GuidedCam, RoundAdvice
+from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 
 if TYPE_CHECKING:
     from camgeo.cams.motion import MotionAsked
-    from camgeo.cams.sizing import Sizing
     from camgeo.curve import moving_frame
     from camgeo.curve.disc import Face
     from camgeo.curve.moving_frame import Displacement
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class DiscCam(GuidedCam):
-    """Size and motion of a disc cam; `sizing` is what the size was found from, None where it is given."""
+    """Size and motion of a disc cam."""
 
     kind: ClassVar[str] = "disc"
     base_radius: float
@@ -33,7 +34,6 @@ class DiscCam(GuidedCam):
     motion: MotionAsked
     undercut: Undercut
     side: Side = 1
-    sizing: Sizing | None = None
 
     @property
     def arrangement(self) -> Arrangement:
@@ -76,17 +76,14 @@ class DiscCam(GuidedCam):
     @property
     def advice(self) -> Advice:
         """In the words of the touch."""
-        if self.sizing is not None:
-            from camgeo.cams.sizing import SizedAdvice
-
-            return SizedAdvice(self, self.sizing, less_steep=LARGER_BASE, radius_field=self._radius_field)
         if isinstance(self.touch, Flat):
             beside = " with arm.face smaller by as much" if isinstance(self.guide, Oscillating) else ""
             return SizeAdvice(beside=beside, free="be free of it", less_steep=LARGER_BASE)
-        return RoundAdvice(self, less_steep=LARGER_BASE, radius_field=self._radius_field)
+        return RoundAdvice(self, less_steep=LARGER_BASE, radius_field=self.radius_field)
 
     @property
-    def _radius_field(self) -> str:
+    def radius_field(self) -> str:
+        """What the radius of the touch is called."""
         return "shoe radius" if isinstance(self.touch, Shoe) else "roller radius"
 
     @property
@@ -120,19 +117,6 @@ class DiscCam(GuidedCam):
             return StraightFace(motion, self.base_radius, self.touch.tilt, self.guide.offset)
         return SwingingFace.on(motion, self.base_radius, self.guide.pivot, self.touch.nearer, self.guide.side)
 
-    @property
-    def sizes(self) -> dict[str, float]:
-        """What sizing found."""
-        asked, found = self.sizing, {"base_radius": self.base_radius}
-        if asked is None:
-            return {}
-        if asked.place is None and asked.angles is not None:
-            if isinstance(self.guide, Translating):
-                found["follower.offset"] = self.guide.offset
-            else:
-                found["follower.arm.pivot"] = self.guide.pivot
-        return found
-
     def circles(self) -> tuple[Circle, ...]:
         """The base circle, which a face is tangent to at displacement 0, and the prime circle of a round touch."""
         return super().circles() if self.touch.radius else (Circle("base circle", self.base_radius),)
@@ -161,3 +145,20 @@ class DiscCam(GuidedCam):
         left = scale * (radius - out)
         touch = KnifeEdge() if not left else (Shoe if isinstance(self.touch, Shoe) else Roller)(left)
         return replace(self, base_radius=scale * (self.base_radius + self.side * out), guide=guide, touch=touch)
+
+
+@dataclass(frozen=True, eq=False)
+class ExactFaced(ExactLed):
+    """A disc cam under a flat face."""
+
+    cam: DiscCam
+
+    @cached_property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """The envelope of the face (`camgeo.curve.disc`), its parameter the shaft angle."""
+        from camgeo.curve.disc import face_shape
+
+        face = self.cam.face(self.law)
+        whole = Curve.whole(face_shape(face))
+        series = {"slope": face.slope, "contact": face.contact}
+        return (Surface(whole, whole, pressure=face.pressure_angle, place=face.place, series=series),)

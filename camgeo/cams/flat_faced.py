@@ -1,4 +1,4 @@
-"""What cams for flat faces on a straight guide have in common: the lift is the support function of the contour."""
+"""What cams for flat faces have in common, above all where the lift is the support function of the contour."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from camgeo.cams.family import Cam, ExactCam, Follower, Proof, Surface
+from camgeo.cams.family import Advice, Cam, ExactCam, Follower, Proof, Surface
 from camgeo.cams.position import LiftPosition, Position
+from camgeo.common.rounding import upward
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, Translating, opposite
 from kin.numeric.angles import degrees
@@ -29,6 +30,30 @@ if TYPE_CHECKING:
 SAME_BREADTH = 1e-9  # of the size: a breadth that varies by less is constant
 LOOKS = 1440  # shaft angles of a turn at which the breadth is looked at
 STRETCH_LOOKS = 16  # and at so many of any stretch between breaks, however short
+
+
+@dataclass(frozen=True)
+class SizeAdvice(Advice):
+    """Of a flat face: a larger cam. `size` is the key that makes it larger all round, by `share` per unit of radius."""
+
+    size: str = "base radius"
+    share: float = 1.0
+    beside: str = ""
+    free: str = "have no undercut"
+
+    def larger(self, by: float, unit: str = "") -> str:
+        """Say how radii of curvature, which grow with the size, grow by more than `by`, in its unit."""
+        if by == 0.0:  # a radius that is 0 needs no more than not to be
+            return f"a larger {self.size}{self.beside}"
+        return f"{f'a {self.size} larger by more than {upward(self.share * by)} {unit}'.rstrip()}{self.beside}"
+
+    def free_of_undercut(self, free_at: float, mm: float) -> str:
+        """A larger cam."""
+        return f"{self.larger(free_at / mm)} would {self.free}"
+
+    def rounder(self, value: float, limit: float, unit: str) -> str:
+        """A larger cam."""
+        return self.larger(limit - value, unit)
 
 
 class FlatFacedCam(Cam):
@@ -68,18 +93,6 @@ class FlatFacedCam(Cam):
         """The cam as far as its own lengths are drawn, the metal grown by `out` mm and then scaled."""
 
 
-@dataclass(frozen=True)
-class LiftPlace:
-    """Where a flat face is touched: p' from the line through the shaft, along the face."""
-
-    lift: Lift
-
-    def __call__(self, t: Array) -> Array:
-        """At shaft angles t (n,), mm."""
-        slope: Array = self.lift.derivatives(t, 1)[1]
-        return slope
-
-
 @dataclass(frozen=True, eq=False)
 class ExactLifted(ExactCam):
     """Such a cam by its lift; `contacts` are those of the cam that this one is grown from."""
@@ -98,7 +111,7 @@ class ExactLifted(ExactCam):
             yoke = self.cam.always_in_a_yoke or is_constant(mean, deviation)
             contacts = opposite(Flat(), mean) if yoke else (Contact(Translating(), Flat()),)
         two = len(contacts) > 1
-        name = "square frame" if self.framed else "yoke" if two else "flat face"
+        name = "square frame" if self.framed else "yoke" if two else f"{Translating.word} {Flat.word}"
         if not two:
             return Follower(name, contacts, ("contact-travel",))
         return Follower(name, contacts, ("constant-breadth", "contact-travel"), "constant-breadth")
@@ -113,7 +126,8 @@ class ExactLifted(ExactCam):
         """The envelope of the face (AS eqs. 2, 3; SW eqs. 14, 17)."""
         from camgeo.curve.support import SupportShape
 
-        return (replace(self.cam.surface(Curve.whole(SupportShape(self.law))), place=LiftPlace(self.law)),)
+        shape = SupportShape(self.law)
+        return (replace(self.cam.surface(Curve.whole(shape)), place=shape.place),)
 
     @property
     def judged_law(self) -> Piecewise:

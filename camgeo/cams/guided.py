@@ -156,7 +156,7 @@ class ExactGuided(ExactLed):
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius on this stem; for this length of arm that with the pivot's distance."""
-        from camgeo.curve.sizing import least_arm, least_stem
+        from camgeo.cams.least_size import least_arm, least_stem
 
         guide, pivot = self.follower.contacts[0].guide, ""
         if isinstance(guide, Translating):
@@ -176,8 +176,8 @@ class ExactGuided(ExactLed):
 
     def rounder_pitch(self, radius: float, mm: float) -> str:  # noqa: ARG002 - the least radius is found anew
         """The base radius at which the roller is half of the pitch curve's least convex radius."""
+        from camgeo.cams.least_size import least_prime
         from camgeo.curve.moving_frame import CentreShape
-        from camgeo.curve.sizing import least_prime
 
         if not isinstance(self.cam.touch, Roller):
             return ""

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 import numpy as np
 
-from camgeo.cams.faced import SizeAdvice
 from camgeo.cams.family import UNDERCUT, Cam, Circle, Family, Harmonics, Linear, Surface, Undercut
-from camgeo.cams.flat_faced import FlatFacedCam
+from camgeo.cams.flat_faced import FlatFacedCam, SizeAdvice
 from camgeo.common.rounding import NOISE, upward
 from camgeo.schema.fields import MOST, Field, Kind, Table, length, mapping
 from kin.law.contacts import Arrangement, Flat, Translating

@@ -372,7 +372,7 @@ def _new(arguments: argparse.Namespace) -> int:
 
 def _schema(_arguments: argparse.Namespace) -> int:
     """Print the JSON schema."""
-    from camgeo.recipe.recipe import RECIPE
+    from camgeo.recipe.keys import RECIPE
     from camgeo.report.document import encoded
     from camgeo.schema.json_schema import json_schema
 

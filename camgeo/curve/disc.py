@@ -11,6 +11,7 @@ and the contact is ``E(t)(p + i q)``, q = p'/t' (`camgeo.curve.face`).
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -31,10 +32,27 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class _Face:
+class _Face(ABC):
     """A face led by a motion."""
 
     motion: Displacement
+
+    @abstractmethod
+    def contact(self, tau: Series, side: Side = 1) -> Series:
+        """Where the cam touches the face, mm along it."""
+
+    @abstractmethod
+    def slope(self, tau: Series, side: Side = 1) -> Series:
+        """Tangent of the pressure angle."""
+
+    def pressure_angle(self, theta: Array) -> Array:
+        """Pressure angle at shaft angles (n,), rad."""
+        angle: Array = np.arctan(self.slope(Jet.variable(theta, 1)).c[0])
+        return angle
+
+    def place(self, theta: Array) -> Array:
+        """Where the face is touched at shaft angles (n,), mm from the stem's axis or from the arm's pivot."""
+        return np.asarray(self.contact(Jet.variable(theta, 1)).c[0])
 
     @property
     def breaks(self) -> Array:

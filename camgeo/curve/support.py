@@ -59,6 +59,11 @@ class SupportShape:
         point = columns(p[0] * cosine - p[1] * sine, p[0] * sine + p[1] * cosine)
         return Frame(point, columns(-sine, cosine), p[0] + p[2], np.ones_like(t), p[1] + p[3], np.zeros_like(t))
 
+    def place(self, t: Array) -> Array:
+        """Where the face is touched at shaft angles (n,): p', mm from the line through the shaft, along the face."""
+        slope: Array = self.lift.derivatives(t, 1)[1]
+        return slope
+
     def series(self, t: Array, order: int, side: Side = 1) -> tuple[Array, Array]:
         """Taylor coefficients (order + 1, n) of speed and turn at normal directions t (n,)."""
         p = self.lift.derivatives(t, order + 2, side)

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from camgeo.recipe.recipe import RECIPE, build, read_values
+from camgeo.recipe.recipe import load_text, read
 from camgeo.schema.errors import DeprecatedKeyWarning, RecipeError, RecipeErrors
 from camgeo.schema.file_bytes import bytes_of
-from camgeo.schema.reader import Reader
-from camgeo.schema.readers import READERS
-from camgeo.schema.scalars import NAME_RULE, Complaint, read_name
-from camgeo.schema.yaml_source import MAX_BYTES, read_source
+from camgeo.schema.scalars import Complaint
+from camgeo.schema.yaml_source import MAX_BYTES
 
 if TYPE_CHECKING:
     from os import PathLike
 
     from camgeo.recipe.recipe import Recipe
+
+__all__ = ["announced", "load", "load_silent", "load_text", "read"]
 
 
 def load(path: str | PathLike[str]) -> Recipe:
@@ -45,39 +43,3 @@ def load_silent(path: str | PathLike[str]) -> Recipe:
     except Complaint as complaint:
         raise RecipeErrors([RecipeError(str(path), 0, 0, "", complaint.problem, None, complaint.remedy)]) from None
     return read(data, path)
-
-
-def read(data: bytes, path: str | PathLike[str], unplaced: str = "") -> Recipe:
-    """Read a recipe from bytes; `path` names it in errors and gives its default name. Raises RecipeErrors.
-
-    Bytes that no file has, and nobody has seen, have no lines to speak of: `unplaced` names them in errors.
-    """
-    if unplaced:
-        try:
-            recipe = read(data, path)
-        except RecipeErrors as errors:
-            raise RecipeErrors(error.without_place(unplaced) for error in errors.errors) from None
-        notices = tuple(notice.without_place(unplaced) for notice in recipe.notices)
-        return replace(recipe, notices=notices, unplaced=unplaced)
-    source = read_source(data, str(path))
-    reader = Reader(source, READERS, RECIPE)
-    values = read_values(reader)
-    if "name" not in reader.marks:
-        stem = Path(path).stem
-        try:
-            values["name"] = read_name(stem)
-        except Complaint as complaint:
-            remedy = f"give `name:` with {NAME_RULE}"
-            reader.fault(source.root.mark, "name", f"the file's stem is {complaint.problem}", repr(stem), remedy)
-    if reader.errors:
-        raise RecipeErrors(reader.errors)
-    return replace(
-        build(values, Path(path), reader.marks, source.text),
-        renamed=reader.renamed,
-        notices=tuple(reader.notices),
-    )
-
-
-def load_text(text: str, path: str | PathLike[str], unplaced: str = "") -> Recipe:
-    """Read a recipe from a text, as `read` does from bytes. Raises RecipeErrors."""
-    return read(text.encode("utf-8", "surrogatepass"), path, unplaced)

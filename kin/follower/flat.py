@@ -138,16 +138,7 @@ class Yoke(FlatFace):
         return 2.0 * tolerance
 
     def _play(self, bearing: Bearing) -> Play:
-        nodes = bearing.nodes(0.0, np.pi, np.mod(bearing.breaks - np.pi, TURN))
-        near, near_low, near_high = bearing.between(nodes)
-        far, far_low, far_high = bearing.between(nodes, np.pi)
-
-        def breadth(theta: Array, of: Indices) -> Array:
-            return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
-
-        at_low, at_high = near_low + far_low, near_high + far_high
-        fine = resolution(bearing.contour.vertices)
-        found = extremes(nodes[:-1], nodes[1:], at_low, at_high, breadth, resolution=fine)
+        found = bearing.breadth_extremes(resolution(bearing.contour.vertices))
         return Play(
             self.breadth - found.greatest,
             degrees(found.greatest_at),

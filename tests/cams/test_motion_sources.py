@@ -14,8 +14,8 @@ from support.cases import examples
 from camgeo.cams.motion import FormulaAsked, SegmentsAsked, TableAsked, check_whole_turn, motion_field
 from camgeo.cli.main import main
 from camgeo.output import pipeline
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load, load_text
-from camgeo.recipe.recipe import RECIPE
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import Kind, field_at
 from camgeo.schema.json_schema import table_schema

@@ -224,7 +224,7 @@ def test_the_report_s_page_has_each_check() -> None:
 
 
 def test_fields_are_those_of_a_recipe() -> None:
-    from camgeo.recipe.recipe import RECIPE
+    from camgeo.recipe.keys import RECIPE
     from camgeo.schema.fields import field_at
 
     for one in EVERY.values():

@@ -304,6 +304,7 @@ def test_against_brute_force(seed):
         assert gap[-1] == pytest.approx(found.least, abs=chords)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("parts", "finest", "few"), few([(24, 2, math.inf), (4, 0, 0), (8, 6, math.inf)], 3, first=1))
 def test_how_finely_outlines_are_cut_decides_nothing_but_the_time(monkeypatch, parts, finest, few):
     def found():

@@ -15,6 +15,7 @@ from support.cases import examples
 from support.discs import CONTOURS, DEGREE, TURN, displaced, inline, offset, segments
 from support.places import RECIPES
 
+from camgeo.cams.least_size import least_prime, least_stem
 from camgeo.curve.backwards import Backwards, least_hollow
 from camgeo.curve.curvature import least_radius, reversals
 from camgeo.curve.curve import Curve
@@ -23,7 +24,6 @@ from camgeo.curve.extremes import greatest, least
 from camgeo.curve.moving_frame import CentreShape, Displacement, Oscillating, Translating
 from camgeo.curve.parallel import Parallel
 from camgeo.curve.rates import stretches
-from camgeo.curve.sizing import face_needed, least_prime, least_stem, tappet_radius
 from camgeo.curve.undercut.causes import causes
 from camgeo.curve.undercut.trim import trimmed
 from camgeo.curve.undercut.undercut import undercuts
@@ -182,8 +182,8 @@ def test_the_eccentric_is_one_circle_under_a_flat_face() -> None:
     assert shape.radii == pytest.approx([50.0, 50.0], rel=1e-15)
     points = shape.sample(np.linspace(0.0, TURN, 97)).point
     assert np.hypot(points[:, 0] + 25.0, points[:, 1]) == pytest.approx(50.0, abs=1e-13)
-    low, high = face_needed(face)
-    assert (high - low, tappet_radius(face, 10.0)) == pytest.approx((50.0, math.hypot(25.0, 10.0)), abs=1e-10)
+    low, high = least(face.contact, stretches(face)).value, greatest(face.contact, stretches(face)).value
+    assert (low, high) == pytest.approx((-25.0, 25.0), abs=1e-10)
 
 
 def test_a_motion_repeated_is_one_part_turned() -> None:

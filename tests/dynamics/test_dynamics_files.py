@@ -234,6 +234,7 @@ def test_a_step_of_a_hundredth_rings_on_in_the_dwell_behind_it():
     assert forces[1] > 1.0
 
 
+@pytest.mark.slow
 def test_a_step_rings_as_an_implicit_solver_says():
     pytest.importorskip("scipy")
     train, rpm = Train(0.4, 40.0, 2e5, 2000.0), 600.0

@@ -90,7 +90,7 @@ GUIDES = {
 }
 
 
-@pytest.mark.thin(5)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", GUIDES)
 def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
@@ -102,7 +102,7 @@ def test_ring_contact_is_the_first_touch_on_the_way_out(name, seed):
         assert found == pytest.approx(expected, abs=1e-6 if radius else 1e-9)
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(9)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", GUIDES)
 def test_knife_edge_and_shoe_contact_on_the_way_in(name, seed):

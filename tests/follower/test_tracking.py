@@ -197,6 +197,7 @@ def test_few_shaft_angles_give_the_same_error_as_many():
     assert max(few.max, many.max) <= min(few.bound, many.bound)
 
 
+@pytest.mark.slow
 def test_a_short_spike_between_the_samples_is_found():
     follower = inch()
     points = follower.envelope.points(np.arange(2000) * 2 * np.pi / 2000)
@@ -325,6 +326,7 @@ def test_a_dent_or_spike_of_one_vertex_is_proved(vertex, depth):
     proved(follower.judge(contour, PHI).motion, np.degrees(dense(follower, contour, 20_000)), 1.0)
 
 
+@pytest.mark.slow
 def test_what_is_not_proved_is_looked_at_closely(monkeypatch):
     def unsettled(*_):
         raise UnsettledError("not proved")
@@ -340,6 +342,7 @@ def test_what_is_not_proved_is_looked_at_closely(monkeypatch):
         assert motion.max == pytest.approx(np.degrees(dense(follower, contour, 20_000)), rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("scale", [1.0 - 4e-4, 1.0 + 4e-4])
 def test_a_dent_or_spike_in_a_very_fine_polygon_is_not_lost_between_samples(scale):

@@ -13,8 +13,8 @@ import camgeo
 from camgeo.cli.main import main
 from camgeo.output import pipeline
 from camgeo.recipe.figures import FIGURES, FORMER, PRESENT
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load, load_text
-from camgeo.recipe.recipe import RECIPE
 from camgeo.schema.errors import DeprecatedKeyWarning, RecipeErrors
 from camgeo.schema.fields import field_at, present
 from camgeo.schema.json_schema import json_schema
@@ -192,6 +192,7 @@ def test_the_check_of_a_pitch_curve_has_the_name_of_its_figure() -> None:
         assert (checks[name] == metal) is (name == "radius-of-curvature")
 
 
+@pytest.mark.slow
 def test_a_sweep_writes_both_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "swept.yaml"
     path.write_text(PIVOT + SWEEP.replace("KEY", "pivot").replace("FIGURE", "face-length"))

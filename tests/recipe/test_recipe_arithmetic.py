@@ -8,8 +8,8 @@ import re
 import pytest
 
 from camgeo.cams.constant_breadth import ConstantBreadthCam
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.recipe import RECIPE
 from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.json_schema import json_schema

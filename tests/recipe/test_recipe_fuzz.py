@@ -18,15 +18,16 @@ from support.places import SHIPPED as SHIPPED_FILES
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.export import FILES
 from camgeo.recipe.figures import bounds
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.linkage import DYADS, LINKAGES
 from camgeo.recipe.loading import read
-from camgeo.recipe.recipe import RECIPE, Recipe
 from camgeo.recipe.starter import KINDS, starter
 from camgeo.recipe.sweep import FIGURES, RANGE
 from camgeo.schema.edit import with_values, without
 from camgeo.schema.errors import RecipeErrors
 
 if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
     from camgeo.schema.fields import Table
 
 STARTERS = {f"new {kind}": starter(kind).encode() for kind in KINDS}

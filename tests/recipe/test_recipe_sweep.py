@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING
 
 import pytest
 
 from camgeo.recipe.figures import NEEDS, Limit
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.loading import load_text
-from camgeo.recipe.recipe import RECIPE, Recipe
 from camgeo.recipe.sweep import FIGURES, Axis, Sweep
 from camgeo.schema.edit import with_values
 from camgeo.schema.errors import RecipeErrors
 from camgeo.schema.fields import MOST_AXES, MOST_VALUES, field_at
 from camgeo.schema.yaml_source import join
+
+if TYPE_CHECKING:
+    from camgeo.recipe.recipe import Recipe
 
 HERE = {"", "linkage", "dwell", "face"}  # what a recipe with a linkage and a dwell has
 

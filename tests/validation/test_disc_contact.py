@@ -21,11 +21,11 @@ from support.disc_followers import (
 )
 from support.discs import AREAS, DEGREE, M02, M07, M15, POINTS, TURN, segments
 
+from camgeo.cams.least_size import least_arm, least_stem
 from camgeo.curve.curve import Curve
 from camgeo.curve.disc import StraightFace, face_shape
 from camgeo.curve.moving_frame import CentreShape, Displacement, Translating
 from camgeo.curve.parallel import Parallel
-from camgeo.curve.sizing import least_arm, least_stem
 from camgeo.curve.undercut.trim import trimmed
 from kin.contour.contour import Contour
 from kin.follower import guide
@@ -100,6 +100,7 @@ def test_d14_valve():
     holds(roller, fitted(Parallel(CentreShape(s, Translating.on(27.0)), 9.0), 1e-6), 1e-6)
 
 
+@pytest.mark.slow
 def test_d15_undercut():
     """The trimmed contour loses the lift that is printed, where it is printed; no more of it is lost to the fit."""
     follower = on_stem(M15, 26.0, 0.0, 18.0)

@@ -182,4 +182,4 @@ def test_equation_7_gives_constant_breadth_for_odd_k_and_l(workshop):
 
 def test_an_even_k_does_not(workshop):
     made = workshop.written("even-k", "cam: {kind: support, p: 1*cos(2*t/2)**2 + 20}\nexport: {tolerance: 0.001}\n")
-    assert made.report["follower"] == "flat face"
+    assert made.report["follower"] == "translating flat face"

@@ -114,7 +114,7 @@ def turns(ratio, share):
 def oval(share):
     """Whether the pitch curve of Booth's lemniscate with m^2 = share l^2 is convex: its tangent turns one way."""
     cam = f"{{kind: double-roller, ratio: 2, arm: {ARM}, roller_radius: 1, delta: {{cos: {{1: {share * ARM**2!r}}}}}}}"
-    base = designed(read(f"cam: {cam}\n".encode(), "booth.yaml")).surface.base
+    base = designed(read(f"cam: {cam}\n".encode(), "booth.yaml")).only_surface.surface.base
     return base.sample(np.array([PI / 2])).turn[0] > 0 and base.sample(np.linspace(0, 2 * PI, 721)).turn.min() > 0
 
 
@@ -298,13 +298,14 @@ def goldberg(workshop):
     return workshop.shipped("w-ellipse", "spline")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(5)
 def test_equation_7_1_on_the_file(pitch):
     curve, e = pitch
     assert np.abs(curve.closing(np.linspace(0, 2 * PI, 3601))).max() <= 3 * e
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(6)
 def test_section_6_chord_polygon_closes_from_any_start(pitch):
     curve, e = pitch
     # each chord may add e / cos(75 deg)

@@ -20,9 +20,10 @@ from camgeo.recipe.figures import (
     PIVOT_CLEARANCE,
     ROLLER_SPEED,
 )
+from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.linkage import output_slides
 from camgeo.recipe.part import Part
-from camgeo.recipe.recipe import RECIPE, Recipe, Verify
+from camgeo.recipe.recipe import Recipe, Verify
 from camgeo.recipe.sweep import FIGURES
 from camgeo.schema.fields import Kind, field_at
 from camgeo.sweep.search.figures import Evaluator, Scene, asked_of

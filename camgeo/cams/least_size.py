@@ -335,14 +335,3 @@ def least_prime(shape: Callable[[float], Shape], radius: float, start: float) ->
     else:
         raise IntentError(f"no prime circle up to {high[0]:.6g} mm gives a radius of {radius:.6g} mm", "sizing")
     return float(roots(short, low, high, (short(low), short(high)), _PRECISE)[0])
-
-
-def face_needed(face: Face) -> tuple[float, float]:
-    """Least and greatest place of contact along a flat face, mm."""
-    over = stretches(face)
-    return least(face.contact, over).value, greatest(face.contact, over).value
-
-
-def tappet_radius(face: Face, axial_offset: float = 0.0) -> float:
-    """Radius of a round tappet that the contact never leaves, its axis beside the cam's plane by an offset, mm."""
-    return math.hypot(max(abs(place) for place in face_needed(face)), axial_offset)

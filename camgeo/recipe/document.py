@@ -1,0 +1,111 @@
+"""The text that a recipe was read from: the places of its fields, errors about them, and edits that keep all else."""
+
+from __future__ import annotations
+
+import collections.abc
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from camgeo.common.arguments import is_a, number_of, path_of
+from camgeo.common.errors import SurroundingsError
+from camgeo.recipe.keys import RECIPE
+from camgeo.schema.change import changed
+from camgeo.schema.edit import with_values
+from camgeo.schema.errors import RecipeError, RecipeErrors
+from camgeo.schema.fields import present
+from camgeo.schema.yaml_source import Source, as_written, read_source
+
+if TYPE_CHECKING:
+    from os import PathLike
+    from pathlib import Path
+
+    from camgeo.schema.change import Value
+    from camgeo.schema.yaml_source import Mark
+
+
+@dataclass(frozen=True, kw_only=True)
+class Document:
+    """A recipe as written: `path` is where it was read, `text` what stands there.
+
+    `marks` are the places of the fields given, `renamed` the paths as written of those given by a former key, `notices`
+    what is to be said of those, `kinds` those of its mappings that have one. `unplaced` names in errors a text that
+    stands in no file, whose lines nobody has seen; empty where lines count.
+    """
+
+    path: Path
+    text: str = field(default="", repr=False, compare=False)
+    marks: collections.abc.Mapping[str, Mark] = field(default_factory=dict, repr=False, compare=False)
+    renamed: collections.abc.Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
+    notices: tuple[RecipeError, ...] = field(default=(), repr=False, compare=False)
+    kinds: collections.abc.Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
+    unplaced: str = field(default="", repr=False, compare=False)
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Fields that name a file which is read with the recipe, from the folder that it stands in."""
+        return tuple(path for path in self.marks if path.startswith("cam.") and path.endswith(".table"))
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the recipe's text to a file, in place of what is there.
+
+        Raises SurroundingsError where the file system refuses, CallError for a path that no file can have.
+        """
+        file = path_of("path", path)
+        try:
+            file.write_text(self.text, encoding="utf-8", newline="")
+        except OSError as error:
+            raise SurroundingsError(f"cannot be written: {error.strerror or error}", file) from error
+
+    def locate(self, path: str) -> tuple[int, int]:
+        """Find line and column, from 1, of a field such as `cam.motion[1].law`; of its parent where it is not given."""
+        path = self.written(path)  # which refuses what is no text
+        while path and path not in self.marks:
+            path = path[: max(path.rfind("."), path.rfind("["), 0)]
+        return self.marks.get(path, (1, 1))
+
+    def error(self, path: str, problem: str, value: str | None = None, remedy: str = "") -> RecipeErrors:
+        """Make the error that a later stage raises about a field, with the field's place in the file."""
+        line, column = self.locate(path)
+        error = RecipeError(str(self.path), line, column, self.written(path), problem, value, remedy)
+        return RecipeErrors([error.without_place(self.unplaced) if self.unplaced else error])
+
+    def written(self, path: str) -> str:
+        """Give a path as the recipe has it, with a former key where one stands."""
+        is_a("path", path, str, "a str")
+        return as_written(path, self.renamed)
+
+    def present(self, path: str) -> str:
+        """Give the path of a field of cam or linkage with present keys in the place of former ones."""
+        is_a("path", path, str, "a str")
+        return present(RECIPE, path, self.kinds)
+
+    def text_with(self, values: collections.abc.Mapping[str, float]) -> str:
+        """Give the recipe's text with other numbers by their paths, by former keys or present ones.
+
+        Raises CallError and RecipeErrors as `camgeo.schema.edit.with_values` does.
+        """
+        is_a("values", values, collections.abc.Mapping, "a mapping from paths to numbers")
+        for path in values:
+            is_a("values: a path", path, str, "a str")
+        numbers = {path: number_of(f"values[{path!r}]", value) for path, value in values.items()}
+        return with_values(self.text, {self.written(self.present(path)): value for path, value in numbers.items()})
+
+    def source(self) -> Source:
+        """Read the text as a tree."""
+        return _source(self.text, self.path)
+
+    def changed(self, values: collections.abc.Mapping[str, Value]) -> str:
+        """Give the text with other values by their paths; raises RecipeErrors where a path leads nowhere."""
+        text, given = self.text, dict[str, str]()
+        for path, value in values.items():
+            is_a("path", path, str, "a str")
+            there = self.written(self.present(path))
+            if there in given:
+                raise self.error(there, f"the same field as {given[there]}", None, "give it one value")
+            given[there] = path
+            text = changed(_source(text, self.path), there, value)
+        return text
+
+
+def _source(text: str, path: Path) -> Source:
+    return read_source(text.encode("utf-8", "surrogatepass"), str(path))

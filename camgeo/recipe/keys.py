@@ -1,0 +1,145 @@
+"""The keys of a recipe, and the reading of its values, with the faults between them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.cams.families import FAMILIES
+from camgeo.recipe.assembly import MECHANISM
+from camgeo.recipe.cam import CAM, CAMS, check_cam
+from camgeo.recipe.dynamics import DYNAMICS, check_train
+from camgeo.recipe.export import EXPORT, check_files
+from camgeo.recipe.figures import LIMITS, check_limits
+from camgeo.recipe.linkage import DWELL, DYADS, LINKAGE, LINKAGES, SLIDING, check_linkage
+from camgeo.recipe.machining import MANUFACTURE, check_allowance
+from camgeo.recipe.part import PART, check_part
+from camgeo.recipe.ring import check_ring
+from camgeo.recipe.sweep import SWEEP, check_sweep
+from camgeo.schema.fields import MOST, Field, Kind, Table, mapping
+from camgeo.schema.reader import kind_of
+from camgeo.schema.yaml_source import Mapping, Scalar, Sequence, described, entries
+
+if TYPE_CHECKING:
+    from camgeo.schema.reader import Reader, Values
+
+MOST_ANGLES = 1_000_000  # of a turn at which files are judged
+UNITS = {"mm": 1.0, "inch": 25.4}  # of length, in mm
+
+RECIPE = Table(
+    (
+        Field("name", Kind.NAME, "name of the output folder and of the files in it", default="the file's stem"),
+        Field("about", Kind.TEXT, "a note that travels into the files", default="none"),
+        Field("units", Kind.CHOICE, "unit of lengths that carry none", default="mm", choices=("mm", "inch")),
+        Field(
+            "rotation",
+            Kind.CHOICE,
+            "sense in which the shaft turns, seen as drawn",
+            default="cw",
+            choices=("cw", "ccw"),
+        ),
+        Field("cam", Kind.OWN, "the cam, of exactly one kind", required=True, form=CAM),
+        Field(
+            "linkage",
+            Kind.OWN,
+            "the linkage whose coupler is the square frame around the cam",
+            default="none",
+            form=LINKAGE,
+        ),
+        PART,
+        EXPORT,
+        mapping(
+            "verify",
+            "how each file is judged",
+            Field(
+                "angles",
+                Kind.INTEGER,
+                "number of shaft angles at which each file is judged",
+                default="3600",
+                at_least=8,
+                at_most=MOST_ANGLES,
+            ),
+            Field(
+                "motion_error",
+                Kind.ERROR,
+                "greatest motion error permitted: a length, or degrees where the follower swings",
+                default="what the tolerance implies",
+                above=0,
+                at_most=MOST,
+            ),
+            Field(
+                "output_error",
+                Kind.OUTPUT,
+                "greatest error permitted of the linkage's output, in degrees, or a length where it slides",
+                default="what the tolerance implies",
+                above=0,
+                at_most=MOST,
+            ),
+        ),
+        LIMITS,
+        mapping("mechanism", "sizes of the printable bodies round the cam, for files with `parts: all`", *MECHANISM),
+        mapping("dwell", "dwells of the linkage's output", *DWELL),
+        mapping("sweep", "a search among designs", *SWEEP),
+        Field(
+            "dynamics",
+            Kind.TABLE,
+            "the follower train, whose forces, float and impacts at a speed are found",
+            default="none",
+            table=DYNAMICS,
+        ),
+        Field("manufacture", Kind.TABLE, "how the part is milled", default="none", table=MANUFACTURE),
+    ),
+    later=(("camshaft", "camshafts"),),
+)
+
+
+def read_values(reader: Reader) -> Values:
+    """Read the whole recipe and note the faults between its fields.
+
+    What decides how other fields read is looked for first, wherever it stands: the unit, the kinds of cam and linkage,
+    and so whether the follower swings and whether the output of the linkage slides.
+    """
+    root = reader.source.root
+    reader.survey(root, "")
+    if not isinstance(root, Mapping):
+        reader.fault(root.mark, "", "a recipe is a mapping", described(root), "begin with the key `cam:`")
+        return {}
+    top = entries(root)
+    units = top.get("units")
+    if isinstance(units, Scalar) and units.text in UNITS:
+        reader.units, reader.mm = units.text, UNITS[units.text]
+    linkage = top.get("linkage")
+    reader.kinds = {"cam": kind_of(top.get("cam"), CAMS), "linkage": kind_of(linkage, LINKAGES)}
+    last = reader.kinds["linkage"]
+    dyads = entries(linkage).get("dyads") if isinstance(linkage, Mapping) else None
+    if isinstance(dyads, Sequence) and dyads.items:
+        last = kind_of(dyads.items[-1], DYADS)
+    if (family := FAMILIES.get(reader.kinds["cam"])) is not None:
+        held = family.of(top["cam"])
+        own = ((Kind.STROKE, held.unit), (Kind.ERROR, held.unit), (Kind.BACKLASH, held.backlash_unit))
+        reader.angular |= {kind for kind, unit in own if unit == "deg"}
+        reader.offers = held.offers
+    if last not in SLIDING:
+        reader.angular |= {Kind.OUTPUT}
+    if (Kind.OUTPUT if reader.kinds["linkage"] else Kind.ERROR) in reader.angular:
+        reader.angular |= {Kind.MOTION}
+    values = {"mm": reader.mm, **reader.table(RECIPE, root, "")}
+    _check(values, reader)
+    return values
+
+
+def _check(values: Values, reader: Reader) -> None:
+    """Note the faults between fields that show without any geometry.
+
+    Each check looks at the values that were read; where one of them is missing or faulty the check has nothing to say,
+    as that fault is noted already.
+    """
+    check_cam(values.get("cam", {}), reader)
+    check_linkage(values, reader)
+    check_part(values.get("part", {}), reader)
+    check_ring(values, reader)
+    check_files(values, reader)
+    check_train(values.get("dynamics", {}), reader)
+    check_allowance(values.get("manufacture", {}), reader)
+    check_limits(values.get("limits", []), reader)
+    if "sweep" in values:
+        check_sweep(values["sweep"], reader)
