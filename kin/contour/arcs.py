@@ -72,6 +72,8 @@ class Arcs:
 
     def points(self, s: Array) -> Array:
         """Return points at arc lengths s (n,), one on each piece: (n, 2)."""
+        if not self.curvature.any():
+            return self.start + s[:, None] * self.tangent
         half = 0.5 * self.curvature * s
         chord = s * np.sinc(half / np.pi)
         return self.start + chord[:, None] * turned(self.tangent, half)
@@ -146,12 +148,14 @@ def nearest_on(arcs: Arcs, point: Array) -> tuple[Array, Array]:
     """
     y = point - arcs.start
     k = arcs.curvature
-    along, away = dot(y, arcs.tangent), 1.0 + k * dot(y, right(arcs.tangent))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        s = np.where(k == 0.0, along, np.arctan2(k * along, away) / k)
-    # The foot of an arc may lie behind its start or beyond its end, whichever is nearer round the circle.
-    turn = np.where(k == 0.0, np.inf, 2.0 * np.pi / np.abs(np.where(k == 0.0, 1.0, k)))
-    s = np.where(s < 0.5 * (arcs.length - turn), s + turn, s)
+    s = dot(y, arcs.tangent)
+    if k.any():
+        away = 1.0 + k * dot(y, right(arcs.tangent))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            s = np.where(k == 0.0, s, np.arctan2(k * s, away) / k)
+        # The foot of an arc may lie behind its start or beyond its end, whichever is nearer round the circle.
+        turn = np.where(k == 0.0, np.inf, 2.0 * np.pi / np.abs(np.where(k == 0.0, 1.0, k)))
+        s = np.where(s < 0.5 * (arcs.length - turn), s + turn, s)
     s = np.clip(s, 0.0, arcs.length)
     inside = (s > 0.0) & (s < arcs.length)
     gap = arcs.points(s) - point

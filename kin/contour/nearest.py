@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -20,7 +21,9 @@ if TYPE_CHECKING:
 RUN = 8  # pieces under one chord, chords under the next
 BLOCK = 1024  # points at a time
 MOST_PAIRS = 200_000  # of a point and a run; where more remain, fewer points are taken at a time
-ROUNDING = 1e-13  # of the greatest coordinate: bounds are widened by it, so that every piece equally near is looked at
+ROUNDING = (
+    1e-13  # of the greatest coordinate: by which bounds are widened, so that every piece equally near is looked at
+)
 
 
 def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:
@@ -29,24 +32,27 @@ def nearest(arcs: Arcs, points: Array) -> tuple[Indices, Array]:
     Of pieces equally near it is the first. `arcs` is best in the order of a chain, where neighbours lie together. Cost
     grows as m log n.
     """
+    if arcs not in _CHORDS:
+        _CHORDS[arcs] = _levels(arcs)
+    levels = _CHORDS[arcs]
     size = max(float(np.abs(arcs.start).max()), float(np.abs(points).max(initial=0.0)))
-    levels = _levels(arcs, ROUNDING * size)
-    blocks = [_nearest(arcs, levels, points[first : first + BLOCK]) for first in range(0, len(points), BLOCK)]
+    slack = ROUNDING * size
+    blocks = [_nearest(arcs, levels, points[first : first + BLOCK], slack) for first in range(0, len(points), BLOCK)]
     return _joined(blocks)
 
 
-def _nearest(arcs: Arcs, levels: list[_Chords], points: Array) -> tuple[Indices, Array]:
+def _nearest(arcs: Arcs, levels: list[_Chords], points: Array, slack: float) -> tuple[Indices, Array]:
     count = len(levels[-1].start)
     query, run = np.repeat(np.arange(len(points)), count), np.tile(np.arange(count), len(points))
     place, best = _places(points), np.full(len(points), np.inf)
     for depth in range(len(levels) - 1, -1, -1):
         nearer, reach = levels[depth].bounds(run, place[query])
         best = np.minimum(best, np.minimum.reduceat(reach, _first_of_each(query)))
-        near = nearer <= best[query]
+        near = nearer <= (best + slack)[query]
         query, run = query[near], run[near]
         if len(query) > MOST_PAIRS // RUN and len(points) > 1:
             half = len(points) // 2
-            return _joined([_nearest(arcs, levels, part) for part in (points[:half], points[half:])])
+            return _joined([_nearest(arcs, levels, part, slack) for part in (points[:half], points[half:])])
         if depth:
             run = (run[:, None] * RUN + np.arange(RUN)).ravel()
             query = np.repeat(query, RUN)
@@ -65,6 +71,11 @@ def _joined(blocks: list[tuple[Indices, Array]]) -> tuple[Indices, Array]:
 
 def signed_distance(chain: Arcs, points: Array) -> Array:
     """Distance of points (m, 2) from a closed counter-clockwise chain, positive outside: (m,)."""
+    return feet(chain, points)[0]
+
+
+def feet(chain: Arcs, points: Array) -> tuple[Array, Array]:
+    """Signed distance of points (m, 2) as `signed_distance` gives it, and the nearest points of the chain (m, 2)."""
     piece, distance = nearest(chain, points)
     here = chain.take(piece)
     s, _ = nearest_on(here, points)
@@ -76,7 +87,7 @@ def signed_distance(chain: Arcs, points: Array) -> Array:
     corner = at_start | at_end
     bisector = right(before.end_tangents) + right(after.tangent)
     side = np.where(corner, dot(points - after.start, bisector), side)
-    return np.copysign(distance, side)
+    return np.copysign(distance, side), here.points(s)
 
 
 def _first_of_each(sorted_index: Indices) -> Indices:
@@ -118,11 +129,14 @@ def _places(points: Array) -> Places:
     return points[:, 0] + 1j * points[:, 1]
 
 
-def _levels(arcs: Arcs, rounding: float) -> list[_Chords]:
-    """Chords of runs of 1, RUN, RUN^2, ... pieces, finest level first, their sagittas widened by `rounding`."""
+_CHORDS: WeakKeyDictionary[Arcs, list[_Chords]] = WeakKeyDictionary()  # of each chain, as long as it is there
+
+
+def _levels(arcs: Arcs) -> list[_Chords]:
+    """Chords of runs of 1, RUN, RUN^2, ... pieces, finest level first."""
     start, end = _places(arcs.start), _places(arcs.ends)
     quarter = 0.25 * np.abs(arcs.curvature) * arcs.length
-    sagitta = 0.5 * arcs.length * np.sin(quarter) * np.sinc(quarter / np.pi) + rounding
+    sagitta = 0.5 * arcs.length * np.sin(quarter) * np.sinc(quarter / np.pi)
     levels = [_Chords.between(start, end, sagitta)]
     while len(start) > 2 * RUN:
         heads = np.arange(0, len(start), RUN)

@@ -8,14 +8,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.cases import examples
 from support.heavy import shapely
+from support.places import RECIPES
 
 from camgeo.curve.curve import Curve
 from camgeo.curve.support import SupportShape
 from camgeo.fit.bound import EXACT
 from camgeo.fit.pieces import ArcSpline
 from camgeo.recipe.din6885 import TABLE, key_for
+from camgeo.recipe.loading import load
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.part.checks import ROUNDING, thinnest, walls
 from camgeo.synthesis.part.shapes import Opening, disc, flattened, keyed, polar, polygonal, slot
-from camgeo.synthesis.part.walls import contour_gap, distance_inside, inside_gap, least_wall, outside_gap
+from camgeo.synthesis.part.walls import Looks, contour_gap, distance_inside, inside_gap, least_wall, outside_gap
 from kin.contour.contour import Contour
 from kin.law.support_function import lift_from_fourier, lift_reuleaux
 
@@ -26,25 +30,25 @@ def circle(pivot, radius=25.0):
 
 @pytest.mark.parametrize("pivot", [(3.0, 4.0), (-12.0, 5.0), (0.0, -24.0)])
 def test_circle_off_its_shaft(pivot):
-    wall, at = least_wall(circle(pivot), 8.0)
+    wall, at = least_wall(Looks.of(circle(pivot)), 8.0)
     assert wall == pytest.approx(25.0 - math.hypot(*pivot) - 4.0, abs=1e-12)
     # nearest where the outward normal points from the centre to the shaft
     assert math.cos(at - math.atan2(pivot[1], pivot[0])) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_shaft_outside_the_contour():
-    wall, _ = least_wall(circle((30.0, 40.0)), 8.0)
+    wall, _ = least_wall(Looks.of(circle((30.0, 40.0))), 8.0)
     assert wall == pytest.approx(-(50.0 - 25.0) - 4.0, abs=1e-12)
 
 
 def test_reuleaux_about_its_middle():
     # a flank is an arc of radius w - r about the middle of the opposite corner, (w - 2 r)/sqrt 3 from the shaft
-    wall, _ = least_wall(Curve.whole(SupportShape(lift_reuleaux(3, 50.0, 5.0))), 10.0)
+    wall, _ = least_wall(Looks.of(Curve.whole(SupportShape(lift_reuleaux(3, 50.0, 5.0)))), 10.0)
     assert wall == pytest.approx(45.0 - 40.0 / math.sqrt(3.0) - 5.0, abs=1e-9)
 
 
 def test_point_in_a_circle():
-    inside, _ = distance_inside(circle((3.0, 4.0)), (7.0, -4.0))
+    inside, _ = distance_inside(Looks.of(circle((3.0, 4.0))), (7.0, -4.0))
     assert inside == pytest.approx(25.0 - math.hypot(7.0 + 3.0, -4.0 + 4.0), abs=1e-12)
 
 
@@ -136,19 +140,19 @@ def test_wall_between_outlines_is_that_of_fine_polygons(one, two, away, angle):
 @given(st.floats(0, 6.28), st.floats(0, 17), st.floats(0.2, 5))
 def test_wall_between_a_hole_and_a_round_contour(angle, away, radius):
     hole = disc("hole", "HOLES", polar(away, angle), radius)
-    gap = contour_gap(circle((0.0, 0.0)), hole.chain)
+    gap = contour_gap(Looks.of(circle((0.0, 0.0))), hole.chain)
     assert gap.wall == pytest.approx(25.0 - away - radius, abs=1e-9)
 
 
 def test_wall_of_a_hole_outside_or_across_the_contour_is_negative():
-    contour = circle((0.0, 0.0))
-    assert contour_gap(contour, disc("", "HOLES", (40.0, 0.0), 3.0).chain).wall == pytest.approx(-12.0, abs=1e-9)
-    assert contour_gap(contour, disc("", "HOLES", (25.0, 0.0), 3.0).chain).wall < -2.9
+    looks = Looks.of(circle((0.0, 0.0)))
+    assert contour_gap(looks, disc("", "HOLES", (40.0, 0.0), 3.0).chain).wall == pytest.approx(-12.0, abs=1e-9)
+    assert contour_gap(looks, disc("", "HOLES", (25.0, 0.0), 3.0).chain).wall < -2.9
 
 
 def test_wall_to_a_keyway_is_to_its_corners():
     key = Opening("bore", "BORE", keyed(6, 4, 1.8, math.pi / 2))
-    gap = contour_gap(circle((0.0, 0.0)), key.chain)
+    gap = contour_gap(Looks.of(circle((0.0, 0.0))), key.chain)
     assert gap.wall == pytest.approx(25.0 - math.hypot(7.8, 2.0), abs=1e-9)
 
 
@@ -176,3 +180,19 @@ def test_the_table_is_whole_and_its_keys_have_play_in_the_hub():
         play = row.shaft + row.hub - row.height
         assert 0.15 < play < 0.45
         assert row.shaft > row.hub
+
+
+@pytest.mark.parametrize("name", ["w-law", "disc-ring", "disc-packaging", "w-rosette", "hypocycloid"])
+@pytest.mark.parametrize("limit", [0.0, 6.0])
+def test_walls_that_are_left_out_are_neither_the_least_nor_thin(name: str, limit: float) -> None:
+    recipe = load(RECIPES / f"{name}.yaml")
+    design = designed(recipe)
+    assert design.only_surface.contour is not None
+    assert design.discs[0].body is not None
+    looks = Looks.of(design.only_surface.contour, design.only_surface.surface.side)
+    possible = list(walls(design.discs[0].body, [looks]))
+    every = [(bound, pair()) for bound, pair in possible]
+    assert all(bound <= pair.gap.wall + ROUNDING for bound, pair in every)
+    whole = sorted((pair for _, pair in every), key=lambda pair: pair.gap.wall)
+    most = max(whole[0].gap.wall, limit)
+    assert thinnest(possible, limit) == [pair for pair in whole if pair.gap.wall <= most]

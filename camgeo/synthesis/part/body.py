@@ -14,10 +14,10 @@ from camgeo.synthesis.part.walls import contour_gap, distance_inside
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from camgeo.curve.curve import Curve
     from camgeo.fit.pieces import ArcSpline
     from camgeo.recipe.part import Hub, Mark, Part, SetScrew
     from camgeo.synthesis.part.shapes import Layer
+    from camgeo.synthesis.part.walls import Looks
 
 STEP = 0.01  # mm: what is placed automatically is placed on whole steps
 TRIES = 200  # of moving the mark inward
@@ -53,6 +53,11 @@ class Body:
     least_radius: float = math.inf
     outer: float | None = None
     unmarked: Unmarked | None = None
+
+    @property
+    def rim(self) -> Opening | None:
+        """The round outline of a ring; None for a disc, whose contour it is."""
+        return None if self.outer is None else disc("outline", "CUT", (0.0, 0.0), 0.5 * self.outer)
 
     @property
     def fineness(self) -> float:
@@ -96,7 +101,7 @@ class Body:
         return replace(self, openings=tuple(opening.mirrored() for opening in self.openings), screw=screw)
 
 
-def body_of(part: Part, contour: Curve) -> Body:
+def body_of(part: Part, looks: Looks) -> Body:
     """Make the part of a recipe round a contour; what places itself looks for its place here.
 
     Raises CurveError where the sharpest place of a contour that is to be chamfered cannot be proved.
@@ -104,15 +109,15 @@ def body_of(part: Part, contour: Curve) -> Body:
     openings = [*_shaft(part), *_drilled(part)]
     hub = None if part.hub is None else disc("hub", "HOLES", (0.0, 0.0), 0.5 * part.hub.diameter)
     edge = part.chamfer or 0.0
-    mark = None if part.mark is None else _marked(part.mark, contour, part.wall, edge)
+    mark = None if part.mark is None else _marked(part.mark, looks, part.wall, edge)
     if isinstance(mark, Opening):
         openings.append(mark)
     placed = None
     if part.lightening is not None:
         there = openings if hub is None else [*openings, hub]
-        found, placed = lightened(part.lightening, contour, there, edge)
+        found, placed = lightened(part.lightening, looks, there, edge)
         openings += found
-    radius = math.inf if part.chamfer is None else least_radius(contour)[0]
+    radius = math.inf if part.chamfer is None else least_radius(looks.contour)[0]
     shaft = (part.bore, part.hub, part.set_screw)
     unmarked = mark if isinstance(mark, Unmarked) else None
     return Body(part.thickness, tuple(openings), *shaft, part.chamfer, placed, radius, part.outer, unmarked)
@@ -151,9 +156,9 @@ def _round(name: str, circle: float, hole: float, angle: float) -> Opening:
     return disc(name, "HOLES", polar(0.5 * circle, angle), 0.5 * hole)
 
 
-def _marked(mark: Mark, contour: Curve, wall: float | None, edge: float) -> Opening | Unmarked:
+def _marked(mark: Mark, looks: Looks, wall: float | None, edge: float) -> Opening | Unmarked:
     """The mark where it is asked for, or as far out on the ray as the wall lets it; else what would have room."""
-    placed = _placed(mark, contour, wall, edge)
+    placed = _placed(mark, looks, wall, edge)
     if placed is not None:
         return placed
     # of the same shape, but longer than wide
@@ -162,12 +167,12 @@ def _marked(mark: Mark, contour: Curve, wall: float | None, edge: float) -> Open
     def scaled(share: float) -> Mark:
         return replace(shape, width=share * shape.width, length=share * shape.length)
 
-    share = _greatest(lambda share: _placed(scaled(share), contour, wall, edge) is not None)
+    share = _greatest(lambda share: _placed(scaled(share), looks, wall, edge) is not None)
     if share > 0.0:
         return Unmarked(mark, scaled(share))
     if wall is None:
         return Unmarked(mark)
-    return Unmarked(mark, wall=wall * _greatest(lambda share: _placed(mark, contour, share * wall, edge) is not None))
+    return Unmarked(mark, wall=wall * _greatest(lambda share: _placed(mark, looks, share * wall, edge) is not None))
 
 
 def _greatest(fits: Callable[[float], bool]) -> float:
@@ -179,7 +184,7 @@ def _greatest(fits: Callable[[float], bool]) -> float:
     return low
 
 
-def _placed(mark: Mark, contour: Curve, asked: float | None, edge: float) -> Opening | None:
+def _placed(mark: Mark, looks: Looks, asked: float | None, edge: float) -> Opening | None:
     """The mark, with this wall or its own width between it and the contour; None without room."""
     depth = mark.depth if mark.kind == "engrave" else None
     layer: Layer = "ENGRAVE" if mark.kind == "engrave" else "MARK"
@@ -189,15 +194,15 @@ def _placed(mark: Mark, contour: Curve, asked: float | None, edge: float) -> Ope
         return Opening("mark", layer, slot(outer - mark.length, outer, mark.width), depth=depth)
 
     def lacking(outer: float) -> float:
-        return wall - MARGIN - contour_gap(contour, at(outer).chain).wall
+        return wall - MARGIN - contour_gap(looks, at(outer).chain).wall
 
     if mark.width >= mark.length:
         return None  # no slot
     if mark.radius is not None:
         return at(mark.radius)
-    outer = contour.size
+    outer = looks.contour.size
     for _ in range(TRIES):  # no point of the slot comes nearer to the contour than by what it is moved
-        inside, _ = distance_inside(contour, (outer - 0.5 * mark.width, 0.0))
+        inside, _ = distance_inside(looks, (outer - 0.5 * mark.width, 0.0))
         want = wall + 0.5 * mark.width - inside
         if want <= MARGIN:
             break

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camgeo.synthesis.part.shapes import Opening, disc
-from camgeo.synthesis.part.walls import distance_inside, intervals
+from camgeo.synthesis.part.walls import distance_inside
 from kin.contour.arcs import Arcs
 from kin.contour.nearest import signed_distance
 
 if TYPE_CHECKING:
-    from camgeo.curve.curve import Curve
     from camgeo.recipe.part import Lightening
+    from camgeo.synthesis.part.walls import Looks
     from kin.numeric.arrays import Array
 
 GRID = 49  # points of the search each way
@@ -28,6 +28,7 @@ STARTS = 12  # places from which the room is climbed
 CENTRE, DIAMETER = 0.01, 0.1  # mm: steps of centres and diameters
 RINGS = 400  # radii of a ring that are tried
 SHRINK = 0.5  # of the step of a climb that finds nothing better
+FAR = 1e-9  # mm: covers the rounding of a bound on a distance
 
 
 @dataclass(frozen=True)
@@ -45,9 +46,9 @@ class Placed:
         return 0.25 * math.pi * sum(d * d for d in self.diameters)
 
 
-def lightened(wanted: Lightening, contour: Curve, there: list[Opening], edge: float) -> tuple[list[Opening], Placed]:
+def lightened(wanted: Lightening, looks: Looks, there: list[Opening], edge: float) -> tuple[list[Opening], Placed]:
     """Holes in a contour round openings and hub that are there, `edge` more from the contour for its chamfer."""
-    room = _Room(contour, there, wanted.wall, edge)
+    room = _Room(looks, there, wanted.wall, edge)
     least = 2.0 * wanted.wall if wanted.least is None else wanted.least
     if wanted.ring is not None:
         found = _ring(room, wanted.ring, wanted.start, least)
@@ -64,11 +65,11 @@ Found = list[tuple[tuple[float, float], float]]
 class _Room:
     """The radius that a hole about a point can have; grows fuller as holes are added."""
 
-    def __init__(self, contour: Curve, there: list[Opening], wall: float, edge: float) -> None:
-        self.contour, self.wall, self.edge = contour, wall, edge
-        self.chains = [opening.chain for opening in there if opening.circle is None]
+    def __init__(self, looks: Looks, there: list[Opening], wall: float, edge: float) -> None:
+        self.looks, self.wall, self.edge = looks, wall, edge
+        self.shapes = [opening for opening in there if opening.circle is None]
         self.discs = [(*opening.circle[0], opening.circle[1]) for opening in there if opening.circle is not None]
-        self.ring = contour.sample(intervals(contour)[0]).point
+        self.ring = looks.first.point
         step = np.roll(self.ring, -1, axis=0) - self.ring
         length = np.hypot(step[:, 0], step[:, 1])
         kept = length > 0.0
@@ -77,23 +78,28 @@ class _Room:
 
     def about(self, points: Array) -> Array:
         """Radius (n,) about points (n, 2), the contour taken as a polygon; negative where there is none."""
-        least = np.minimum(-signed_distance(self.polygon, points) - self.edge, self.beside(points))
-        radius: Array = least - self.wall
-        return radius
+        return self.left(points, self.inside(points))
 
-    def beside(self, points: Array) -> Array:
-        """Distance of points (n, 2) to the nearest opening (n,), infinite where there is none."""
-        least: Array = np.full(len(points), np.inf)
+    def inside(self, points: Array) -> Array:
+        """Distance of points (n, 2) inside the contour, taken as a polygon, less its chamfer (n,)."""
+        return -signed_distance(self.polygon, points) - self.edge
+
+    def left(self, points: Array, inside: Array) -> Array:
+        """Radius (n,) that openings, too, leave about points (n, 2) so far inside the contour."""
+        least = inside.copy()
         for x, y, radius in self.discs:
             least = np.minimum(least, np.hypot(points[:, 0] - x, points[:, 1] - y) - radius)
-        for chain in self.chains:
-            least = np.minimum(least, signed_distance(chain, points))
-        return least
+        for shape in self.shapes:
+            away = np.hypot(*(points - shape.middle).T) - shape.radius - FAR
+            near = np.flatnonzero(away < least)
+            if near.size:
+                least[near] = np.minimum(least[near], signed_distance(shape.chain, points[near]))
+        return least - self.wall
 
     def exactly(self, centre: tuple[float, float]) -> float:
         """The same about one point by the exact contour."""
-        inside, _ = distance_inside(self.contour, centre)
-        return min(inside - self.edge, float(self.beside(np.array([centre]))[0])) - self.wall
+        inside, _ = distance_inside(self.looks, centre)
+        return float(self.left(np.array([centre]), np.array([inside - self.edge]))[0])
 
     def fill(self, centre: tuple[float, float], diameter: float) -> None:
         """Take the room of a hole."""
@@ -110,12 +116,14 @@ def _largest(room: _Room, count: int, least: float) -> Found:
     low, high = room.ring.min(axis=0), room.ring.max(axis=0)
     x, y = (np.linspace(a, b, GRID) for a, b in zip(low.tolist(), high.tolist(), strict=True))
     grid = np.column_stack([part.ravel() for part in np.meshgrid(x, y)])
-    grid = grid[room.about(grid) > 0.0]
+    inside = room.inside(grid)
+    roomy = room.left(grid, inside) > 0.0
+    grid, inside = grid[roomy], inside[roomy]
     pitch = float((high - low).max()) / (GRID - 1)
     for _ in range(count):
         if not grid.size:
             break
-        radius = room.about(grid)
+        radius = room.left(grid, inside)
         best = _climbed(room, grid[np.argsort(-radius, kind="stable")[:STARTS]], pitch)
         centre = (round(best[0] / CENTRE) * CENTRE, round(best[1] / CENTRE) * CENTRE)
         centre = (round(centre[0], 9), round(centre[1], 9))
@@ -132,16 +140,18 @@ def _climbed(room: _Room, points: Array, step: float) -> tuple[float, float]:
     turns = np.arange(8) * 0.25 * np.pi
     ways = np.column_stack([np.cos(turns), np.sin(turns)])
     height = room.about(points)
+    moved = np.arange(len(points))  # the others have found nothing better with this step
     while step > 0.2 * CENTRE:
-        tried = points[:, None, :] + step * ways
-        heights = room.about(tried.reshape(-1, 2)).reshape(len(points), -1)
+        tried = points[moved, None, :] + step * ways
+        heights = room.about(tried.reshape(-1, 2)).reshape(len(moved), -1)
         which = heights.argmax(axis=1)
-        rows = np.arange(len(points))
-        better = heights[rows, which] > height
-        points = np.where(better[:, None], tried[rows, which], points)
-        height = np.where(better, heights[rows, which], height)
-        if not better.any():
+        rows = np.arange(len(moved))
+        better = heights[rows, which] > height[moved]
+        tried, highest, moved = tried[rows, which][better], heights[rows, which][better], moved[better]
+        points[moved], height[moved] = tried, highest
+        if not moved.size:
             step *= SHRINK
+            moved = np.arange(len(points))
     x, y = points[int(np.argmax(height))].tolist()
     return x, y
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 QUARTER = 1e-14  # rad: an angle this near to a quarter turn is one, rounded
-Layer = Literal["BORE", "HOLES", "MARK", "ENGRAVE"]
+Layer = Literal["CUT", "BORE", "HOLES", "MARK", "ENGRAVE"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +58,11 @@ class Opening:
         """Greatest distance from the middle, or a little more."""
         x_min, y_min, x_max, y_max = self.outline.box()
         return 0.5 * math.hypot(x_max - x_min, y_max - y_min)
+
+    @property
+    def radius(self) -> float:
+        """Of a circle about the middle that holds all of it."""
+        return self.reach if self.circle is None else self.circle[1]
 
 
 def disc(name: str, layer: Layer, centre: tuple[float, float], radius: float) -> Opening:

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from camgeo.curve.curvature import roots
-from kin.contour.arcs import dot, nearest_on
-from kin.contour.nearest import nearest, signed_distance
+from kin.contour.arcs import dot
+from kin.contour.nearest import feet, signed_distance
 
 if TYPE_CHECKING:
     from camgeo.curve.curve import Curve, Frame
     from kin.contour.arcs import Arcs
-    from kin.numeric.arrays import Array, Indices
+    from kin.law.contacts import Side
+    from kin.numeric.arrays import Array
 
 LOOKS_PER_TURN = 768  # points of a contour, about, at which the distance is looked at
 PART_TURN = 0.1  # rad: an arc is looked at about so often
@@ -33,19 +34,55 @@ class Gap(NamedTuple):
     parameter: float | None = None
 
 
-def least_wall(contour: Curve, bore: float) -> tuple[float, float]:
+class Looks(NamedTuple):
+    """A contour, and the frames at the ends of the intervals (n,) between which its distance is looked at.
+
+    The metal lies on `side` of it; `name` is that of the surface.
+    """
+
+    contour: Curve
+    low: Array
+    high: Array
+    first: Frame
+    last: Frame
+    side: Side = 1
+    name: str = ""
+
+    @staticmethod
+    def of(contour: Curve, side: Side = 1, name: str = "") -> Looks:
+        """Cut the cells of a contour into parts of about its period over LOOKS_PER_TURN."""
+        cells = contour.cells
+        width = cells.high - cells.low
+        parts = np.maximum(np.ceil(width * (LOOKS_PER_TURN / contour.shape.period)), 1.0).astype(np.intp)
+        owner = np.repeat(np.arange(parts.size), parts)
+        number = np.arange(owner.size) - np.repeat(np.cumsum(parts) - parts, parts)
+        low = cells.low[owner] + width[owner] * (number / parts[owner])
+        last = number + 1 == parts[owner]
+        high = np.where(last, cells.high[owner], np.append(low[1:], 0.0))
+        return Looks(contour, low, high, *contour.span(low, high), side, name)
+
+    def wall_at_least(self, middle: tuple[float, float], reach: float) -> float:
+        """Wall that what lies within a circle has at least, see `contour_gap`; -inf where that is not seen at once."""
+        first, last = (np.hypot(*(at.point - middle).T) for at in (self.first, self.last))
+        bounds = self.contour.cells.over(self.low, self.high)
+        longest = np.maximum(np.abs(bounds.speed_low), np.abs(bounds.speed_high)) * (self.high - self.low)
+        wall = float((np.minimum(first, last) - 0.5 * longest).min()) - reach
+        return wall if wall > 0.0 and winds(self.first.point - middle) is (self.side > 0) else -np.inf
+
+
+def least_wall(looks: Looks, bore: float) -> tuple[float, float]:
     """Least wall in mm between a bore of this diameter about the shaft and the contour, and where (parameter).
 
-    Negative where the bore breaks through, and where the shaft lies outside the contour.
+    Negative where the bore breaks through, and where the shaft does not lie in the metal on that side of the contour.
     """
-    distance, at = distance_inside(contour, (0.0, 0.0))
-    return distance - 0.5 * bore, at
+    distance, at = distance_inside(looks, (0.0, 0.0))
+    return looks.side * distance - 0.5 * bore, at
 
 
-def distance_inside(contour: Curve, place: tuple[float, float]) -> tuple[float, float]:
+def distance_inside(looks: Looks, place: tuple[float, float]) -> tuple[float, float]:
     """How far a point lies inside a contour, mm, negative outside, and the parameter of the nearest point."""
     origin = np.array(place)
-    low, high, first, last = _looked_at(contour)
+    contour, low, high, first, last, *_ = looks
     # between two nodes the nearest point is where the radius meets the tangent square: its product changes sign upwards
     falls, rises = _outward(first, origin), _outward(last, origin)
     turning = (falls < 0.0) & (rises > 0.0)
@@ -64,9 +101,9 @@ def distance_inside(contour: Curve, place: tuple[float, float]) -> tuple[float, 
     return side * float(distance[nearest_node]), float(nodes[nearest_node])
 
 
-def contour_gap(contour: Curve, chain: Arcs, *, ring: bool = False) -> Gap:
-    """Wall between a closed chain inside a contour, outside that of a ring, and that contour; negative elsewhere."""
-    low, high, first, last = _looked_at(contour)
+def contour_gap(looks: Looks, chain: Arcs) -> Gap:
+    """Wall between a closed chain in the metal on one side of a contour and that contour; negative elsewhere."""
+    contour, low, high, first, last, side, _ = looks
     falls, rises = _from_chain(chain, first.point, first.tangent), _from_chain(chain, last.point, last.tangent)
     turning = (falls < 0.0) & (rises > 0.0)
 
@@ -80,7 +117,7 @@ def contour_gap(contour: Curve, chain: Arcs, *, ring: bool = False) -> Gap:
     distance = signed_distance(chain, point)
     least = int(np.argmin(distance))
     wall = float(distance[least])
-    if wall > 0.0 and winds(first.point - chain.start[0]) is ring:
+    if wall > 0.0 and winds(first.point - chain.start[0]) is (side < 0):
         wall = -wall
     return Gap(wall, _place(point[least]), float(nodes[least]))
 
@@ -124,34 +161,9 @@ def _place(point: Array) -> tuple[float, float]:
 
 def _from_chain(chain: Arcs, point: Array, tangent: Array) -> Array:
     """Rate at which the distance outside a chain grows along tangents (n, 2) at points, times that distance (n,)."""
-    piece, _ = nearest(chain, point)
-    return _along(chain, piece, point, tangent)
-
-
-def _along(chain: Arcs, piece: Indices, point: Array, tangent: Array) -> Array:
-    here = chain.take(piece)
-    s, _ = nearest_on(here, point)
-    product = dot(point - here.points(s), tangent)
-    return np.sign(signed_distance(chain, point)) * product
-
-
-def _looked_at(contour: Curve) -> tuple[Array, Array, Frame, Frame]:
-    """Intervals between the points of a contour that are looked at, and the frames at their ends."""
-    low, high = intervals(contour)
-    return (low, high, *contour.span(low, high))
-
-
-def intervals(contour: Curve) -> tuple[Array, Array]:
-    """Cut the cells of a contour into parts of about its period over LOOKS_PER_TURN: their ends (n,), (n,)."""
-    cells = contour.cells
-    width = cells.high - cells.low
-    parts = np.maximum(np.ceil(width * (LOOKS_PER_TURN / contour.shape.period)), 1.0).astype(np.intp)
-    owner = np.repeat(np.arange(parts.size), parts)
-    number = np.arange(owner.size) - np.repeat(np.cumsum(parts) - parts, parts)
-    low = cells.low[owner] + width[owner] * (number / parts[owner])
-    last = number + 1 == parts[owner]
-    high = np.where(last, cells.high[owner], np.append(low[1:], 0.0))
-    return low, high
+    distance, foot = feet(chain, point)
+    product: Array = np.sign(distance) * dot(point - foot, tangent)
+    return product
 
 
 def winds(ring: Array) -> bool:

@@ -1,0 +1,288 @@
+"""Where cost might outgrow the work, and warm exact designs: `python benchmarks/growth.py [growth] [warm] [--small]`.
+
+`growth` prints milliseconds over the size of the work, and the exponent of one by the other, by least squares over the
+last two decades of the size that were measured, or over all where they are fewer; aim: 1.1. `warm` prints milliseconds
+from a recipe object to its exact design without part and limits, as shipped, and with every figure that may be asked;
+then with arcs at 0.001 mm and their verdict at 3600 angles in memory, and of a whole export of a DXF.
+
+All of it is processor time with one BLAS thread, the least of several repeats. `--small` takes little of everything, to
+see that it works: its figures say nothing. `--only REGEX` takes the rows whose names match.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy
+
+import argparse
+import math
+import re
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from camgeo.api.design import Design
+from camgeo.api.loading import load
+from camgeo.files.precision import SINGLE
+from camgeo.files.prism import extruded
+from camgeo.files.stl import write_stl
+from camgeo.fit.pieces import Bound, Polygon
+from camgeo.fit.polygon import fit_polygon
+from camgeo.output.job import Job
+from camgeo.output.pipeline import export
+from camgeo.recipe.part import Part
+from camgeo.synthesis.design import designed
+from camgeo.synthesis.intent import intended, permitted
+from kin.contour.contour import Contour
+from kin.judge.contour_checks import judge_contour
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from camgeo.recipe.recipe import Recipe
+
+RECIPES = Path(__file__).parents[1] / "recipes"
+MICROMETRE, ANGLES = 1e-3, 3600
+ENOUGH = 0.3  # seconds of repeats
+DECADES = 2.0
+LAWS = ("cycloidal", "modified-sine", "polynomial-345")
+DISC = {"kind": "disc", "base_radius": 60, "follower": {"kind": "roller", "radius": 5}}
+BREADTH = {"kind": "constant-breadth", "base_radius": 60}
+
+
+def least(function: Callable[[], object], repeats: int) -> float:
+    """Least processor seconds of a few calls; of a long one there is one."""
+    best, spent = math.inf, 0.0
+    for _ in range(repeats):
+        start = time.process_time()
+        function()
+        once = time.process_time() - start
+        best, spent = min(best, once), spent + once
+        if spent > ENOUGH:
+            break
+    return best
+
+
+# --- growth -----------------------------------------------------------------------------------------------------------
+
+
+class Row(NamedTuple):
+    """Work to be measured at each of its sizes: `work(size)` prepares it and gives what is timed.
+
+    What that returns counts as the size where it is a number.
+    """
+
+    name: str
+    sizes: tuple[float, ...]
+    work: Callable[[float], Callable[[], object]]
+
+
+def exponent(sizes: list[float], seconds: list[float]) -> float:
+    """Exponent of cost by size over the last decades."""
+    x, y = np.log10(sizes), np.log10(seconds)
+    last = x >= x[-1] - DECADES - 0.05
+    return float(np.polyfit(x[last], y[last], 1)[0])
+
+
+def growth(rows: list[Row], *, small: bool) -> None:
+    """Print a line for each row."""
+    print("\n| what grows | size: ms | exponent |\n| --- | --- | --- |")
+    for row in rows:
+        sizes, seconds = [], []
+        for size in row.sizes[:2] if small else row.sizes:
+            work = row.work(size)
+            found = work()
+            sizes.append(float(found) if isinstance(found, int) else size)
+            seconds.append(least(work, 1 if small else 7))
+        told = ", ".join(f"{size:.7g}: {1e3 * spent:.3g}" for size, spent in zip(sizes, seconds, strict=True))
+        print(f"| {row.name} | {told} | {exponent(sizes, seconds):.2f} |", flush=True)
+
+
+def polygons(name: str) -> Callable[[float], Callable[[], object]]:
+    """Fit polygons of a shipped cam within a tolerance; the size is the number of edges."""
+    contour = designed(load(RECIPES / f"{name}.yaml")).contour
+    if contour is None:
+        raise TypeError(f"{name} has no contour")
+    return lambda tolerance: lambda: len(fit_polygon(contour, tolerance).vertices)
+
+
+def solids(count: float) -> Callable[[], object]:
+    """Write the STL of a ring of so many edges."""
+    t = np.linspace(0.0, 2.0 * np.pi, int(count), endpoint=False)
+    r = 25.0 + 2.0 * np.cos(3 * t)
+    polygon = Polygon(np.column_stack([r * np.cos(t), r * np.sin(t)]), Bound(0.0, 0.0))
+
+    def work() -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            mesh, _ = extruded(polygon, bore=10.0, thickness=8.0, tolerance=1e-3, precision=SINGLE)
+            write_stl(Path(folder) / "ring.stl", mesh)
+
+    return work
+
+
+def judged(name: str) -> Callable[[float], Callable[[], object]]:
+    """Judge a polygon with so many vertices, on the exact contour of a shipped recipe, at 3600 angles."""
+    recipe = load(RECIPES / f"{name}.yaml")
+    design = designed(recipe)
+    phi = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
+    limits, intent = permitted(recipe, MICROMETRE), intended(recipe, design)
+
+    def prepare(count: float) -> Callable[[], object]:
+        run = design.only_surface.contour.runs[0]
+        t = np.linspace(run.low, run.high, int(count), endpoint=False)
+        points = design.only_surface.contour.sample(t).point
+        return lambda: judge_contour(Contour.from_vertices(points), intent, phi, limits).judged and None
+
+    return prepare
+
+
+def points(count: float) -> Recipe:
+    """A disc cam by so many points of a smooth lift."""
+    theta = np.linspace(0.0, 360.0, int(count), endpoint=False)
+    turn = np.radians(theta)
+    lift = 6.0 * (1.0 - np.cos(turn)) + 1.5 * (1.0 - np.cos(2.0 * turn)) + 0.2 * np.sin(3.0 * turn)
+    at = [[float(f"{a:.9g}"), float(f"{s:.9g}")] for a, s in zip(theta, lift, strict=True)]
+    return load({"cam": {**DISC, "motion": {"points": at}}, "export": {"tolerance": MICROMETRE, "files": ["dxf"]}})
+
+
+def segments(cam: dict[str, object], over: float, bent: float) -> Callable[[float], Recipe]:
+    """Make a cam of so many segments over an angle, rises and returns by turns of up to `bent`/count^2 mm."""
+
+    def make(count: float) -> Recipe:
+        number = int(count)
+        span = f"{over:g}/{number}"
+        steps = [
+            {"rise" if i % 2 == 0 else "return": min(3.0, bent / number**2), "over": span, "law": LAWS[i // 2 % 3]}
+            for i in range(number)
+        ]
+        return load({"cam": {**cam, "motion": steps}, "export": {"tolerance": MICROMETRE, "files": ["dxf"]}})
+
+    return make
+
+
+def harmonics(order: float) -> Recipe:
+    """A plate of constant breadth with all odd harmonics up to an order."""
+    waves = {str(k): 20.0 / k**3.5 for k in range(3, int(order) + 1, 2)}
+    fourier = {"mean": 30, "cos": waves, "sin": {k: 0.7 * a for k, a in waves.items()}}
+    return load({"cam": {"kind": "support", "fourier": fourier}, "export": {"tolerance": MICROMETRE, "files": ["dxf"]}})
+
+
+def swing_harmonics(order: float) -> Recipe:
+    """A double roller whose delta has every third harmonic that its arms admit, up to an order."""
+    waves = {str(k): 300.0 / k**3.5 for k in range(1, int(order) + 1, 2)}
+    cam = {"kind": "double-roller", "ratio": "2", "arm": 60, "roller_radius": 8, "delta": {"cos": waves}}
+    return load({"cam": cam, "export": {"tolerance": MICROMETRE, "files": ["dxf"]}})
+
+
+def waves(order: float) -> Recipe:
+    """A roller's disc cam by a displacement formula of so many waves."""
+    motion = {"formula": f"{40.0 / order**2:.9g}*(1 - cos({int(order)}*t))"}
+    return load({"cam": {**DISC, "motion": motion}, "export": {"tolerance": MICROMETRE, "files": ["dxf"]}})
+
+
+def made(make: Callable[[float], Recipe], form: str = "") -> Callable[[float], Callable[[], object]]:
+    """Design a recipe; with a form its fit at 1 micrometre alone, with `export` a whole export."""
+
+    def prepare(size: float) -> Callable[[], object]:
+        recipe = make(size)
+        if form == "export":
+            return lambda: exported(recipe)
+        if not form:
+            return lambda: designed(recipe).checks and None
+        contour = designed(recipe).contour
+        if contour is None:
+            raise TypeError(f"{recipe.name} of {size:g} has no contour")
+        job = Job.of(recipe, designed(recipe))
+        return lambda: replace(job, outlines=replace(job.outlines, made={})).outline(form, MICROMETRE) and None
+
+    return prepare
+
+
+def growing() -> Iterator[Row]:
+    """What is measured."""
+    edges = tuple(10.0**-k for k in range(3, 10))
+    yield Row("polygon, as-figure-2a, 1e-3 to 1e-9 mm, edges", edges, polygons("as-figure-2a"))
+    yield Row("polygon, w-figure-9, 1e-3 to 1e-9 mm, edges", edges, polygons("w-figure-9"))
+    yield Row("polygon, disc-roller, 1e-3 to 1e-9 mm, edges", edges, polygons("disc-roller"))
+    decades = (1e3, 1e4, 1e5, 1e6)
+    yield Row("STL of a ring, edges", decades, solids)
+    for name in ("shu-wu", "disc-roller", "disc-flat", "w-figure-5", "w-figure-9"):
+        yield Row(f"judge, {name}, pieces", decades, judged(name))
+    few = (10.0, 30.0, 100.0, 300.0, 1000.0)
+    for form in ("", "arcs", "polygon", "spline", "export"):
+        yield Row(f"points, disc roller, {form or 'design'}", few, made(points, form))
+    for name, cam, over, bent in (("constant breadth", BREADTH, 180.0, 40.0), ("disc roller", DISC, 360.0, 150.0)):
+        for form in ("", "arcs", "polygon", "spline", "export"):
+            sizes = (2.0, 4.0, 10.0, 20.0, 50.0, 100.0)
+            yield Row(f"segments, {name}, {form or 'design'}", sizes, made(segments(cam, over, bent), form))
+    sizes = (3.0, 7.0, 19.0, 49.0, 99.0, 199.0)
+    for name, make in (
+        ("support", harmonics),
+        ("double roller", swing_harmonics),
+        ("disc roller's formula", waves),
+    ):
+        for form in ("", "arcs", "polygon", "spline"):
+            yield Row(f"harmonics, {name}, {form or 'design'}", sizes, made(make, form))
+
+
+# --- warm -------------------------------------------------------------------------------------------------------------
+
+
+def exported(recipe: Recipe) -> None:
+    """Write and judge a recipe's DXF."""
+    with tempfile.TemporaryDirectory() as folder:
+        export(recipe, Path(folder), only=("dxf",))
+
+
+def in_memory(recipe: Recipe) -> None:
+    """Design, arcs at 0.001 mm, verdict at 3600 angles."""
+    design = designed(recipe)
+    arcs = Job.of(recipe, design).outlines.within("arcs", MICROMETRE)
+    phi = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
+    contour = Contour.from_bulges(arcs.points, arcs.bulges)
+    judge_contour(contour, intended(recipe, design), phi, permitted(recipe, MICROMETRE))
+
+
+def warm(pattern: str, *, small: bool) -> None:
+    """Print a line for each shipped recipe."""
+    print("\n| recipe | plain | as shipped | times | all figures | times | arcs and verdict | DXF |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for path in sorted(RECIPES.glob("*.yaml"))[:: 12 if small else 1]:
+        if not re.search(pattern, path.stem):
+            continue
+        recipe = load(path)
+        plain = replace(recipe, part=replace(Part(), outer=recipe.part.outer), limits=(), linkage=None)
+        dxf = recipe.replace("export.files", ["dxf"])
+        scenes: tuple[Callable[[], object], ...] = (
+            lambda plain=plain: designed(plain),
+            lambda recipe=recipe: designed(recipe),
+            lambda plain=plain: Design(plain, designed(plain)).figures,
+            lambda plain=plain: in_memory(plain),
+            lambda dxf=dxf: exported(dxf),
+        )
+        spent = []
+        for scene in scenes:
+            scene()
+            spent.append(1e3 * least(scene, 1 if small else 7))
+        a, b, c, d, e = spent
+        print(
+            f"| {path.stem} | {a:.1f} | {b:.1f} | {b / a:.2f} | {c:.1f} | {c / a:.2f} | {d:.1f} | {e:.1f} |", flush=True
+        )
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("part", nargs="*", choices=["growth", "warm", []], help="default: both")
+    parser.add_argument("--only", default="", metavar="REGEX", help="the rows whose names match")
+    parser.add_argument("--small", action="store_true", help="a small size, to see that it works")
+    arguments = parser.parse_args()
+    if not arguments.part or "growth" in arguments.part:
+        rows = [row for row in growing() if re.search(arguments.only, row.name)]
+        growth(rows[:: 12 if arguments.small else 1], small=arguments.small)
+    if not arguments.part or "warm" in arguments.part:
+        warm(arguments.only, small=arguments.small)
