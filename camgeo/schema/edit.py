@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from camgeo.common.errors import CallError
 from camgeo.schema.errors import RecipeError, RecipeErrors
@@ -114,7 +114,8 @@ def _without_lines(source: Source, root: Mapping, index: int) -> str:
     return source.text[: starts[first - 1]] + source.text[starts[behind] :]
 
 
-def _plain(node: Node) -> Any:  # noqa: ANN401 - texts, lists of them, lists of those
+def _plain(node: Node) -> object:
+    """Texts, lists of them, lists of those: what a tree says, without its places."""
     if isinstance(node, Scalar):
         return node.text
     if isinstance(node, Mapping):
@@ -122,5 +123,5 @@ def _plain(node: Node) -> Any:  # noqa: ANN401 - texts, lists of them, lists of 
     return tuple(map(_plain, node.items))
 
 
-def _plain_pair(pair: tuple[Node, Node]) -> tuple[Any, Any]:
+def _plain_pair(pair: tuple[Node, Node]) -> tuple[object, object]:
     return _plain(pair[0]), _plain(pair[1])

@@ -12,7 +12,7 @@ import numpy as np
 from camgeo.recipe.loading import read
 from camgeo.schema.change import changed
 from camgeo.schema.edit import without
-from camgeo.schema.fields import MOST_TEXT
+from camgeo.schema.scalars import MOST_TEXT
 from camgeo.schema.yaml_source import Mapping, Source, scalars
 from camgeo.sweep.search.pictures import Curve
 from camgeo.sweep.search.rebuilt import mechanism_in
