@@ -180,7 +180,7 @@ def sound(recipe: Recipe, exact: ExactCam) -> tuple[list[Check], Curve | None]:
 
 def _seen_backward(curve: Curve) -> Array:
     """Parameters (n,), of LOOKS, at which a contour begins to run backwards: so many stretches there are at least."""
-    t = curve.shape.period * (np.arange(LOOKS) * GOLDEN % 1.0)  # in step with no number of waves
+    t: Array = curve.shape.period * (np.arange(LOOKS) * GOLDEN % 1.0)  # in step with no number of waves
     if not (curve.sample(t[:FIRST]).speed < 0.0).any():
         return t[:0]
     t = np.sort(t)
