@@ -7,9 +7,10 @@ Property tests: a run repeats the last one's examples, so that a change is judge
 `HYPOTHESIS_PROFILE=explore` looks for new ones, and what it finds becomes an example of its own. A quick run takes an
 eighth of them; any other, such as `pytest -m slow`, takes all, and every property test counts as slow in it.
 
-Time: compiled modules are kept even where the shell asks for none (PYTHONDONTWRITEBYTECODE), since every process that
-a test starts would compile the house anew; one thread for linear algebra, as the processes of xdist share the cores;
-and what was there before the first test is not looked through for garbage again and again.
+Time: the tests of a file run in one process of xdist, so that what they share is made once; compiled modules are kept
+even where the shell asks for none (PYTHONDONTWRITEBYTECODE), since every process that a test starts would compile the
+house anew; one thread for linear algebra, as the processes of xdist share the cores; and what was there before the
+first test is not looked through for garbage again and again.
 """
 
 from __future__ import annotations
@@ -18,11 +19,16 @@ import gc
 import os
 import signal
 import sys
+from typing import TYPE_CHECKING
 
 import mpmath
 import pytest
 from hypothesis import settings
 from support.cases import FULL, thinned_out
+
+if TYPE_CHECKING:
+    from xdist.remote import Producer
+    from xdist.scheduler import LoadFileScheduling
 
 pytest_plugins = ["pytester"]
 
@@ -58,6 +64,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     chance = [item for item in items if full and item.get_closest_marker("hypothesis")]
     for item in [*chance, *thinned_out(items)]:
         item.add_marker(pytest.mark.slow)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadFileScheduling | None:
+    """Give a file's tests to one process, unless `--dist` asks for another way."""
+    if config.getvalue("dist") != "load":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    return LoadFileScheduling(config, log)
 
 
 def pytest_collection_finish() -> None:

@@ -14,6 +14,7 @@ import pytest
 from support.places import ROOT
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
 MOST = 22  # files of one folder
@@ -68,11 +69,19 @@ def modules(package: str) -> dict[str, Path]:
     return found
 
 
-@cache
 def imported(path: Path, *, top_level_only: bool = False) -> set[str]:
     """Modules, and names of modules, that a file imports; at top level: as the file itself is imported."""
+    return _imported(path)[top_level_only]
+
+
+@cache
+def _imported(path: Path) -> tuple[set[str], set[str]]:
+    """All that a file imports, and that at top level."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    nodes = tree.body if top_level_only else list(ast.walk(tree))
+    return _names(ast.walk(tree), path), _names(tree.body, path)
+
+
+def _names(nodes: Iterable[ast.AST], path: Path) -> set[str]:
     names: set[str] = set()
     for node in nodes:
         if isinstance(node, ast.Import):

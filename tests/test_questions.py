@@ -20,7 +20,7 @@ from kin.law.contacts import Flat, KnifeEdge, Oscillating, Roller, Shoe, Transla
 from kin.linkage import dyad, four_bar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from types import ModuleType
 
 ROOT = Path(__file__).parents[1]
@@ -200,17 +200,31 @@ def sources() -> Iterator[tuple[str, str]]:
             yield path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")
 
 
+@dataclass(frozen=True)
+class House:
+    """What all files say, each read once: lines that ask, by family and file; how often `Any`; who takes an intent."""
+
+    asking: dict[str, dict[str, list[int]]]
+    anys: int
+    taking: dict[str, list[str]]
+
+
 @pytest.fixture(scope="module")
-def all_asking() -> dict[str, dict[str, list[int]]]:
-    """Lines that ask, of each file, for each family: every file is read once."""
-    found: dict[str, dict[str, list[int]]] = {name: {} for name in NAMES}
+def house() -> House:
+    asking: dict[str, dict[str, list[int]]] = {name: {} for name in NAMES}
+    every, taken = 0, {}
     for path, text in sources():
-        nodes = [node for node in code(ast.parse(text)) if isinstance(node, ASKING)]
+        tree = ast.parse(text)
+        nodes = [node for node in code(tree) if isinstance(node, ASKING)]
         for name, family in families().items():
             lines = [] if path.startswith(family.home) else asked(nodes, family)
             if lines:
-                found[name][path] = lines
-    return found
+                asking[name][path] = lines
+        said = [node for node in ast.walk(tree) if isinstance(node, SAYING)]
+        every += anys(said)
+        if path.startswith("camgeo/") and (names := taking(said, {"intent"})):
+            taken[path] = names
+    return House(asking, every, taken)
 
 
 def test_the_families_have_their_names() -> None:
@@ -218,8 +232,8 @@ def test_the_families_have_their_names() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_nobody_asks_which_kind_it_is(name: str, all_asking: dict[str, dict[str, list[int]]]) -> None:
-    family, asking = families()[name], all_asking[name]
+def test_nobody_asks_which_kind_it_is(name: str, house: House) -> None:
+    family, asking = families()[name], house.asking[name]
     assert {path: lines for path, lines in asking.items() if path not in family.exempt} == {}
     assert {path: len(asking.get(path, [])) for path in family.exempt} == family.exempt
 
@@ -286,10 +300,13 @@ def test_what_is_no_question_is_none(innocent: str) -> None:
 MOST_ANY = 110  # in signatures that others see
 
 
-def anys(source: str) -> int:
+SAYING = ast.FunctionDef | ast.AsyncFunctionDef | ast.AnnAssign  # what has an annotation of its own
+
+
+def anys(nodes: Iterable[ast.AST]) -> int:
     """How often `Any` stands in the annotations of public functions, methods and fields."""
     found = 0
-    for node in ast.walk(ast.parse(source)):
+    for node in nodes:
         match node:
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) if not name.startswith("_"):
                 every = [
@@ -310,14 +327,15 @@ def _count_any(annotation: ast.expr | None) -> int:
     return 0 if annotation is None else sum(_name(part) == "Any" for part in ast.walk(annotation))
 
 
-def test_public_signatures_have_no_more_any_than_they_had() -> None:
-    assert sum(anys(text) for _, text in sources()) <= MOST_ANY
+def test_public_signatures_have_no_more_any_than_they_had(house: House) -> None:
+    assert house.anys <= MOST_ANY
 
 
 def test_any_is_found_where_others_see_it() -> None:
     seen = "def f(a: Any, *b: list[Any], c: int = 1) -> dict[str, Any]: ...\nclass C:\n    x: Any\n"
-    assert anys(seen) == 4
-    assert anys("def _f(a: Any) -> Any: ...\n_x: Any = 1\ndef g(a: int) -> Anything: ...") == 0
+    assert anys(ast.walk(ast.parse(seen))) == 4
+    hidden = "def _f(a: Any) -> Any: ...\n_x: Any = 1\ndef g(a: int) -> Anything: ..."
+    assert anys(ast.walk(ast.parse(hidden))) == 0
 
 
 # --- what a cam answers -----------------------------------------------------------------------------------------------
@@ -333,25 +351,24 @@ def members(source: str, name: str) -> set[str]:
     return {one for one in names if not one.startswith("_")}
 
 
-def taking(source: str, words: set[str]) -> list[str]:
+def taking(nodes: Iterable[ast.AST], words: set[str]) -> list[str]:
     """Public functions and methods with a parameter of one of these names."""
-    nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
-    taken = [(node.name, {one.arg for one in (*node.args.args, *node.args.kwonlyargs)}) for node in nodes]
+    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
+    taken = [(node.name, {one.arg for one in (*node.args.args, *node.args.kwonlyargs)}) for node in functions]
     return [name for name, names in taken if not name.startswith("_") and names & words]
 
 
-def test_a_cam_answers_few_things_and_an_exact_one_keeps_its_law() -> None:
+def test_a_cam_answers_few_things_and_an_exact_one_keeps_its_law(house: House) -> None:
     text = (ROOT / "camgeo" / "cams" / "family.py").read_text(encoding="utf-8")
     assert len(members(text, "Cam")) <= MOST_MEMBERS
-    told = {path: taking(text, {"intent"}) for path, text in sources() if path.startswith("camgeo/")}
-    assert {path: names for path, names in told.items() if names} == {}
+    assert house.taking == {}
 
 
 def test_members_and_parameters_are_found() -> None:
     inner = "    def f(self, intent): ...\n    def _g(self): ...\n    if 1:\n        def h(self): ...\n"
     source = f"class C:\n    x: int\n{inner}"
     assert members(source, "C") == {"x", "f", "h"}
-    assert taking(source, {"intent"}) == ["f"]
+    assert taking(ast.walk(ast.parse(source)), {"intent"}) == ["f"]
 
 
 # --- tables from class to maker ---------------------------------------------------------------------------------------

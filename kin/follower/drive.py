@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
 
@@ -28,19 +28,16 @@ _INSET = 1e-6  # how far within an interval between two angles it is looked for 
 _HALVINGS = 60  # of an interval, more than a number has bits: a passage is found to its last places
 
 
-class Drive(Protocol):
-    """A contact's own position over the shaft angle, smooth between `breaks`; `kin.dynamics.drive.Motion` is the same.
-
-    Velocity may jump at `corners`, which are some of the breaks.
-    """
+class Excitation(Protocol):
+    """A position over the shaft angle, of period one turn, smooth between `breaks`: of a contact its own position."""
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles at which velocity or acceleration may jump, in [0, 2 pi)."""
+        """Shaft angles at which velocity or acceleration may jump, in [0, 2 pi), in any order."""
 
     @property
-    def corners(self) -> Array:
-        """Those of the breaks at which the velocity may jump."""
+    def smooth(self) -> bool:
+        """Whether the two limits of the velocity are one at all breaks."""
 
     def rows(self, phi: Array) -> Array:
         """Position and two derivatives by the shaft angle, (3, n), at angles phi (n,) that are no breaks."""
@@ -50,7 +47,7 @@ class Drive(Protocol):
 class Shifted:
     """sign * drive + offset, where the shaft stands `turned` ahead, radians."""
 
-    drive: Drive
+    drive: Excitation
     sign: float = 1.0
     offset: float = 0.0
     turned: float = 0.0
@@ -61,12 +58,12 @@ class Shifted:
         return self.drive.breaks - self.turned if self.turned else self.drive.breaks
 
     @property
-    def corners(self) -> Array:
-        """The drive's."""
-        return self.drive.corners - self.turned if self.turned else self.drive.corners
+    def smooth(self) -> bool:
+        """As that one."""
+        return self.drive.smooth
 
     def rows(self, phi: Array) -> Array:
-        """See `Drive`."""
+        """See `Excitation`."""
         rows = self.sign * self.drive.rows(phi + self.turned if self.turned else phi)
         rows[0] += self.offset
         return rows
@@ -83,19 +80,15 @@ class OfFace:
     bearing: Bearing
     turned: float = 0.0
     share: float = 1.0
+    smooth: ClassVar[bool] = False  # over an edge the contact leaps from end to end
 
     @property
     def breaks(self) -> Array:
         """Where the contact passes from piece to piece."""
         return np.mod(self.bearing.breaks - self.turned, TURN)
 
-    @property
-    def corners(self) -> Array:
-        """Anywhere: over an edge the contact leaps from end to end."""
-        return self.breaks
-
     def rows(self, phi: Array) -> Array:
-        """See `Drive`."""
+        """See `Excitation`."""
         theta = phi + self.turned
         rows: Array = METRE / self.share * self.bearing.derivatives(theta, self.bearing.find(theta))
         return rows
@@ -108,19 +101,15 @@ class OfArmFace:
     face: ArmFace
     bearing: Bearing
     datum: float
+    smooth: ClassVar[bool] = False
 
     @cached_property
     def breaks(self) -> Array:
         """Where the contact passes from piece to piece."""
         return np.mod(self.face.starts(self.bearing), TURN)
 
-    @property
-    def corners(self) -> Array:
-        """Anywhere, as for a face."""
-        return self.breaks
-
     def rows(self, phi: Array) -> Array:
-        """See `Drive`."""
+        """See `Excitation`."""
         rows = self.face.touch(self.bearing, phi)
         rows[0] += self.face.side * self.datum - phi
         rows[1] -= 1.0
@@ -139,6 +128,7 @@ class OfRoller:
     obstacle: Arcs
     guide: Guide
     turned: float = 0.0
+    smooth: ClassVar[bool] = False  # the roller may rest in a hollow
 
     @cached_property
     def breaks(self) -> Array:
@@ -157,11 +147,6 @@ class OfRoller:
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         return np.sort(np.mod(np.concatenate([ends, low]), TURN))
 
-    @property
-    def corners(self) -> Array:
-        """Anywhere: a roller may rest in a hollow."""
-        return self.breaks
-
     def _met(self, phi: Array) -> tuple[Array, Indices]:
         r, piece = first_contact(self.obstacle, self.guide, phi + self.turned)
         if (piece < 0).any():
@@ -169,7 +154,7 @@ class OfRoller:
         return r, piece
 
     def rows(self, phi: Array) -> Array:
-        """See `Drive`."""
+        """See `Excitation`."""
         guide, angle = self.guide, phi + self.turned
         r, piece = self._met(phi)
         met = self.obstacle.take(piece)

@@ -64,12 +64,6 @@ class FlatFace(Follower):
         """The exact contour; its parameter is the shaft angle."""
         return FlatEnvelope(LiftPitch(self.lift, self.ahead))
 
-    def contact(self, contour: Contour, theta: Array) -> Array:
-        """Position of the face (of a yoke face 1), mm: (n,), or (2, n) with either face resting."""
-        own = [contour.support(theta + self.ahead + one.turned).q / self._share for one in self.contacts]
-        found = np.stack([one.position(q) for one, q in zip(self.contacts, own, strict=True)])
-        return found if len(found) > 1 else found[0]
-
     def drives(self, contour: Contour) -> list[OfFace]:
         """Position of each face as it rests on the contour."""
         bearing = bearing_of(contour)
@@ -138,16 +132,7 @@ class Yoke(FlatFace):
         return 2.0 * tolerance
 
     def _play(self, bearing: Bearing) -> Play:
-        nodes = bearing.nodes(0.0, np.pi, np.mod(bearing.breaks - np.pi, TURN))
-        near, near_low, near_high = bearing.between(nodes)
-        far, far_low, far_high = bearing.between(nodes, np.pi)
-
-        def breadth(theta: Array, of: Indices) -> Array:
-            return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
-
-        at_low, at_high = near_low + far_low, near_high + far_high
-        fine = resolution(bearing.contour.vertices)
-        found = extremes(nodes[:-1], nodes[1:], at_low, at_high, breadth, resolution=fine)
+        found = bearing.breadth_extremes(resolution(bearing.contour.vertices))
         return Play(
             self.breadth - found.greatest,
             degrees(found.greatest_at),

@@ -91,6 +91,7 @@ def test_counter_clockwise_and_inch_are_the_same_bodies(tmp_path: Path, yoke: pi
         assert there.volume == pytest.approx(here.volume, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_collision_fails_the_set_and_tells_who_where_and_when(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

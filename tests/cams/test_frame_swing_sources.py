@@ -47,6 +47,7 @@ def test_segments() -> None:
     assert found == pytest.approx([20 * (0.25 - 1 / (2 * math.pi)), 10.0, 20.0, 20.0, 20.0, 0.0], abs=1e-11)
 
 
+@pytest.mark.slow
 def test_the_way_back_is_the_image() -> None:
     """What stands at (phi, psi) is followed by -psi at phi + 180 - 2 psi, psi from the upright position."""
     swing = "[{rise: 20, over: 140, law: cycloidal}, {dwell: 60}]"

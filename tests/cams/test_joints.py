@@ -156,6 +156,7 @@ def test_d_by_a_formula_passes_for_rollers_and_flats():
     assert first == pytest.approx(second, abs=1e-13)
 
 
+@pytest.mark.slow
 def test_rounding_at_the_ends_of_a_short_rise_is_no_jump():
     """A rise over a hundredth of a degree has accelerations of 1e9: what rounding leaves of them at its ends is 0."""
     rows = "[{rise: 27, over: 0.01, law: cycloidal}, {dwell: 50}, {return: 27, over: 1, law: polynomial-4567}, "

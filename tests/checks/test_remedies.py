@@ -388,7 +388,7 @@ DESIGNS: list[tuple[str, str, Follow]] = [
 ]
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize(("text", "pattern", "follow"), DESIGNS, ids=[pattern for _, pattern, _ in DESIGNS])
 def test_a_design_that_is_changed_as_told_is_sound(text: str, pattern: str, follow: Follow) -> None:
     assert not said(follow(figure(said(text), pattern)))
@@ -492,7 +492,7 @@ WITH_FILES: list[tuple[str, str, Follow]] = [
 ]
 
 
-@pytest.mark.thin(6)
+@pytest.mark.thin(12)
 @pytest.mark.parametrize(("text", "pattern", "follow"), WITH_FILES, ids=[pattern for _, pattern, _ in WITH_FILES])
 def test_files_of_a_recipe_that_is_changed_as_told_pass(text: str, pattern: str, follow: Follow) -> None:
     assert not said_of_files(follow(figure(said_of_files(text), pattern)))
@@ -561,6 +561,7 @@ def said_of_set(text: str) -> str:
     return ""
 
 
+@pytest.mark.thin(4)
 @pytest.mark.usefixtures("unwritten")
 @pytest.mark.parametrize(("old", "new", "wrong", "pattern"), SETS, ids=[pattern for *_, pattern in SETS])
 def test_a_set_that_is_changed_as_told_can_be_made(old: str, new: str, wrong: float, pattern: str) -> None:

@@ -87,7 +87,7 @@ def assert_quiet(found: tuple[int, str]) -> None:
     assert found == (130, "camgeo: interrupted\n")
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("times", [1, 2])
 @pytest.mark.parametrize("delay", [0.0, 0.03, 0.3])
 def test_several_recipes(tmp_path: Path, delay: float, times: int) -> None:
@@ -116,6 +116,7 @@ def test_a_sweep(tmp_path: Path, jobs: str) -> None:
     assert "interrupted" in said
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "late",
     [
@@ -155,6 +156,7 @@ print(workers._called(work, 0))
     assert (done.returncode, done.stdout, done.stderr) == (0, "None\n", "")
 
 
+@pytest.mark.slow
 def test_ignored_interrupts_stay_ignored(tmp_path: Path) -> None:
     """As `nohup` and a shell's background ask."""
     code = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n" + UP

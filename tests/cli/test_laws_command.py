@@ -52,6 +52,7 @@ def test_a_picture_shows_each_law_with_four_curves(tmp_path, capsys):
     capsys.readouterr()
 
 
+@pytest.mark.slow
 def test_a_picture_by_matplotlib(tmp_path):
     pytest.importorskip("matplotlib")
     path = tmp_path / "laws.png"

@@ -105,6 +105,7 @@ def test_each_check_is_an_item(project: Pytester) -> None:
     result.stdout.fnmatch_lines(["camgeo: 1 recipe", "cams/small.yaml::motion[[]small.dxf[]] PASSED*"])
 
 
+@pytest.mark.slow
 def test_a_second_opinion_adds_its_rows(project: Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [f"{name}[small.stl]" for name in ("shapely:valid", "shapely:area", "shapely:distance")]
     meshes = ("trimesh:watertight", "trimesh:winding", "trimesh:bodies", "trimesh:volume", "manifold3d:status")
@@ -128,7 +129,7 @@ export: {tolerance: 0.01, files: [{dxf: {as: spline}}, {dxf: {as: polyline}}, st
 """
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("name", ["shu-wu", "rabinowitz", "reuleaux-nine", "w-booth", "w-ellipse", None])
 def test_the_checks_of_a_run_are_foreseen(name: str | None, tmp_path: Path) -> None:
     path = RECIPES / f"{name}.yaml" if name else tmp_path / "flat.yaml"
@@ -343,6 +344,7 @@ def test_undercut_is_told_where_it_is_and_all_else_waits(project: Pytester) -> N
     alone.stdout.fnmatch_lines(["motion*: not judged: radius-of-curvature: -1 mm, more than 0 mm*"])
 
 
+@pytest.mark.slow
 def test_what_trimming_leaves_unjudged_is_skipped_with_the_reason(project: Pytester) -> None:
     add(project, "small", UNDERCUT.replace("cos(3*t)", "cos(3*t), undercut: trim"))
     result = run(project, "-rs", "-k", "motion")
@@ -436,6 +438,7 @@ def test_files_can_be_kept(project: Pytester) -> None:
     assert (project.path / "kept" / "poor.rejected" / "report.json").is_file()
 
 
+@pytest.mark.slow
 def test_kept_files_of_two_recipes_do_not_share_a_folder(project: Pytester) -> None:
     add(project, "twin", "name: Small\n" + SMALL)
     run(project).assert_outcomes(passed=2 * len(ITEMS))

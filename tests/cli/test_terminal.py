@@ -35,7 +35,7 @@ def run(*arguments: str, **options: object) -> subprocess.CompletedProcess[bytes
     return subprocess.run([sys.executable, "-m", "camgeo", *arguments], check=False, **given)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 @pytest.mark.parametrize("what", ["schema", "check"])
 def test_a_narrow_encoding(recipe: Path, encoding: str, what: str) -> None:
@@ -53,7 +53,7 @@ def test_a_name_that_the_encoding_has_not() -> None:
     assert (done.returncode, done.stderr) == (2, b"\\u65e5\\u672c.yaml: the file does not exist\n")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @FULL
 @pytest.mark.parametrize("call", [["check", "nofile"], ["dance"], ["new", "nothing"], []])
 def test_a_full_standard_error_changes_no_status(call: list[str]) -> None:
@@ -61,7 +61,7 @@ def test_a_full_standard_error_changes_no_status(call: list[str]) -> None:
         assert run(*call, capture_output=False, stderr=full).returncode == 2
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @FULL
 @pytest.mark.parametrize("call", [["schema"], ["--help"], ["new"], ["laws"]])
 def test_a_full_standard_output_is_told(call: list[str]) -> None:
@@ -180,6 +180,7 @@ def test_a_home_folder_of_another_s_is_not_used(tmp_path: Path, monkeypatch: pyt
     assert logging.getLogger("ezdxf").handlers
 
 
+@pytest.mark.slow
 def test_files_have_lf_on_every_system(recipe: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As Windows has it: text is written with CRLF unless the writer says otherwise."""
     real = io.open

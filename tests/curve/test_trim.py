@@ -149,6 +149,7 @@ def test_flat_faces_leave_the_body_of_their_half_planes(mean, terms):
         check_chain(whole, curve)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("mean", "cos", "sin", "backwards", "left"),
@@ -186,6 +187,7 @@ def test_rollers_leave_the_eroded_body(shape, e):
     check_same(curve, eroded(shape, e), 2e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("e", [19.0, 19.3, 19.6])
 def test_a_bulb_too_small_for_the_roller_goes_with_its_neck(e):
@@ -228,6 +230,7 @@ def test_no_contact_cuts_into_what_is_left(e):
     assert np.hypot(apart[..., 0], apart[..., 1]).min() > e - 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("e", [0.5, 20.0])
 def test_rises_that_turn_the_tangent_within_a_hair(e):
     """A thousandth of a degree over a hundredth: the contour of a large roller swings to and fro by millimetres."""
@@ -250,6 +253,7 @@ def test_rises_that_turn_the_tangent_within_a_hair(e):
         assert 0.0 < lost.depth < 0.0011  # no more than the rise
 
 
+@pytest.mark.slow
 def test_corners_of_radius_zero_are_corners():
     whole = Curve.whole(SupportShape(lift_reuleaux(3, 50.0, 0.0, (3.0, 1.0))))
     curve = trimmed(whole)

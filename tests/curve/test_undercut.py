@@ -195,7 +195,7 @@ def test_depth_of_a_roller_is_how_far_it_hangs_free():
         assert u.depth == pytest.approx(np.hypot(apart[..., 0], apart[..., 1]).min(axis=1).max() - e, abs=1e-5)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("excess", [1e-9, 1e-6, 1e-3, 0.1, 0.5])
 def test_the_neck_of_booths_lemniscate(excess):
     # m^2/l^2 = 0.9: the waist is sqrt(0.2) l, the ends have a radius of 60.06 mm

@@ -122,7 +122,7 @@ def test_opposite_rollers_hold_a_frame_from_both_sides():
     assert upper is not None
     consistent(lower, step=1e-5)
     consistent(upper, step=1e-5)
-    near, below = follower.contact(contour, PHI)
+    near, below = followers.resting(follower, contour, PHI)
     assert lower.rows(PHI)[0] == pytest.approx(1e-3 * near, abs=1e-15)
     assert upper.rows(PHI)[0] == pytest.approx(1e-3 * below + 2e-5, abs=1e-15)
     exact = intended_faces(follower, 2e-5)
@@ -234,6 +234,7 @@ def test_a_step_of_a_hundredth_rings_on_in_the_dwell_behind_it():
     assert forces[1] > 1.0
 
 
+@pytest.mark.slow
 def test_a_step_rings_as_an_implicit_solver_says():
     pytest.importorskip("scipy")
     train, rpm = Train(0.4, 40.0, 2e5, 2000.0), 600.0

@@ -29,7 +29,8 @@ TURN = 2.0 * math.pi
 class Still:
     """A face that does not move."""
 
-    breaks = corners = np.empty(0)
+    breaks = np.empty(0)
+    smooth = True
 
     def __init__(self, position=0.0):
         self.position = position
@@ -159,6 +160,7 @@ def test_a_touch_between_two_samples_is_met():
             assert found.turns[0].velocity_at == pytest.approx(first, abs=2.0 * time[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("play", "ratio", "zeta", "impacts", "peak"),
     few([(0.05, 123.3, 0.03, 79, 30.797), (0.02, 400.3, 0.05, 157, 41.34), (0.002, 400.3, 0.05, 57, 11.937)], 3),
@@ -199,7 +201,7 @@ def test_play_takes_no_more_places_the_stiffer_the_train(ratio, zeta):
     assert found.places < 1_000_000
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("zeta", [1e-4, 0.1, 1.0])
 @pytest.mark.parametrize("ratio", [1.3, 123.3, 1e3 + 0.3, 1e5 + 0.3])
 def test_a_turn_under_a_spring_is_bounded_too(ratio, zeta):
@@ -319,7 +321,7 @@ def test_too_much_work_for_an_explicit_solver_is_told():
 # --- float ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("zeta", few([0.01, 0.3, 0.9, 1.0, 2.0], 2))
 @pytest.mark.parametrize("order", [1, 3])
 def test_float_of_a_harmonic_drive_begins_where_its_amplitude_reaches_the_preload(order, zeta):
@@ -411,6 +413,7 @@ def test_what_is_said_of_a_range_holds_inside_it():
     assert tight > 0.9  # the bound says something
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(("ratio", "zeta"), [(1e3 + 0.3, 1e-5), (1e5 + 0.3, 1e-6)])
 def test_a_search_that_takes_too_much_says_between_which_speeds_float_begins(ratio, zeta):

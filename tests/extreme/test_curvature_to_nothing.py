@@ -106,6 +106,7 @@ def sharpest():
     yield Row("Reuleaux triangle rounded by 1e-9 mm", "the arcs of the file as judged", off, 1e-12, why)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(5)
 @pytest.mark.parametrize("name", names(cases(), SLOW))
 def test_it_holds_and_the_page_shows_it(name):

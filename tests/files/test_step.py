@@ -18,13 +18,14 @@ from camgeo.cli.main import main
 from camgeo.files.brep import need_kernel
 from camgeo.files.curves import FLATTEST, misfit
 from camgeo.files.errors import MissingExtraError
+from camgeo.files.layer_outline import LayerOutline
 from camgeo.files.solid import Solid
 from camgeo.files.step import write_step
 from camgeo.fit.nodes import ToleranceError
 from camgeo.fit.pieces import ArcSpline, Bound
 from camgeo.output import pipeline
 from camgeo.output.job import Job
-from camgeo.output.step import _solid
+from camgeo.output.part_geometry import contours_of, rim_of, solid_of
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 from camgeo.synthesis.design import designed
@@ -50,7 +51,8 @@ def written(recipe, folder):
     """A file that is not judged."""
     job = Job.of(recipe, designed(recipe))
     path = folder / "part.step"
-    write_step(path, job.outline("arcs", 0.001), _solid(job), tolerance=0.001, name="part")
+    contours = contours_of(job.design, job.outlines("arcs", 0.001))
+    write_step(path, [*rim_of(job.body), *contours], solid_of(job.body), tolerance=0.001, name="part")
     return path
 
 
@@ -75,6 +77,14 @@ def by_the_kernel(path):
 def busy():
     recipe = step_recipe(BUSY)
     return recipe, designed(recipe)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """A disc with a bore: recipe, design and what its file says."""
+    recipe = step_recipe("{thickness: 8, bore: 12}")
+    design, path = made(recipe, tmp_path_factory.mktemp("plain"))
+    return recipe, design, path.read_text()
 
 
 def kinds_in(path):
@@ -120,7 +130,7 @@ def test_every_feature_is_exact_and_is_found(tmp_path):
     _, volume = by_the_kernel(path)
     assert volume == pytest.approx(solid.volume, rel=1e-7)
     found = kinds_in(path)
-    holes = sum(opening.circle is not None for opening in design.body.openings)
+    holes = sum(opening.circle is not None for opening in design.discs[0].body.openings)
     assert holes == 6
     # the contour, its holes, the hub, the bore and the ends of the mark, the set screw
     assert found["CYLINDRICAL_SURFACE"] == solid.pieces + holes + 1 + 1 + 2 + 1
@@ -232,31 +242,29 @@ def test_cadquery_imports_it(tmp_path):
         (r"CLOSED_SHELL\('',\((#\d+),", "CLOSED_SHELL('',(", {"watertight"}),
     ],
 )
-def test_planted_faults_are_caught(tmp_path, pattern, replacement, found):
-    recipe = step_recipe("{thickness: 8, bore: 12}")
-    design, path = made(recipe, tmp_path)
-    text = path.read_text()
+def test_planted_faults_are_caught(plain, tmp_path, pattern, replacement, found):
+    recipe, design, text = plain
     every = 0 if "8.0" in replacement or replacement.startswith("6.01") else 1
     faulty, count = re.subn(pattern, replacement, text, count=every)
     assert count
+    path = tmp_path / "part.step"
     path.write_text(faulty)
     failed = failures(path, recipe, design, 0.001)
     assert failed & found, failed
 
 
 @kernel
-def test_a_moved_corner_of_the_contour_is_caught(tmp_path):
-    recipe = step_recipe("{thickness: 8, bore: 12}")
-    design, path = made(recipe, tmp_path)
-    text = path.read_text()
+def test_a_moved_corner_of_the_contour_is_caught(plain, tmp_path):
+    recipe, design, text = plain
     vertex = re.search(r"VERTEX_POINT\('',(#\d+)\)", text)[1]
     number = re.search(rf"{vertex} = CARTESIAN_POINT\('',\(\s*([-+.\dE]+)", text)[1]
     assert text.count(number) > 2
+    path = tmp_path / "part.step"
     path.write_text(text.replace(number, f"{float(number) + 0.01:.16E}"))
     assert failures(path, recipe, design, 0.001) & {"watertight", "contour"}
 
 
-@pytest.mark.thin(4)
+@pytest.mark.thin(8)
 @kernel
 @pytest.mark.parametrize(
     ("change", "check"),
@@ -311,7 +319,12 @@ def test_a_tolerance_below_rounding_is_refused(tmp_path):
     square = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
     outline = ArcSpline(square, np.full(4, 1e-7), Bound(1e-12, 1e-12))
     with pytest.raises(ToleranceError, match=r"more than 1e-10 mm: circles of nearly straight arcs"):
-        write_step(tmp_path / "x.step", outline, Solid(5.0, 0.0, 5.0, None, None, [], None), tolerance=1e-10)
+        write_step(
+            tmp_path / "x.step",
+            [LayerOutline("CUT", outline)],
+            Solid(5.0, 0.0, 5.0, None, None, [], None),
+            tolerance=1e-10,
+        )
 
 
 @pytest.mark.slow
@@ -376,7 +389,7 @@ def test_without_the_extra_the_run_says_what_to_install(tmp_path, monkeypatch, c
     with pytest.raises(MissingExtraError):
         write_step(
             tmp_path / "x.step",
-            ArcSpline(np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2), Bound(0.0, 0.0)),
+            [LayerOutline("CUT", ArcSpline(np.array([[1.0, 0.0], [-1.0, 0.0]]), np.ones(2), Bound(0.0, 0.0)))],
             Solid(5.0, 0.0, 5.0, None, None, [], None),
             tolerance=1e-3,
         )

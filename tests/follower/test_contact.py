@@ -81,6 +81,7 @@ def test_polygons_against_bisection_of_shapely_distances(points, side):
     assert contact(points, 8.0, arm, FEW) == pytest.approx(contact_by_bisection(points, 8.0, arm, FEW), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_hollow_arcs_one_of_them_too_tight_for_the_roller():
     """Hollow arcs of 12 mm and of 3 mm: the second is bridged, the roller rests on its edges."""
     vertices = np.array([[30, -30], [30, 30], [12, 30], [-12, 30], [-24, 30], [-30, 30], [-30, -30.0]])

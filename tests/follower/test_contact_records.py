@@ -70,8 +70,8 @@ def held(name: str) -> tuple[Any, ...]:
     """Contacts, law, side and the contour of a recipe's cam."""
     recipe = read(RECIPES[name].encode(), Path("c.yaml"))
     design = designed(recipe)
-    assert design.contour is not None
-    arcs = fit_arcs(design.contour, 1e-6)
+    assert design.only_surface.contour is not None
+    arcs = fit_arcs(design.only_surface.contour, 1e-6)
     return (
         design.follower.contacts,
         design.exact.judged_law,
@@ -124,6 +124,7 @@ def test_the_record_is_what_the_judge_finds(name: str) -> None:
     assert off(name, contacts) < SEEN
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", RECIPES)
 def test_no_field_of_a_record_is_left_unread(name: str) -> None:
     contacts, _, side, _ = held(name)

@@ -127,6 +127,7 @@ def test_play_by_vertices():
         np.testing.assert_allclose(there, [play.least, play.most], atol=1e-9)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("size", [2e-5, 2e4])
 def test_a_linkage_of_a_micrometre_and_of_a_kilometre(size):
     vertices = uneven(257)
@@ -139,6 +140,7 @@ def test_a_linkage_of_a_micrometre_and_of_a_kilometre(size):
         assert (play.least / size, play.most / size) == pytest.approx((other.least, other.most), abs=1e-11)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [-0.01, 0.004])
 def test_play_of_a_cam_that_is_smaller_or_larger_all_round(offset):
@@ -152,6 +154,7 @@ def test_play_of_a_cam_that_is_smaller_or_larger_all_round(offset):
 # --- true extremes ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_no_error_between_the_samples_is_missed():
     """A coarse polygon errs most at corners and edges: found exactly, from no more than a few shaft angles."""
     vertices = cam(40)
@@ -225,6 +228,7 @@ def test_a_corner_held_still_to_the_shafts_least_rate():
 # --- the limit that the tolerance implies -----------------------------------------------------------------------------
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-3])
 def test_the_limit_is_the_sensitivity_times_the_tolerance(pair, tolerance):
     mechanism, _ = pair
@@ -363,6 +367,7 @@ def wavy_range(a, b):
     return tuple(found)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("band", few([0.02, 0.2, 1.0, 3.0], 2))
 @pytest.mark.parametrize("count", [60, 3000])

@@ -69,7 +69,8 @@ def test_a_limit_is_loose_beside_the_stroke_and_beside_what_the_tolerance_gives_
     assert not is_loose(0.09, 0.001, 10.0, LOOSE)
 
 
-@pytest.mark.parametrize("delta", [1799, pytest.param(1799.99, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("delta", [1799, 1799.99])
 def test_a_double_roller_nearly_square_to_its_way_has_no_implied_limit(tmp_path: Path, delta: float) -> None:
     failed = failing(report(tmp_path, ROLLERS.format(delta=delta, more="")))
     assert set(failed) == ({"motion"} if delta == 1799 else {"motion", "form-closure"})
@@ -92,6 +93,7 @@ def test_a_double_roller_that_is_steep_but_bounded_is_held_as_before(tmp_path: P
     assert set(failing(report(tmp_path, ROLLERS.format(delta=1799, more=", motion_error: 1")))) == {"motion"}
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("share", "fails", "remarked"),
     [(1.01 * MOST_SHARE, True, False), (0.99 * MOST_SHARE, False, True), (0.99 * LOOSE, False, False)],

@@ -216,7 +216,7 @@ VARIANTS = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(5)
 @pytest.mark.parametrize("name", VARIANTS)
 def test_fault_of_a_solid(solid, tmp_path, name):
     recipe, design, _ = solid

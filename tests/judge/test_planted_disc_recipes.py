@@ -62,6 +62,7 @@ def test_a_drawing_turned_by_two_hundredths_of_a_degree(tmp_path: Path, name: st
     assert failures(recipe, drawing) == {"contour", "motion"}
 
 
+@pytest.mark.slow
 def test_a_table_of_cam_degrees_read_as_crank_degrees(tmp_path: Path) -> None:
     """The lift of two turns of the crank, and the cam of whoever took its angle for the cam's own."""
     once = np.arange(0.0, 360.0)
@@ -90,7 +91,7 @@ def test_a_table_of_cam_degrees_read_as_crank_degrees(tmp_path: Path) -> None:
     assert failures(meant, exported(tmp_path / "mistaken.yaml")) == {"contour", "motion"}
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(8)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_motion_of_crank_degrees_on_the_cam(tmp_path: Path, name: str) -> None:
     recipe = written(tmp_path / "meant", FOLLOWERS[name])

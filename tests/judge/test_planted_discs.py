@@ -19,6 +19,7 @@ from support.disc_followers import (
 )
 from support.discs import DEGREE, M01, M02, M03, M07, M08, TURN, displaced
 from support.intent import part_of
+from support.outlines import bored
 from support.stepfiles import washer
 
 from camgeo.curve.curve import Curve
@@ -73,14 +74,14 @@ def test_a_sound_file_passes(tmp_path, name):
 def test_a_spline_under_every_follower(tmp_path, name):
     follower, path = FOLLOWERS[name], tmp_path / "cam.dxf"
     asked = intent(follower)
-    drawn_spline(path, fit_spline(Curve.whole(CURVES[name]), 1e-5), bore=asked.outline)
+    drawn_spline(path, bored(fit_spline(Curve.whole(CURVES[name]), 1e-5), asked.outline))
     verdict = verify(path, asked, 180, LIMITS)
     assert verdict.ok, [check for check in verdict.checks if not check.ok]
     assert verdict.measured_error <= 1e-5 + 1e-8  # the judge's own arcs for a spline count
     assert verdict.motion.max <= follower.motion_limit(1e-5 + 1e-8)
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
     made, follower = chain(name), FOLLOWERS[name]
@@ -93,7 +94,7 @@ def test_a_file_drawn_wrong_side_up_or_turned_is_caught(tmp_path, name):
         assert caught >= {"contour", "motion"}
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("depth", [1e-3, -1e-3])
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_an_offset_one_micrometre_too_deep_is_caught(tmp_path, name, depth):
@@ -134,7 +135,7 @@ MISTAKEN = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("fault", MISTAKEN)
 def test_a_cam_of_another_follower_is_caught(tmp_path, fault):
     name, meant = MISTAKEN[fault]

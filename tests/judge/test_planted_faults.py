@@ -336,6 +336,7 @@ def test_an_empty_drawing(tmp_path, cam):
     assert failures(tmp_path / "cam.dxf", cam[0]) == {"readable"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("depth", few([0.002, 0.3], 2))
 def test_a_dent_in_a_hollow_that_neither_roller_feels(tmp_path, depth):
     """A scratch narrower than the roller, at the bottom of a hollow: both rollers pass over it."""
@@ -359,6 +360,7 @@ def test_a_dent_that_no_flat_face_feels_counts_with_its_depth(tmp_path, depth):
     assert [check.name for check in verdict.checks if not check.ok] == ["contour"] * (depth > LIMITS.tolerance)
 
 
+@pytest.mark.slow
 def test_metal_left_in_a_hollow_is_felt_and_seen(tmp_path):
     intent, points = CAMS["double roller"]
     vertices = points(20_000)

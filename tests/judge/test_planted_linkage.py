@@ -93,6 +93,7 @@ def test_without_a_mechanism_nothing_is_said_of_one(tmp_path):
     assert not LINKED & set(checks)
 
 
+@pytest.mark.slow
 def test_a_dwell_that_need_not_last_is_told_and_not_judged(tmp_path):
     intent = linked(INTENT, dwell=DwellAsked(np.radians(0.1), over="relative"))
     verdict, checks = judged(written(tmp_path, "dxf", cam()), intent)
@@ -130,6 +131,7 @@ def test_any_contour_within_the_tolerance_passes(tmp_path):
         assert checks["linkage-error"].value > 0.2 * checks["linkage-error"].limit
 
 
+@pytest.mark.slow
 def test_a_limit_of_the_callers_own(tmp_path):
     path = written(tmp_path, "dxf", cam())
     reached = judged(path)[0].linkage.error.max
@@ -145,7 +147,7 @@ def test_mirrored_drawings(tmp_path):
     assert failures(path, dataclasses.replace(INTENT, mirrored=True)) == set()
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(
     ("linkage", "dyads", "unit"),
     [
@@ -193,7 +195,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault(tmp_path, fault, form):
@@ -201,7 +203,7 @@ def test_a_fault(tmp_path, fault, form):
     assert caught <= failures(written(tmp_path, form, points()))
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize("form", few(FORMS, 3))
 @pytest.mark.parametrize("k", range(0, EDGES, 200))
 def test_metal_left_on_anywhere_is_felt_by_the_output(tmp_path, form, k):

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from support import followers
 from support.camfiles import arcs_through, write_dxf
+from support.cases import few
 from support.intent import gauge_of, linked
 from support.square_frame import RESTS, Bars, Bench
 
@@ -44,15 +45,15 @@ verify: {angles: 360}
 """
 
 
-def designed_of(old="", new=""):
+def read(old="", new=""):
     assert old in TEXT
-    recipe = load_text(TEXT.replace(old, new), "a.yaml")
-    return recipe, designed(recipe)
+    return load_text(TEXT.replace(old, new), "a.yaml")
 
 
 @pytest.fixture(scope="module")
 def intent():
-    return intended(*designed_of())
+    recipe = read()
+    return intended(recipe, designed(recipe))
 
 
 def file_of(folder, lift, turned=0.0):
@@ -97,25 +98,24 @@ FAULTS = {
 }
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_the_cam_of_another_swing_is_caught(tmp_path, intent, fault):
-    wrong = designed_of(*FAULTS[fault])[1].exact.law
+    wrong = read(*FAULTS[fault]).cam.exact().law
     assert failures(file_of(tmp_path, wrong), intent) >= {"contour", "motion", "linkage-error"}
 
 
-@pytest.mark.parametrize("turned", [0.02, -0.02])
+@pytest.mark.parametrize("turned", few([0.02, -0.02]))
 def test_a_turned_cam_is_caught(tmp_path, intent, turned):
     assert failures(file_of(tmp_path, gauge_of(intent).motion, turned), intent) >= {"contour", "linkage-error"}
 
 
-@pytest.mark.parametrize("part", ["motion", "links"])
+@pytest.mark.parametrize("part", few(["motion", "links"]))
 def test_a_lift_that_is_not_the_laws_is_caught_by_the_swing_alone(tmp_path, intent, part):
     """As a generator would make it that mistook the law: the file is what its own lift says, exactly."""
     law = intent.linkage.swing
     if part == "motion":
-        wrong = frame_swing(
-            designed_of("polynomial-4567", "polynomial-345")[0].cam.frame_swing().motion, 80.0, 9.0, 1.0
-        )
+        wrong = frame_swing(read("polynomial-4567", "polynomial-345").cam.frame_swing().motion, 80.0, 9.0, 1.0)
     else:
         wrong = frame_swing(law.motion, 80.05, 9.0, 1.0)
     meant, lift = false_lift(intent, wrong)

@@ -211,6 +211,7 @@ def test_a_trimmed_undercut_of_a_yoke(tmp_path):
     assert not named(verify(path, part_of(yoke, bore=10.0), 3600, Limits(1e-3)))["motion"].ok
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", [0.02, -0.02])
 def test_a_fault_on_a_trimmed_contour(tmp_path, fault):

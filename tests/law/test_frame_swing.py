@@ -276,6 +276,7 @@ def test_swings_that_cannot_be(make, links, told):
     assert caught.value.field == "swing"
 
 
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("rise", "ground", "rocker", "does"),
     [

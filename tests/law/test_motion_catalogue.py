@@ -207,6 +207,7 @@ def test_any_member_has_nortons_peaks_and_joins(b, share, x):
     assert middle == pytest.approx([0.5, v], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_member_is_the_integral_of_its_acceleration():
     law, (b, c, x) = scca(0.3, 0.25, 0.2), (0.3, 0.25, 0.2)
     _, peak, _ = closed_form(b, c, x)

@@ -57,6 +57,7 @@ SLOW = [
 ]
 
 
+@pytest.mark.thin(40)
 @pytest.mark.parametrize("case", [*QUICK, *(pytest.param(case, marks=pytest.mark.slow) for case in SLOW)], ids=str)
 def test_a_sound_table_is_smoothed_within_its_reading(case):
     *shape, step, places, reading = case
@@ -66,6 +67,7 @@ def test_a_sound_table_is_smoothed_within_its_reading(case):
     assert off(smoothed.motion, rows) <= reading * (1 + 1e-6)
 
 
+@pytest.mark.slow
 def test_a_jump_of_the_acceleration_is_a_joint():
     """Nothing else than the acceleration jumps in the middle of both strokes."""
     rows = table(law(("cubic", "cubic", 10.0, 100, 0, 121)), 1, 4)
@@ -73,6 +75,7 @@ def test_a_jump_of_the_acceleration_is_a_joint():
     assert found == pytest.approx([50, 160.5], abs=0.1)
 
 
+@pytest.mark.slow
 def test_the_acceleration_jumps_where_a_dwell_ends_between_rows():
     motion = law(("harmonic", "harmonic", 21.175, 67.66, 25.01, 93.72))
     found = from_table(table(motion, 1, 4), 0.00005).motion
@@ -80,6 +83,7 @@ def test_the_acceleration_jumps_where_a_dwell_ends_between_rows():
     assert [rest.level for rest in found.rests] == pytest.approx([21.175, 0], abs=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("row", [18, 49, 130])
 def test_a_row_that_stands_out_of_a_law_with_jumps_is_refused(row):
@@ -95,7 +99,7 @@ SHORT = ("cycloidal", "cycloidal", 12.0, 60, 14, 90)
 MIXED = ("polynomial-345", "modified-trapezoid", 14.933, 70, 37, 83)
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(40)
 @pytest.mark.parametrize(
     ("shape", "step", "row"),
     [

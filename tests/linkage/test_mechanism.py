@@ -148,6 +148,7 @@ def test_a_polygon_in_a_rigid_frame(kind):
 # The shaft angle
 
 
+@pytest.mark.thin(2)
 def test_shaft_angle_and_its_inverse(driven):
     shaft = np.linspace(-20, 20, 777)
     theta = driven.relative(shaft)
@@ -159,6 +160,7 @@ def test_shaft_angle_and_its_inverse(driven):
     assert driven.relative(shaft + TURN) == pytest.approx(theta + TURN, abs=1e-13)
 
 
+@pytest.mark.thin(2)
 def test_derivatives_over_the_shaft_are_those_of_the_output_at_shaft_angles(driven):
     shaft, step = np.linspace(0.1, 6.1, 13), 1e-3
 
@@ -459,7 +461,7 @@ def test_a_round_cam_about_its_centre_stands_still_and_rests_on_the_dead_centre(
 # Other lifts
 
 
-@pytest.mark.thin(3)
+@pytest.mark.thin(6)
 @pytest.mark.parametrize(
     ("kind", "dyads"),
     few([*((kind, ()) for kind in LINKAGES), ("four-bar", SIX_BAR), ("oscillating yoke", SIX_BAR)], 3),

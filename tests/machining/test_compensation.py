@@ -125,6 +125,7 @@ def test_an_exact_spline_of_a_parallel(tmp_path):
     assert report["files"][0]["measured_error"] < 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("cam", few([SUPPORT, ROLLER, PAIR, SHU_WU], 2))
 def test_no_file_passes_for_another(tmp_path, cam):
@@ -152,6 +153,7 @@ def test_motion_of_a_compensated_pair_is_the_nominal_one(tmp_path):
     assert other == pytest.approx(one, rel=0.1)
 
 
+@pytest.mark.slow
 def test_undercut_that_only_the_compensation_makes():
     sharp = "cam: {kind: support, p: 25 + 3*cos(3*t)}\n"  # rho = 25 - 24 cos 3t, 1 mm at least
     outcome = pipeline.check(recipe_of("dxf, {dxf: {clearance: 0.9}}", cam=sharp))
@@ -190,6 +192,7 @@ KNIFE = "cam: {kind: disc, base_radius: 30, follower: {kind: knife-edge}, motion
 SHOE = KNIFE.replace("knife-edge", "shoe, radius: 6")
 
 
+@pytest.mark.slow
 def test_a_knife_edge_has_no_radius_to_give():
     with pytest.raises(RecipeErrors) as caught:
         pipeline.check(recipe_of("{dxf: {kerf: 0.2}}", cam=KNIFE))
@@ -214,6 +217,7 @@ def test_the_cam_of_a_knife_edge_shrinks(guide):
     assert len(outcome.report["files"]) == 2
 
 
+@pytest.mark.slow
 def test_what_a_linkage_is_not_judged_by():
     outcome = pipeline.check(recipe_of("dxf, {dxf: {kerf: 0.2}}", cam=FRAME))
     assert outcome.ok

@@ -56,6 +56,7 @@ def made(folder, **asked):
     return recipe, outcome, outcome.folder / "c.ngc"
 
 
+@pytest.mark.thin(8)
 @pytest.mark.parametrize(
     ("cam", "more", "top"),
     few(
@@ -70,7 +71,7 @@ def made(folder, **asked):
 )
 def test_what_is_left_of_a_sheet(tmp_path, cam, more, top):
     recipe, _, path = made(tmp_path, cam=cam, more=f", holes: true{more}", top=top)
-    contour = designed(recipe).contour
+    contour = designed(recipe).only_surface.contour
     t = np.concatenate([np.linspace(run.low, run.high, 4001)[:-1] for run in contour.runs])
     sign = -1.0 if top else 1.0
     bore = shapely.Point(0.0, 0.0).buffer(5.0, quad_segs=500)
@@ -246,6 +247,7 @@ def test_a_part_that_is_too_thin_for_a_program_is_refused():
         recipe_of(part="{thickness: 1e-9, bore: 10}")
 
 
+@pytest.mark.slow
 def test_metal_that_no_cutter_reaches(tmp_path):
     outcome = pipeline.check(recipe_of(cam=DEEP, cutter=20))
     assert not outcome.ok
@@ -374,6 +376,7 @@ def moved(by):
     return in_last_pass(changed)
 
 
+@pytest.mark.slow
 def test_a_pass_a_micron_beside_another_costs_no_more(program, tmp_path, monkeypatch):
     """A path that runs beside the edge is measured piece against piece, and is not cut into ever smaller ones."""
     asked = []
@@ -443,6 +446,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_planted_faults(program, tmp_path, fault):
     change, expected = FAULTS[fault]
@@ -563,6 +567,7 @@ def test_a_path_tighter_than_the_cutter(tmp_path):
     assert {check.name for check in found.checks if not check.ok} == {"direction"}
 
 
+@pytest.mark.thin(8)
 @pytest.mark.parametrize(
     ("part", "more"),
     few([(PLAIN, ", holes: true"), (PLAIN, ""), (FEATURED, ", holes: true"), (FEATURED, ", layer: true")], 2),

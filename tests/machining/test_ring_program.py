@@ -59,11 +59,12 @@ def made(folder, *args, **asked):
 
 
 def exact_opening(recipe, sign=1.0, count=8001):
-    contour = designed(recipe).contour
+    contour = designed(recipe).only_surface.contour
     t = np.concatenate([np.linspace(run.low, run.high, count)[:-1] for run in contour.runs])
     return shapely.Polygon(contour.sample(t).point * [1.0, sign])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("asked", "sign"),
     few(
@@ -126,13 +127,14 @@ def test_holes_larger_than_the_opening(tmp_path):
 
 def unreached(recipe, count=10_000):
     """How deep metal is left, by all places of the cutter's centre that are far enough from all the contour."""
-    radius, contour = recipe.manufacture.radius, designed(recipe).contour
+    radius, contour = recipe.manufacture.radius, designed(recipe).only_surface.contour
     frame = contour.sample(2 * math.pi * np.arange(count) / count)
     centre = frame.point - radius * frame.normal
     free = spatial.cKDTree(frame.point).query(centre)[0] > radius - 1e-7
     return float((spatial.cKDTree(centre[free]).query(frame.point)[0] - radius).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("across", few([118, 116]))
 def test_hollows_that_a_cutter_does_not_reach(tmp_path, across):
     recipe = recipe_of(across)
@@ -150,6 +152,7 @@ def test_hollows_that_a_cutter_does_not_reach(tmp_path, across):
     assert f"{reach['value']:.3g} mm inside" in contour["detail"]
 
 
+@pytest.mark.slow
 def test_another_way_in_where_the_path_has_a_corner():
     """Where a hollow is not reached the path turns in a corner, which is no place to come to it."""
     text = ", unreached: 1, start: {}"
@@ -163,6 +166,7 @@ def test_another_way_in_where_the_path_has_a_corner():
     assert pipeline.check(recipe_of(118, text.format(0))).ok
 
 
+@pytest.mark.slow
 @pytest.mark.thin(4)
 @pytest.mark.parametrize("more", ["", ", layer: true"])
 def test_a_cutter_of_the_radius_of_a_dwell_is_refused(more):
@@ -204,7 +208,7 @@ def test_the_path_on_a_layer_of_its_own(tmp_path, top):
 
 def program(path, recipe, *, inward, turned=0.0, side=-1, lead=3.0):
     """One pass along the parallel of the contour `inward` of it, with ways in and out from one side."""
-    pitch = designed(recipe).surface.base.shape
+    pitch = designed(recipe).only_surface.surface.base.shape
     along = fit_arcs(Curve.whole(Parallel(pitch, inward - 9.0)), 2e-5)
     c, s = math.cos(math.radians(turned)), math.sin(math.radians(turned))
     along = replace(along, points=along.points @ np.array([[c, s], [-s, c]]))
@@ -233,6 +237,7 @@ MADE = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", MADE)
 def test_a_program_that_is_made_wrong(whole, tmp_path, fault):
     given, expected = MADE[fault]
@@ -266,6 +271,7 @@ SPOILT = {
 }
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("fault", SPOILT)
 def test_a_program_that_is_spoilt(whole, tmp_path, fault):
     path = tmp_path / "c.ngc"

@@ -59,6 +59,7 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
     return out / "four-bar", outcome.report
 
 
+@pytest.mark.slow
 def test_a_dwell_is_told_over_the_angle_that_was_asked_for() -> None:
     def told(over: str) -> tuple[float | None, str]:
         asked = recipe("{band: 0.1, at_least: 36}", f"{{band: 0.1, at_least: 36, over: {over}}}")
@@ -178,6 +179,7 @@ export: {files: [{dxf: {as: polyline}}]}
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", [HARMONIC, REULEAUX])
 def test_an_acceleration_that_jumps_is_no_obstacle(text: str, tmp_path: Path) -> None:
     outcome = pipeline.export(recipe(text=text), tmp_path)
@@ -197,6 +199,7 @@ def test_an_error_lost_in_rounding_fails_the_file_and_says_so(tmp_path: Path) ->
     assert "the error of the output cannot be determined" in check["detail"]
 
 
+@pytest.mark.slow
 def test_an_output_that_stands_still_but_for_rounding_is_one_long_dwell(tmp_path: Path) -> None:
     # the slot of the second dyad lies along the slide of the first: 30 degrees, whatever the cam does
     dyads = (
@@ -212,6 +215,7 @@ def test_an_output_that_stands_still_but_for_rounding_is_one_long_dwell(tmp_path
     assert {row["length_deg"] for row in linkage["dwells"]} == {360.0}
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize(("over", "length"), [("shaft", 37.05), ("relative", 45.17)])
 def test_the_dwell_over_the_angle_asked_for_comes_first(over: str, length: float) -> None:
@@ -331,6 +335,7 @@ def test_counter_clockwise_is_the_mirror_image_with_the_same_motion(tmp_path: Pa
     assert cw["linkage"]["error"]["max"] == pytest.approx(ccw["linkage"]["error"]["max"], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_file_turned_by_a_fifth_of_a_degree_is_found_by_its_output_too(tmp_path: Path) -> None:
     made = recipe()
     pipeline.export(made, tmp_path)

@@ -109,6 +109,7 @@ def test_one_3mf_for_printing_and_one_in_place(tmp_path):
     assert pin == pytest.approx([50.0 + 40.0 * math.cos(TILT), 10.0 + 40.0 * math.sin(TILT), 5.0])
 
 
+@pytest.mark.slow
 def test_counter_clockwise_all_is_mirrored(tmp_path):
     recipe, design, (files, checks) = made(tmp_path, "3mf", more="rotation: ccw\n")
     assert failed(checks) == set()

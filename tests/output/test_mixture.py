@@ -44,6 +44,7 @@ def said_of(capsys: pytest.CaptureFixture[str], *call: str) -> str:
     return capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_killed_before_the_last_rename(recipe: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert said_of(capsys, "verify", "cam.yaml", "out/cam/cam.dxf") == ""
     assert said_of(capsys, "check", "cam.yaml") == ""

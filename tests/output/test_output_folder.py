@@ -387,6 +387,7 @@ def killed(out, generation, step):
     return subprocess.run(command, check=False).returncode == 9
 
 
+@pytest.mark.slow
 def test_killed_at_any_step(tmp_path):
     mixed = 0
     for step in range(1, 100):

@@ -103,6 +103,7 @@ def test_each_file_is_named_with_its_unit(made: Made) -> None:
     assert report["units"] == "mm"
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", DRAWN)
 def test_what_is_drawn_is_the_same_to_the_last_digits(kind: str, request: pytest.FixtureRequest) -> None:
     read: Callable[[Path], Any] = read_solid if kind == "step" else read_drawing
@@ -125,6 +126,7 @@ def test_what_is_rounded_is_the_same_within_the_tolerance(kind: str, made: Made)
     assert not sizes or sizes[0] == pytest.approx(sizes[1], abs=TOLERANCE)
 
 
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("kind", ["dxf", "svg", "stl", "3mf", "gcode", pytest.param("step", marks=kernel)])
 def test_the_proof_holds_and_covers_the_conversion(kind: str, request: pytest.FixtureRequest) -> None:
     found = found_for(kind, request)
@@ -216,6 +218,7 @@ def test_the_columns_of_a_table(table: str, tmp_path: Path) -> None:
             assert (a == b == "") or float(a) == pytest.approx(INCH * float(b), rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("kind", "changed", "failing"),
     [
@@ -331,12 +334,12 @@ def test_what_is_refused(files: str, said: str) -> None:
 def test_a_fit_leaves_room_for_what_writing_moves() -> None:
     recipe = recipe_of("dxf")
     job = Job.of(recipe, designed(recipe))
-    plain = job.outline("arcs", TOLERANCE)
+    (plain,) = job.outlines("arcs", TOLERANCE)
     moved = TOLERANCE - 0.5 * plain.bound.worst
-    assert job.outline_written("arcs", TOLERANCE, lambda _: 0.0) is plain
-    found = job.outline_written("arcs", TOLERANCE, lambda _: 0.1 * TOLERANCE)
+    assert job.outlines_written("arcs", TOLERANCE, lambda _: 0.0)[0] is plain
+    (found,) = job.outlines_written("arcs", TOLERANCE, lambda _: 0.1 * TOLERANCE)
     assert found.bound.worst + 0.1 * TOLERANCE <= TOLERANCE
-    assert job.outline_written("arcs", TOLERANCE, lambda _: moved) is plain  # no finer fit would help
+    assert job.outlines_written("arcs", TOLERANCE, lambda _: moved)[0] is plain  # no finer fit would help
     assert 0.0 < converted(plain) < 1e-12
 
 

@@ -82,6 +82,7 @@ def test_shipped_recipes_pass(name: str) -> None:
     assert skipped.get(f"second opinion[{name}.csv]") == "a table has no contour"
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(
     ("units", "rotation", "compensation"), [("mm", "ccw", "{kerf: 0.2}"), ("inch", "cw", "{clearance: 0.01}")]
 )
@@ -174,6 +175,7 @@ def with_a_box(mesh: Any) -> Any:
     return np.concatenate([mesh, box + np.array([60.0, 0.0, 0.0])])
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("write", [write_stl, write_3mf])
 @pytest.mark.parametrize(
     ("spoil", "caught"),
@@ -209,6 +211,7 @@ def test_what_cannot_be_read_is_left_out_and_fails_as_ever(tmp_path: Path, recip
         assert report["skipped"]
 
 
+@pytest.mark.slow
 def test_an_undercut_leaves_nothing_to_compare_with(tmp_path: Path) -> None:
     (tmp_path / "cam.yaml").write_text("cam: {kind: support, p: 7 + cos(3*t)}\nexport: {files: [dxf]}\n")
     report = asked(camgeo.load(tmp_path / "cam.yaml"), write_dxf(tmp_path / "cam.dxf", VERTICES))

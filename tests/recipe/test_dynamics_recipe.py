@@ -89,6 +89,7 @@ def test_the_report_of_a_train_under_a_spring() -> None:
     assert (checks[0]["limit"], checks[0]["unit"], checks[0]["sense"]) == (0.0, "N", "at_least")
 
 
+@pytest.mark.slow
 def test_lengths_in_inches() -> None:
     def residual(text: str) -> float:
         value: float = section(recipe(TRAIN, text))["runs"][0]["steady"]["residual"][0]["amplitude"]
@@ -99,6 +100,7 @@ def test_lengths_in_inches() -> None:
     assert residual(inches) == pytest.approx(residual(CAM) / 25.4, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_beyond_the_speed_at_which_float_begins_the_check_fails() -> None:
     fast = recipe(FOLLOWED.replace("600", "900"))
     outcome = pipeline.check(fast)
@@ -150,6 +152,7 @@ def test_play_that_the_file_takes_up_fails() -> None:
     assert failed[0]["value"] < 0.0
 
 
+@pytest.mark.slow
 def test_a_dwell_that_ends_with_the_turn_ends_at_360() -> None:
     rests = section(recipe())["runs"][0]["steady"]["residual"]
     assert [(rest["dwell_from_deg"], rest["dwell_to_deg"]) for rest in rests] == [(120.0, 180.0), (300.0, 360.0)]
@@ -163,6 +166,7 @@ def test_in_flight_nothing_is_said_of_how_fast_a_free_motion_dies_away() -> None
     assert "turns_to_one_percent" not in flies["transient"]
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize(("play", "faces"), [("0.02", ["lower", "upper"]), ("50", [])])
 def test_which_faces_bear(play: str, faces: list[str]) -> None:
     report = pipeline.check(recipe(FOLLOWED.replace("preload: 150", f"backlash: {play}"))).report
@@ -171,6 +175,7 @@ def test_which_faces_bear(play: str, faces: list[str]) -> None:
     assert ("touches neither face" in check.get("detail", "")) == (not faces)
 
 
+@pytest.mark.slow
 def test_a_course_that_cannot_be_followed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     from kin.dynamics import events, impacts
 
@@ -187,6 +192,7 @@ def test_a_course_that_cannot_be_followed_is_told(monkeypatch: pytest.MonkeyPatc
         pipeline.check(recipe(FOLLOWED.replace("preload: 150", "backlash: 0.02")))
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("held", ["preload: 150", "backlash: 0.02"])
 def test_nothing_is_followed_that_was_not_asked_for(held: str, monkeypatch: pytest.MonkeyPatch) -> None:
     from kin.dynamics import impacts
@@ -200,6 +206,7 @@ def test_nothing_is_followed_that_was_not_asked_for(held: str, monkeypatch: pyte
         assert (after["transient"]["turns"], after["transient"]["turns_most"]) > (1, 19)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stiffness", ["2.0e5", "1.0e12"])
 def test_all_runs_together_look_at_a_bounded_number_of_places(stiffness: str, monkeypatch: pytest.MonkeyPatch) -> None:
     from camgeo.measures import dynamics
@@ -223,6 +230,7 @@ def test_all_runs_together_look_at_a_bounded_number_of_places(stiffness: str, mo
     assert sum(places) < 1.1 * 300_000
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("held", ["preload: 8", "backlash: 0.02"])
 def test_a_follower_that_swings_has_figures_of_turning(held: str) -> None:
     train = f"dynamics: {{mass: 2.0e-3, damping: 5, stiffness: 3.0e4, {held}, rpm: 400}}\n"
@@ -245,6 +253,7 @@ def test_the_springs_force_is_given_at_the_lowest_place() -> None:
     assert run["peak_force"] == pytest.approx((150.0 + 1000.0 * 0.02) * share, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_swings_without_number_are_refused_with_the_damping_that_helps() -> None:
     stiff = TRAIN.replace("damping: 20, ", "").replace("2.0e5", "8.0e11").replace("rpm: 600", "rpm: 5.03")
     with pytest.raises(RecipeErrors, match="the swings of a turn are too many") as refused:
@@ -278,6 +287,7 @@ def test_the_checks_are_foreseen(train: str) -> None:
     assert sorted(map(str, map(tuple, foreseen(asked)))) == sorted(map(str, made))
 
 
+@pytest.mark.slow
 def test_what_is_not_asked_for_is_skipped() -> None:
     report = pipeline.check(recipe("")).report
     assert "dynamics" not in report

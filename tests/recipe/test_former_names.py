@@ -192,6 +192,7 @@ def test_the_check_of_a_pitch_curve_has_the_name_of_its_figure() -> None:
         assert (checks[name] == metal) is (name == "radius-of-curvature")
 
 
+@pytest.mark.slow
 def test_a_sweep_writes_both_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "swept.yaml"
     path.write_text(PIVOT + SWEEP.replace("KEY", "pivot").replace("FIGURE", "face-length"))

@@ -265,7 +265,7 @@ def test_aliases_stand_for_what_they_name() -> None:
     assert motion[0] == motion[1]
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize(("ends", "mark"), [("\n", b""), ("\r\n", b""), ("\r", b""), ("\n", b"\xef\xbb\xbf")])
 def test_line_ends_and_a_byte_order_mark_change_nothing(ends: str, mark: bytes) -> None:
     for path in SHIPPED:
@@ -275,6 +275,7 @@ def test_line_ends_and_a_byte_order_mark_change_nothing(ends: str, mark: bytes) 
         assert other.marks == read(data, path).marks
 
 
+@pytest.mark.slow
 def test_recipes_are_read_alike_without_the_c_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     fast = [load(path) for path in SHIPPED]
     monkeypatch.delattr(yaml, "CSafeLoader", raising=False)

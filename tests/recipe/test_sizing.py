@@ -75,6 +75,7 @@ def least_prime_by_chance(cam: Any, looks: int, seed: int) -> float:
     return best
 
 
+@pytest.mark.slow
 def test_the_pivot_is_searched_where_the_radius_of_curvature_binds() -> None:
     cam = sized(ARM)
     assert cam.base_radius == pytest.approx(73.35116062, abs=1e-7)  # 80.915 at the pivot of the pressure angle alone
@@ -128,7 +129,7 @@ cam:
 """
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("side", ["leading", "trailing"])
 @pytest.mark.parametrize(("face", "radius"), [(5.0, 10.0), (0.0, 3.0), (-10.0, 12.0), (40.0, 60.0)])
 def test_a_face_on_an_arm_is_sized_by_its_radius(face: float, radius: float, side: str) -> None:
@@ -192,6 +193,7 @@ def failure(text: str) -> str:
     return "\n".join(str(check) for check in camgeo.design(camgeo.load(text)).checks if not check.ok)
 
 
+@pytest.mark.slow
 def test_the_remark_says_what_bounds_the_size() -> None:
     told = remark(BOUND, "sizing")
     assert told == "base radius 48.77, bound by pressure-angle-return at 151.8 deg; 22.00 with on_return: 45"
@@ -213,7 +215,7 @@ def test_what_was_found_is_a_figure_and_can_be_limited() -> None:
     assert not camgeo.design(camgeo.load(BOUND + "limits: {base-radius: {at_most: 48.7}}\n")).ok
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("units", ["mm", "inch"])
 @pytest.mark.parametrize("text", [BOUND, BOUND.replace(", offset: 0", ""), ARM, FACE])
 def test_the_recipe_with_the_numbers_in_is_the_same_cam(text: str, units: str) -> None:
@@ -241,6 +243,7 @@ def test_undercut_of_a_sized_cam_says_which_key_of_sizing_frees_it(text: str) ->
     assert camgeo.design(camgeo.load(mended)).ok
 
 
+@pytest.mark.slow
 def test_limits_beside_sizing_name_the_keys_of_sizing() -> None:
     steep = BOUND + "limits: {pressure-angle: {at_most: 20}}\n"
     assert "at_most of 20 under sizing, or" in failure(steep)

@@ -143,7 +143,7 @@ def test_text_of_a_recipe_cannot_break_out(tmp_path: Path) -> None:
 
 
 def test_the_same_recipe_gives_the_same_page() -> None:
-    assert of("w-ellipse").text == Made(RECIPES / "w-ellipse.yaml").text
+    assert of("shu-wu").text == Made(RECIPES / "shu-wu.yaml").text
 
 
 # --- the tables -------------------------------------------------------------------------------------------------------
@@ -271,6 +271,7 @@ def test_a_linkage_stands_as_kin_says_over_the_shaft_angle() -> None:
     assert made.data["rests"][0][1] == pytest.approx(37.05, abs=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("offset", [-40.0, 9.0])
 def test_a_joint_off_the_mid_line_is_where_the_coupler_ends(tmp_path: Path, offset: float) -> None:
@@ -401,6 +402,7 @@ def test_a_shifted_contour_shows_as_an_error_on_one_side(tmp_path: Path) -> None
     assert error.low[STEPS // 2] == pytest.approx(-0.01, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_holes_are_the_files_own_and_a_train_has_its_table(tmp_path: Path) -> None:
     path = tmp_path / "train.yaml"
     path.write_text(
@@ -430,6 +432,7 @@ def test_an_unreadable_file_is_left_out(tmp_path: Path) -> None:
     parsed(page(recipe, found, {**of("w-ellipse").outcome.report, "files": []}))
 
 
+@pytest.mark.slow
 def test_a_mechanism_that_binds_has_a_page_that_says_so(tmp_path: Path) -> None:
     path = tmp_path / "binds.yaml"
     path.write_text(
@@ -445,6 +448,7 @@ def test_a_mechanism_that_binds_has_a_page_that_says_so(tmp_path: Path) -> None:
     assert re.search(r"It binds from .* to .* of the relative angle", text)
 
 
+@pytest.mark.slow
 def test_a_trimmed_contour_has_holes_where_it_is_cut(tmp_path: Path) -> None:
     path = tmp_path / "trimmed.yaml"
     path.write_text(
@@ -617,6 +621,7 @@ def test_derivatives_are_by_second_where_the_speed_is_given() -> None:
         assert timed[name][1] == pytest.approx(plain[name][1] * rate**order, rel=1e-12)
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize(
     ("limit", "lines"),
     [

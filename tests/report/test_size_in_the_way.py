@@ -25,6 +25,7 @@ def remark(text: str) -> str:
     return next(one.sentence for one in remarks_of(made, designed(made)) if one.name == "pressure-angle")
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize(
     "text",

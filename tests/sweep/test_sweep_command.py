@@ -78,6 +78,7 @@ def test_json_is_the_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert json.loads(capsys.readouterr().out) == report
 
 
+@pytest.mark.slow
 def test_limits_that_nothing_keeps_exit_1_and_say_why(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", str(written(tmp_path, margin=99.0)), "--out", str(tmp_path / "out")]) == 1
     said = capsys.readouterr().out
@@ -123,6 +124,7 @@ def test_a_recipe_without_a_sweep_exits_2(tmp_path: Path, capsys: pytest.Capture
     assert "sweep: this recipe has no sweep; add what to vary" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_does_not_answer_exits_3(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "--scheduler", "tcp://127.0.0.1:1"]
     assert main(arguments) == 3

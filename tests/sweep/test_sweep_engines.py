@@ -210,6 +210,7 @@ def test_distributed_prints_no_lines_of_its_own(caplog: pytest.LogCaptureFixture
             logger.removeHandler(caplog.handler)
 
 
+@pytest.mark.slow
 def test_a_worker_is_no_scheduler(cluster: LocalCluster) -> None:
     address = next(iter(cluster.scheduler_info["workers"]))
     with pytest.raises(engines.EngineError, match=f"^the server at {address} is not a Dask scheduler, but a Worker$"):
@@ -240,6 +241,7 @@ def test_workers_are_left_behind_at_once_when_nobody_waits_for_them() -> None:
     assert time.monotonic() - begun < 30.0
 
 
+@pytest.mark.slow
 def test_an_interrupt_while_workers_start_is_said_once(tmp_path: Path) -> None:
     script = tmp_path / "start.py"
     script.write_text(STARTING)

@@ -93,6 +93,7 @@ def test_figures_are_those_of_the_mechanism(linkage, shape, assembly):
     assert_like(found.figures, exact(one))
 
 
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("linkage", list(PATHS))
 def test_a_joint_off_the_mid_line(linkage):
     one, path = recipe(linkage=linkage, more=", joint_offset: 0", pivot="[12, 6]"), ("linkage.joint_offset",)
@@ -306,6 +307,7 @@ def test_lengths_are_in_the_units_of_the_recipe_and_figures_in_mm():
 FOUR_BAR_INCH = "kind: four-bar, ground: 3.2, coupler: 2.8, rocker: 4.2"
 
 
+@pytest.mark.slow
 def test_dyads_are_figured_design_by_design():
     rrr = ", dyads: [{kind: rrr, on: output, point: [80, 0], ground: [140, 80], links: [100, 30]}]"
     one = recipe(more=rrr, band=0.2)
@@ -401,6 +403,7 @@ def test_screening_leaves_the_recipe_alone():
     assert replace(one, sweep=None) == replace(swept(""), sweep=None)
 
 
+@pytest.mark.slow
 def test_links_that_shape_the_cam_make_it_anew():
     """Where the swing of the frame is given, the lift hangs on the lengths of the linkage."""
     swing = "swing: [{rise: 20, over: 140, law: cycloidal}, {dwell: 60}]"

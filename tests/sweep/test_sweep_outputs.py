@@ -125,6 +125,7 @@ def test_a_map_shows_the_best_over_the_other_axes(most: bool) -> None:
     assert np.array_equal(deep.best, flat.best + (1.0 if most else -1.0), equal_nan=True)
 
 
+@pytest.mark.slow
 def test_every_design_of_a_sequence_falls_into_its_cell() -> None:
     plan = Plan((Axis("cam.shaft[0]", 10.0, 20.0), Axis("linkage.rocker", 95.0, 110.0)), "sobol", 5000)
     cells = gather(plan, RANKING, chunks(plan)).cells
@@ -280,6 +281,7 @@ def _refuse(_ask: Ask, _values: dict[str, float]) -> tuple[dict[str, float], dic
     raise PolishError("nothing is left of the band")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_what_could_not_be_polished_is_told(tmp_path: Path) -> None:
     report = search(ask(refine="true"), tmp_path, How(1), replace(MEANS, polish=_refuse)).report
@@ -303,6 +305,7 @@ def test_a_sweep_that_finds_nothing_leaves_the_last_files_alone(tmp_path: Path) 
     assert outcome.work.computed == 0  # other limits, the same figures
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_pictures")
 def test_a_users_own_files_are_left_alone(tmp_path: Path) -> None:
     folder = tmp_path / "four-bar"
@@ -420,6 +423,7 @@ sweep: {vary: {'cam.motion[0].rise': [10, 20], 'cam.motion[0].over': [119, 120],
     assert [asked.axis_unit(axis.path) for axis in asked.plan.axes] == ["mm", "deg", "mm"]
 
 
+@pytest.mark.slow
 def test_a_picture_has_room_for_long_names_and_notes() -> None:
     cells = gather(GRID, RANKING, chunks(GRID)).cells
     paths = ", ".join(f"linkage.dyads[{i}].links[{j}]" for i in range(9) for j in (0, 1))

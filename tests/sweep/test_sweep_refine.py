@@ -98,6 +98,7 @@ def test_where_nothing_better_is_found_the_start_stays():
     assert polish(asked, given)[0] == given
 
 
+@pytest.mark.slow
 def test_listed_values_stay():
     asked = ask(vary="linkage.rocker: [100, 105], 'cam.shaft[0]': {from: 14, to: 20}")
     given, before = start(asked, (105.0, 17.0))
@@ -148,6 +149,7 @@ def test_a_dwell_is_polished_off_the_knifes_edge():
     assert after["dwell"] > 90.0
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("tolerance", ["0.05", "4"])
 def test_a_tolerance_that_leaves_nothing_of_the_band_is_refused_with_one_that_does(tolerance):
     def coarse(tolerance):
@@ -169,6 +171,7 @@ def exact(recipe):
     return mechanism, [math.degrees(length) for length in both]
 
 
+@pytest.mark.slow
 def test_the_dwell_that_was_found_is_longer_than_the_papers():
     ours, theirs = load(RECIPES / "long-dwell.yaml"), load(RECIPES / "as-figure-9-2a.yaml")
     assert ours.dwell.band == math.radians(0.1)

@@ -99,6 +99,7 @@ def reach_of_all(samples, band, row, k):
     return at
 
 
+@pytest.mark.slow
 @pytest.mark.thin(2)
 @pytest.mark.parametrize("band", [0.01, 0.1, 0.6, 30.0])
 def test_no_window_reaches_farther(band):
@@ -142,6 +143,7 @@ def exact(seed, m, row):
     return f
 
 
+@pytest.mark.slow
 @pytest.mark.thin(3)
 @pytest.mark.parametrize("band", [0.003, 0.05, 0.4])
 def test_lengths_are_those_of_kin(band):

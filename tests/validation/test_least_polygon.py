@@ -48,7 +48,7 @@ def rows(workshop):
             source,
             "241.25",
             241.25,
-            least_vertices(made.design.surface.curve, E),
+            least_vertices(made.design.only_surface.surface.curve, E),
             0.005,
             ".7g",
         ),
@@ -63,9 +63,10 @@ def figure_1(workshop):
     return workshop.shipped("as-figure-1", "polyline")
 
 
+@pytest.mark.slow
 def test_least_count_against_mpmath(figure_1):
     assert formula(E) == pytest.approx(241.25, abs=0.005)
-    assert least_vertices(figure_1.design.surface.curve, E) == pytest.approx(formula(E), rel=1e-6)
+    assert least_vertices(figure_1.design.only_surface.surface.curve, E) == pytest.approx(formula(E), rel=1e-6)
 
 
 def test_the_file_has_no_vertex_too_many(figure_1):
@@ -78,6 +79,7 @@ def test_the_file_straddles_the_curve_and_wastes_nothing(figure_1):
     assert 0.97 * E < high <= E
 
 
+@pytest.mark.thin(2)
 @pytest.mark.parametrize("e", [0.01, 0.0001])
 def test_the_count_grows_as_the_root_of_the_tolerance(workshop, e):
     made = workshop.shipped("as-figure-1", "polyline", e)

@@ -7,7 +7,7 @@ import linkage_page
 import numpy as np
 import pytest
 from linkage_page import Scene
-from linkage_reference import FIGURES, FINE, PI, Figure, apart, inverted, lift
+from support.linkage_reference import FIGURES, FINE, PI, Figure, apart, inverted, lift
 
 from kin.linkage.four_bar import FourBar, InvertedSliderCrank
 from kin.linkage.mechanism import Mechanism
@@ -25,7 +25,7 @@ FOUR_BARS = [name for name, figure in FIGURES.items() if figure.coupler is not N
 INVERTED = [name for name, figure in FIGURES.items() if figure.coupler is None]
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equations_11_to_13_hold_for_our_positions(name):
     s, s1, figure, (three, _, _), (four, _, _) = four_bar_parts(name)
@@ -40,7 +40,7 @@ def test_equations_11_to_13_hold_for_our_positions(name):
     assert apart(cd**2 + (r1 + ca) ** 2 - 2 * cd * (r1 + ca) * np.cos(three), r4**2) < 1e-11 * r4**2
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_18_with_its_plus_sign_is_the_open_assembly(name):
     s, s1, figure, (three, _, _), _ = four_bar_parts(name)
@@ -58,7 +58,7 @@ def test_equation_18_with_its_plus_sign_is_the_open_assembly(name):
     assert np.abs(np.exp(1j * off) - 1).max() < 1e-12
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", FOUR_BARS)
 def test_equation_20_is_right_while_the_rocker_stays_short_of_90_degrees(name):
     s, s1, figure, (three, _, _), (four, _, _) = four_bar_parts(name)
@@ -131,7 +131,7 @@ def test_equation_34_vanishes_over_itself_where_theta_3_is_theta_4_and_ours_does
         assert apart(at.output[1:, 0], [loop.output[k, i] for k in (1, 2)]) < 1e-3
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(4)
 @pytest.mark.parametrize("name", INVERTED)
 def test_equations_23_27_29_and_31(name):
     figure = FIGURES[name]

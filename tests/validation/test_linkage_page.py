@@ -12,7 +12,7 @@ def page():
     return linkage_page.PAGE.read_text(encoding="utf-8")
 
 
-@pytest.mark.thin(2)
+@pytest.mark.thin(3)
 @pytest.mark.parametrize("mark", linkage_page.TABLES)
 def test_every_table_of_the_page_is_measured_anew(workshop, page, mark):
     """Cells are the same, numbers within one unit of the last digit shown."""
