@@ -244,7 +244,7 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
 
 def _seen_backward(curve: Curve) -> Array:
     """Parameters (n,), of LOOKS, at which a contour begins to run backwards: so many stretches there are at least."""
-    t: Array = curve.shape.period * (np.arange(LOOKS) * GOLDEN % 1.0)  # in step with no number of waves
+    t = curve.shape.period * np.mod(np.arange(LOOKS, dtype=np.float64) * GOLDEN, 1.0)  # in step with no number of waves
     if not (curve.sample(t[:FIRST]).speed < 0.0).any():
         return t[:0]
     t = np.sort(t)
