@@ -63,7 +63,7 @@ class Surface:
     where the cam drives a rise; `place` is where a flat face is touched, mm along it. `series` are figures over the
     shaft angle whose extremes are proved: slope, the tangent of the pressure angle; contact, the place on a flat face,
     mm; spin, turns of the roller per turn of the shaft. `name` is that by which contacts and reports tell it from the
-    cam's other surfaces, empty where there is one; `disc` counts the discs on the shaft.
+    cam's other surfaces, empty where there is one; `disc` counts the discs on the shaft, `layer` is that of drawings.
     """
 
     base: Curve
@@ -75,7 +75,13 @@ class Surface:
     series: Mapping[str, Figure] = field(default_factory=dict)
     name: str = ""
     disc: int = 0
+    layer: str = "CUT"
     _extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @property
+    def prefix(self) -> str:
+        """What names of its columns in tables begin with: its name, where the cam has several."""
+        return f"{self.name}_" if self.name else ""
 
     def extremes(self, name: str) -> tuple[Extreme, Extreme] | None:
         """Least and greatest value of one of `series`, found once; None of one that there is not."""

@@ -24,8 +24,8 @@ def intended(recipe: Recipe, design: Design) -> PartIntent:
         linkage = LinkageIntent(driven.mechanism, recipe.cam.frame_swing(), dwell)
     intent = PartIntent(
         surfaces=tuple(
-            SurfaceIntent(gauges[surface.name], surface.name, side=surface.side, trimmed=design.trimmed)
-            for surface in design.exact.surfaces
+            SurfaceIntent(gauges[one.surface.name], one.surface.name, side=one.surface.side, trimmed=one.trimmed)
+            for one in design.surfaces
         ),
         mm=recipe.mm,
         mirrored=recipe.rotation == "ccw",
@@ -34,11 +34,12 @@ def intended(recipe: Recipe, design: Design) -> PartIntent:
         outline=recipe.part.outer,
         linkage=linkage,
     )
-    if design.body is None:
+    (disc,) = design.discs
+    if recipe.part.plain or disc.body is None:
         return intent
     from camgeo.synthesis.part.as_intent import cross_holes_of, holes_of, layers_of
 
-    body = design.body
+    body = disc.body
     return replace(intent, bore=None, holes=holes_of(body), layers=layers_of(body), cross_holes=cross_holes_of(body))
 
 

@@ -13,19 +13,16 @@ if TYPE_CHECKING:
     from kin.numeric.arrays import Array
 
 
-class Drive(Protocol):
-    """A contact's own position over the shaft angle, smooth between `breaks`; `kin.dynamics.drive.Motion` is the same.
-
-    Velocity may jump at `corners`, which are some of the breaks.
-    """
+class Excitation(Protocol):
+    """A position over the shaft angle, of period one turn, smooth between `breaks`: of a contact its own position."""
 
     @property
     def breaks(self) -> Array:
-        """Shaft angles at which velocity or acceleration may jump, in [0, 2 pi)."""
+        """Shaft angles at which velocity or acceleration may jump, in [0, 2 pi), in any order."""
 
     @property
-    def corners(self) -> Array:
-        """Those of the breaks at which the velocity may jump."""
+    def smooth(self) -> bool:
+        """Whether the two limits of the velocity are one at all breaks."""
 
     def rows(self, phi: Array) -> Array:
         """Position and two derivatives by the shaft angle, (3, n), at angles phi (n,) that are no breaks."""
@@ -35,7 +32,7 @@ class Drive(Protocol):
 class Shifted:
     """sign * drive + offset, where the shaft stands `turned` ahead, radians."""
 
-    drive: Drive
+    drive: Excitation
     sign: float = 1.0
     offset: float = 0.0
     turned: float = 0.0
@@ -46,12 +43,12 @@ class Shifted:
         return self.drive.breaks - self.turned if self.turned else self.drive.breaks
 
     @property
-    def corners(self) -> Array:
-        """The drive's."""
-        return self.drive.corners - self.turned if self.turned else self.drive.corners
+    def smooth(self) -> bool:
+        """As that one."""
+        return self.drive.smooth
 
     def rows(self, phi: Array) -> Array:
-        """See `Drive`."""
+        """See `Excitation`."""
         rows = self.sign * self.drive.rows(phi + self.turned if self.turned else phi)
         rows[0] += self.offset
         return rows

@@ -137,19 +137,15 @@ class OfArmFace:
     face: ArmFace
     bearing: Bearing
     datum: float
+    smooth: ClassVar[bool] = False
 
     @cached_property
     def breaks(self) -> Array:
         """Where the contact passes from piece to piece."""
         return np.mod(self.face.starts(self.bearing), TURN)
 
-    @property
-    def corners(self) -> Array:
-        """Anywhere, as for a face."""
-        return self.breaks
-
     def rows(self, phi: Array) -> Array:
-        """See `Drive`."""
+        """See `Excitation`."""
         rows = self.face.touch(self.bearing, phi)
         rows[0] += self.face.side * self.datum - phi
         rows[1] -= 1.0

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -39,19 +39,15 @@ class OfFace:
     bearing: Bearing
     turned: float = 0.0
     share: float = 1.0
+    smooth: ClassVar[bool] = False  # over an edge the contact leaps from end to end
 
     @property
     def breaks(self) -> Array:
         """Where the contact passes from piece to piece."""
         return np.mod(self.bearing.breaks - self.turned, TURN)
 
-    @property
-    def corners(self) -> Array:
-        """Anywhere: over an edge the contact leaps from end to end."""
-        return self.breaks
-
     def rows(self, phi: Array) -> Array:
-        """See `Drive`."""
+        """See `Excitation`."""
         theta = phi + self.turned
         rows: Array = METRE / self.share * self.bearing.derivatives(theta, self.bearing.find(theta))
         return rows
@@ -167,16 +163,7 @@ class Yoke(FlatFace):
         return 2.0 * tolerance
 
     def _play(self, bearing: Bearing) -> Play:
-        nodes = bearing.nodes(0.0, np.pi, np.mod(bearing.breaks - np.pi, TURN))
-        near, near_low, near_high = bearing.between(nodes)
-        far, far_low, far_high = bearing.between(nodes, np.pi)
-
-        def breadth(theta: Array, of: Indices) -> Array:
-            return bearing.derivatives(theta, near[of]) + bearing.derivatives(theta + np.pi, far[of])
-
-        at_low, at_high = near_low + far_low, near_high + far_high
-        fine = resolution(bearing.contour.vertices)
-        found = extremes(nodes[:-1], nodes[1:], at_low, at_high, breadth, resolution=fine)
+        found = bearing.breadth_extremes(resolution(bearing.contour.vertices))
         return Play(
             self.breadth - found.greatest,
             degrees(found.greatest_at),

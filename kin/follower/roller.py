@@ -13,7 +13,7 @@ import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -61,6 +61,7 @@ class OfRoller:
     obstacle: Arcs
     guide: Guide
     turned: float = 0.0
+    smooth: ClassVar[bool] = False  # the roller may rest in a hollow
 
     @cached_property
     def breaks(self) -> Array:
@@ -79,13 +80,8 @@ class OfRoller:
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         return np.sort(np.mod(np.concatenate([ends, low]), TURN))
 
-    @property
-    def corners(self) -> Array:
-        """Anywhere: a roller may rest in a hollow."""
-        return self.breaks
-
     def rows(self, phi: Array) -> Array:
-        """See `Drive`."""
+        """See `Excitation`."""
         guide, angle = self.guide, phi + self.turned
         r, piece = _touched(self.obstacle, self.guide, phi, self.turned)
         met = self.obstacle.take(piece)

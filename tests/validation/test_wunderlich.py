@@ -114,7 +114,7 @@ def turns(ratio, share):
 def oval(share):
     """Whether the pitch curve of Booth's lemniscate with m^2 = share l^2 is convex: its tangent turns one way."""
     cam = f"{{kind: double-roller, ratio: 2, arm: {ARM}, roller_radius: 1, delta: {{cos: {{1: {share * ARM**2!r}}}}}}}"
-    base = designed(read(f"cam: {cam}\n".encode(), "booth.yaml")).surface.base
+    base = designed(read(f"cam: {cam}\n".encode(), "booth.yaml")).only_surface.surface.base
     return base.sample(np.array([PI / 2])).turn[0] > 0 and base.sample(np.linspace(0, 2 * PI, 721)).turn.min() > 0
 
 
