@@ -136,10 +136,6 @@ class Follower(ABC):
         return math.inf
 
     @abstractmethod
-    def contact(self, contour: Contour, phi: Array) -> Array:
-        """Position, mm or radians, on the contour as it lies: (n,), or (2, n) with each of two contacts resting."""
-
-    @abstractmethod
     def drives(self, contour: Contour) -> Sequence[Excitation]:
         """What each contact feels of a contour over the shaft angle: its own position, in SI."""
 

@@ -191,12 +191,6 @@ class _OnArm(Moved):
             bearing = face.bearing(contour)
         return bearing
 
-    def contact(self, contour: Contour, phi: Array) -> Array:
-        """Position, radians: (n,), or (2, n) with either face resting. ContactError if that reaches the pivot."""
-        bearing = self.bearing(contour)
-        position = np.stack([self._rows(bearing, i, phi)[0] for i in range(len(self.faces))])
-        return position if len(position) > 1 else position[0]
-
     def drives(self, contour: Contour) -> list[OfArmFace]:
         """Swing of each face away from the cam, as it rests on the contour. ContactError if that reaches the pivot."""
         bearing = self.bearing(contour)

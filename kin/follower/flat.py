@@ -89,12 +89,6 @@ class FlatFace(Follower):
         """The exact contour; its parameter is the shaft angle."""
         return FlatEnvelope(LiftPitch(self.lift, self.ahead))
 
-    def contact(self, contour: Contour, theta: Array) -> Array:
-        """Position of the face (of a yoke face 1), mm: (n,), or (2, n) with either face resting."""
-        own = [contour.support(theta + self.ahead + one.turned).q / self._share for one in self.contacts]
-        found = np.stack([one.position(q) for one, q in zip(self.contacts, own, strict=True)])
-        return found if len(found) > 1 else found[0]
-
     def drives(self, contour: Contour) -> list[OfFace]:
         """Position of each face as it rests on the contour."""
         bearing = bearing_of(contour)

@@ -114,11 +114,6 @@ class _Rollers(Moved):
         """Length of the arm."""
         return self.guides[0].lever
 
-    def contact(self, contour: Contour, phi: Array) -> Array:
-        """Position, mm or radians: (n,), or (2, n) with either roller held. ContactError where nothing is met."""
-        found = self._positions(self._obstacle(contour), phi)
-        return found if len(found) > 1 else found[0]
-
     def drives(self, contour: Contour) -> list[OfRoller]:
         """Position of each roller on its guide; arcs within SPLINE_ERROR, or as fine as asked for, are its splines."""
         obstacle = self._obstacle(contour, contour.arcs_within or SPLINE_ERROR)

@@ -123,7 +123,7 @@ def test_opposite_rollers_hold_a_frame_from_both_sides():
     assert upper is not None
     consistent(lower, step=1e-5)
     consistent(upper, step=1e-5)
-    near, below = follower.contact(contour, PHI)
+    near, below = followers.resting(follower, contour, PHI)
     assert lower.rows(PHI)[0] == pytest.approx(1e-3 * near, abs=1e-15)
     assert upper.rows(PHI)[0] == pytest.approx(1e-3 * below + 2e-5, abs=1e-15)
     exact = intended_faces(follower, 2e-5)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from support import followers
 from support.page_tables import Row
 
 from camgeo.recipe.loading import read
@@ -257,7 +258,7 @@ def rows(workshop):
         )
     nine = workshop.shipped("w-figure-9")
     swing = np.degrees(np.arcsin(625 / 3600))
-    contact = nine.design.exact.gauge.contact(nine.contour, t)
+    contact = followers.resting(nine.design.exact.gauge, nine.contour, t)
     found += [
         Row(
             "swing of w-figure-9, asin(m²/l²), deg (CSV)",
@@ -411,7 +412,7 @@ def test_equation_4_9_symmetry_of_a_law_by_contact_with_the_file(workshop):
     made = workshop.shipped("w-law")
     follower = made.design.exact.gauge
     phi = np.linspace(0, PI / 2, 181)
-    psi = follower.contact(made.contour, phi).mean(axis=0)
-    image = follower.contact(made.contour, phi - psi + PI / 2).mean(axis=0)
+    psi = followers.resting(follower, made.contour, phi).mean(axis=0)
+    image = followers.resting(follower, made.contour, phi - psi + PI / 2).mean(axis=0)
     assert image == pytest.approx(-psi, abs=2e-4)
     assert np.ptp(psi) > 0.1
