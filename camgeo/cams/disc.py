@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
+from camgeo.cams.groove import TRACK, Groove, GrooveCam, check_groove, is_groove
 from camgeo.cams.motion import check_whole_turn, motion_field
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
@@ -88,19 +89,12 @@ TABLE = Table(
         length("base_radius", "radius of the cam's own circle at displacement 0, or of a ring's opening"),
         SIZING,
         Field("follower", Kind.OWN, "what follows the cam, on a stem or an arm", required=True, form=FOLLOWER),
-        Field(
-            "track",
-            Kind.CHOICE,
-            "which side of the metal is followed: internal is the opening of a ring",
-            default="external",
-            choices=("external", "internal"),
-            later_choices=(("groove", "grooves"),),
-        ),
+        TRACK,
         motion_field("motion", Kind.STROKE, "motion over one turn, 360 degrees", whole_turn=True, required=True),
         UNDERCUT,
     ),
     alternatives=(("base_radius", ()), ("sizing", ())),
-    later=(("conjugate", "conjugate cams"), ("groove", "grooves")),
+    later=(("conjugate", "conjugate cams"),),
 )
 
 
@@ -129,6 +123,8 @@ def check(cam: Values, reader: Reader) -> None:
         # it is that of the pitch curve's convex places, where the metal of a ring is hollow
         remedy = "give pressure-angle alone, or base_radius in place of sizing"
         reader.fault_at("cam.sizing.radius-of-curvature", "does not size a ring", None, remedy)
+    if is_groove(cam):
+        check_groove(cam, reader)
     if arm is not None and "pivot" not in arm and "sizing" not in cam and "cam.follower.arm.pivot" not in reader.marks:
         wanted = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
         reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)
@@ -167,6 +163,8 @@ def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
     if "sized" in cam:
         sized: DiscCam = cam["sized"]
         return sized
+    if is_groove(cam):
+        return GrooveCam(**_values(cam), groove=Groove(**cam["track"]["groove"]))
     return DiscCam(**_values(cam))
 
 

@@ -42,10 +42,13 @@ class DiscCam(GuidedCam):
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
         """By the displacement over a whole turn, 0 where it is lowest."""
+        law = self._displacement()
+        return ExactFaced(self, law) if isinstance(self.touch, Flat) else ExactGuided(self, law)
+
+    def _displacement(self) -> Displacement:
         from camgeo.curve.moving_frame import Displacement
 
-        law = Displacement.of(self._turn().demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))
-        return ExactFaced(self, law) if isinstance(self.touch, Flat) else ExactGuided(self, law)
+        return Displacement.of(self._turn().demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))
 
     def _turn(self) -> Motion:
         return self.motion.motion(2.0 * math.pi, "motion", 1)

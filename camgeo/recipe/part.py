@@ -310,7 +310,9 @@ PART = mapping(
     _LIGHTENING,
     length("chamfer", "chamfer of 45 degrees along both edges of the contour, its height", default="none"),
     _optional("mark", "timing mark on the ray where the shaft angle is 0", *_MARK),
-    length("outer", "diameter of the outline of a ring, with `track: internal`", default="none"),
+    length(
+        "outer", "diameter of the outline of a ring, with `track: internal`, or of a groove's blank", default="none"
+    ),
     length("wall", "least wall between any two edges", default="reported, and above 0"),
     later=(("follower", ""),),
 )

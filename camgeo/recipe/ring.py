@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from camgeo.cams.groove import is_groove
+
 if TYPE_CHECKING:
     from camgeo.schema.reader import Reader, Values
 
@@ -15,9 +17,10 @@ def check_ring(values: Values, reader: Reader) -> None:
     """Note a ring without its outline, an outline without its ring, and what a ring cannot have."""
     cam, given = values.get("cam"), "part.outer" in reader.marks
     if not is_ring(values):
-        if given and cam is not None and ("track" in cam or "cam.track" not in reader.marks):
-            remedy = "give a disc cam with `track: internal`, or leave it out"
-            reader.fault_at("part.outer", "belongs to a ring", None, remedy)
+        unread = cam is None or ("track" not in cam and "cam.track" in reader.marks)
+        if given and not unread and not is_groove(values["cam"]):
+            remedy = "give a disc cam with `track: internal` or a groove, or leave it out"
+            reader.fault_at("part.outer", "belongs to a ring or a groove", None, remedy)
         return
     if not given:
         remedy = "give part.outer, or leave track out"

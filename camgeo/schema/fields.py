@@ -90,8 +90,7 @@ class Form:
 class Field:
     """One key of a table. Bounds are in the recipe's own units and degrees, as written.
 
-    `formerly` is the key's former name, `former_choices` are pairs of a former choice and the present one;
-    `later_choices`, words or mappings with that key, are refused as `later` of a table are.
+    `formerly` is the key's former name, `former_choices` are pairs of a former choice and the present one.
     """
 
     name: str
@@ -113,7 +112,6 @@ class Field:
     most: int = MOST_COEFFICIENTS  # entries of a list of numbers
     formerly: str = ""
     former_choices: tuple[tuple[str, str], ...] = ()
-    later_choices: tuple[tuple[str, str], ...] = ()
 
     @property
     def noun(self) -> str:

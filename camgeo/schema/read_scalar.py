@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from camgeo.schema.errors import NEAR, NEARER, shown, suggestion
-from camgeo.schema.fields import Kind, either, not_yet
+from camgeo.schema.fields import Kind, either
 from camgeo.schema.quantity import UnitComplaint, holds_unit, is_metric, read_quantity, units_for
 from camgeo.schema.scalars import Complaint, SmallComplaint, read_name, read_paragraph, read_ratio, whole
-from camgeo.schema.yaml_source import Mapping, Scalar, described, entries, written
+from camgeo.schema.yaml_source import Scalar, described, written
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,11 +37,6 @@ def read_text(reader: Reader, field: Field, node: Node, path: str) -> object:
 
 def read_choice(reader: Reader, field: Field, node: Node, path: str) -> str | None:
     """Read one of a few words."""
-    asked = (node.text,) if isinstance(node, Scalar) else entries(node) if isinstance(node, Mapping) else ()
-    for word, made in field.later_choices:
-        if word in asked:
-            reader.fault(node.mark, path, not_yet(made), None, reader.wanted(field))
-            return None
     scalar = _scalar(reader, field, node, path)
     if scalar is None or scalar.text in field.choices:
         return None if scalar is None else scalar.text

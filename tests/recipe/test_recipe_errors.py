@@ -638,9 +638,6 @@ def test_cams(body: str, messages: list[str]) -> None:
 @pytest.mark.parametrize(
     ("lines", "place"),
     [
-        ("  track: {groove: {clearance: 0.03}}\n", "4:10: cam.track: grooves"),
-        ("  track: groove\n", "4:10: cam.track: grooves"),
-        ("  groove: {clearance: 0.03}\n", "4:3: cam.groove: grooves"),
         ("  conjugate: {radius: 11, distance: 120}\n", "4:3: cam.conjugate: conjugate cams"),
         ("camshaft: {lobes: [{recipe: intake.yaml, at: 234, z: 0}]}\n", "4:1: camshaft: camshafts"),
     ],

@@ -23,8 +23,8 @@ def faults(text):
 
 def test_a_ring_and_its_outline_need_each_other():
     assert faults(INTERNAL) == [("cam.track", "a ring needs part.outer, the diameter of its outline")]
-    assert faults(RING.format("") + OUTER) == [("part.outer", "belongs to a ring")]
-    assert faults("cam: {kind: support, p: 30}\n" + OUTER) == [("part.outer", "belongs to a ring")]
+    assert faults(RING.format("") + OUTER) == [("part.outer", "belongs to a ring or a groove")]
+    assert faults("cam: {kind: support, p: 30}\n" + OUTER) == [("part.outer", "belongs to a ring or a groove")]
     assert load_text(INTERNAL + OUTER, "ring.yaml").part.outer == 130.0
     assert load_text(RING.format("") + OUTER.replace(", outer: 130", ""), "ring.yaml").part.outer is None
 

@@ -47,7 +47,6 @@ def table(found):
     together = [name for name, _ in found.alternatives]
     lines = [HEAD, *(row(field, together) for field in found.fields)]
     later = [f"`{name}`" for name, _ in found.later]
-    later += [f"`{field.name}: {word}`" for field in found.fields for word, _ in field.later_choices]
     if later:
         lines += ["", f"Known and refused in this version: {', '.join(later)}."]
     return "\n".join(lines)
