@@ -8,7 +8,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from camgeo.measures.units import in_units
-from camgeo.report.bound import sign, words
+from camgeo.report.bound import sign, title, words
 from camgeo.report.document import BELOW, value_text
 from kin.judge import check as judge
 
@@ -30,7 +30,12 @@ class Check(judge.Check):
         """Give a check of the judge's, which is in mm, in the recipe's units."""
         value, unit = in_units(recipe, check.value, check.unit)
         limit, _ = in_units(recipe, check.limit, check.unit)
-        return Check(check.name, check.ok, value, limit, unit, check.at_deg, check.sense, check.file, check.detail)
+        return Check(**vars(check) | {"value": value, "limit": limit, "unit": unit})
+
+    @property
+    def title(self) -> str:
+        """The name, with the surface that it is of where a cam has several."""
+        return title(self._entry())
 
     @property
     def bound(self) -> str:
@@ -49,7 +54,7 @@ class Check(judge.Check):
 
     def __str__(self) -> str:
         """Write the check on one line."""
-        text = f"{self.name} of {self.file}" if self.file else self.name
+        text = f"{self.title} of {self.file}" if self.file else self.title
         text += ": ok" if self.ok else ": FAILED"
         if self.value is not None:
             text += f", {self.figure}"

@@ -53,7 +53,7 @@ def line(text: str) -> str:
 
 def _row(check: Check) -> tuple[str, ...]:
     return (
-        check.name,
+        check.title,
         "ok" if check.ok else "FAILED",
         check.figure,
         check.bound,

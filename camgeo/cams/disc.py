@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
-from camgeo.cams.groove import TRACK, Groove, GrooveCam, check_groove, is_groove
+from camgeo.cams.groove import TRACK, Groove, GrooveCam, is_groove
 from camgeo.cams.motion import check_whole_turn, motion_field
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
@@ -123,12 +123,10 @@ def check(cam: Values, reader: Reader) -> None:
         # it is that of the pitch curve's convex places, where the metal of a ring is hollow
         remedy = "give pressure-angle alone, or base_radius in place of sizing"
         reader.fault_at("cam.sizing.radius-of-curvature", "does not size a ring", None, remedy)
-    if is_groove(cam):
-        check_groove(cam, reader)
     if arm is not None and "pivot" not in arm and "sizing" not in cam and "cam.follower.arm.pivot" not in reader.marks:
         wanted = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
         reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)
-    if "sizing" in cam and not reader.errors:
+    if "sizing" in cam and not (reader.errors or is_groove(cam)):
         _size(cam, reader)
 
 

@@ -186,7 +186,10 @@ class Advice(ABC):
     less_steep            what makes the motion less steep; empty where the recipe gives no stroke
     less_swing            how the follower comes to swing less
     radius_field          what the radius of the touch is called
+    trims                 whether undercut may be cut off
     """
+
+    trims: ClassVar[bool] = True
 
     gain: float | None = field(default=None, kw_only=True)
     least_pressure_angle: float = field(default=0.0, kw_only=True)

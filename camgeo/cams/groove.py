@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import Surface
 from camgeo.cams.guided import LARGER_BASE, ExactGuided, RoundAdvice, Spin
 from camgeo.curve.curve import Curve
 from camgeo.curve.parallel import Parallel
-from camgeo.schema.fields import MOST, Field, Form, Kind, Table, length
+from camgeo.schema.fields import Field, Form, Kind, Table, coordinate, length
 from camgeo.schema.json_schema import table_schema
 from camgeo.schema.read_scalar import read_choice
 from camgeo.schema.yaml_source import Mapping
@@ -44,6 +44,7 @@ class GrooveAdvice(RoundAdvice):
     """Of a roller between flanks: what frees the outer one's gauge frees it of a roller smaller by the clearance."""
 
     clearance: float = 0.0
+    trims: ClassVar[bool] = False
 
     def free_of_undercut(self, free_at: float, mm: float) -> str:
         """A smaller roller on the same pitch curve."""
@@ -125,15 +126,12 @@ GROOVE = Field(
     required=True,
     table=Table(
         (
-            Field(
+            coordinate(
                 "clearance",
-                Kind.LENGTH,
-                "width of the groove less the roller's diameter, all of it on the outer flank",
+                "width of the groove less the roller's diameter, all of it on the outer flank, 0 or more",
                 default="0",
-                at_least=0,
-                at_most=MOST,
             ),
-            length("depth", "depth of the groove from the top face, below the thickness; solids and programs need it"),
+            length("depth", "depth of the groove from the top face, below the thickness"),
         )
     ),
 )
@@ -163,14 +161,3 @@ TRACK = Field(
 def is_groove(cam: Values) -> bool:
     """Whether the values of a cam are of a groove."""
     return isinstance(cam.get("track"), dict)
-
-
-def check_groove(cam: Values, reader: Reader) -> None:
-    """Note what does not go with a groove; all of a recipe that was given has its mark."""
-    if cam.get("follower", {}).get("kind", "roller") != "roller":
-        reader.fault_at("cam.track", "a groove is followed by a roller", "groove", "give a roller, or leave track out")
-    if "sizing" in cam:
-        remedy = "give base_radius, that of the inner flank"
-        reader.fault_at("cam.sizing", "does not size a groove", None, remedy)
-    if cam.get("undercut") == "trim":
-        reader.fault_at("cam.undercut", "a groove is not trimmed: its roller would jump", "trim", "leave it out")

@@ -101,16 +101,16 @@ NO_CHAMFER = "no chamfer, or a contour without corners"
 
 
 def lone_ring(recipe: Recipe) -> bool:
-    """Whether the part is a ring without holes: its one wall is that between opening and outline."""
+    """Whether the part is a ring or a blank without holes: its one wall is that between opening and outline."""
     part = recipe.part
-    return part.outer is not None and part.bolts is None and part.dowel is None
+    return part.outer is not None and part.bore is None and part.bolts is None and part.dowel is None
 
 
 def smaller_bore(check: Entry, _report: Entry, recipe: Recipe) -> str:
     """Tell which bore, or outline of a ring, leaves the wall; of a part with more the check itself names the edges."""
     value, limit, part = check["value"], check["limit"], recipe.part
     detail = check.get("detail", "")
-    outline = part.outer is not None and detail.startswith("opening and outline") and not detail.endswith(" would do")
+    outline = part.outer is not None and "opening and outline: " in detail and not detail.endswith(" would do")
     if value is None or limit is None or not (part.plain or outline or lone_ring(recipe)):
         return ""
     less = 2.0 * (limit - value)

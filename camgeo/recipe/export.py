@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from camgeo.recipe.machining import COMPENSATION, Compensation, build_compensation, check_milling, check_slight
-from camgeo.recipe.ring import is_ring
+from camgeo.recipe.track import is_ring
 from camgeo.schema.errors import shown
 from camgeo.schema.fields import MOST_FILES, Field, Form, Kind, Table, either, length, mapping
 from camgeo.schema.json_schema import table_schema

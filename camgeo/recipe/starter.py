@@ -9,7 +9,7 @@ from camgeo.cams.families import FAMILIES
 from camgeo.recipe.cam import CAMS
 from camgeo.recipe.keys import RECIPE
 from camgeo.recipe.linkage import LINKAGES
-from camgeo.recipe.ring import OF_A_DISC
+from camgeo.recipe.track import OF_A_DISC
 from camgeo.schema.errors import suggestion
 from camgeo.schema.fields import Field, Kind, Table, either
 

@@ -1,4 +1,4 @@
-"""How a check's limit is reported: whether the limit itself is allowed, in words and as a sign."""
+"""How a check is titled and its limit reported: whether the limit itself is allowed, in words and as a sign."""
 
 from __future__ import annotations
 
@@ -30,6 +30,11 @@ STRICT: dict[str, float | None] = {
     JAM.name: None,
 }
 """Checks that a figure on its limit does not hold, and the one limit for which that is so (None: any)."""
+
+
+def title(check: dict[str, Any]) -> str:
+    """Give the name of a check, with the surface that it is of where a cam has several: `motion, outer`."""
+    return f"{check['name']}, {check['surface']}" if check.get("surface") else str(check["name"])
 
 
 def is_strict(check: dict[str, Any]) -> bool:

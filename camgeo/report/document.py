@@ -12,7 +12,7 @@ from camgeo.common.terminal import escaped
 from camgeo.common.units import UNIT_MM
 from camgeo.measures.units import in_units, of_displacements
 from camgeo.recipe.export import NO_CONTOUR
-from camgeo.report.bound import is_strict, sign, words
+from camgeo.report.bound import is_strict, sign, title, words
 from camgeo.report.listed import listed
 from camgeo.version import __version__
 
@@ -263,7 +263,7 @@ def table(report: dict[str, Any]) -> str:
     rows: list[Sequence[str]] = [("check", "", "value", "limit", "unit", "at", "file")]
     rows += [
         (
-            check["name"],
+            title(check),
             "ok" if check["ok"] else "FAILED",
             value_text(check),
             "" if check["limit"] is None else f"{sign(check)} {_number(check['limit'])}",
@@ -323,7 +323,7 @@ def _times(stages: Sequence[dict[str, Any]]) -> str:
 
 def _told(check: dict[str, Any]) -> str:
     """A failed check as a sentence."""
-    text = f"{check['name']}"
+    text = title(check)
     if check.get("file"):
         text += f" ({escaped(check['file'])})"
     if check["value"] is not None:

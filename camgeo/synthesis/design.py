@@ -234,7 +234,8 @@ def _checked(recipe: Recipe, surface: Surface, shaft_deg: Callable[[float], floa
             continue
         worst = max(cuts, key=lambda cut: cut.depth)
         detail = f"{_extent(surface, shaft_deg, worst)}; {free}{outcome}"
-        if not trim and worst.depth <= SMALL * surface.curve.size and _can_be_trimmed(surface.curve):
+        small = worst.depth <= SMALL * surface.curve.size
+        if recipe.cam.advice.trims and not trim and small and _can_be_trimmed(surface.curve):
             detail += "; or let what is lost be cut off: undercut: trim"
         depth = worst.depth if math.isfinite(worst.depth) else None
         ok, at_deg, limit = contour is not None, shaft_deg(worst.at), None if cut_off else 0.0

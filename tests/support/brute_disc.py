@@ -125,9 +125,10 @@ def motion(rows: list[tuple[float, float, str]], degrees: np.ndarray) -> np.ndar
     return found - low.min()
 
 
-def polygon(path: Any, step: float = 0.01) -> np.ndarray:
-    """The outermost contour of a drawing as complex vertices (n,), its arcs in steps of that length."""
-    outlines = [_vertices(entity, step) for entity in ezdxf.readfile(path).modelspace()]
+def polygon(path: Any, step: float = 0.01, layer: str = "") -> np.ndarray:
+    """The outermost contour of a drawing, or of a layer, as complex vertices (n,), its arcs in steps of that length."""
+    entities = [entity for entity in ezdxf.readfile(path).modelspace() if layer in {"", entity.dxf.layer}]
+    outlines = [_vertices(entity, step) for entity in entities]
     return max((outline for outline in outlines if len(outline)), key=lambda outline: np.abs(outline).max())
 
 

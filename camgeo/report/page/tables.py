@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from camgeo.checks.declared import CHECKS
-from camgeo.report.bound import sign
+from camgeo.report.bound import sign, title
 from camgeo.report.document import measured, pieces_word, value_text
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def _row(state: tuple[str, str], one: dict[str, Any], limit: str, over: str, tol
     detail = f'<div class="detail">{escape(told)}</div>' if told else ""
     return (
         f'<tr class="{state[0]}"><td class="state">{state[1]}</td>'
-        f'<th scope="row">{escape(one["name"])}{detail}</th>'
+        f'<th scope="row">{escape(title(one))}{detail}</th>'
         f'<td class="number">{value}</td>'
         f"<td>{escape(_unit(one['unit']))}</td>{_cell(limit, 'number')}{_cell(_place(one['at_deg'], over))}"
         f"{_cell(escape(one.get('file', '')), 'file')}</tr>"

@@ -1,0 +1,68 @@
+"""Tracks: a ring, whose opening is followed from within, or a groove; what their recipes need, and cannot have."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from camgeo.cams.groove import is_groove
+
+if TYPE_CHECKING:
+    from camgeo.schema.reader import Reader, Values
+
+OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
+"""Keys of a part that a ring cannot have."""
+
+
+def check_track(values: Values, reader: Reader) -> None:
+    """Note an outline without what it goes round, and what does not go with a ring or a groove."""
+    cam = values.get("cam")
+    if is_ring(values):
+        _check_ring(reader)
+    elif is_groove(cam or {}):
+        _check_groove(values, reader)
+    elif "part.outer" in reader.marks and cam is not None and ("track" in cam or "cam.track" not in reader.marks):
+        remedy = "give a disc cam with `track: internal` or a groove, or leave it out"
+        reader.fault_at("part.outer", "belongs to a ring or a groove", None, remedy)
+
+
+def is_ring(values: Values) -> bool:
+    """Whether the values of a recipe are of a ring."""
+    return bool(values.get("cam", {}).get("track") == "internal")
+
+
+def _check_ring(reader: Reader) -> None:
+    if "part.outer" not in reader.marks:
+        remedy = "give part.outer, or leave track out"
+        reader.fault_at("cam.track", "a ring needs part.outer, the diameter of its outline", "internal", remedy)
+    for name in OF_A_DISC:
+        if f"part.{name}" in reader.marks:
+            reader.fault_at(f"part.{name}", "belongs to a disc on a shaft, not to a ring", None, "leave it out")
+
+
+def _check_groove(values: Values, reader: Reader) -> None:
+    cam, part, depth = values["cam"], values.get("part", {}), "cam.track.groove.depth"
+    groove = cam["track"].get("groove", {})
+    follower = cam.get("follower", {}).get("kind", "roller")
+    if follower != "roller":
+        remedy = "give a roller, or leave track out"
+        reader.fault_at("cam.follower.kind", "does not run in a groove", follower, remedy)
+    if "sizing" in cam:
+        reader.fault_at("cam.sizing", "does not size a groove", None, "give base_radius, that of the inner flank")
+    if cam.get("undercut") == "trim":
+        reader.fault_at("cam.undercut", "a groove is not trimmed", "trim", "leave it out")
+    if "chamfer" in part:
+        reader.fault_at("part.chamfer", "the edges of a groove are not chamfered", None, "leave it out")
+    if part.get("hub", {}).get("side", "bottom" if "hub" not in part else "top") != "bottom":
+        remedy = "leave it out, or give it side: bottom"
+        reader.fault_at("part.hub", "a groove is milled from the top face", None, remedy)
+    if groove.get("clearance", 0.0) < 0.0:
+        remedy = "give 0 or more; one roller on both flanks would scrub"
+        reader.fault_at("cam.track.groove.clearance", "a roller in a groove needs clearance", None, remedy)
+    if "depth" in groove and not groove["depth"] < part.get("thickness", groove["depth"] + 1.0):
+        reader.fault_at(depth, "not below the thickness", None, "give a depth below part.thickness")
+    for file in values.get("export", {}).get("files", []):
+        kind, path = file["kind"], file["path"]
+        for name in ("kerf", "clearance", "shrinkage"):
+            if name in file:
+                remedy = "leave it out; cam.track.groove.clearance is the play of the roller"
+                reader.fault_at(f"{path}.{kind}.{name}", "a groove is made to its nominal size", None, remedy)
