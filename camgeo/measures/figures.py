@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from camgeo.synthesis.design import Design, SurfaceDesign
     from camgeo.synthesis.linkage import Driven
+    from kin.follower.motion_error import Play
     from kin.judge.check import Check
     from kin.judge.verdict import SurfaceVerdict
     from kin.linkage.extremes import Place
@@ -338,6 +339,8 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
     if name == "output-error":
         error = None if file.linkage is None else file.linkage.error
         return Measured(None, "", detail=unread) if error is None else Measured(error.max, error.unit, error.at_deg)
+    if name == "backlash" and file.closures:
+        return _greatest(_of_play(closure.play) for closure in file.closures)
     if name == "backlash":
         held = [
             one for one in checks if one.file == file.path.name and one.name in CHECKS and CHECKS[one.name].backlash
@@ -346,6 +349,13 @@ def of_file(name: str, file: FileResult, checks: Sequence[Check]) -> Measured:
         return _of_check(max(held, key=_nearness)) if held else Measured(None, "mm", detail=lost)
     dwell = name == "dwell-error"
     return _greatest(_of_motion_error(one, dwell=dwell) for one in surfaces)
+
+
+def _of_play(play: Play) -> Measured:
+    """Greatest play or interference of a follower between two surfaces of a file."""
+    if play.most >= -play.least:
+        return Measured(play.most, play.unit, play.most_at_deg)
+    return Measured(-play.least, play.unit, play.least_at_deg)
 
 
 def _of_motion_error(surface: SurfaceVerdict, *, dwell: bool) -> Measured:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from camgeo.recipe.recipe import Recipe
     from kin.follower.motion_error import MotionError
     from kin.judge.check import Check
+    from kin.judge.closure import ClosureVerdict
     from kin.judge.verdict import SurfaceVerdict
     from kin.law.joints import Joint
 
@@ -158,7 +159,17 @@ def _file(recipe: Recipe, file: FileResult) -> dict[str, Any]:
     }
     if len(file.surfaces) < 2:
         return entry | _surface(recipe, file.surface)
-    return entry | {"surfaces": [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]}
+    entry["surfaces"] = [{"name": one.name, **_surface(recipe, one)} for one in file.surfaces]
+    return entry | {"play": [_play(recipe, one) for one in file.closures]}
+
+
+def _play(recipe: Recipe, closure: ClosureVerdict) -> dict[str, Any]:
+    """What is left to the follower between two surfaces of a file, over the whole turn; negative: interference."""
+    play = closure.play
+    least, unit = in_units(recipe, play.least, play.unit)
+    most, _ = in_units(recipe, play.most, play.unit)
+    place = {"min_at_deg": play.least_at_deg, "max_at_deg": play.most_at_deg}
+    return {"between": [closure.pushes, closure.stops], "min": least, "max": most, "unit": unit, **place}
 
 
 def _surface(recipe: Recipe, surface: SurfaceVerdict) -> dict[str, Any]:

@@ -75,11 +75,28 @@ def test_the_play_of_the_case_from_its_file(stem):
     recipe, path = stem
     verdict = verify(path, intended(recipe, designed(recipe)), 360, permitted(recipe, TOLERANCE))
     (closure,) = verdict.closures
+    assert verdict.ok
     off = 2.0 * TOLERANCE / math.cos(math.radians(26.436))
     assert closure.play.most == pytest.approx(0.033501312, abs=off)
     assert closure.play.most_at_deg == pytest.approx(217.0166, abs=5.0)
     assert closure.play.least == pytest.approx(0.03, abs=off)
     assert max(abs(closure.gauges.least), abs(closure.gauges.most)) < off
+
+
+def test_the_play_is_reported_and_limited(tmp_path):
+    """By what is left to the roller itself, not to the rollers that fill the groove."""
+    report = export(
+        read((text() + "limits: {backlash: {at_most: 0.0336}}\n").encode(), Path("g.yaml")), tmp_path
+    ).report
+    assert report["ok"]
+    for file in report["files"]:
+        (play,) = file["play"]
+        assert (play["between"], play["unit"]) == (["inner", "outer"], "mm")
+        assert play["max"] == pytest.approx(0.033501312, abs=2.3e-4)
+    (limit, _) = [check for check in report["checks"] if check["name"] == "limit:backlash"]
+    assert limit["value"] == play["max"]
+    tight = export(read((text() + "limits: {backlash: {at_most: 0.0334}}\n").encode(), Path("g.yaml")), tmp_path)
+    assert {check["name"] for check in tight.report["checks"] if not check["ok"]} == {"limit:backlash"}
 
 
 @pytest.mark.parametrize("clearance", [1.0, 0.03, 1e-6, 0.0])
