@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from camgeo.cams.disc_cams import DiscCam
 from camgeo.cams.family import UNDERCUT, Family
-from camgeo.cams.groove import TRACK, Groove, GrooveCam, is_groove
+from camgeo.cams.groove import TRACK, Groove, is_groove
 from camgeo.cams.motion import check_whole_turn, motion_field
 from camgeo.cams.sizing import SIZING, SizedDiscCam, Sizing, sized
 from camgeo.schema.fields import Field, Kind, Table, coordinate, length
@@ -126,7 +126,7 @@ def check(cam: Values, reader: Reader) -> None:
     if arm is not None and "pivot" not in arm and "sizing" not in cam and "cam.follower.arm.pivot" not in reader.marks:
         wanted = "give a length above 0, its distance from the shaft, or sizing in place of base_radius"
         reader.fault(reader.marks["cam.follower.arm"], "cam.follower.arm.pivot", "missing", None, wanted)
-    if "sizing" in cam and not (reader.errors or is_groove(cam)):
+    if "sizing" in cam and not reader.errors:
         _size(cam, reader)
 
 
@@ -161,8 +161,6 @@ def build(cam: Values, mm: float) -> DiscCam:  # noqa: ARG001
     if "sized" in cam:
         sized: DiscCam = cam["sized"]
         return sized
-    if is_groove(cam):
-        return GrooveCam(**_values(cam), groove=Groove(**cam["track"]["groove"]))
     return DiscCam(**_values(cam))
 
 
@@ -182,6 +180,7 @@ def _values(cam: Values) -> Values:
         "motion": cam["motion"],
         "undercut": cam.get("undercut", "refuse"),
         "side": -1 if cam.get("track") == "internal" else 1,
+        "groove": Groove(**cam["track"]["groove"]) if is_groove(cam) else None,
     }
 
 

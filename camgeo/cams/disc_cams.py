@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, ClassVar
 
 from camgeo.cams.family import Advice, Circle, ExactCam, Follower, GrownError, Surface, Undercut
 from camgeo.cams.flat_faced import SizeAdvice
+from camgeo.cams.groove import Groove, GrooveAdvice
 from camgeo.cams.guided import LARGER_BASE, ExactGuided, ExactLed, GuidedCam, RoundAdvice
 from camgeo.curve.curve import Curve
 from kin.law.contacts import Arrangement, Contact, Flat, KnifeEdge, Oscillating, Roller, Shoe, Translating
 
 if TYPE_CHECKING:
+    from camgeo.cams.guided import Flank
     from camgeo.cams.motion import MotionAsked
     from camgeo.curve import moving_frame
     from camgeo.curve.disc import Face
@@ -34,21 +36,24 @@ class DiscCam(GuidedCam):
     motion: MotionAsked
     undercut: Undercut
     side: Side = 1
+    groove: Groove | None = None
+
+    @property
+    def flanks(self) -> tuple[Flank, ...]:
+        """The one that the roller runs on, or both of its groove; `base_radius` is that of the inner one."""
+        return super().flanks if self.groove is None else self.groove.flanks(self.touch.radius)
 
     @property
     def arrangement(self) -> Arrangement:
-        """One contact, which a spring or gravity holds on the cam."""
+        """One touch, which a spring or gravity holds on the cam, or a groove."""
         return Arrangement(type(self.guide), type(self.touch))
 
     def exact(self, *, framed: bool = False) -> ExactCam:  # noqa: ARG002
         """By the displacement over a whole turn, 0 where it is lowest."""
-        law = self._displacement()
-        return ExactFaced(self, law) if isinstance(self.touch, Flat) else ExactGuided(self, law)
-
-    def _displacement(self) -> Displacement:
         from camgeo.curve.moving_frame import Displacement
 
-        return Displacement.of(self._turn().demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))
+        law = Displacement.of(self._turn().demand_joined("motion", "mm" if self.guide.unit == "mm" else "rad"))
+        return ExactFaced(self, law) if isinstance(self.touch, Flat) else ExactGuided(self, law)
 
     def _turn(self) -> Motion:
         return self.motion.motion(2.0 * math.pi, "motion", 1)
@@ -58,11 +63,15 @@ class DiscCam(GuidedCam):
         return self._turn().joints
 
     def follower(self, law: Displacement) -> Follower:  # noqa: ARG002 - the motion has no say in it
-        """One contact; where a face's width is given, it must stay on it."""
+        """One touch, a contact on every flank; where a face's width is given, it must stay on it."""
         checks: tuple[str, ...] = ("pressure-angle",)
         if isinstance(self.touch, Flat):
             checks += ("contact-travel",) if self.touch.width is None else ("contact-travel", "face-width")
-        return Follower(f"{self.guide.word} {self.touch.word}", (Contact(self.guide, self.touch, self.datum),), checks)
+        name, first = f"{self.guide.word} {self.touch.word}", Contact(self.guide, self.touch, self.datum)
+        if self.groove is None:
+            return Follower(name, (first,), checks)
+        contacts = tuple(replace(first, touch=Roller(one.radius), surface=one.name) for one in self.flanks)
+        return Follower(name, contacts, checks, "form-closure")
 
     @property
     def datum(self) -> float:
@@ -82,6 +91,8 @@ class DiscCam(GuidedCam):
         if isinstance(self.touch, Flat):
             beside = " with arm.face smaller by as much" if isinstance(self.guide, Oscillating) else ""
             return SizeAdvice(beside=beside, free="be free of it", less_steep=LARGER_BASE)
+        if self.groove is not None:
+            return GrooveAdvice(self, self.groove.clearance, less_steep=LARGER_BASE, trims=False)
         return RoundAdvice(self, less_steep=LARGER_BASE, radius_field=self.radius_field)
 
     @property
@@ -147,7 +158,8 @@ class DiscCam(GuidedCam):
             raise GrownError("the shoe radius" if isinstance(self.touch, Shoe) else "the roller's radius", radius)
         left = scale * (radius - out)
         touch = KnifeEdge() if not left else (Shoe if isinstance(self.touch, Shoe) else Roller)(left)
-        return replace(self, base_radius=scale * (self.base_radius + self.side * out), guide=guide, touch=touch)
+        base, groove = scale * (self.base_radius + self.side * out), self.groove and self.groove.scaled(scale)
+        return replace(self, base_radius=base, guide=guide, touch=touch, groove=groove)
 
 
 @dataclass(frozen=True, eq=False)

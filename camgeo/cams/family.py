@@ -189,12 +189,11 @@ class Advice(ABC):
     trims                 whether undercut may be cut off
     """
 
-    trims: ClassVar[bool] = True
-
     gain: float | None = field(default=None, kw_only=True)
     least_pressure_angle: float = field(default=0.0, kw_only=True)
     less_steep: str = field(default=SMALLER_SWING, kw_only=True)
     radius_field: str = field(default="roller radius", kw_only=True)
+    trims: bool = field(default=True, kw_only=True)
 
     @abstractmethod
     def free_of_undercut(self, free_at: float, mm: float) -> str:

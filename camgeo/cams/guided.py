@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from camgeo.cams.family import Advice, Cam, Circle, ExactCam, Surface
 from camgeo.cams.position import Position, position_of
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from camgeo.curve.extremes import Figure
     from camgeo.curve.moving_frame import CentreShape, Displacement, Guide
     from camgeo.curve.rates import Series
+    from kin.law.contacts import Side
     from kin.law.joints import Joint
     from kin.law.piecewise import Piecewise
 
@@ -54,10 +55,23 @@ class RoundAdvice(Advice):
         return f" with a base radius of {self.cam.led.prime / mm:.12g} {word} that radius"
 
 
+class Flank(NamedTuple):
+    """A surface on either side of a centre's path: its name, the side of its metal, the radius that judges it, mm."""
+
+    name: str
+    side: Side
+    radius: float
+
+
 class GuidedCam(Cam):
     """A cam whose follower's centre is led along a line or about a pivot."""
 
     base_radius: float
+
+    @property
+    def flanks(self) -> tuple[Flank, ...]:
+        """Every surface that the follower touches: one, unless it runs in a groove."""
+        return (Flank("", self.side, self.touch.radius),)
 
     @property
     @abstractmethod
@@ -140,19 +154,23 @@ class ExactGuided(ExactLed):
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The centre's path, and the contour within it by the radius (around it, of a ring).
+        """The centre's path, and the contours within it by the radius (around it, of a ring and of an outer flank).
 
         A knife edge's contour is the parallel at 0: it may be hollow, which a flat face's own contour may not.
         """
         from camgeo.curve.moving_frame import CentreShape
 
         pitch = CentreShape(self.law, self.cam.led)
-        radius, side = self.cam.touch.radius, self.cam.side
+        path = Curve.whole(pitch)
+        return tuple(self._surface(pitch, path, *flank) for flank in self.cam.flanks)
+
+    def _surface(self, pitch: CentreShape, path: Curve, name: str, side: Side, radius: float) -> Surface:
         series: dict[str, Figure] = {"slope": pitch.slope}
         if isinstance(self.cam.touch, Roller):
-            series["spin"] = Spin(pitch, radius, float(side))
+            series["spin"] = Spin(pitch, self.cam.touch.radius, float(side))
         curve = Curve.whole(Parallel(pitch, side * radius))
-        return (Surface(Curve.whole(pitch), curve, radius, side, pitch.pressure_angle, None, series),)
+        layer = f"GROOVE_{name.upper()}" if name else "CUT"
+        return Surface(path, curve, radius, side, pitch.pressure_angle, None, series, name, layer=layer)
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius on this stem; for this length of arm that with the pivot's distance."""

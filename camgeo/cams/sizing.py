@@ -78,7 +78,8 @@ class SizedDiscCam(DiscCam):
     @property
     def advice(self) -> SizedAdvice:
         """In the words of `sizing`."""
-        return SizedAdvice(self, less_steep=LARGER_BASE, radius_field=self.radius_field)
+        trims = self.groove is None
+        return SizedAdvice(self, less_steep=LARGER_BASE, radius_field=self.radius_field, trims=trims)
 
     @property
     def sizes(self) -> dict[str, float]:
@@ -147,7 +148,7 @@ def _binding(cam: SizedDiscCam, exact: ExactCam) -> dict[str, float]:
     """The figures that are at their limits, and at which shaft angle, degrees."""
     from camgeo.curve.curvature import least_radius
 
-    limits, (surface,), bounds = cam.sizing, exact.surfaces, {}
+    limits, surface, bounds = cam.sizing, exact.surfaces[0], {}
     slope = surface.extremes("slope")
     if limits.angles is not None and slope is not None:
         low, high = slope
@@ -248,7 +249,7 @@ def _demand_kept(cam: SizedDiscCam) -> None:
     from kin.law.programme import IntentError
 
     limits = cam.sizing
-    (surface,) = cam.exact().surfaces
+    surface, *_ = cam.exact().surfaces
     shape = surface.base.shape
     if limits.angles is not None and isinstance(shape, CentreShape):
         over = stretches(shape.law)

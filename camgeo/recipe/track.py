@@ -46,8 +46,6 @@ def _check_groove(values: Values, reader: Reader) -> None:
     if follower != "roller":
         remedy = "give a roller, or leave track out"
         reader.fault_at("cam.follower.kind", "does not run in a groove", follower, remedy)
-    if "sizing" in cam:
-        reader.fault_at("cam.sizing", "does not size a groove", None, "give base_radius, that of the inner flank")
     if cam.get("undercut") == "trim":
         reader.fault_at("cam.undercut", "a groove is not trimmed", "trim", "leave it out")
     if "chamfer" in part:

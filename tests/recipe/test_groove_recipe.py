@@ -8,6 +8,7 @@ from camgeo.cams.groove import Groove
 from camgeo.recipe.loading import read
 from camgeo.schema.errors import RecipeErrors
 
+TRACK = "  track: {groove: {clearance: 0.03, depth: 6}}\n"
 GROOVE = """
 cam:
   kind: disc
@@ -40,7 +41,6 @@ def test_a_groove_is_read():
 
 HUB = "hub: {diameter: 20, height: 5"
 REFUSED = {
-    "sizing": ("base_radius: 30", "sizing: {pressure-angle: {at_most: 30}}", "cam.sizing", "does not size a groove"),
     "flat": ("kind: roller, radius: 8", "kind: flat", "cam.follower.kind", "does not run in a groove"),
     "shoe": ("kind: roller", "kind: shoe", "cam.follower.kind", "does not run in a groove"),
     "knife": ("kind: roller, radius: 8", "kind: knife-edge", "cam.follower.kind", "does not run in a groove"),
@@ -76,6 +76,17 @@ def test_each_is_one_fault():
 
 def test_a_hub_below_goes_with_it():
     assert recipe(GROOVE.replace("bore: 10", f"bore: 10, {HUB}, side: bottom}}")).part.hub.side == "bottom"
+
+
+def test_a_groove_is_sized_as_the_disc_within_it():
+    """Both flanks are parallels of one path, whose pressure angle is sized."""
+    sizing = "sizing: {pressure-angle: {at_most: 30}, radius-of-curvature: {at_least: 12}}"
+    cam = recipe(GROOVE.replace("base_radius: 30", sizing)).cam
+    disc = recipe(GROOVE.replace("base_radius: 30", sizing).replace(TRACK, "").replace(", outer: 130", "")).cam
+    assert (cam.base_radius, cam.guide) == (disc.base_radius, disc.guide)
+    inner, outer = cam.exact().surfaces
+    (alone,) = disc.exact().surfaces
+    assert inner.extremes("slope") == outer.extremes("slope") == alone.extremes("slope")
 
 
 def test_a_linkage_is_refused():
