@@ -64,6 +64,7 @@ class Surface:
     shaft angle whose extremes are proved: slope, the tangent of the pressure angle; contact, the place on a flat face,
     mm; spin, turns of the roller per turn of the shaft. `name` is that by which contacts and reports tell it from the
     cam's other surfaces, empty where there is one; `disc` counts the discs on the shaft, `layer` is that of drawings.
+    `depth` is how far it reaches down from the top face, mm, None of one that goes through.
     """
 
     base: Curve
@@ -76,6 +77,7 @@ class Surface:
     name: str = ""
     disc: int = 0
     layer: str = "CUT"
+    depth: float | None = None
     _extremes: dict[str, tuple[Extreme, Extreme]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property

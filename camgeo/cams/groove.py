@@ -29,7 +29,8 @@ class Groove:
 
     def flanks(self, radius: float) -> tuple[Flank, ...]:
         """Both, about the path of a roller of that radius, mm: the inner one pushes it out, the outer one stops it."""
-        return Flank("inner", 1, radius), Flank("outer", -1, radius + self.clearance)
+        wider = radius + self.clearance
+        return Flank("inner", 1, radius, self.depth), Flank("outer", -1, wider, self.depth)
 
     def scaled(self, scale: float) -> Groove:
         """The groove drawn larger."""

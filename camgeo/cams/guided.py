@@ -56,11 +56,12 @@ class RoundAdvice(Advice):
 
 
 class Flank(NamedTuple):
-    """A surface on either side of a centre's path: its name, the side of its metal, the radius that judges it, mm."""
+    """A surface beside a centre's path: its name, the side of its metal, what radius judges it and its depth, mm."""
 
     name: str
     side: Side
     radius: float
+    depth: float | None = None
 
 
 class GuidedCam(Cam):
@@ -162,15 +163,16 @@ class ExactGuided(ExactLed):
 
         pitch = CentreShape(self.law, self.cam.led)
         path = Curve.whole(pitch)
-        return tuple(self._surface(pitch, path, *flank) for flank in self.cam.flanks)
+        return tuple(self._surface(pitch, path, flank) for flank in self.cam.flanks)
 
-    def _surface(self, pitch: CentreShape, path: Curve, name: str, side: Side, radius: float) -> Surface:
+    def _surface(self, pitch: CentreShape, path: Curve, flank: Flank) -> Surface:
+        name, side, radius, depth = flank
         series: dict[str, Figure] = {"slope": pitch.slope}
         if isinstance(self.cam.touch, Roller):
             series["spin"] = Spin(pitch, self.cam.touch.radius, float(side))
         curve = Curve.whole(Parallel(pitch, side * radius))
         layer = f"GROOVE_{name.upper()}" if name else "CUT"
-        return Surface(path, curve, radius, side, pitch.pressure_angle, None, series, name, layer=layer)
+        return Surface(path, curve, radius, side, pitch.pressure_angle, None, series, name, layer=layer, depth=depth)
 
     def less_pressure(self, rising: float, falling: float, mm: float) -> tuple[str, Cam] | None:
         """The least base radius on this stem; for this length of arm that with the pivot's distance."""

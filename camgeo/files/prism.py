@@ -6,6 +6,7 @@ Each vertex moves when it is written (`camgeo.files.precision`), and the fit mus
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -44,6 +45,74 @@ def extruded(
     if not (math.isfinite(thickness) and thickness > 0.0):
         raise ValueError(f"thickness must be > 0, not {thickness!r}")
     precision.within("the thickness", abs(precision.number(thickness) - thickness), tolerance)
+    loops, facts = _rounded(outlines, tolerance, precision)
+    mesh = _standing(*_turned(loops), precision.number(thickness))
+    return mesh, replace(facts, triangles=len(mesh.triangles))
+
+
+def pocketed(
+    outlines: Sequence[LayerOutline], *, depth: float, thickness: float, tolerance: float, precision: Precision
+) -> tuple[Mesh, MeshFacts]:
+    """Closed solid within the first outline, with a pocket of a depth from the top face between its two contours; mm.
+
+    What else is cut out goes through; it lies within the inner contour or beyond the outer one. Raises as `extruded`.
+    """
+    for name, height in (("the thickness", thickness), ("the floor", thickness - depth)):
+        precision.within(name, abs(precision.number(height) - height), tolerance)
+    loops, facts = _rounded(outlines, tolerance, precision)
+    flanks = [k for k, one in enumerate(outlines) if isinstance(one.outline, Polygon)]
+    inner, outer = sorted(flanks, key=lambda k: float(np.hypot(*loops[k].T).max()))
+    holes = [k for k in range(1, len(loops)) if k not in flanks]
+    within = [k for k in holes if _encloses(loops[inner], loops[k][0])]
+    beyond = [k for k in holes if k not in within]
+    floor, top = precision.number(thickness - depth), precision.number(thickness)
+    sizes = np.array([len(loop) for loop in loops])
+    first = np.cumsum(sizes) - sizes
+    count = int(sizes.sum())
+    plane = np.concatenate(loops)
+    points = np.zeros((2 * count, 3))
+    points[:count, :2] = points[count:, :2] = plane
+    points[count:, 2] = top
+    for k in flanks:
+        points[first[k] : first[k] + sizes[k], 2] = floor
+
+    def sheet(bound: int, cut: Sequence[int], *, up: bool, high: bool) -> Triangles:
+        number = np.concatenate([first[k] + np.arange(sizes[k]) for k in (bound, *cut)]) + (count if high else 0)
+        found: Triangles = number[region(loops[bound], [loops[k] for k in cut])]
+        return found if up else found[:, ::-1]
+
+    def wall(k: int) -> Triangles:
+        here = first[k] + np.arange(sizes[k])
+        following = np.roll(here, -1)
+        found = np.concatenate(
+            (
+                np.column_stack((here, following, following + count)),
+                np.column_stack((here, following + count, here + count)),
+            )
+        )
+        return found if k in {0, inner} else found[:, ::-1]
+
+    triangles = np.concatenate(
+        [
+            sheet(0, holes, up=False, high=False),
+            sheet(outer, [inner], up=True, high=False),
+            sheet(0, [outer, *beyond], up=True, high=True),
+            sheet(inner, within, up=True, high=True),
+            *(wall(k) for k in range(len(loops))),
+        ]
+    )
+    return Mesh(points, triangles), replace(facts, triangles=len(triangles))
+
+
+def _encloses(loop: Array, point: Array) -> bool:
+    """Whether a loop (n, 2) winds about a point (2,)."""
+    x, y = (np.vstack((loop, loop[:1])) - point).T
+    around = np.unwrap(np.arctan2(y, x))
+    return bool(abs(around[-1] - around[0]) > math.pi)
+
+
+def _rounded(outlines: Sequence[LayerOutline], tolerance: float, precision: Precision) -> tuple[list[Array], MeshFacts]:
+    """The loops of outlines (n, 2) as written, and what is known of them before they are joined."""
     loops, moved, vertices, dropped = [], 0.0, 0, 0
     bound, others = EXACT, []
     for layer, outline, _ in outlines:
@@ -59,10 +128,9 @@ def extruded(
             raise TypeError("a prism has no splines")
         loops.append(loop)
         moved = max(moved, by)
-    mesh = _standing(*_turned(loops), precision.number(thickness))
     inner_count = len(loops[1]) if len(loops) > 1 else 0
     besides = Bound(max(others), max(others)) if others else None
-    return mesh, MeshFacts(len(mesh.triangles), vertices, inner_count, dropped, moved, bound, besides)
+    return loops, MeshFacts(0, vertices, inner_count, dropped, moved, bound, besides)
 
 
 def rounded_contour(polygon: Polygon, precision: Precision) -> tuple[Array, float, int]:

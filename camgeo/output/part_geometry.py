@@ -65,6 +65,10 @@ def part_mesh(
         from camgeo.files.prism import extruded
 
         return extruded(outlines, thickness=body.thickness, tolerance=tolerance, precision=precision)
+    if body.pocket is not None:
+        from camgeo.files.prism import pocketed
+
+        return pocketed(outlines, depth=body.pocket, thickness=body.thickness, tolerance=tolerance, precision=precision)
     from camgeo.files.solid import joined
 
     polygon = outlines[0].outline

@@ -326,7 +326,7 @@ def _with_body(recipe: Recipe, disc: Disc, exact: ExactCam) -> tuple[Disc, list[
 
     part, shaft_deg = recipe.part, exact.motion.shaft_deg
     looks = [Looks.of(contour, surface.side, surface.name) for surface, contour in disc.contours]
-    body = body_of(part, looks[0])
+    body = body_of(part, looks[0], disc.surfaces[0].surface.depth)
     if not part.plain:
         checks = part_checks(body, looks, part.wall, shaft_deg)
     else:

@@ -57,6 +57,21 @@ REFUSED = {
     "grown": (
         "[dxf]", "[{svg: {clearance: 0.1}}]", "export.files[0].svg.clearance", "a groove is made to its nominal size",
     ),
+    "no depth": (
+        "clearance: 0.03, depth: 6", "clearance: 0.03", "export.files[1]", "stl needs the depth of the groove",
+    ),
+    "no blank": (", outer: 130", "", "export.files[1]", "stl of a groove needs its blank"),
+    "hubbed": (
+        "bore: 10", f"bore: 10, {HUB}, side: bottom}}", "export.files[1]",
+        "stl of a groove is made without a hub or an engraved mark",
+    ),
+    "marked": (
+        "bore: 10", "bore: 10, mark: {as: engrave, width: 2, length: 5, depth: 1}", "export.files[1]",
+        "stl of a groove is made without a hub or an engraved mark",
+    ),
+    "all": (
+        "[dxf]", "[{3mf: {parts: all}}]", "export.files[0]", "the bodies round a groove are not made",
+    ),
     "word": ("{groove: {clearance: 0.03, depth: 6}}", "groove", "cam.track", "not one of the choices"),
     "other": ("groove:", "grove:", "cam.track.grove", "unknown key"),
 }  # fmt: skip
@@ -66,12 +81,18 @@ REFUSED = {
 def test_what_does_not_go_with_a_groove_is_refused_by_name(name):
     before, after, path, problem = REFUSED[name]
     assert before in GROOVE
-    assert (path, problem) in faults(GROOVE.replace(before, after))
+    assert (path, problem) in faults(spoilt(before, after, path))
+
+
+def spoilt(before, after, path):
+    """The recipe with a fault, and with a solid where that is the fault's place."""
+    text = GROOVE.replace("[dxf]", "[dxf, stl]") if path == "export.files[1]" else GROOVE
+    return text.replace(before, after)
 
 
 def test_each_is_one_fault():
-    for name, (before, after, *_) in REFUSED.items():
-        assert len(faults(GROOVE.replace(before, after))) == (2 if name == "other" else 1), name
+    for name, (before, after, path, _) in REFUSED.items():
+        assert len(faults(spoilt(before, after, path))) == (2 if name == "other" else 1), name
 
 
 def test_a_hub_below_goes_with_it():

@@ -238,3 +238,46 @@ def test_undercut_of_a_flank_is_named_and_its_remedy_helps(tmp_path):
     radius, prime = min(radii)
     free = recipe.replace({"cam.follower.radius": 0.9999 * radius, "cam.base_radius": prime - 0.9999 * radius})
     assert not [check for check in designed(free).checks if check.name.startswith("undercut") and not check.ok]
+
+
+SOLID = """
+rotation: ccw
+cam:
+  kind: disc
+  base_radius: 38
+  follower: {kind: roller, radius: 8, arm: {length: 65, pivot: 80, side: leading}}
+  track: {groove: {clearance: 0.05, depth: 5}}
+  motion: {repeat: 2, segments: [{rise: 10, over: 60, law: cycloidal}, {dwell: 40}, {return: 10, over: 80, law: cubic}]}
+part: {thickness: 9, bore: 14, keyway: din6885, outer: 200, bolts: {count: 4, circle: 40, hole: 5},
+  dowel: {circle: 180, at: 30, hole: 6}}
+export: {tolerance: 0.002, files: [stl, 3mf]}
+"""
+
+
+@pytest.mark.parametrize("kind", ["stl", "3mf"])
+def test_a_solid_has_the_pocket(kind, tmp_path):
+    """Its volume by closed forms; a groove that is 1e-3 mm too shallow, or too wide, is refused."""
+    recipe = read(SOLID.replace("[stl, 3mf]", f"[{kind}]").encode(), Path("groove.yaml"))
+    outcome = export(recipe, tmp_path)
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    names = {(check["name"], check.get("surface")) for check in outcome.report["checks"]}
+    assert names >= {
+        ("volume", None),
+        ("thickness", None),
+        ("motion", "inner"),
+        ("motion", "outer"),
+        ("form-closure", None),
+    }
+    path = outcome.folder / f"groove.{kind}"
+    for changed, check in (("depth: 4.997", ("thickness", None)), ("depth: 5.003", ("thickness", None))):
+        other = read(SOLID.replace("depth: 5", changed).encode(), Path("groove.yaml"))
+        assert check in failed(other, path)
+    wider = read(SOLID.replace("clearance: 0.05", "clearance: 0.045").encode(), Path("groove.yaml"))
+    assert failed(wider, path) >= {("contour", "outer"), ("motion", "outer")}
+
+
+def test_a_thin_floor_is_a_wall():
+    shallow = SOLID.replace("depth: 5", "depth: 8").replace("keyway: din6885", "keyway: din6885, wall: 1.5")
+    (wall,) = [check for check in designed(read(shallow.encode(), Path("groove.yaml"))).checks if not check.ok]
+    assert (wall.name, wall.value) == ("wall", 1.0)
+    assert wall.detail.startswith("groove and the lower face")

@@ -30,6 +30,10 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
     heights = {0.0, thickness}
     if chamfer:
         heights |= {chamfer, thickness - chamfer}
+    floor = 0.0
+    if body.pocket is not None and body.outer is not None:
+        floor = thickness - body.pocket
+        heights.add(floor)
     heights |= {thickness - opening.depth for opening in body.openings if opening.depth is not None}
     rising = sorted(heights)
     layers = []
@@ -40,7 +44,8 @@ def layers_of(body: Body) -> tuple[Layer, ...]:
             if opening.depth is not None and thickness - opening.depth <= low
         )
         inset = (_inset(low, thickness, chamfer), _inset(high, thickness, chamfer))
-        layers.append(Layer(low, high, (*through, *shallow), None, inset))
+        blank = round_hole("outline", "thickness", (0.0, 0.0), body.outer) if body.outer and high <= floor else None
+        layers.append(Layer(low, high, (*through, *shallow), blank, inset))
     hub = body.hub
     if hub is not None:
         outline = round_hole("hub", "hub", (0.0, 0.0), hub.diameter)

@@ -40,7 +40,8 @@ class Body:
     `openings` from the bore outward; `bore` is its diameter or width; `hub` and `screw` as the recipe has them, None
     without. `placed` says how many lightening holes were asked for and found. `least_radius` is the contour's, mm,
     where it is convex. `outer` is the diameter of a ring, of which the contour is an opening too; None for a disc.
-    `unmarked` is a mark that has no room.
+    `unmarked` is a mark that has no room. `pocket` is the depth of what lies between two surfaces, None where that goes
+    through or there is none.
     """
 
     thickness: float | None
@@ -53,6 +54,7 @@ class Body:
     least_radius: float = math.inf
     outer: float | None = None
     unmarked: Unmarked | None = None
+    pocket: float | None = None
 
     @property
     def rim(self) -> Opening | None:
@@ -74,7 +76,7 @@ class Body:
     def prism(self) -> bool:
         """Whether every section of the part is the same."""
         engraved = any(opening.depth is not None for opening in self.openings)
-        return self.hub is None and self.chamfer is None and not engraved
+        return self.hub is None and self.chamfer is None and self.pocket is None and not engraved
 
     @property
     def bottom(self) -> float:
@@ -101,7 +103,7 @@ class Body:
         return replace(self, openings=tuple(opening.mirrored() for opening in self.openings), screw=screw)
 
 
-def body_of(part: Part, looks: Looks) -> Body:
+def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
     """Make the part of a recipe round a contour; what places itself looks for its place here.
 
     Raises CurveError where the sharpest place of a contour that is to be chamfered cannot be proved.
@@ -120,7 +122,7 @@ def body_of(part: Part, looks: Looks) -> Body:
     radius = math.inf if part.chamfer is None else least_radius(looks.contour)[0]
     shaft = (part.bore, part.hub, part.set_screw)
     unmarked = mark if isinstance(mark, Unmarked) else None
-    return Body(part.thickness, tuple(openings), *shaft, part.chamfer, placed, radius, part.outer, unmarked)
+    return Body(part.thickness, tuple(openings), *shaft, part.chamfer, placed, radius, part.outer, unmarked, pocket)
 
 
 def _shaft(part: Part) -> list[Opening]:

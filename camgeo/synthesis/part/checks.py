@@ -187,6 +187,8 @@ def walls(body: Body, surfaces: Sequence[Looks]) -> Iterator[Possible]:
             if apart <= 2.0 * (one.reach + two.reach):
                 yield Possible(apart - one.radius - two.radius, partial(_outside, two, one))
     yield from _hub_walls(body, surfaces)
+    if body.pocket is not None and body.thickness is not None:
+        yield _sure("groove", "the lower face", Gap(body.thickness - body.pocket, NOWHERE))
     for opening in body.openings:
         if opening.depth is not None and body.thickness is not None:
             yield _sure(opening.name, "the lower face", Gap(body.thickness - opening.depth, NOWHERE))
