@@ -177,6 +177,8 @@ class Design:
         return Edges.of(outline)
 
     def _made(self) -> Curve:
+        if len(self.exact.surfaces) > 1:
+            raise CallError(f"{self.recipe.name}: a cam of several surfaces has no one contour; export it")
         contour = self.exact.only_surface.contour
         if contour is None:
             failed = next((f": {check}" for check in self.checks if not check.ok), "")

@@ -60,6 +60,8 @@ def _check_groove(values: Values, reader: Reader) -> None:
         reader.fault_at("cam.track.groove.clearance", "a roller in a groove needs clearance", None, remedy)
     if "depth" in groove and not groove["depth"] < part.get("thickness", groove["depth"] + 1.0):
         reader.fault_at(depth, "not below the thickness", None, "give a depth below part.thickness")
+    if values.get("manufacture", {}).get("layer"):
+        reader.fault_at("manufacture.layer", "no cutter's path is made for a groove", None, "leave it out")
     for file in values.get("export", {}).get("files", []):
         kind, path = file["kind"], file["path"]
         for name in ("kerf", "clearance", "shrinkage"):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 from support.cases import few
+from support.groove import CAM, grooved
 
 import camgeo
 
@@ -222,3 +223,13 @@ def test_a_path_stands_for_its_recipe(tmp_path: Path) -> None:
         camgeo.verify("none.yaml", tmp_path / "best" / "best.dxf")
     with pytest.raises(camgeo.CallError, match="recipe is no path: it is empty"):
         camgeo.design("")
+
+
+def test_a_cam_of_two_surfaces_has_no_one_contour(tmp_path: Path) -> None:
+    path = tmp_path / "groove.yaml"
+    path.write_text(grooved(CAM).text)
+    design = camgeo.design(camgeo.load(path))
+    with pytest.raises(camgeo.CallError, match="several surfaces has no one contour"):
+        design.contour()
+    with pytest.raises(camgeo.CallError, match="several surfaces has no one contour"):
+        design.edges(0.01)

@@ -72,6 +72,10 @@ REFUSED = {
     "all": (
         "[dxf]", "[{3mf: {parts: all}}]", "export.files[0]", "the bodies round a groove are not made",
     ),
+    "layer": (
+        "export:", "manufacture: {cutter: 6, layer: true}\nexport:", "manufacture.layer",
+        "no cutter's path is made for a groove",
+    ),
     "word": ("{groove: {clearance: 0.03, depth: 6}}", "groove", "cam.track", "not one of the choices"),
     "other": ("groove:", "grove:", "cam.track.grove", "unknown key"),
 }  # fmt: skip
