@@ -71,6 +71,13 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
     above: list[Shape] = []
     inner_low: list[Shape] = []
     inner_high: list[Shape] = []
+    island: list[Shape] = []  # in the upper face within a pocket
+    if solid.floor is not None:
+        ledge, rim = sorted(others, key=lambda one: one.box()[2])
+        (island_foot, island_head), (foot, head) = (stack.wall(one, solid.floor, top) for one in (ledge, rim))
+        stack.lid(solid.floor, foot.wire, [island_foot.wire])
+        above.append(head.wire)
+        others = []
     for outline in others:
         foot, head = stack.wall(outline, 0.0, top)
         under.append(foot.wire)
@@ -80,11 +87,11 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
         if not any(cut is one for one in through):
             foot, head = stack.wall(cut.outline, cut.low, cut.high)
             stack.lid(cut.low, foot.wire, [])
-            above.append(head.wire)
+            (island if cut.island else above).append(head.wire)
             continue
         foot, head = stack.wall(cut.outline, solid.low if inside else 0.0, solid.high if inside else top)
         (inner_low if inside and low_hub else under).append(foot.wire)
-        (inner_high if inside and high_hub else above).append(head.wire)
+        (inner_high if inside and high_hub else island if cut.island else above).append(head.wire)
     if solid.hub is not None:
         ring = _disc(0.5 * solid.hub)
         if low_hub:
@@ -95,6 +102,8 @@ def solid_shape(outlines: Sequence[LayerOutline], solid: Solid) -> Shape:
             foot, head = stack.wall(ring, top, solid.high)
             stack.lid(solid.high, head.wire, inner_high)
             above.append(foot.wire)
+    if solid.floor is not None:
+        stack.lid(top, island_head.wire, island)
     stack.lid(0.0, first.wire, under)
     stack.lid(top, last.wire, above)
     shape = stack.solid()

@@ -32,11 +32,12 @@ BEYOND = 1.0  # mm by which what cuts reaches out of what is cut
 
 @dataclass(frozen=True)
 class Cut:
-    """A closed outline cut from z `low` to `high`, mm."""
+    """A closed outline cut from z `low` to `high`, mm; `island` as of openings of a part with a pocket."""
 
     outline: ArcSpline
     low: float
     high: float
+    island: bool = False
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,10 @@ class Drill:
 
 @dataclass(frozen=True)
 class Solid:
-    """A disc from z = 0 to `thickness` with a round hub from `low` to `high` and what is cut out of both; mm."""
+    """A disc from z = 0 to `thickness` with a round hub from `low` to `high` and what is cut out of both; mm.
+
+    `floor` is the height of a pocket between two contours, None without one.
+    """
 
     thickness: float
     low: float
@@ -64,6 +68,7 @@ class Solid:
     chamfer: float | None
     cuts: Sequence[Cut]
     drill: Drill | None
+    floor: float | None = None
 
 
 def joined(polygon: Polygon, solid: Solid, *, tolerance: float, precision: Precision) -> tuple[Mesh, MeshFacts]:

@@ -84,7 +84,12 @@ def solid_of(body: Body) -> Solid:
     if body.thickness is None:
         raise ValueError("a solid needs a thickness")
     cuts = [
-        Cut(opening.outline, body.bottom if opening.depth is None else body.thickness - opening.depth, top)
+        Cut(
+            opening.outline,
+            body.bottom if opening.depth is None else body.thickness - opening.depth,
+            top,
+            opening.island,
+        )
         for opening in body.openings
         for top in (body.top if opening.depth is None else body.thickness,)
     ]
@@ -94,4 +99,5 @@ def solid_of(body: Body) -> Solid:
         slope = math.sqrt(1.0 - min(body.screw.diameter / body.bore, 1.0) ** 2) if body.bore else 1.0
         drill = Drill(body.screw.at, body.screw.diameter, body.screw_height, 0.5 * body.hub.diameter + 1.0, slope)
     hub = None if body.hub is None else body.hub.diameter
-    return Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill)
+    floor = None if body.pocket is None else body.thickness - body.pocket
+    return Solid(body.thickness, body.bottom, body.top, hub, body.chamfer, cuts, drill, floor)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 OF_A_DISC = ("bore", "keyway", "flat", "hub", "set_screw", "lightening", "chamfer", "mark")
 """Keys of a part that a ring cannot have."""
-DEEP = frozenset({"stl", "3mf", "glb"})
+DEEP = frozenset({"stl", "3mf", "step", "glb"})
 """Files in which a groove has its depth."""
 
 
@@ -75,7 +75,9 @@ def _check_groove(values: Values, reader: Reader) -> None:
         elif kind in DEEP and "part.outer" not in reader.marks:
             remedy = f"give part.outer, the diameter of the blank, or leave {kind} out"
             reader.fault_at(path, f"{kind} of a groove needs its blank", None, remedy)
-        elif kind in DEEP and ("hub" in part or part.get("mark", {"as": "cut"}).get("as", "engrave") == "engrave"):
+        elif kind in DEEP - {"step"} and (
+            "hub" in part or part.get("mark", {"as": "cut"}).get("as", "engrave") == "engrave"
+        ):
             what = "hub" if "hub" in part else "mark"
             remedy = f"leave {kind} out, or part.{what}"
             reader.fault_at(path, f"{kind} of a groove is made without a hub or an engraved mark", None, remedy)

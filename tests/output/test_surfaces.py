@@ -17,7 +17,7 @@ from camgeo.synthesis.design import designed
 if TYPE_CHECKING:
     from pathlib import Path
 
-PART = "part: {thickness: 8, bore: 10}"
+PART = "part: {thickness: 8, bore: 10, outer: 160}"
 MILLED = "manufacture: {cutter: 6, feed: 400, plunge: 100, spindle: 9000, depth_of_cut: 2, safe_height: 5}"
 FORMS = sorted(SURFACES, key=str)
 ALONE = [form for form in FORMS if SURFACES[form] == 1]

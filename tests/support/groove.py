@@ -16,5 +16,5 @@ CAM = f"cam: {{kind: disc, base_radius: 40, follower: {{kind: roller, radius: 8,
 
 def grooved(text: str, clearance: float = 0.03, path: str = "groove.yaml") -> Recipe:
     """The recipe of a disc cam with its roller in a groove."""
-    track = f"kind: disc, track: {{groove: {{clearance: {clearance}}}}},"
+    track = f"kind: disc, track: {{groove: {{clearance: {clearance}, depth: 4}}}},"
     return read(text.replace("kind: disc,", track).encode(), Path(path))

@@ -254,7 +254,7 @@ export: {tolerance: 0.002, files: [stl, 3mf]}
 """
 
 
-@pytest.mark.parametrize("kind", ["stl", "3mf"])
+@pytest.mark.parametrize("kind", ["stl", "3mf", "step"])
 def test_a_solid_has_the_pocket(kind, tmp_path):
     """Its volume by closed forms; a groove that is 1e-3 mm too shallow, or too wide, is refused."""
     recipe = read(SOLID.replace("[stl, 3mf]", f"[{kind}]").encode(), Path("groove.yaml"))
@@ -274,6 +274,15 @@ def test_a_solid_has_the_pocket(kind, tmp_path):
         assert check in failed(other, path)
     wider = read(SOLID.replace("clearance: 0.05", "clearance: 0.045").encode(), Path("groove.yaml"))
     assert failed(wider, path) >= {("contour", "outer"), ("motion", "outer")}
+
+
+@pytest.mark.parametrize("form", ["arcs", "spline"])
+def test_a_step_solid_has_a_hub_below_and_a_mark(form, tmp_path):
+    hub = "hub: {diameter: 25, height: 8, side: bottom}, mark: {as: engrave, width: 1, length: 4}"
+    text = SOLID.replace("thickness: 9,", f"thickness: 9, {hub},").replace("[stl, 3mf]", f"[{{step: {{as: {form}}}}}]")
+    outcome = export(read(text.encode(), Path("groove.yaml")), tmp_path)
+    assert outcome.ok, [check for check in outcome.report["checks"] if not check["ok"]]
+    assert {check["name"] for check in outcome.report["checks"]} >= {"hub", "mark", "holes", "bore", "volume"}
 
 
 def test_a_thin_floor_is_a_wall():

@@ -119,6 +119,8 @@ def body_of(part: Part, looks: Looks, pocket: float | None = None) -> Body:
         there = openings if hub is None else [*openings, hub]
         found, placed = lightened(part.lightening, looks, there, edge)
         openings += found
+    if pocket is not None:
+        openings = [replace(one, island=distance_inside(looks, one.middle)[0] > 0.0) for one in openings]
     radius = math.inf if part.chamfer is None else least_radius(looks.contour)[0]
     shaft = (part.bore, part.hub, part.set_screw)
     unmarked = mark if isinstance(mark, Unmarked) else None

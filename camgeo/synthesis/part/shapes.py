@@ -28,7 +28,8 @@ Layer = Literal["CUT", "BORE", "HOLES", "MARK", "ENGRAVE"]
 class Opening:
     """One closed outline cut into the part: through everything, or `depth` mm into the upper face of the disc.
 
-    `layer` is that of a drawing; `circle` is the centre and radius of a round one, None of any other.
+    `layer` is that of a drawing; `circle` is the centre and radius of a round one, None of any other. `island`: it
+    lies in the metal within the inner of two surfaces.
     """
 
     name: str
@@ -36,11 +37,12 @@ class Opening:
     outline: ArcSpline
     circle: tuple[tuple[float, float], float] | None = None
     depth: float | None = None
+    island: bool = False
 
     def mirrored(self) -> Opening:
         """Mirror about the x axis."""
         circle = self.circle and ((self.circle[0][0], -self.circle[0][1]), self.circle[1])
-        return Opening(self.name, self.layer, self.outline.mirrored(), circle, self.depth)
+        return Opening(self.name, self.layer, self.outline.mirrored(), circle, self.depth, self.island)
 
     @cached_property
     def chain(self) -> Arcs:
